@@ -1,0 +1,1 @@
+"""What people type: thin `main(argv)` functions that map faults to exit codes."""

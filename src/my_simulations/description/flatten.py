@@ -1,0 +1,35 @@
+"""A model with nested models as one model with scoped link names.
+
+Gazebo names a nested link `outer::inner::link`; inside the outer model it is `inner::link`. The
+engine knows flat models only.
+"""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import List
+
+from ..geometry import Pose, compose
+from .model import WORLD, Joint, Link, Model
+
+
+def flattened(model: Model) -> Model:
+    """The same model without nested ones; poses of their links in the outer model's frame."""
+    if not model.models:
+        return model
+    links: List[Link] = list(model.links)
+    joints: List[Joint] = list(model.joints)
+    for nested in model.models:
+        inner = flattened(nested)
+        links += [_moved(link, nested.name, nested.pose) for link in inner.links]
+        joints += [_scoped(joint, nested.name) for joint in inner.joints]
+    return replace(model, links=links, joints=joints, models=[])
+
+
+def _moved(link: Link, scope: str, pose: Pose) -> Link:
+    return replace(link, name=f"{scope}::{link.name}", pose=compose(pose, link.pose))
+
+
+def _scoped(joint: Joint, scope: str) -> Joint:
+    parent = joint.parent if joint.parent == WORLD else f"{scope}::{joint.parent}"
+    return replace(joint, name=f"{scope}::{joint.name}", parent=parent,
+                   child=f"{scope}::{joint.child}")

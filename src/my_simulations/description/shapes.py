@@ -1,0 +1,152 @@
+"""Geometry, surface and appearance of a collision or a visual."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Optional, Tuple, Union
+
+from ..geometry import IDENTITY, Pose, Vec3
+
+Color = Tuple[float, float, float, float]
+
+
+@dataclass
+class Box:
+    """`size`: full edge lengths in metres, centred on the origin."""
+
+    size: Vec3 = (1.0, 1.0, 1.0)
+
+
+@dataclass
+class Sphere:
+    """`radius` in metres."""
+
+    radius: float = 1.0
+
+
+@dataclass
+class Cylinder:
+    """Axis z, centred; metres."""
+
+    radius: float = 1.0
+    length: float = 1.0
+
+
+@dataclass
+class Plane:
+    """Collides as a half-space whatever its size; `size` is that of the visual."""
+
+    normal: Vec3 = (0.0, 0.0, 1.0)
+    size: Tuple[float, float] = (1.0, 1.0)
+
+
+@dataclass
+class Mesh:
+    """A triangle mesh.
+
+    Attributes:
+        uri: as written in the file.
+        path: absolute path it resolved to; "" where it was not found.
+        scale: per axis, applied in the mesh's own frame.
+        submesh: name of the part to use, "" for all.
+        center: shift the part so that its bounding box is centred on the origin.
+    """
+
+    uri: str = ""
+    path: str = ""
+    scale: Vec3 = (1.0, 1.0, 1.0)
+    submesh: str = ""
+    center: bool = False
+
+
+@dataclass
+class Empty:
+    """No geometry."""
+
+
+Geometry = Union[Box, Sphere, Cylinder, Plane, Mesh, Empty]
+
+
+@dataclass
+class MeshData:
+    """A loaded mesh, in metres, in the frame of the file (no up-axis rotation, as Gazebo).
+
+    Attributes:
+        vertices: float64 array (n, 3), scale already applied.
+        triangles: int32 array (m, 3) of vertex indices.
+    """
+
+    vertices: Any
+    triangles: Any
+
+
+@dataclass
+class Surface:
+    """Contact properties; defaults are SDF's (collision/surface).
+
+    `mu`, `mu2` Coulomb coefficients; `restitution` 0..1, used for impacts faster than
+    `bounce_threshold` m/s; `kp` N/m, `kd` N s/m, `max_vel` m/s, `min_depth` m.
+    """
+
+    mu: float = 1.0
+    mu2: float = 1.0
+    fdir1: Vec3 = (0.0, 0.0, 0.0)
+    slip1: float = 0.0
+    slip2: float = 0.0
+    restitution: float = 0.0
+    bounce_threshold: float = 100000.0
+    kp: float = 1e12
+    kd: float = 1.0
+    max_vel: float = 0.01
+    min_depth: float = 0.0
+    collide_without_contact: bool = False
+    collide_bitmask: int = 65535
+
+
+@dataclass
+class Material:
+    """Appearance, kept for the editor. Colours are r, g, b, a in 0..1; None where unset."""
+
+    ambient: Optional[Color] = None
+    diffuse: Optional[Color] = None
+    specular: Optional[Color] = None
+    emissive: Optional[Color] = None
+    script_uris: List[str] = field(default_factory=list)
+    script_name: str = ""
+    texture: str = ""
+
+
+@dataclass
+class Collision:
+    """One collision of a link; `pose` in the link frame."""
+
+    name: str
+    geometry: Geometry
+    pose: Pose = IDENTITY
+    surface: Surface = field(default_factory=Surface)
+    max_contacts: int = 10
+    laser_retro: float = 0.0
+    extra: List[str] = field(default_factory=list)
+
+
+@dataclass
+class Visual:
+    """One visual of a link; `pose` in the link frame; `transparency` 0 opaque to 1 invisible."""
+
+    name: str
+    geometry: Geometry
+    pose: Pose = IDENTITY
+    material: Optional[Material] = None
+    cast_shadows: bool = True
+    transparency: float = 0.0
+    laser_retro: float = 0.0
+    extra: List[str] = field(default_factory=list)
+
+
+MeshTable = Dict[str, MeshData]
+"""Loaded collision meshes by `mesh_key`."""
+
+
+def mesh_key(mesh: Mesh) -> str:
+    """What identifies a loaded mesh: file, scale, part."""
+    part = f"#{mesh.submesh}{'@' if mesh.center else ''}" if mesh.submesh else ""
+    return f"{mesh.path}*{mesh.scale[0]!r},{mesh.scale[1]!r},{mesh.scale[2]!r}{part}"

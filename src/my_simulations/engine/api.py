@@ -1,0 +1,279 @@
+"""The interface of an engine: commands in, replies out, states in a ring.
+
+Whoever moves the world (PyBullet in a child process, PyBullet in this process, a kinematic fake)
+satisfies `Engine`. Everything that changes the world is a command; commands are applied between
+steps, also while paused, and answered once a snapshot that shows their effect is in the ring.
+
+Entities are known to the engine by numbers that the simulator hands out: a model by its id, a link
+by its row in the ring's link table, a joint axis by its row in the joint table.
+"""
+from __future__ import annotations
+
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import Callable, Dict, List, Optional, Protocol, Tuple
+
+from ..description.model import Model
+from ..description.shapes import MeshData
+from ..geometry import Pose, STILL, Twist, Vec3
+from .ring import RingReader
+
+FOREVER = 1 << 62
+"""A step that never comes: the horizon of a world nobody needs to meet."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A moving reference: the link at `row`, and `offset` the wanted frame from that link."""
+
+    row: int
+    offset: Pose
+
+
+@dataclass(frozen=True)
+class LinkState:
+    """World pose of a link frame and world-axes twist at its origin."""
+
+    pose: Pose
+    twist: Twist = STILL
+
+
+@dataclass(frozen=True)
+class ModelState:
+    """Links in the description's order; joints (position, rate) likewise, fixed ones left out."""
+
+    links: Tuple[LinkState, ...]
+    joints: Tuple[Tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class PhysicsSettings:
+    """`step_size` s; `gravity` m/s^2; `rate` steps a wall second, 0 = as fast as possible."""
+
+    step_size: float = 0.001
+    gravity: Vec3 = (0.0, 0.0, -9.8)
+    rate: float = 1000.0
+    iterations: int = 50
+
+
+@dataclass(frozen=True)
+class Load:
+    """A wrench on a link or an effort on a joint axis, exact to the step.
+
+    Acts in steps `start` (the first step whose beginning is at this count) to `stop` - 1.
+
+    Attributes:
+        load_id: to clear it by.
+        row: link row, or joint row when `effort` is not None.
+        force, torque: world axes, N and N m, at the centre of mass (link loads).
+        effort: N m or N (joint loads).
+        start, stop: step counts; `stop` FOREVER for until cleared.
+        in_link_axes: force and torque turn with the link (link loads).
+        point: where the force attacks, from the centre of mass, same axes as the force.
+    """
+
+    load_id: int
+    row: int
+    start: int
+    stop: int
+    force: Vec3 = (0.0, 0.0, 0.0)
+    torque: Vec3 = (0.0, 0.0, 0.0)
+    effort: Optional[float] = None
+    in_link_axes: bool = False
+    point: Vec3 = (0.0, 0.0, 0.0)
+
+
+class Command:
+    """Base of all commands; each says what its reply's `value` holds (None where silent)."""
+
+
+@dataclass(frozen=True)
+class LoadModel(Command):
+    """Put a model into the world.
+
+    Attributes:
+        model_id: new number.
+        model: flattened (no nested models).
+        pose: world pose of the model frame.
+        first_link_row, first_joint_row: rows of its links (in order) and of its movable joints'
+            axes (in order, `joint_rows` in `engine.rows` says how many).
+        meshes: what its collisions need, by `mesh_key`.
+        state: where its links and joints are, instead of the pose of the file.
+    """
+
+    model_id: int
+    model: Model
+    pose: Pose
+    first_link_row: int
+    first_joint_row: int
+    meshes: Dict[str, MeshData] = field(default_factory=dict)
+    state: Optional[ModelState] = None
+
+
+@dataclass(frozen=True)
+class RemoveModel(Command):
+    """Take a model out; bodies that rested on it wake up."""
+
+    model_id: int
+
+
+@dataclass(frozen=True)
+class SetModelState(Command):
+    """Move all links of a model rigidly so that its frame gets `pose`; joints keep their positions.
+
+    Every link gets the rigid body's velocity, v + w x r. With `frame`, pose and twist are given in
+    it (the frame's own velocity is not added). `twist` None keeps the velocities, turned along.
+    """
+
+    model_id: int
+    pose: Pose
+    twist: Optional[Twist] = None
+    frame: Optional[Frame] = None
+
+
+@dataclass(frozen=True)
+class SetLinkState(Command):
+    """Move one link; for a link of a jointed model see `simulator.links`."""
+
+    row: int
+    pose: Pose
+    twist: Optional[Twist] = None
+    frame: Optional[Frame] = None
+
+
+@dataclass(frozen=True)
+class SetJoints(Command):
+    """Set positions (and rates) of joint axes by row; the subtree moves along."""
+
+    joints: Tuple[Tuple[int, float, float], ...]
+
+
+@dataclass(frozen=True)
+class RestoreModels(Command):
+    """Put models back into given states, all in the same gap between steps.
+
+    `states` is (model id, state); `step` and `sim_ns` also set the clock when given, and loads are
+    dropped when `clear_loads`.
+    """
+
+    states: Tuple[Tuple[int, ModelState], ...]
+    clock: Optional[Tuple[int, int]] = None
+    clear_loads: bool = False
+
+
+@dataclass(frozen=True)
+class StopMotion(Command):
+    """Set every velocity of the given models to zero, positions kept, and put back base poses.
+
+    `poses`: (model id, world pose of the model frame); reset_world's semantics.
+    """
+
+    poses: Tuple[Tuple[int, Pose], ...]
+
+
+@dataclass(frozen=True)
+class SetPhysics(Command):
+    """Replace the settings; a changed gravity wakes everything."""
+
+    settings: PhysicsSettings
+
+
+@dataclass(frozen=True)
+class SetClock(Command):
+    """Set the step count and the sim time (ns)."""
+
+    step: int
+    sim_ns: int
+
+
+@dataclass(frozen=True)
+class Pause(Command):
+    """Stop after the running step. Reply value: the step count."""
+
+
+@dataclass(frozen=True)
+class Run(Command):
+    """Step until the horizon (a step count; FOREVER for no end). Reply value: the step count."""
+
+    horizon: int = FOREVER
+
+
+@dataclass(frozen=True)
+class Advance(Command):
+    """Make exactly `steps` steps as fast as possible, also while paused; answered when done."""
+
+    steps: int
+
+
+@dataclass(frozen=True)
+class AddLoads(Command):
+    """Add timed wrenches and efforts; loads on one target add up."""
+
+    loads: Tuple[Load, ...]
+
+
+@dataclass(frozen=True)
+class ClearLoads(Command):
+    """Remove loads by id; unknown ids are ignored, they have run out."""
+
+    load_ids: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Ping(Command):
+    """Nothing; the reply shows that everything before it is done."""
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What came of a command.
+
+    Attributes:
+        step: step count at which it was applied.
+        sequence: ring sequence of the first snapshot that shows its effect.
+        value: the command's own result.
+        error: one sentence when it was refused; then nothing has changed.
+    """
+
+    step: int
+    sequence: int
+    value: object = None
+    error: str = ""
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something the engine reports by itself.
+
+    `kind`: `horizon` (reached), `diverged` (a model's state became non-finite and it was put back
+    where it last was finite, at rest), `log`.
+    """
+
+    kind: str
+    message: str
+    model_id: int = -1
+    step: int = 0
+
+
+class Engine(Protocol):
+    """What the simulator needs of whoever moves the world."""
+
+    @property
+    def ring(self) -> RingReader:
+        """Where the states are read."""
+
+    def submit(self, command: Command) -> "Future[Reply]":
+        """Queue a command. The future fails with `EngineGone` when the engine died first."""
+
+    def on_event(self, listener: Callable[[Event], None]) -> None:
+        """Set who hears of events (called from the engine's reader thread)."""
+
+    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
+        """Set who hears of the engine's death: a reason, and the commands without an answer."""
+
+    def close(self) -> None:
+        """End it and wait for the end."""
+
+
+class EngineGone(Exception):
+    """The engine died before it answered."""

@@ -1,0 +1,242 @@
+"""Snapshots of the world in shared memory: one writer, any number of readers, no locks.
+
+A control page (int64 words) is followed by a ring of slots. A slot holds the states of all links
+and joint axes after one step; its sequence number is written before (begin) and after (end) its
+body, so a reader that finds both equal to the one it asked for has a whole snapshot, and a writer
+that dies in the middle leaves the previous slot untouched. The step count of the control page is
+newer than the latest slot while nothing has moved, or when the read-out is thinned.
+
+The memory is sparse (memfd): capacity costs nothing until rows are used.
+"""
+from __future__ import annotations
+
+import mmap
+import os
+import time
+from dataclasses import dataclass
+from typing import List, NamedTuple, Optional, Sequence
+
+from ..geometry import Pose, Twist
+
+SLOTS = 16
+LINKS = 16384
+JOINTS = 16384
+LINK_WIDTH = 13   # position 3, orientation 4 (x y z w), linear 3, angular 3; world axes, link origin
+JOINT_WIDTH = 2   # position, rate
+HEAD_WORDS = 16
+
+_PAGE = 4096
+_LINK_WORDS = LINKS * LINK_WIDTH
+_JOINT_WORDS = JOINTS * JOINT_WIDTH
+_SLOT_WORDS = -(-(HEAD_WORDS + _LINK_WORDS + _JOINT_WORDS) * 8 // _PAGE) * _PAGE // 8
+SIZE = _PAGE + SLOTS * _SLOT_WORDS * 8
+
+# Words of the control page. The first group is the engine's, the second the simulator's.
+STEP, LATEST, HEARTBEAT, STATUS = 0, 1, 2, 3
+DEMAND_NS, BELL = 8, 9
+
+# Words of a slot's head.
+SEQ_BEGIN, SEQ_END, SLOT_STEP, EPOCH_STEP, EPOCH_NS, STEP_PS, USED_LINKS, USED_JOINTS = range(8)
+
+STATUS_PAUSED, STATUS_RUNNING = 0, 1
+
+
+def create() -> int:
+    """A memfd of the ring's size; the caller owns the descriptor."""
+    fd = os.memfd_create("my_simulations_ring", os.MFD_CLOEXEC)
+    os.ftruncate(fd, SIZE)
+    return fd
+
+
+class Clock(NamedTuple):
+    """Sim time as a count of steps since an epoch.
+
+    `step_ps` is the step size in picoseconds, so that 1/240 s and the like stay exact enough to be
+    counted for years; seconds are derived.
+    """
+
+    epoch_step: int
+    epoch_ns: int
+    step_ps: int
+
+    def sim_ns(self, step: int) -> int:
+        """Sim time in nanoseconds after `step` steps."""
+        return self.epoch_ns + (step - self.epoch_step) * self.step_ps // 1000
+
+
+def picoseconds(step_size: float) -> int:
+    """A step size in seconds as whole picoseconds."""
+    return round(step_size * 1e12)
+
+
+@dataclass
+class Snapshot:
+    """One whole copy of the world's state.
+
+    Attributes:
+        sequence: its number; grows by one a snapshot.
+        step: the step count up to which nothing has changed since this state was written.
+        clock: for `clock.sim_ns(step)`.
+        links: flat, `LINK_WIDTH` numbers a row.
+        joints: flat, `JOINT_WIDTH` numbers a row.
+    """
+
+    sequence: int
+    step: int
+    clock: Clock
+    links: Sequence[float]
+    joints: Sequence[float]
+
+    @property
+    def sim_ns(self) -> int:
+        """Sim time of `step`, nanoseconds."""
+        return self.clock.sim_ns(self.step)
+
+    def link(self, row: int) -> "tuple[Pose, Twist]":
+        """World pose of the link frame and twist at its origin (world axes)."""
+        return _link_at(self.links, row * LINK_WIDTH)
+
+    def joint(self, row: int) -> "tuple[float, float]":
+        """Position and rate of a joint axis."""
+        base = row * JOINT_WIDTH
+        return self.joints[base], self.joints[base + 1]
+
+
+def _link_at(values: Sequence[float], at: int) -> "tuple[Pose, Twist]":
+    n = list(values[at:at + LINK_WIDTH])
+    return (
+        Pose((n[0], n[1], n[2]), (n[3], n[4], n[5], n[6])),
+        Twist((n[7], n[8], n[9]), (n[10], n[11], n[12])),
+    )
+
+
+class _Memory:
+    """The mapping, as words and as doubles."""
+
+    def __init__(self, fd: Optional[int]) -> None:
+        if fd is None:
+            self._map = mmap.mmap(-1, SIZE)
+        else:
+            self._map = mmap.mmap(fd, SIZE)
+        view = memoryview(self._map)
+        self.words = view.cast("q")
+        self.doubles = view.cast("d")
+        self.buffer = view
+
+    @staticmethod
+    def slot(sequence: int) -> int:
+        """First word of the slot that holds snapshot `sequence`."""
+        return _PAGE // 8 + (sequence % SLOTS) * _SLOT_WORDS
+
+
+class RingWriter:
+    """The engine's side. `fd` None keeps the ring inside this process."""
+
+    def __init__(self, fd: Optional[int] = None, memory: Optional[_Memory] = None) -> None:
+        self.memory = memory or _Memory(fd)
+        self.words = self.memory.words
+
+    def set_step(self, step: int) -> None:
+        """The world is `step` steps old; the latest slot still holds unless a new one follows."""
+        self.words[STEP] = step
+
+    def write(self, step: int, clock: Clock, links: bytes, joints: bytes) -> int:
+        """Write a snapshot. `links`, `joints`: the used rows as raw doubles. Returns its sequence."""
+        words = self.words
+        sequence = words[LATEST] + 1
+        slot = self.memory.slot(sequence)
+        words[slot + SEQ_BEGIN] = sequence
+        words[slot + SLOT_STEP] = step
+        words[slot + EPOCH_STEP] = clock.epoch_step
+        words[slot + EPOCH_NS] = clock.epoch_ns
+        words[slot + STEP_PS] = clock.step_ps
+        words[slot + USED_LINKS] = len(links) // (8 * LINK_WIDTH)
+        words[slot + USED_JOINTS] = len(joints) // (8 * JOINT_WIDTH)
+        at = (slot + HEAD_WORDS) * 8
+        self.memory.buffer[at:at + len(links)] = links
+        at += _LINK_WORDS * 8
+        self.memory.buffer[at:at + len(joints)] = joints
+        words[slot + SEQ_END] = sequence
+        words[LATEST] = sequence
+        words[STEP] = step
+        return sequence
+
+
+class RingReader:
+    """The simulator's side; safe from any thread."""
+
+    def __init__(self, fd: Optional[int] = None, memory: Optional[_Memory] = None) -> None:
+        self.memory = memory or _Memory(fd)
+        self.words = self.memory.words
+
+    @property
+    def latest(self) -> int:
+        """Sequence of the newest whole snapshot; 0 before the first."""
+        return self.words[LATEST]
+
+    @property
+    def step(self) -> int:
+        """The engine's step count now."""
+        return self.words[STEP]
+
+    @property
+    def running(self) -> bool:
+        """False while paused."""
+        return self.words[STATUS] == STATUS_RUNNING
+
+    def clock(self) -> "tuple[int, Clock]":
+        """The step count now and the clock that belongs to it, without copying states."""
+        while True:
+            sequence = self.words[LATEST]
+            slot = self.memory.slot(sequence)
+            words = self.words
+            clock = Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
+            step = words[STEP]
+            if words[LATEST] == sequence:
+                return step, clock
+
+    def link(self, row: int) -> "tuple[Pose, Twist]":
+        """Newest state of one link, without copying the rest."""
+        while True:
+            sequence = self.words[LATEST]
+            slot = self.memory.slot(sequence)
+            found = _link_at(self.memory.doubles, slot + HEAD_WORDS + row * LINK_WIDTH)
+            if self._is_whole(slot, sequence):
+                return found
+
+    def read(self, sequence: Optional[int] = None) -> Optional[Snapshot]:
+        """A copy of snapshot `sequence` (default the newest); None once it is overwritten."""
+        while True:
+            wanted = self.words[LATEST] if sequence is None else sequence
+            found = self._copy(wanted)
+            if found is not None or sequence is not None:
+                return found
+
+    def _copy(self, sequence: int) -> Optional[Snapshot]:
+        slot = self.memory.slot(sequence)
+        words, doubles = self.words, self.memory.doubles
+        if words[slot + SEQ_END] != sequence:
+            return None
+        clock = Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
+        step = words[slot + SLOT_STEP]
+        at = slot + HEAD_WORDS
+        links: List[float] = doubles[at:at + words[slot + USED_LINKS] * LINK_WIDTH].tolist()
+        at += _LINK_WORDS
+        joints: List[float] = doubles[at:at + words[slot + USED_JOINTS] * JOINT_WIDTH].tolist()
+        now = words[STEP]
+        if not self._is_whole(slot, sequence):
+            return None
+        if words[LATEST] == sequence and now > step and words[STATUS] == STATUS_PAUSED:
+            step = now
+        return Snapshot(sequence, step, clock, links, joints)
+
+    def _is_whole(self, slot: int, sequence: int) -> bool:
+        return self.words[slot + SEQ_BEGIN] == sequence == self.words[slot + SEQ_END]
+
+    def wait_for(self, sequence: int, deadline: float) -> bool:
+        """Wait until snapshot `sequence` exists or `time.monotonic()` passes `deadline`."""
+        while self.words[LATEST] < sequence:
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(0.0002)
+        return True

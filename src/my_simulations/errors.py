@@ -1,0 +1,113 @@
+"""What can go wrong for a user, as data.
+
+A fault in a user's file or request is an `Issue`; readers collect all they meet in one pass.
+`InputError` carries them where nothing usable is left. Programming errors raise ordinary
+exceptions and are never turned into issues.
+"""
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import Iterable, List, Optional, Sequence
+
+
+class Severity(enum.Enum):
+    """How much of the input survives the fault."""
+
+    ERROR = "error"      # the element (or the file) is not usable
+    WARNING = "warning"  # used, but not as written
+    NOTE = "note"        # used as written, worth knowing
+
+
+@dataclass(frozen=True)
+class Issue:
+    """One fault of one input.
+
+    Attributes:
+        severity: what it means for the input.
+        code: stable identifier in kebab-case, e.g. `mesh-not-found`.
+        message: one sentence, with what was expected and what was found.
+        file: path of the file, or a name such as `robot_description` for text from elsewhere.
+        line, column: 1-based; 0 where unknown.
+        xpath: the element, e.g. `/sdf/world/model[2]/link[1]`.
+        hint: what to do about it, or empty.
+    """
+
+    severity: Severity
+    code: str
+    message: str
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    xpath: str = ""
+    hint: str = ""
+
+    @property
+    def location(self) -> str:
+        """`file:line:column`, as far as known."""
+        if not self.file and not self.line:
+            return ""
+        parts = [self.file or "<text>"]
+        if self.line:
+            parts.append(str(self.line))
+            if self.column:
+                parts.append(str(self.column))
+        return ":".join(parts)
+
+    def __str__(self) -> str:
+        where = f"{self.location}: " if self.location else ""
+        at = f" [{self.xpath}]" if self.xpath else ""
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{where}{self.severity.value}: {self.message}{at}{hint}"
+
+
+def error(code: str, message: str, **where: object) -> Issue:
+    """An `Issue` of severity ERROR; `where` takes file, line, column, xpath and hint."""
+    return Issue(Severity.ERROR, code, message, **where)  # type: ignore[arg-type]
+
+
+def warning(code: str, message: str, **where: object) -> Issue:
+    """An `Issue` of severity WARNING; `where` takes file, line, column, xpath and hint."""
+    return Issue(Severity.WARNING, code, message, **where)  # type: ignore[arg-type]
+
+
+def errors_of(issues: Iterable[Issue]) -> List[Issue]:
+    """Only those of severity ERROR, in order."""
+    return [issue for issue in issues if issue.severity is Severity.ERROR]
+
+
+class InputError(Exception):
+    """A user's input leaves nothing to work with.
+
+    Attributes:
+        issues: every fault found, at least one of severity ERROR.
+    """
+
+    def __init__(self, issues: Sequence[Issue]) -> None:
+        self.issues: List[Issue] = list(issues)
+        super().__init__(self.summary())
+
+    @property
+    def first(self) -> Optional[Issue]:
+        """The first error, else the first issue, else None."""
+        found = errors_of(self.issues) or self.issues
+        return found[0] if found else None
+
+    def summary(self) -> str:
+        """The first error and how many more there are, in one line."""
+        first = self.first
+        if first is None:
+            return "unknown fault"
+        more = len(errors_of(self.issues)) - 1
+        return str(first) + (f" (and {more} more)" if more > 0 else "")
+
+
+class CommandError(Exception):
+    """A request that cannot be carried out: unknown entity, duplicate name, bad value.
+
+    The message is one sentence for the user, without a prefix.
+    """
+
+
+class EngineLost(CommandError):
+    """The engine process died while it worked on this command; the world was restored."""

@@ -1,0 +1,1 @@
+"""Files to descriptions and back, by tables. Readers collect issues; they never print."""

@@ -1,0 +1,175 @@
+"""Poses, rotations and twists in plain Python.
+
+Quaternions are (x, y, z, w). A pose is parent-from-child: `compose(parent_from_a, a_from_b)`
+is parent_from_b. Angles are radians, lengths metres. NumPy is left out on purpose: the ROS node
+handles single poses only, where tuples are faster and cost neither memory nor start-up time.
+"""
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Tuple
+
+Vec3 = Tuple[float, float, float]
+Quat = Tuple[float, float, float, float]
+
+ZERO3: Vec3 = (0.0, 0.0, 0.0)
+IDENTITY_QUAT: Quat = (0.0, 0.0, 0.0, 1.0)
+
+
+class Pose(NamedTuple):
+    """A rigid transform, parent from child.
+
+    Attributes:
+        position: metres, in the parent frame.
+        orientation: unit quaternion x, y, z, w.
+    """
+
+    position: Vec3 = ZERO3
+    orientation: Quat = IDENTITY_QUAT
+
+
+IDENTITY = Pose()
+
+
+class Twist(NamedTuple):
+    """A velocity in world axes: linear m/s at the named frame's origin, angular rad/s."""
+
+    linear: Vec3 = ZERO3
+    angular: Vec3 = ZERO3
+
+
+STILL = Twist()
+
+
+def add(a: Vec3, b: Vec3) -> Vec3:
+    """a + b."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def subtract(a: Vec3, b: Vec3) -> Vec3:
+    """a - b."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def scale(a: Vec3, factor: float) -> Vec3:
+    """factor * a."""
+    return (a[0] * factor, a[1] * factor, a[2] * factor)
+
+
+def dot(a: Vec3, b: Vec3) -> float:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vec3, b: Vec3) -> Vec3:
+    """Vector product a x b."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def norm(a: Vec3) -> float:
+    """Euclidean length."""
+    return math.sqrt(dot(a, a))
+
+
+def is_finite(*values: float) -> bool:
+    """True when no value is NaN or infinite."""
+    return all(math.isfinite(value) for value in values)
+
+
+def pose_is_finite(pose: Pose) -> bool:
+    """True when no number of the pose is NaN or infinite."""
+    return is_finite(*pose.position, *pose.orientation)
+
+
+def normalised(q: Quat) -> Quat:
+    """The unit quaternion along `q`; the all-zero one becomes identity, as in Gazebo."""
+    length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    if length < 1e-12:
+        return IDENTITY_QUAT
+    if abs(length - 1.0) < 1e-15:
+        return q
+    return (q[0] / length, q[1] / length, q[2] / length, q[3] / length)
+
+
+def multiply(a: Quat, b: Quat) -> Quat:
+    """Hamilton product: the rotation b, then a."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def conjugate(q: Quat) -> Quat:
+    """The inverse of a unit quaternion."""
+    return (-q[0], -q[1], -q[2], q[3])
+
+
+def rotate(q: Quat, v: Vec3) -> Vec3:
+    """The vector `v` turned by the unit quaternion `q`."""
+    u: Vec3 = (q[0], q[1], q[2])
+    t = scale(cross(u, v), 2.0)
+    return add(add(v, scale(t, q[3])), cross(u, t))
+
+
+def compose(a: Pose, b: Pose) -> Pose:
+    """parent_from_a composed with a_from_b: parent_from_b."""
+    return Pose(
+        add(a.position, rotate(a.orientation, b.position)),
+        normalised(multiply(a.orientation, b.orientation)),
+    )
+
+
+def inverse(pose: Pose) -> Pose:
+    """child_from_parent."""
+    q = conjugate(pose.orientation)
+    return Pose(scale(rotate(q, pose.position), -1.0), q)
+
+
+def transform(pose: Pose, point: Vec3) -> Vec3:
+    """A point of the child frame, in the parent frame."""
+    return add(pose.position, rotate(pose.orientation, point))
+
+
+def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Quat:
+    """Fixed-axis roll, pitch, yaw (R = Rz Ry Rx), as in URDF and SDF."""
+    cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+    cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+def rpy_from_quat(q: Quat) -> Vec3:
+    """Fixed-axis roll, pitch, yaw of a unit quaternion; pitch in [-pi/2, pi/2]."""
+    x, y, z, w = q
+    sin_pitch = max(-1.0, min(1.0, 2.0 * (w * y - z * x)))
+    if abs(sin_pitch) > 1.0 - 1e-12:
+        # Gimbal lock: only yaw -/+ roll is defined; put it all into yaw.
+        return (0.0, math.copysign(math.pi / 2, sin_pitch), 2.0 * math.atan2(z, w))
+    return (
+        math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        math.asin(sin_pitch),
+        math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+    )
+
+
+def pose_from_xyzrpy(x: float, y: float, z: float, roll: float, pitch: float, yaw: float) -> Pose:
+    """A pose from the six numbers of an SDF `<pose>`."""
+    return Pose((x, y, z), quat_from_rpy(roll, pitch, yaw))
+
+
+def twist_at(twist: Twist, lever: Vec3) -> Twist:
+    """The twist of the same rigid body at a point `lever` (world axes) away: v + w x r."""
+    return Twist(add(twist.linear, cross(twist.angular, lever)), twist.angular)

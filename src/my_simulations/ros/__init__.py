@@ -1,0 +1,1 @@
+"""The ROS face: converts, asks the simulator, converts back."""
