@@ -1,0 +1,31 @@
+"""`gzserver`: the simulation server, as a ROS node named gazebo."""
+from __future__ import annotations
+
+import sys
+from typing import List, Optional
+
+
+def main(argv: Optional[List[str]] = None, program: str = "gzserver") -> int:
+    """Run the server until a signal ends it.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+        program: the name in usage and messages.
+
+    Returns:
+        0 after SIGINT or SIGTERM, 1 when the node could not start.
+    """
+    words = sys.argv if argv is None else argv
+    from ..ros.options import parse
+
+    options = parse(words[1:], program)
+    from ..ros.server import Server
+
+    def say(line: str) -> None:
+        print(f"{program}: {line}", file=sys.stderr, flush=True)
+
+    return Server(options, words, say).run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

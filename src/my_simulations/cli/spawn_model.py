@@ -1,0 +1,266 @@
+"""`spawn_model`: put a model into a running world."""
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import threading
+import time
+from decimal import Decimal
+from typing import Any, List, Optional, Sequence
+
+OK, FAILED, USAGE = 0, 1, 2
+WAIT_SECONDS = 120.0
+MASTER_SECONDS = 10.0
+
+_NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+class SpawnFailed(Exception):
+    """The model is not in the world; the text says why and what to do."""
+
+
+def plain_numbers(words: Sequence[str]) -> List[str]:
+    """Negative numbers as argparse knows them: `-1e-5` becomes `-0.00001`, `-2.` becomes `-2`."""
+    return [format(Decimal(word), "f") if _NEGATIVE.fullmatch(word) else word for word in words]
+
+
+def parser() -> argparse.ArgumentParser:
+    """The options, spelt with one dash as Gazebo's."""
+    made = argparse.ArgumentParser(prog="spawn_model", description="Spawn a model in the world.")
+    kind = made.add_mutually_exclusive_group(required=True)
+    kind.add_argument("-urdf", action="store_true", help="the description is URDF")
+    kind.add_argument("-sdf", action="store_true", help="the description is SDF")
+    source = made.add_mutually_exclusive_group(required=True)
+    source.add_argument("-file", metavar="FILE", help="read it from a file")
+    source.add_argument("-param", metavar="NAME", help="read it from a ROS parameter")
+    source.add_argument("-database", metavar="MODEL", help="a model of the model database")
+    source.add_argument("-stdin", action="store_true", help="read it from standard input")
+    made.add_argument("-model", required=True, metavar="NAME",
+                      help="name of the model in the world")
+    made.add_argument("-reference_frame", default="", metavar="ENTITY",
+                      help="model or link that the pose is relative to (default: the world)")
+    made.add_argument("-gazebo_namespace", default="/gazebo", metavar="NS",
+                      help="namespace of the server (default %(default)s)")
+    made.add_argument("-robot_namespace", default=None, metavar="NS",
+                      help="namespace for the model's plugins (default: this node's)")
+    made.add_argument("-unpause", action="store_true", help="unpause the world after the spawn")
+    made.add_argument("-wait", metavar="MODEL", help="first wait until this model is in the world")
+    made.add_argument("-timeout", type=_seconds, default=WAIT_SECONDS, metavar="SECONDS",
+                      help="wall-clock limit of every wait (default %(default)g)")
+    for axis, unit in zip(("x", "y", "z", "R", "P", "Y"), ("m",) * 3 + ("rad",) * 3):
+        made.add_argument(f"-{axis}", type=float, default=0.0, metavar=unit.upper(),
+                          help=f"initial pose, {unit}")
+    made.add_argument("-J", dest="joints", nargs=2, action="append", default=[],
+                      metavar=("JOINT", "POSITION"), help="not supported yet: refused")
+    made.add_argument("-package_to_model", action="store_true",
+                      help="read package:// of mesh file names as model://")
+    made.add_argument("-b", dest="bond", action="store_true",
+                      help="stay, and delete the model when this program ends")
+    return made
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
+    return value
+
+
+def main(argv: Optional[List[str]] = None) -> int:
+    """Run the program.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 when the model is in the world, 1 when it is not, 2 for a wrong command line.
+    """
+    words = sys.argv if argv is None else argv
+    reader = parser()
+    options = reader.parse_args(plain_numbers([w for w in words[1:] if not _is_remapping(w)]))
+    if options.joints:
+        reader.error("-J needs the service set_model_configuration, which this server does not "
+                     "offer yet; spawn without it")
+    try:
+        _spawn(options, words)
+    except SpawnFailed as fault:
+        print(f"spawn_model: {fault}", file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt:
+        print("spawn_model: interrupted", file=sys.stderr)
+        return FAILED
+    return OK
+
+
+def _is_remapping(word: str) -> bool:
+    return ":=" in word and not word.startswith("-")
+
+
+def _spawn(options: argparse.Namespace, words: List[str]) -> None:
+    text = None if options.param else _document(options)
+    _reach_master(words)
+    import rospy
+
+    from ..ros import client
+
+    rospy.init_node("spawn_model", argv=words, anonymous=True, disable_rostime=True)
+    try:
+        if options.wait:
+            _wait_for_model(options)
+        if text is None:
+            text = _parameter(options.param)
+        _call_spawn(options, text)
+        if options.unpause:
+            from std_srvs.srv import Empty
+
+            name = client.api_name(options.gazebo_namespace, "unpause_physics")
+            client.service(name, Empty, options.timeout)()
+        if options.bond:
+            _bond(options)
+    except client.NotThere as fault:
+        raise SpawnFailed(str(fault)) from fault
+    except rospy.ROSException as fault:
+        raise SpawnFailed(str(fault)) from fault
+    except rospy.ServiceException as fault:
+        raise SpawnFailed(f"the call failed: {fault}") from fault
+
+
+def _reach_master(words: List[str]) -> None:
+    from ..ros import master
+
+    def say(line: str) -> None:
+        print(f"spawn_model: {line}", file=sys.stderr, flush=True)
+
+    uri = master.uri(words)
+    deadline = time.monotonic() + MASTER_SECONDS
+    if not master.wait(uri, "/spawn_model", threading.Event(), say, deadline):
+        raise SpawnFailed(f"no ROS master answered at {uri} within {MASTER_SECONDS:g} s")
+
+
+def _document(options: argparse.Namespace) -> str:
+    """The description's text from a file, the database or standard input."""
+    if options.database:
+        from xml.sax.saxutils import escape
+
+        return ('<sdf version="1.4"><world name="default"><include>'
+                f"<uri>model://{escape(options.database)}</uri></include></world></sdf>")
+    if options.stdin:
+        text, where = sys.stdin.read(), "standard input"
+    else:
+        text, where = _file_text(options.file), options.file
+    if not text.strip():
+        raise SpawnFailed(f"{where} is empty")
+    return text
+
+
+def _file_text(path: str) -> str:
+    if not os.path.exists(path):
+        raise SpawnFailed(f"there is no file {path}")
+    if not os.path.isfile(path):
+        raise SpawnFailed(f"{path} is not a file")
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.read()
+    except (OSError, UnicodeDecodeError) as fault:
+        raise SpawnFailed(f"{path} cannot be read: {fault}") from fault
+
+
+def _parameter(name: str) -> str:
+    import rospy
+
+    value = rospy.get_param(name, None)
+    full = rospy.resolve_name(name)
+    if value is None:
+        raise SpawnFailed(f'there is no parameter {full}; load it with <param name="{name}" '
+                          "textfile=.../> or command=...")
+    if not isinstance(value, str):
+        raise SpawnFailed(f"parameter {full} is not text but {type(value).__name__}")
+    if not value.strip():
+        raise SpawnFailed(f"parameter {full} is empty")
+    return value
+
+
+def _wait_for_model(options: argparse.Namespace) -> None:
+    import rospy
+    from gazebo_msgs.srv import GetWorldProperties
+
+    from ..ros import client
+
+    name = client.api_name(options.gazebo_namespace, "get_world_properties")
+    world = client.service(name, GetWorldProperties, options.timeout)
+
+    def is_there() -> bool:
+        try:
+            return options.wait in world().model_names
+        except rospy.ServiceException:
+            return False
+
+    client.wait_until(is_there, f"model {options.wait!r}", options.timeout)
+
+
+def _call_spawn(options: argparse.Namespace, text: str) -> None:
+    import rospy
+    from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
+
+    from ..geometry import quat_from_rpy
+    from ..ros import client
+
+    if options.package_to_model:
+        text = _package_to_model(text)
+    namespace = options.robot_namespace
+    request = SpawnModelRequest(
+        model_name=options.model, model_xml=text,
+        robot_namespace=rospy.get_namespace() if namespace is None else namespace,
+        reference_frame=options.reference_frame)
+    position, orientation = request.initial_pose.position, request.initial_pose.orientation
+    position.x, position.y, position.z = options.x, options.y, options.z
+    (orientation.x, orientation.y, orientation.z,
+     orientation.w) = quat_from_rpy(options.R, options.P, options.Y)
+    kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
+    call = client.service(client.api_name(options.gazebo_namespace, kind), SpawnModel,
+                          options.timeout)
+    answer = call(request)
+    if not answer.success:
+        raise SpawnFailed(answer.status_message)
+    print(f"spawn_model: {answer.status_message}", flush=True)
+
+
+def _package_to_model(text: str) -> str:
+    """Every `<mesh filename="package://…">` as `model://…`."""
+    import xml.etree.ElementTree as ElementTree
+
+    try:
+        root = ElementTree.fromstring(text)
+    except ElementTree.ParseError as fault:
+        raise SpawnFailed(f"the description is not well-formed XML: {fault}") from fault
+    for mesh in root.iter("mesh"):
+        name = mesh.get("filename", "")
+        if name.startswith("package:"):
+            mesh.set("filename", "model:" + name[len("package:"):])
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _bond(options: argparse.Namespace) -> None:
+    """Stay until the shutdown, then delete the model."""
+    import rospy
+    from gazebo_msgs.srv import DeleteModel
+
+    from ..ros import client
+
+    name = client.api_name(options.gazebo_namespace, "delete_model")
+    proxy: Any = rospy.ServiceProxy(name, DeleteModel)
+
+    def delete() -> None:
+        try:
+            proxy(options.model)
+        except rospy.ServiceException as fault:
+            print(f"spawn_model: {options.model} was not deleted: {fault}", file=sys.stderr)
+
+    rospy.on_shutdown(delete)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

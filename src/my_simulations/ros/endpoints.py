@@ -1,0 +1,108 @@
+"""The table of services and how a handler's outcome becomes an answer."""
+from __future__ import annotations
+
+import socket
+import struct
+from dataclasses import dataclass
+from typing import Any, Callable, Iterable, List
+
+import rospy
+from rospy.exceptions import TransportException, TransportTerminated
+
+from ..errors import CommandError, InputError
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """One service.
+
+    Attributes:
+        name: under the node's own name.
+        title: starts every status message, e.g. `SpawnModel`.
+        type: service class.
+        handler: gets the request and the response to fill; returns the status message without its
+            title, or raises `CommandError` or `InputError` for a failure.
+    """
+
+    name: str
+    title: str
+    type: Any
+    handler: Callable[[Any, Any], str]
+
+
+class Faults:
+    """Words for what a user did wrong; every answer and log line goes through here."""
+
+    @staticmethod
+    def text(fault: Exception) -> str:
+        """One line for a status message: the first error, and how many more there are."""
+        return fault.summary() if isinstance(fault, InputError) else str(fault)
+
+
+def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
+    """The function rospy calls: always an answer, whatever the handler does.
+
+    A response without `success` (std_srvs/Empty) has no room for a fault; it fails at transport
+    level, so that the client gets an exception with the text.
+    """
+    response_class = endpoint.type._response_class
+    has_status = "status_message" in response_class.__slots__
+
+    def answer(request: Any) -> Any:
+        response = response_class()
+        try:
+            text = endpoint.handler(request, response)
+            succeeded = True
+        except (CommandError, InputError) as fault:
+            text, succeeded = Faults.text(fault), False
+        except Exception as fault:  # a defect of ours: the client still gets an answer
+            rospy.logerr("%s: unexpected fault in %s", endpoint.title, endpoint.name)
+            rospy.logerr_once("%s", _traceback())
+            text, succeeded = f"internal fault: {type(fault).__name__}: {fault}", False
+        if has_status:
+            response.success = succeeded
+            response.status_message = f"{endpoint.title}: {text}"
+        elif not succeeded:
+            raise rospy.ServiceException(f"{endpoint.title}: {text}")
+        return response
+
+    return answer
+
+
+def _traceback() -> str:
+    import traceback
+
+    return traceback.format_exc()
+
+
+class LastingService(rospy.Service):
+    """A rospy service that answers at once and survives bytes that are no request.
+
+    rospy leaves Nagle's algorithm on, which holds small answers back behind unacknowledged ones,
+    and a request that cannot be deserialised ends its thread with the client left waiting.
+    """
+
+    def handle(self, transport: Any, header: Any) -> None:
+        """Serve one connection (rospy calls this in a thread of its own)."""
+        transport.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        try:
+            super().handle(transport, header)
+        except TransportTerminated:
+            transport.close()
+        except (TransportException, struct.error, OSError) as fault:
+            rospy.logwarn("[%s] refused a request that cannot be read: %s",
+                          self.resolved_name, fault)
+            self._refuse(transport, f"the request cannot be read: {fault}")
+
+    def _refuse(self, transport: Any, text: str) -> None:
+        try:
+            self._write_service_error(transport, text)
+        except (TransportException, OSError) as fault:
+            rospy.logdebug("[%s] the client is gone: %s", self.resolved_name, fault)
+        transport.close()
+
+
+def advertise(endpoints: Iterable[Endpoint]) -> List[Any]:
+    """Offer all services under the node's private namespace."""
+    return [LastingService(f"~{endpoint.name}", endpoint.type, answering(endpoint))
+            for endpoint in endpoints]

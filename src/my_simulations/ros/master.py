@@ -1,0 +1,134 @@
+"""Asking the ROS master before rospy does, with deadlines.
+
+`rospy.init_node` waits for a master for ever and without a word that helps, and it pushes a node of
+the same name off the graph. Both are settled here first.
+"""
+from __future__ import annotations
+
+import http.client
+import os
+import socket
+import threading
+import time
+import xmlrpc.client
+from typing import Any, Callable, Optional, Sequence, Tuple
+from urllib.parse import urlparse
+
+CALL_SECONDS = 3.0
+"""How long one question to the master or to a node may take."""
+
+POLL_SECONDS = 0.25
+REMIND_SECONDS = 4.0
+
+DEFAULT_URI = "http://localhost:11311"
+
+
+class _Transport(xmlrpc.client.Transport):
+    """An XML-RPC transport with a time-out on its socket."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__()
+        self._seconds = seconds
+
+    def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        connection = super().make_connection(host)
+        connection.timeout = self._seconds
+        return connection
+
+
+def call(uri: str, method: str, *arguments: Any, seconds: float = CALL_SECONDS) -> Any:
+    """Call a ROS XML-RPC method; the value of a (1, message, value) answer, None of any other.
+
+    Raises:
+        OSError: nobody answers there in time.
+    """
+    try:
+        with xmlrpc.client.ServerProxy(uri, transport=_Transport(seconds)) as proxy:
+            code, _, value = getattr(proxy, method)(*arguments)
+    except (xmlrpc.client.Error, http.client.HTTPException, TypeError, ValueError) as fault:
+        raise OSError(f"{uri} does not answer as a ROS master or node: {fault}") from fault
+    return value if code == 1 else None
+
+
+def uri(argv: Sequence[str] = ()) -> str:
+    """Where the master is: `__master:=`, else ROS_MASTER_URI, else the default."""
+    for word in argv:
+        if word.startswith("__master:="):
+            return word[len("__master:="):]
+    return os.environ.get("ROS_MASTER_URI") or DEFAULT_URI
+
+
+def fault_of(master: str, caller: str) -> str:
+    """Why the master does not answer, in a few words; "" when it does."""
+    try:
+        found = urlparse(master)
+        if not found.hostname or not found.port:
+            return "ROS_MASTER_URI is not of the form http://host:port"
+    except ValueError as fault:
+        return f"ROS_MASTER_URI cannot be read: {fault}"
+    try:
+        call(master, "getPid", caller)
+    except socket.gaierror:
+        return f"the host name {found.hostname!r} is not known"
+    except (OSError, TypeError) as fault:
+        return str(fault)
+    return ""
+
+
+def wait(master: str, caller: str, stop: threading.Event, say: Callable[[str], None],
+         deadline: Optional[float] = None) -> bool:
+    """Wait until the master answers.
+
+    Args:
+        master: its URI.
+        caller: name of the asking node.
+        stop: ends the wait when set.
+        say: gets a line at once, and again every few seconds.
+        deadline: `time.monotonic()` at which to give up; None for never.
+
+    Returns:
+        True when the master answers, False when stopped or too late.
+    """
+    next_word = 0.0
+    while True:
+        fault = fault_of(master, caller)
+        if not fault:
+            return True
+        if stop.is_set():
+            return False
+        now = time.monotonic()
+        if deadline is not None and now >= deadline:
+            return False
+        if now >= next_word:
+            say(f"waiting for the ROS master at {master} ({fault}); "
+                "start roscore or roslaunch, or set ROS_MASTER_URI; Ctrl-C ends this")
+            next_word = now + REMIND_SECONDS
+        stop.wait(POLL_SECONDS)
+
+
+def node_name(argv: Sequence[str], default: str) -> str:
+    """The full name that `rospy.init_node(default)` will take with these arguments."""
+    namespace, name = os.environ.get("ROS_NAMESPACE", "/"), default
+    for word in argv:
+        key, _, value = word.partition(":=")
+        if key == "__ns":
+            namespace = value
+        elif key == "__name":
+            name = value
+    return "/" + "/".join(part for part in (namespace + "/" + name).split("/") if part)
+
+
+def living_node(master: str, name: str) -> Optional[Tuple[str, int]]:
+    """URI and process id of the node of that name, None when there is none or it is dead.
+
+    Raises:
+        OSError: the master does not answer.
+    """
+    found = call(master, "lookupNode", name, name)
+    if not found:
+        return None
+    try:
+        pid = call(found, "getPid", name)
+    except OSError:
+        return None
+    return found, int(pid or 0)

@@ -1,0 +1,106 @@
+"""spawn_urdf_model, spawn_sdf_model and delete_model."""
+from __future__ import annotations
+
+from typing import Any, Callable, List, Optional
+
+from gazebo_msgs import srv
+
+from ..description.model import Model
+from ..errors import CommandError, InputError, Issue, errors_of
+from ..formats.load import read_entity
+from ..formats.meshes import collision_meshes
+from ..geometry import IDENTITY, Pose, compose
+from ..resources.resolver import Resolver
+from ..simulator.simulator import Simulator
+from .convert import pose_from_message
+from .document import asks_to_replace, checked_name, named, root_of
+from .endpoints import Endpoint
+from .entities import require_model
+
+
+class ModelServices:
+    """Puts models into the world and takes them out."""
+
+    def __init__(self, simulator: Simulator, resolver: Resolver,
+                 log: Callable[[Issue], None]) -> None:
+        self._simulator = simulator
+        self._resolver = resolver
+        self._log = log
+
+    def endpoints(self) -> List[Endpoint]:
+        """Its rows of the table."""
+        return [
+            Endpoint("spawn_urdf_model", "SpawnModel", srv.SpawnModel, self.spawn_urdf),
+            Endpoint("spawn_sdf_model", "SpawnModel", srv.SpawnModel, self.spawn_sdf),
+            Endpoint("delete_model", "DeleteModel", srv.DeleteModel, self.delete),
+        ]
+
+    def spawn_urdf(self, request: Any, _response: Any) -> str:
+        """A URDF document; any other root is refused, as in Gazebo."""
+        root, _ = root_of(request.model_xml)
+        if root not in ("robot", ""):
+            raise CommandError("Failure - entity format is invalid. The root element of a URDF is "
+                               f"<robot>, here it is <{root}>; use spawn_sdf_model for SDF")
+        return self._spawn(request)
+
+    def spawn_sdf(self, request: Any, _response: Any) -> str:
+        """An SDF document, or a URDF one."""
+        return self._spawn(request)
+
+    def _spawn(self, request: Any) -> str:
+        name = checked_name(request.model_name)
+        initial = pose_from_message(request.initial_pose, "initial_pose")
+        replaces = asks_to_replace(root_of(request.model_xml)[1])
+        if not replaces and self._simulator.has_model(name):
+            raise CommandError(f"Failure - entity already exists. (model {name!r})")
+        return self.spawn_text(request.model_xml, name, initial,
+                               frame=request.reference_frame, namespace=request.robot_namespace,
+                               replace=replaces)
+
+    def spawn_text(self, text: str, name: Optional[str], initial: Pose = IDENTITY, *,
+                   frame: str = "", namespace: str = "", replace: bool = False,
+                   file: str = "model_xml") -> str:
+        """Put the model of a document into the world.
+
+        Args:
+            text: URDF or SDF.
+            name: the model's name in the world; None for the document's own.
+            initial: pose in `frame`; the document's own pose is composed onto it, and with
+                several frames T_frame o T_initial o T_own is where the model goes (Gazebo).
+            frame: "" or a literal for the world, else a model or link.
+            namespace: for plugins that name none.
+            replace: take a model of that name out in the same step.
+            file: what messages call the document.
+
+        Returns:
+            What to tell the client.
+
+        Raises:
+            InputError: the document describes no whole model.
+            CommandError: the world refuses it.
+        """
+        entity, issues = read_entity(text, self._resolver, file=file)
+        if not isinstance(entity, Model):
+            self._report(issues)
+            raise CommandError("the document describes a light; lights come with the world file")
+        model = named(entity, name if name is not None else entity.name, namespace)
+        meshes, mesh_issues = collision_meshes(model)
+        issues = [*issues, *mesh_issues]
+        self._report(issues)
+        if errors_of(issues):
+            raise InputError(issues)
+        self._simulator.spawn(model, compose(initial, model.pose), frame, meshes, replace)
+        warnings = f" ({len(issues)} remarks in the log)" if issues else ""
+        return f"Successfully spawned entity{warnings}"
+
+    def _report(self, issues: List[Issue]) -> None:
+        for issue in issues:
+            self._log(issue)
+
+    def delete(self, request: Any, _response: Any) -> str:
+        """Take a model out; it is in no list any more when this answers."""
+        require_model(self._simulator, request.model_name)
+        self._simulator.delete(request.model_name)
+        return "successfully deleted model"
+
+

@@ -1,0 +1,127 @@
+"""Which steps to publish, and how many messages a wall second may cost."""
+from __future__ import annotations
+
+from typing import Callable, List
+
+CLOCK_MESSAGES_PER_SECOND = 1000.0
+"""`/clock` messages a wall second when the world runs faster than real time."""
+
+BURST = 250.0
+"""Messages saved up by a quiet spell: what a stalled publisher may send at once."""
+
+
+class TokenBucket:
+    """Allows `rate` messages a second on average and at most `capacity` at once.
+
+    Time is passed in (seconds of a monotonic clock), so that tests need none.
+    """
+
+    def __init__(self, rate: float, capacity: float, now: float) -> None:
+        self._rate, self._capacity = rate, capacity
+        self._tokens, self._at = capacity, now
+
+    def available(self, now: float) -> int:
+        """How many messages may go out now."""
+        self._tokens = min(self._capacity, self._tokens + (now - self._at) * self._rate)
+        self._at = now
+        return int(self._tokens)
+
+    def take(self, count: int) -> None:
+        """Count messages that went out; may go below zero, which is paid back first."""
+        self._tokens -= count
+
+
+class StepSelector:
+    """Picks the steps whose `/clock` goes out, of those made since the last look.
+
+    Every step in real time; with `period_ns` at most one a period of sim time; thinned evenly when
+    there are more than the wall clock allows. The newest is always among them, so that a listener's
+    time is never older than one look. A step count or time that went back (reset, restart) starts
+    anew at once.
+    """
+
+    def __init__(self, step: int, sim_ns: int, now: float, period_ns: int = 0) -> None:
+        self._step, self._period_ns = step, period_ns
+        self._published_ns = sim_ns
+        self._bucket = TokenBucket(CLOCK_MESSAGES_PER_SECOND, BURST, now)
+
+    @property
+    def step(self) -> int:
+        """The newest step seen."""
+        return self._step
+
+    def times(self, step: int, sim_ns: Callable[[int], int], now: float) -> List[int]:
+        """Sim times (ns) to publish, oldest first.
+
+        Args:
+            step: step count now.
+            sim_ns: sim time of a step count.
+            now: monotonic seconds.
+        """
+        newest = sim_ns(step)
+        went_back = newest < self._published_ns or step < self._step
+        if not went_back and step == self._step:
+            return []
+        first = step if went_back else self._step + 1
+        self._step = step
+        if self._period_ns:
+            found = self._periodic(first, step, sim_ns, went_back)
+        else:
+            found = self._thinned(first, step, sim_ns, now)
+        if found:
+            self._published_ns = found[-1]
+        return found
+
+    def _periodic(self, first: int, step: int, sim_ns: Callable[[int], int],
+                  went_back: bool) -> List[int]:
+        newest = sim_ns(step)
+        if went_back:
+            return [newest]
+        due = newest - self._published_ns >= self._period_ns
+        if not due:
+            return []
+        found: List[int] = []
+        last = self._published_ns
+        for at in (sim_ns(one) for one in range(first, step + 1)):
+            if at - last >= self._period_ns:
+                found.append(at)
+                last = at
+        return found[-int(BURST):]
+
+    def _thinned(self, first: int, step: int, sim_ns: Callable[[int], int],
+                 now: float) -> List[int]:
+        missed = step - first + 1
+        allowed = max(1, self._bucket.available(now))
+        stride = -(-missed // allowed)
+        found = [sim_ns(one) for one in range(step, first - 1, -stride)]
+        found.reverse()
+        self._bucket.take(len(found))
+        return found
+
+
+class StateGate:
+    """Says when a state message is due: every step, or at most `rate` times a second of sim time.
+
+    A changed world (`sequence`) is always due while it does not step, so that a paused world shows
+    what was done to it; and a new listener is owed one message.
+    """
+
+    def __init__(self, rate: float) -> None:
+        self.period_ns = round(1e9 / rate) if rate > 0.0 else 0
+        self._step = -1
+        self._sequence = -1
+        self._published_ns = -(1 << 62)
+
+    def due(self, step: int, sequence: int, sim_ns: int, owed: bool) -> bool:
+        """True when a message shall go out now; it is taken as sent."""
+        stepped = step != self._step
+        if owed:
+            found = True
+        elif stepped:
+            waited = sim_ns - self._published_ns
+            found = waited < 0 or waited >= self.period_ns
+        else:
+            found = sequence != self._sequence
+        if found:
+            self._step, self._sequence, self._published_ns = step, sequence, sim_ns
+        return found

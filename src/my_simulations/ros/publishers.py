@@ -1,0 +1,213 @@
+"""`/clock`, `model_states` and `link_states`, published from the ring by one thread.
+
+Everything here is paced by the wall clock and by the engine's steps: waiting on ROS time would be
+waiting on what this thread publishes.
+"""
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any, Callable
+
+import rospy
+from gazebo_msgs.msg import LinkStates, ModelStates
+from rosgraph_msgs.msg import Clock
+
+from ..simulator.simulator import Simulator
+from .buffers import StatesBuffer, packed_time
+from .pacing import StateGate, StepSelector
+
+LOOK_SECONDS = 0.001
+"""Between two looks at a world that makes several steps in that time."""
+
+PAUSED_LOOK_SECONDS = 0.05
+"""Between two looks at a world that does not step."""
+
+CLOCK_QUEUE = 1000
+STATES_QUEUE = 10
+
+
+class _PackedClock(Clock):
+    """A Clock that is already bytes."""
+
+    __slots__ = ["packed"]
+
+    def serialize(self, buff: Any) -> None:
+        buff.write(self.packed)
+
+
+class _PackedModelStates(ModelStates):
+    """A ModelStates that is already bytes."""
+
+    __slots__ = ["packed"]
+
+    def serialize(self, buff: Any) -> None:
+        buff.write(self.packed)
+
+
+class _PackedLinkStates(LinkStates):
+    """A LinkStates that is already bytes."""
+
+    __slots__ = ["packed"]
+
+    def serialize(self, buff: Any) -> None:
+        buff.write(self.packed)
+
+
+class _Arrivals(rospy.SubscribeListener):
+    """Tells of every subscriber that comes or goes."""
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        super().__init__()
+        self._tell = tell
+
+    def peer_subscribe(self, _topic: str, _publish: Any, _peer_publish: Any) -> None:
+        self._tell()
+
+    def peer_unsubscribe(self, _topic: str, _peers: int) -> None:
+        self._tell()
+
+
+class Channel:
+    """One state topic: its publisher, whether a message is owed, and when one is due."""
+
+    def __init__(self, topic: str, data_class: Any, packed_class: Any, rate: float,
+                 wake: threading.Event) -> None:
+        self.gate = StateGate(rate)
+        self.buffer = StatesBuffer()
+        self._message = packed_class()
+        self._owed = threading.Event()
+        self._wake = wake
+        self.publisher = rospy.Publisher(topic, data_class, queue_size=STATES_QUEUE,
+                                         tcp_nodelay=True,
+                                         subscriber_listener=_Arrivals(self._hear))
+
+    def _hear(self) -> None:
+        self._owed.set()
+        self._wake.set()
+
+    @property
+    def wanted(self) -> bool:
+        """True while anybody listens."""
+        return self.publisher.get_num_connections() > 0
+
+    def is_due(self, step: int, sequence: int, sim_ns: int) -> bool:
+        """True when a message shall go out now."""
+        owed = self._owed.is_set()
+        self._owed.clear()
+        return self.gate.due(step, sequence, sim_ns, owed)
+
+    def send(self, packed: bytes) -> None:
+        """Publish a message's bytes."""
+        self._message.packed = packed
+        self.publisher.publish(self._message)
+
+
+class Publishers:
+    """The thread behind the three topics."""
+
+    def __init__(self, simulator: Simulator, *, clock_hz: float = 0.0,
+                 states_hz: float = 0.0, states: bool = True) -> None:
+        """Advertise the topics.
+
+        Args:
+            simulator: what to publish; started later than this.
+            clock_hz: at most this many `/clock` a second of sim time; 0 for one a step.
+            states_hz: likewise for the state topics.
+            states: False leaves the state topics out.
+        """
+        self._simulator = simulator
+        self._clock_period_ns = round(1e9 / clock_hz) if clock_hz > 0.0 else 0
+        self._states_hz = states_hz
+        self._wake = threading.Event()
+        self._stop = threading.Event()
+        self._demand = (-1.0, False)
+        self._clock_message = _PackedClock()
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=CLOCK_QUEUE, tcp_nodelay=True,
+                                      subscriber_listener=_Arrivals(self._wake.set))
+        self._models = self._links = None
+        if states:
+            self._models = Channel("~model_states", ModelStates, _PackedModelStates, states_hz,
+                                   self._wake)
+            self._links = Channel("~link_states", LinkStates, _PackedLinkStates, states_hz,
+                                  self._wake)
+        self._thread = threading.Thread(target=self._run, name="publishers", daemon=True)
+
+    def start(self) -> None:
+        """Begin to publish."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End, and wait for the end."""
+        self._stop.set()
+        self._wake.set()
+        if self._thread.is_alive():
+            self._thread.join(2.0)
+
+    def _run(self) -> None:
+        step, clock = self._simulator.ring.clock()
+        selector = StepSelector(step, clock.sim_ns(step), time.monotonic(), self._clock_period_ns)
+        while not self._stop.is_set():
+            clock_wanted = self._clock.get_num_connections() > 0
+            states_wanted = any(channel.wanted for channel in self._channels())
+            self._set_demand(clock_wanted, states_wanted)
+            if not (clock_wanted or states_wanted):
+                self._wake.wait()
+                self._wake.clear()
+                step, clock = self._simulator.ring.clock()
+                selector = StepSelector(step, clock.sim_ns(step), time.monotonic(),
+                                        self._clock_period_ns)
+                continue
+            began, before = time.monotonic(), selector.step
+            try:
+                self._publish(selector, states_wanted)
+            except rospy.ROSException as fault:
+                if not self._stop.is_set():
+                    rospy.logerr("publishing failed: %s", fault)
+                    self._stop.wait(1.0)
+            self._pace(began, selector.step - before, selector.step)
+
+    def _channels(self) -> "list[Channel]":
+        return [channel for channel in (self._models, self._links) if channel is not None]
+
+    def _set_demand(self, clock_wanted: bool, states_wanted: bool) -> None:
+        hz = 0.0
+        if states_wanted:
+            hz = self._states_hz or 1.0 / self._simulator.physics.max_step_size
+        demand = (hz, clock_wanted or states_wanted)
+        if demand != self._demand:
+            self._demand = demand
+            self._simulator.set_demand(*demand)
+
+    def _pace(self, began: float, made: int, step: int) -> None:
+        """Wait for the next step; in a world of many steps a millisecond, look once in one."""
+        if made > 1:
+            left = began + LOOK_SECONDS - time.monotonic()
+            if left > 0.0:
+                time.sleep(left)
+        else:
+            self._simulator.wait_step(step, PAUSED_LOOK_SECONDS)
+
+    def _publish(self, selector: StepSelector, states_wanted: bool) -> None:
+        ring = self._simulator.ring
+        sequence = ring.latest
+        step, clock = ring.clock()
+        for nanoseconds in selector.times(step, clock.sim_ns, time.monotonic()):
+            self._clock_message.packed = packed_time(nanoseconds)
+            self._clock.publish(self._clock_message)
+        if states_wanted:
+            sim_ns = clock.sim_ns(step)
+            due = [channel for channel in self._channels()
+                   if channel.wanted and channel.is_due(step, sequence, sim_ns)]
+            if due:
+                self._send_states(due)
+
+    def _send_states(self, due: "list[Channel]") -> None:
+        states = self._simulator.states()
+        for channel in due:
+            if channel is self._models:
+                channel.send(channel.buffer.pack(states.model_names, states.model_poses,
+                                                 states.model_twists))
+            else:
+                channel.send(channel.buffer.pack(states.link_names, states.link_poses,
+                                                 states.link_twists))

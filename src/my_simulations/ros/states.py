@@ -1,0 +1,119 @@
+"""get_model_state, set_model_state, get_link_state, set_link_state, as services and as topics."""
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from typing import Any, List
+
+import rospy
+from gazebo_msgs import msg, srv
+
+from ..errors import CommandError
+from ..simulator.simulator import Simulator
+from .convert import (
+    fill_pose,
+    fill_twist,
+    pose_from_message,
+    seconds_and_nanoseconds,
+    twist_from_message,
+)
+from .endpoints import Endpoint
+from .entities import require_model
+
+WORLD_FRAMES = ("", "world", "map", "/map")
+"""The literals that mean the world frame (Gazebo); tf is never asked."""
+
+
+class StateServices:
+    """Where models and links are, and putting them elsewhere."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
+        self._calls: "Counter[str]" = Counter()
+        self._lock = threading.Lock()
+
+    def endpoints(self) -> List[Endpoint]:
+        """Its rows of the table."""
+        return [
+            Endpoint("get_model_state", "GetModelState", srv.GetModelState, self.get_model),
+            Endpoint("set_model_state", "SetModelState", srv.SetModelState, self.set_model),
+            Endpoint("get_link_state", "GetLinkState", srv.GetLinkState, self.get_link),
+            Endpoint("set_link_state", "SetLinkState", srv.SetLinkState, self.set_link),
+        ]
+
+    def subscribe(self) -> List[rospy.Subscriber]:
+        """Listen to the two topics that do the same as the services, without an answer."""
+        return [
+            rospy.Subscriber("~set_model_state", msg.ModelState, self._on_model_state,
+                             queue_size=10, tcp_nodelay=True),
+            rospy.Subscriber("~set_link_state", msg.LinkState, self._on_link_state,
+                             queue_size=10, tcp_nodelay=True),
+        ]
+
+    def get_model(self, request: Any, response: Any) -> str:
+        """Pose and twist of a model in a frame; `seq` counts the calls for this model (Gazebo)."""
+        name, frame = request.model_name, request.relative_entity_name
+        require_model(self._simulator, name)
+        with self._lock:
+            self._calls[name] += 1
+            response.header.seq = self._calls[name]
+        response.header.frame_id = frame
+        stamp = response.header.stamp
+        stamp.secs, stamp.nsecs = seconds_and_nanoseconds(self._simulator.sim_ns())
+        try:
+            pose, twist = self._simulator.model_state(name, frame)
+        except CommandError as fault:
+            raise CommandError(f"reference relative_entity_name not found, {fault}") from fault
+        fill_pose(response.pose, pose)
+        fill_twist(response.twist, twist)
+        return "got properties"
+
+    def get_link(self, request: Any, response: Any) -> str:
+        """Pose and twist of a link, named scoped or not, in a frame."""
+        pose, twist = self._simulator.link_state(request.link_name, request.reference_frame)
+        state = response.link_state
+        state.link_name, state.reference_frame = request.link_name, request.reference_frame
+        fill_pose(state.pose, pose)
+        fill_twist(state.twist, twist)
+        return "got state"
+
+    def set_model(self, request: Any, _response: Any) -> str:
+        """Move a model; its next state shows it."""
+        self.move_model(request.model_state)
+        return "set model state done"
+
+    def set_link(self, request: Any, _response: Any) -> str:
+        """Move one link."""
+        self.move_link(request.link_state)
+        return "success"
+
+    def move_model(self, state: Any) -> None:
+        """Apply a gazebo_msgs/ModelState.
+
+        Raises:
+            CommandError: unknown model or frame, or a number that is not finite.
+        """
+        require_model(self._simulator, state.model_name)
+        pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
+        self._simulator.set_model_state(state.model_name, pose, twist, state.reference_frame)
+
+    def move_link(self, state: Any) -> None:
+        """Apply a gazebo_msgs/LinkState.
+
+        Raises:
+            CommandError: unknown link or frame, or a number that is not finite.
+        """
+        pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
+        self._simulator.set_link_state(state.link_name, pose, twist, state.reference_frame)
+
+    def _on_model_state(self, state: Any) -> None:
+        try:
+            self.move_model(state)
+        except CommandError as fault:
+            rospy.logerr_throttle(1.0, f"SetModelState (topic): {fault}")
+
+    def _on_link_state(self, state: Any) -> None:
+        try:
+            self.move_link(state)
+        except CommandError as fault:
+            rospy.logerr_throttle(1.0, f"SetLinkState (topic): {fault}")

@@ -1,0 +1,95 @@
+import socket
+import threading
+import time
+from xmlrpc.server import SimpleXMLRPCServer
+
+import pytest
+
+from my_simulations.ros import master
+
+
+@pytest.fixture
+def graph():
+    """A master that knows one living and one dead node."""
+    server = SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
+    uri = f"http://127.0.0.1:{server.server_address[1]}"
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        nodes = {"/alive": uri, "/dead": f"http://127.0.0.1:{unused.getsockname()[1]}"}
+
+    def look_up(_caller, name):
+        return [1, "", nodes[name]] if name in nodes else [-1, "unknown node", ""]
+
+    server.register_function(lambda caller: [1, "", 42], "getPid")
+    server.register_function(look_up, "lookupNode")
+    thread = threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True)
+    thread.start()
+    yield uri
+    server.shutdown()
+    server.server_close()
+
+
+def unused_uri():
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        return f"http://127.0.0.1:{unused.getsockname()[1]}"
+
+
+def test_a_master_that_answers_ends_the_wait_without_a_word(graph):
+    said = []
+    assert master.wait(graph, "/me", threading.Event(), said.append)
+    assert said == []
+
+
+def test_without_a_master_it_says_so_until_it_is_stopped():
+    said, stop = [], threading.Event()
+    uri = unused_uri()
+
+    def say(line):
+        said.append(line)
+        stop.set()
+
+    assert not master.wait(uri, "/me", stop, say)
+    assert uri in said[0] and "roscore" in said[0]
+
+
+def test_the_wait_ends_at_its_deadline():
+    assert not master.wait(unused_uri(), "/me", threading.Event(), lambda line: None,
+                           time.monotonic())
+
+
+def test_a_server_that_is_no_master_is_a_fault():
+    with socket.socket() as mute:
+        mute.bind(("127.0.0.1", 0))
+        mute.listen(1)
+        uri = f"http://127.0.0.1:{mute.getsockname()[1]}"
+        with pytest.raises(OSError):
+            master.call(uri, "getPid", "/me", seconds=0.1)
+
+
+@pytest.mark.parametrize("uri", ["nonsense", "http://no port", "http://127.0.0.1:port"])
+def test_a_uri_that_cannot_be_read_is_a_fault(uri):
+    assert "ROS_MASTER_URI" in master.fault_of(uri, "/me")
+
+
+def test_a_living_node_of_the_name_is_found(graph):
+    assert master.living_node(graph, "/alive") == (graph, 42)
+
+
+def test_a_dead_or_unknown_node_is_none(graph):
+    assert master.living_node(graph, "/dead") is None
+    assert master.living_node(graph, "/nobody") is None
+
+
+@pytest.mark.parametrize("argv, environment, name", [
+    ([], None, "/gazebo"),
+    (["__name:=sim"], None, "/sim"),
+    (["__ns:=/a/b"], None, "/a/b/gazebo"),
+    ([], "robots", "/robots/gazebo"),
+    (["__ns:=c", "__name:=sim"], "robots", "/c/sim"),
+])
+def test_the_node_name_follows_remappings_and_namespace(monkeypatch, argv, environment, name):
+    monkeypatch.delenv("ROS_NAMESPACE", raising=False)
+    if environment:
+        monkeypatch.setenv("ROS_NAMESPACE", environment)
+    assert master.node_name(argv, "gazebo") == name

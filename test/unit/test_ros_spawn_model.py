@@ -1,0 +1,74 @@
+import pytest
+
+from my_simulations.cli import spawn_model
+from my_simulations.ros.profile import StartProfile
+
+
+def parsed(*words):
+    return spawn_model.parser().parse_args(spawn_model.plain_numbers(words))
+
+
+@pytest.mark.parametrize("text, value", [("-1e-5", -1e-5), ("-2.", -2.0), ("-.5E1", -5.0),
+                                         ("-0.25", -0.25), ("1e3", 1000.0)])
+def test_every_spelling_of_a_number_is_accepted(text, value):
+    assert parsed("-urdf", "-param", "p", "-model", "m", "-x", text).x == value
+
+
+def test_unique_prefixes_are_accepted():
+    assert parsed("-ur", "-para", "p", "-mod", "m").model == "m"
+
+
+@pytest.mark.parametrize("words", [
+    ["-param", "p", "-model", "m"],
+    ["-urdf", "-sdf", "-param", "p", "-model", "m"],
+    ["-urdf", "-model", "m"],
+    ["-urdf", "-param", "p", "-file", "f", "-model", "m"],
+    ["-urdf", "-param", "p"],
+    ["-urdf", "-param", "p", "-model", "m", "-x", "north"],
+    ["-urdf", "-param", "p", "-model", "m", "-timeout", "0"],
+])
+def test_a_wrong_command_line_is_status_2(words):
+    with pytest.raises(SystemExit) as refused:
+        parsed(*words)
+    assert refused.value.code == 2
+
+
+def test_joint_positions_are_refused_clearly(capsys):
+    with pytest.raises(SystemExit) as refused:
+        spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-J", "j", "-1e-2"])
+    assert refused.value.code == 2
+    assert "-J" in capsys.readouterr().err
+
+
+def test_a_missing_file_is_status_1_before_ros_is_asked(tmp_path, capsys):
+    missing = str(tmp_path / "none.urdf")
+    assert spawn_model.main(["spawn_model", "-urdf", "-file", missing, "-model", "m"]) == 1
+    assert missing in capsys.readouterr().err
+
+
+def test_an_empty_file_is_status_1(tmp_path, capsys):
+    empty = tmp_path / "empty.urdf"
+    empty.write_text("\n")
+    assert spawn_model.main(["spawn_model", "-urdf", "-file", str(empty), "-model", "m"]) == 1
+    assert "is empty" in capsys.readouterr().err
+
+
+def test_package_meshes_become_model_meshes():
+    found = spawn_model._package_to_model("<robot><mesh filename='package://a/b.dae'/></robot>")
+    assert 'filename="model://a/b.dae"' in found
+
+
+def test_a_start_profile_lists_its_phases_in_order(monkeypatch):
+    monkeypatch.setenv("MY_SIMULATIONS_PROFILE", "1")
+    profile = StartProfile()
+    profile.mark("first")
+    profile.mark("second")
+    first, second = profile.lines()
+    assert first.endswith("first") and second.endswith("second")
+
+
+def test_without_the_variable_nothing_is_measured(monkeypatch):
+    monkeypatch.delenv("MY_SIMULATIONS_PROFILE", raising=False)
+    profile = StartProfile()
+    profile.mark("first")
+    assert profile.lines() == []
