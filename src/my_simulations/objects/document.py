@@ -1,0 +1,73 @@
+"""An object's XML text: read from its file, and marked for replacing a model of its name.
+
+The text is handled as text: whether its XML is sound is for the simulator to say, which can
+recover more than a parser here could, and names line and column.
+"""
+from __future__ import annotations
+
+import re
+
+from ..errors import InputError, error
+
+REPLACE_ATTRIBUTE = "my_simulations_replace"
+"""On the root element of a spawn request: replace the model of that name in one step."""
+
+_DECLARATION = re.compile(rb"\A\s*<\?xml[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"'][^>]*\?>")
+_PROLOGUE = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:[^\[>]|\[[^\]]*\])*>", re.S)
+_START_TAG = re.compile(r"<[A-Za-z_][\w.:-]*")
+
+
+def read_document(file: str) -> str:
+    """The text of an XML file, decoded as its declaration says, UTF-8 without one.
+
+    Raises:
+        InputError: the file is missing, unreadable, empty, or not in its encoding.
+    """
+    try:
+        with open(file, "rb") as stream:
+            raw = stream.read()
+    except OSError as fault:
+        raise InputError([error("object-unreadable",
+                                f"cannot read the object's file: {fault.strerror}",
+                                file=file)]) from fault
+    if not raw.strip():
+        raise InputError([error("object-empty", "the object's file is empty", file=file)])
+    declared = _DECLARATION.match(raw)
+    encoding = declared.group(1).decode("ascii") if declared else "utf-8"
+    try:
+        text = raw.decode("utf-8-sig" if encoding.lower() in ("utf-8", "utf8") else encoding)
+    except (UnicodeDecodeError, LookupError) as fault:
+        raise InputError([error("object-encoding", f"the file is not {encoding} text: {fault}",
+                                file=file, hint="save it as UTF-8")]) from fault
+    if declared and encoding.lower() not in ("utf-8", "utf8"):
+        # The service carries UTF-8, so the declared encoding would be wrong there.
+        text = re.sub(r"\A(\s*<\?xml[^>]*?)\s+encoding\s*=\s*[\"'][^\"']*[\"']", r"\1", text)
+    return text
+
+
+def root_tag(xml: str) -> str:
+    """The name of the root element, "" where there is none."""
+    start = _root_start(xml)
+    found = _START_TAG.match(xml, start)
+    return found.group(0)[1:] if found else ""
+
+
+def marked_for_replacement(xml: str) -> str:
+    """The same document with `my_simulations_replace="true"` on its root element.
+
+    Text without a root element comes back unchanged; the simulator rejects it with a reason.
+    """
+    start = _root_start(xml)
+    found = _START_TAG.match(xml, start)
+    if not found:
+        return xml
+    return f'{xml[:found.end()]} {REPLACE_ATTRIBUTE}="true"{xml[found.end():]}'
+
+
+def _root_start(xml: str) -> int:
+    at = 1 if xml.startswith("\ufeff") else 0
+    while True:
+        found = _PROLOGUE.match(xml, at)
+        if not found or found.end() == at:
+            return at
+        at = found.end()

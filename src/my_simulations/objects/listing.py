@@ -1,0 +1,289 @@
+"""Object lists, in both formats of the Care-O-bot tools, as placed objects.
+
+2012 format: `model` (a file name without its ending) and `model_type` (the ending), under the
+`objects` folder of a package. Current format: `model: PACKAGE/relative/path.ext`, with nested
+`children` placed relative to their parent.
+"""
+from __future__ import annotations
+
+import difflib
+import math
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+from ..errors import Issue, error, warning
+from ..geometry import Vec3
+from .yaml_source import KeyPath, Source
+
+ENDINGS = {"urdf.xacro": "xacro", "sdf.xacro": "sdf.xacro", "xacro": "xacro",
+           "urdf": "urdf", "sdf": "sdf"}
+"""File endings that can be spawned, longest first, and what each is."""
+
+KEYS = ("model", "model_type", "position", "orientation", "children")
+MAX_DEPTH = 16
+
+
+@dataclass(frozen=True)
+class ObjectFile:
+    """The file an object is made from.
+
+    Attributes:
+        package: ROS package that holds it.
+        path: path inside the package, with forward slashes.
+        xacro: whether it goes through xacro first.
+        sdf: whether the result is SDF; URDF otherwise.
+    """
+
+    package: str
+    path: str
+    xacro: bool
+    sdf: bool
+
+
+@dataclass(frozen=True)
+class PlacedObject:
+    """One object of a list.
+
+    Attributes:
+        name: flattened name, `PARENT_CHILD_GRANDCHILD`; the model's name in the world.
+        chain: the names it is made of, outermost first.
+        file: what it is made from.
+        position: metres, world frame.
+        rpy: fixed-axis roll, pitch, yaw, radians, world frame.
+        param: parameter path of its entry.
+    """
+
+    name: str
+    chain: Tuple[str, ...]
+    file: ObjectFile
+    position: Vec3
+    rpy: Vec3
+    param: str
+
+    @property
+    def old_name(self) -> str:
+        """The name before August 2019: `GRANDCHILD_CHILD_PARENT`."""
+        return "_".join(reversed(self.chain))
+
+
+@dataclass
+class ObjectList:
+    """A list as read: the sound objects, and what is wrong with the others.
+
+    Attributes:
+        objects: by flattened name, in the order of the list.
+        faults: by flattened name ("" for the list itself); warnings are among them.
+    """
+
+    objects: Dict[str, PlacedObject] = field(default_factory=dict)
+    faults: Dict[str, List[Issue]] = field(default_factory=dict)
+
+    @property
+    def names(self) -> List[str]:
+        """Every name of the list, of sound and of faulty objects."""
+        return list(dict.fromkeys([*self.objects, *(name for name in self.faults if name)]))
+
+    def issues(self) -> List[Issue]:
+        """All faults, in the order of the list."""
+        return [issue for found in self.faults.values() for issue in found]
+
+
+def parse_objects(tree: Any, source: Source, package: str = "my_simulations") -> ObjectList:
+    """Checks and flattens an object list.
+
+    Args:
+        tree: the values of the file, or of the parameter `/objects`; None is an empty list.
+        source: where they came from, for messages.
+        package: where a 2012 entry's file is looked for, in the folder `objects`.
+
+    Returns:
+        The list; nothing is raised for a fault in it.
+    """
+    result = ObjectList()
+    if tree is None:
+        return result
+    if not isinstance(tree, Mapping):
+        result.faults[""] = [error(
+            "list-wrong-type", f"an object list maps names to objects, found {_kind(tree)}",
+            **source.where(()))]
+        return result
+    _Reader(source, package, result).entries(tree, (), (), (0.0, 0.0, 0.0), 0.0)
+    return result
+
+
+class _Reader:
+    """Walks one tree; every fault goes to the name of the object that has it."""
+
+    def __init__(self, source: Source, package: str, result: ObjectList) -> None:
+        self._source = source
+        self._package = package
+        self._result = result
+
+    def entries(self, tree: Mapping[Any, Any], path: KeyPath, chain: Tuple[str, ...],
+                origin: Vec3, yaw: float) -> None:
+        for key, value in tree.items():
+            if not isinstance(key, str) or not key.strip():
+                self._fault("_".join([*chain, str(key)]), error(
+                    "object-name", f"an object's name is a text, found {key!r}",
+                    **self._source.where((*path, str(key))), hint="put the name in quotes"))
+                continue
+            self._entry(value, (*path, key), (*chain, key), origin, yaw)
+
+    def _entry(self, value: Any, path: KeyPath, chain: Tuple[str, ...],
+               origin: Vec3, yaw: float) -> None:
+        name = "_".join(chain)
+        where = self._source.where(path)
+        if not isinstance(value, Mapping):
+            self._fault(name, error(
+                "object-wrong-type",
+                f"object '{name}' needs model, position and orientation, found {_kind(value)}",
+                **where))
+            return
+        if name in self._result.objects:
+            self._fault(name, error(
+                "object-name-twice", f"two objects flatten to the name '{name}'", **where,
+                hint=f"the other is {self._result.objects[name].param}"))
+            return
+        for key in value:
+            if key not in KEYS:
+                close = difflib.get_close_matches(str(key), KEYS, 1)
+                self._fault(name, warning(
+                    "unknown-key", f"object '{name}': unknown key '{key}' is ignored",
+                    **self._source.where((*path, str(key))),
+                    hint=f"did you mean '{close[0]}'?" if close else ""))
+        file = self._file(value, path, name)
+        position = self._triple(value, path, name, "position")
+        rpy = self._triple(value, path, name, "orientation")
+        if position is None or rpy is None:
+            self._orphans(value.get("children"), chain, name)
+            return
+        c, s = math.cos(yaw), math.sin(yaw)
+        placed: Vec3 = (origin[0] + c * position[0] - s * position[1],
+                        origin[1] + s * position[0] + c * position[1],
+                        origin[2] + position[2])
+        # Only the parent's yaw turns a child; its roll and pitch do not (Care-O-bot tools).
+        turned: Vec3 = (rpy[0], rpy[1], rpy[2] + yaw)
+        if file is not None:
+            self._result.objects[name] = PlacedObject(
+                name, chain, file, placed, turned, self._source.param(path))
+        self._children(value, path, chain, placed, turned[2], name)
+
+    def _children(self, value: Mapping[Any, Any], path: KeyPath, chain: Tuple[str, ...],
+                  placed: Vec3, yaw: float, name: str) -> None:
+        children = value.get("children")
+        if children is None:
+            return
+        below = (*path, "children")
+        if not isinstance(children, Mapping):
+            self._fault(name, error(
+                "children-wrong-type",
+                f"object '{name}': children maps names to objects, found {_kind(children)}",
+                **self._source.where(below)))
+        elif len(chain) >= MAX_DEPTH:
+            self._fault(name, error(
+                "children-too-deep", f"object '{name}': children nest deeper than {MAX_DEPTH}",
+                **self._source.where(below)))
+        else:
+            self.entries(children, below, chain, placed, yaw)
+
+    def _orphans(self, children: Any, chain: Tuple[str, ...], parent: str) -> None:
+        if not isinstance(children, Mapping) or len(chain) >= MAX_DEPTH:
+            return
+        for key, child in children.items():
+            below = (*chain, str(key))
+            self._fault("_".join(below), error(
+                "parent-faulty",
+                f"object '{'_'.join(below)}' cannot be placed: its parent '{parent}' is faulty"))
+            if isinstance(child, Mapping):
+                self._orphans(child.get("children"), below, parent)
+
+    def _file(self, value: Mapping[Any, Any], path: KeyPath, name: str) -> Optional[ObjectFile]:
+        model = self._text(value, path, name, "model")
+        if model is None:
+            return None
+        if "model_type" in value:
+            kind = self._text(value, path, name, "model_type")
+            if kind is None:
+                return None
+            return self._typed(self._package, f"objects/{model}.{kind}", kind,
+                               (*path, "model_type"), name)
+        package, slash, inside = model.partition("/")
+        if not slash or not package or not inside:
+            self._fault(name, error(
+                "model-without-package", f"object '{name}': model '{model}' names no package",
+                **self._source.where((*path, "model")),
+                hint="write PACKAGE/path/file.urdf, or add model_type: urdf"))
+            return None
+        base = inside.rsplit("/", 1)[-1]
+        ending = next((e for e in ENDINGS if base.endswith("." + e)), base.partition(".")[2])
+        return self._typed(package, inside, ending, (*path, "model"), name)
+
+    def _typed(self, package: str, inside: str, ending: str, path: KeyPath,
+               name: str) -> Optional[ObjectFile]:
+        kind = ENDINGS.get(ending)
+        if kind is None:
+            hint = f"use one of {', '.join(ENDINGS)}"
+            if ending == "model":
+                hint = "Gazebo XML from before SDF is not read; convert it to SDF or URDF"
+            self._fault(name, error(
+                "model-type", f"object '{name}': files of type '{ending}' cannot be spawned",
+                **self._source.where(path), hint=hint))
+            return None
+        return ObjectFile(package, inside, "xacro" in kind, "sdf" in kind)
+
+    def _text(self, value: Mapping[Any, Any], path: KeyPath, name: str,
+              key: str) -> Optional[str]:
+        found = value.get(key)
+        if isinstance(found, str) and found.strip():
+            return found.strip()
+        self._fault(name, self._bad(path, name, key, found, key in value, "a text"))
+        return None
+
+    def _triple(self, value: Mapping[Any, Any], path: KeyPath, name: str,
+                key: str) -> Optional[Vec3]:
+        found = value.get(key)
+        if not isinstance(found, (list, tuple)) or len(found) != 3:
+            self._fault(name, self._bad(path, name, key, found, key in value, "three numbers"))
+            return None
+        numbers = [_number(item) for item in found]
+        for item, number in zip(found, numbers):
+            if number is None:
+                self._fault(name, self._bad(path, name, key, item, True, "finite numbers"))
+                return None
+        x, y, z = (float(number) for number in numbers if number is not None)
+        return (x, y, z)
+
+    def _bad(self, path: KeyPath, name: str, key: str, found: Any, present: bool,
+             wanted: str) -> Issue:
+        where = self._source.where((*path, key))
+        if not present:
+            return error("missing-key", f"object '{name}' has no {key}", **where,
+                         hint=f"{key} is {wanted}")
+        return error("wrong-value", f"object '{name}': {key} is {wanted}, found {_kind(found)}",
+                     **where)
+
+    def _fault(self, name: str, issue: Issue) -> None:
+        self._result.faults.setdefault(name, []).append(issue)
+
+
+def _number(value: Any) -> Optional[float]:
+    """A finite number, also from text: YAML 1.1 reads `1e-3` as a text."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        return None
+    try:
+        number = float(value)
+    except (ValueError, OverflowError):
+        return None
+    return number if math.isfinite(number) else None
+
+
+def _kind(value: Any) -> str:
+    if value is None:
+        return "nothing"
+    if isinstance(value, Mapping):
+        return "a map"
+    text = repr(value)
+    text = text if len(text) <= 60 else text[:57] + "..."
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return f"a list of {len(value)}: {text}"
+    return text

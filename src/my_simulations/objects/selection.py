@@ -1,0 +1,131 @@
+"""Which objects of a list the words on a command line mean."""
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field
+from typing import Any, Dict, Iterable, List, Mapping, Sequence, Tuple
+
+from ..errors import Issue, error
+from .listing import ObjectList, PlacedObject
+from .yaml_source import Source
+
+ALL = "all"
+
+
+@dataclass
+class Selection:
+    """What was asked for.
+
+    Attributes:
+        objects: sound objects, each once, in the order asked for.
+        named: names of objects asked for one by one, not through `all` or a group.
+        unknown: words and group members that are no object of the list.
+        issues: everything that is wrong with the request or with the objects it names.
+    """
+
+    objects: List[PlacedObject] = field(default_factory=list)
+    named: List[str] = field(default_factory=list)
+    unknown: List[str] = field(default_factory=list)
+    issues: List[Issue] = field(default_factory=list)
+
+
+def parse_groups(tree: Any, source: Source) -> Tuple[Dict[str, List[str]], List[Issue]]:
+    """Reads object groups: `group: [name, ...]`.
+
+    Args:
+        tree: the values of the file, or of the parameter `/object_groups`; None means no groups.
+        source: where they came from, for messages.
+
+    Returns:
+        The members by group name, and the faults; a faulty group is left out.
+    """
+    if tree is None:
+        return {}, []
+    if not isinstance(tree, Mapping):
+        return {}, [error("groups-wrong-type", "object groups map a name to a list of objects",
+                          **source.where(()))]
+    groups: Dict[str, List[str]] = {}
+    issues: List[Issue] = []
+    for name, members in tree.items():
+        where = source.where((str(name),))
+        if not isinstance(name, str) or not name.strip():
+            issues.append(error("group-name", f"a group's name is a text, found {name!r}", **where))
+        elif not isinstance(members, (list, tuple)):
+            issues.append(error("group-wrong-type",
+                                f"group '{name}' is a list of object names", **where))
+        elif not all(isinstance(member, str) for member in members):
+            issues.append(error("group-member", f"group '{name}': every member is a text", **where))
+        else:
+            groups[name] = list(members)
+    return groups, issues
+
+
+def closest(name: str, known: Iterable[str], count: int = 3) -> List[str]:
+    """The known names most like `name`, best first; letter case does not count."""
+    by_lower: Dict[str, List[str]] = {}
+    for candidate in known:
+        by_lower.setdefault(candidate.lower(), []).append(candidate)
+    found = difflib.get_close_matches(name.lower(), list(by_lower), count, 0.5)
+    return [candidate for lower in found for candidate in by_lower[lower]][:count]
+
+
+def unknown_name(name: str, known: Sequence[str], where: str) -> Issue:
+    """The error for a name that is not known, with the closest ones that are."""
+    near = closest(name, known)
+    if near:
+        hint = "did you mean " + " or ".join(near) + "?"
+    elif known:
+        listed = ", ".join(known[:10]) + (", ..." if len(known) > 10 else "")
+        hint = f"known are: {listed}"
+    else:
+        hint = "none is known"
+    return error("unknown-object", f"there is no object '{name}' {where}", hint=hint)
+
+
+def select(words: Sequence[str], listing: ObjectList,
+           groups: Mapping[str, Sequence[str]]) -> Selection:
+    """Resolves `all`, group names and object names.
+
+    A word is, in this order, `all`, a group, or an object. Members of groups may carry their
+    flattened name in either order of its parts, `PARENT_CHILD` or `CHILD_PARENT`.
+
+    Args:
+        words: the words of the command line.
+        listing: the object list.
+        groups: members by group name.
+
+    Returns:
+        The selection; faults of objects that were not asked for are not in it.
+    """
+    result = Selection()
+    aliases = {placed.old_name: name for name, placed in listing.objects.items()}
+    chosen: Dict[str, None] = {}
+    for word in words:
+        if word == ALL:
+            chosen.update(dict.fromkeys(listing.names))
+            result.issues.extend(listing.faults.get("", []))
+        elif word in groups:
+            for member in groups[word]:
+                _choose(member, listing, aliases, f"(member of group '{word}')", chosen, result)
+        else:
+            found = _choose(word, listing, aliases, "in the object list", chosen, result,
+                            list(groups))
+            result.named.extend(found)
+    for name in chosen:
+        result.issues.extend(listing.faults.get(name, []))
+        if name in listing.objects:
+            result.objects.append(listing.objects[name])
+    return result
+
+
+def _choose(name: str, listing: ObjectList, aliases: Mapping[str, str], where: str,
+            chosen: Dict[str, None], result: Selection,
+            more: Sequence[str] = ()) -> List[str]:
+    known = listing.names
+    found = name if name in listing.objects or name in listing.faults else aliases.get(name)
+    if not name or found is None:
+        result.unknown.append(name)
+        result.issues.append(unknown_name(name, [*known, *more], where))
+        return []
+    chosen[found] = None
+    return [found]
