@@ -15,7 +15,7 @@ from typing import Callable, Dict, List, Optional, Protocol, Tuple
 
 from ..description.model import Model
 from ..description.shapes import MeshData
-from ..geometry import Pose, STILL, Twist, Vec3
+from ..geometry import STILL, Pose, Twist, Vec3
 from .ring import RingReader
 
 FOREVER = 1 << 62
@@ -133,7 +133,11 @@ class SetModelState(Command):
 
 @dataclass(frozen=True)
 class SetLinkState(Command):
-    """Move one link; for a link of a jointed model see `simulator.links`."""
+    """Move one link and set its velocity.
+
+    A link of an articulated body takes the whole body along, joint positions kept: reduced
+    coordinates know no pose of a single link. A body joined to the world cannot be moved so.
+    """
 
     row: int
     pose: Pose
@@ -149,26 +153,22 @@ class SetJoints(Command):
 
 
 @dataclass(frozen=True)
-class RestoreModels(Command):
-    """Put models back into given states, all in the same gap between steps.
+class Clear(Command):
+    """Take everything out: models, loads, contacts. Settings and clock stay.
 
-    `states` is (model id, state); `step` and `sim_ns` also set the clock when given, and loads are
-    dropped when `clear_loads`.
+    What is loaded afterwards behaves bit for bit as in a new engine.
     """
-
-    states: Tuple[Tuple[int, ModelState], ...]
-    clock: Optional[Tuple[int, int]] = None
-    clear_loads: bool = False
 
 
 @dataclass(frozen=True)
-class StopMotion(Command):
-    """Set every velocity of the given models to zero, positions kept, and put back base poses.
+class Batch(Command):
+    """Commands applied in the same gap between steps, in order.
 
-    `poses`: (model id, world pose of the model frame); reset_world's semantics.
+    The first one that is refused ends the batch: those before it stay done, and the reply carries
+    its error. Reply value: the list of their values.
     """
 
-    poses: Tuple[Tuple[int, Pose], ...]
+    commands: Tuple[Command, ...]
 
 
 @dataclass(frozen=True)
@@ -271,9 +271,55 @@ class Engine(Protocol):
     def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
         """Set who hears of the engine's death: a reason, and the commands without an answer."""
 
+    def wait_bell(self, timeout: float) -> bool:
+        """Wait until the engine rings (a step or a change, when asked to); False after `timeout`."""
+
+    def restart(self) -> None:
+        """After a death: start anew on the same ring, empty; call from a long-lived thread."""
+
+    def kill(self) -> None:
+        """End it at once, as a crash would."""
+
+    @property
+    def pid(self) -> int:
+        """The process number; 0 where there is none."""
+
     def close(self) -> None:
         """End it and wait for the end."""
 
 
 class EngineGone(Exception):
     """The engine died before it answered."""
+
+
+class Refused(Exception):
+    """A command that cannot be carried out; the message is one sentence for the user."""
+
+
+class Backend(Protocol):
+    """Who moves the bodies, one step at a time; `engine.runner` drives it."""
+
+    def apply(self, command: Command) -> object:
+        """Carry out a command that changes the world; raises `Refused`, then nothing changed."""
+
+    def configure(self, settings: PhysicsSettings) -> None:
+        """Use other settings from the next step on."""
+
+    def step(self, first: int, count: int) -> None:
+        """Make `count` steps, the first of which begins at step count `first`."""
+
+    def read(self) -> bool:
+        """Bring the tables up to date; False when nothing can have changed since the last time."""
+
+    def tables(self) -> Tuple[memoryview, memoryview]:
+        """The used link and joint rows as raw doubles, for the ring."""
+
+    @property
+    def read_cost(self) -> int:
+        """How many bodies a read-out looks at."""
+
+    def events(self) -> List[Event]:
+        """What has happened since the last call."""
+
+    def close(self) -> None:
+        """Give everything back."""

@@ -14,9 +14,11 @@ import mmap
 import os
 import time
 from dataclasses import dataclass
-from typing import List, NamedTuple, Optional, Sequence
+from typing import NamedTuple, Optional, Sequence, Union
 
 from ..geometry import Pose, Twist
+
+Buffer = Union[bytes, memoryview]
 
 SLOTS = 16
 LINKS = 16384
@@ -140,7 +142,7 @@ class RingWriter:
         """The world is `step` steps old; the latest slot still holds unless a new one follows."""
         self.words[STEP] = step
 
-    def write(self, step: int, clock: Clock, links: bytes, joints: bytes) -> int:
+    def write(self, step: int, clock: Clock, links: Buffer, joints: Buffer) -> int:
         """Write a snapshot. `links`, `joints`: the used rows as raw doubles. Returns its sequence."""
         words = self.words
         sequence = words[LATEST] + 1
@@ -220,9 +222,9 @@ class RingReader:
         clock = Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
         step = words[slot + SLOT_STEP]
         at = slot + HEAD_WORDS
-        links: List[float] = doubles[at:at + words[slot + USED_LINKS] * LINK_WIDTH].tolist()
+        links: Sequence[float] = doubles[at:at + words[slot + USED_LINKS] * LINK_WIDTH].tolist()
         at += _LINK_WORDS
-        joints: List[float] = doubles[at:at + words[slot + USED_JOINTS] * JOINT_WIDTH].tolist()
+        joints: Sequence[float] = doubles[at:at + words[slot + USED_JOINTS] * JOINT_WIDTH].tolist()
         now = words[STEP]
         if not self._is_whole(slot, sequence):
             return None

@@ -1,0 +1,69 @@
+"""The engine process: `python -m my_simulations.engine COMMANDS RING BELL` (descriptors)."""
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import socket
+import sys
+from typing import List, Tuple
+
+from .api import Command, Event, Reply
+from .ring import RingWriter
+from .runner import Runner
+from .wire import Wire
+
+_PR_SET_PDEATHSIG = 1
+
+
+class _Pipes:
+    """The channel of a child: a socket for commands, a pipe for the bell."""
+
+    def __init__(self, wire: Wire, bell: int) -> None:
+        self._wire = wire
+        self._bell = bell
+
+    def receive(self, timeout: float) -> List[Tuple[int, Command]]:
+        return self._wire.receive(timeout)
+
+    def reply(self, number: int, reply: Reply) -> None:
+        self._send((number, reply))
+
+    def event(self, event: Event) -> None:
+        self._send((-1, event))
+
+    def bell(self) -> None:
+        try:
+            os.write(self._bell, b"\0")
+        except BlockingIOError:
+            return  # nobody has emptied it: whoever waits is awake already
+
+    def _send(self, message: object) -> None:
+        try:
+            self._wire.send(message)
+        except OSError as fault:
+            raise EOFError from fault
+
+
+def main(argv: List[str]) -> int:
+    """Work until the parent hangs up or dies."""
+    # The parent decides when to end: a Ctrl-C reaches the whole group, and must not kill the
+    # physics while the parent still saves or answers.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    commands, ring, bell = (int(word) for word in argv[1:4])
+    os.set_blocking(bell, False)
+    from .bullet.backend import BulletBackend
+
+    backend = BulletBackend()
+    wire = Wire(socket.socket(fileno=commands))
+    try:
+        Runner(backend, RingWriter(ring), _Pipes(wire, bell)).run()
+    finally:
+        backend.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))

@@ -1,0 +1,1 @@
+"""PyBullet, bound to the engine's interface. Nothing else imports pybullet."""

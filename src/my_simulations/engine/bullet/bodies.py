@@ -1,0 +1,259 @@
+"""PyBullet bodies from planned ones, and what the engine must remember of each.
+
+PyBullet speaks of centres of mass; the description speaks of link frames. The two meet here and
+nowhere else: `link_from_com` of each part converts, both ways.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Sequence, Tuple
+
+import pybullet
+
+from ...description.model import Link, Model
+from ...description.shapes import MeshTable
+from ...geometry import IDENTITY, Pose, Twist, Vec3, compose, inverse, rotate, scale, twist_at
+from ..inertia import principal
+from ..plan import BASE, BodyPlan, TreeLink
+from . import surfaces
+from .shapes import ShapeFactory
+
+SLEEP_THRESHOLD = 0.01
+"""Bodies slower than about 0.1 m/s (measured) for 2 s of sim time may sleep, as Gazebo's."""
+
+_FREE_JOINT_VELOCITY = 1e6  # PyBullet clamps joint rates to 100 by default
+_JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "continuous": pybullet.JOINT_REVOLUTE,
+                "prismatic": pybullet.JOINT_PRISMATIC, "fixed": pybullet.JOINT_FIXED}
+
+
+@dataclass
+class Part:
+    """One link of a body: its row in the ring, PyBullet's index, and where its mass is."""
+
+    row: int
+    index: int
+    link_from_com: Pose
+    mass: float
+    gravity: bool = True
+
+    def com_pose(self, link_pose: Pose) -> Pose:
+        """World pose of the centre of mass from that of the link frame."""
+        return compose(link_pose, self.link_from_com)
+
+    def com_twist(self, link_pose: Pose, twist: Twist) -> Twist:
+        """Twist at the centre of mass from that at the link origin."""
+        return twist_at(twist, rotate(link_pose.orientation, self.link_from_com.position))
+
+
+@dataclass
+class Axis:
+    """One joint axis of a body: its row in the ring and PyBullet's joint index."""
+
+    row: int
+    index: int
+    name: str
+
+
+@dataclass
+class Body:
+    """One PyBullet body, or several immovable ones that stand for one link.
+
+    Attributes:
+        uid: PyBullet's number; `more` those of further static pieces with the same frame.
+        parts: its links; `base` is the part whose index is BASE, None for a fixed base.
+        moves: False for static and kinematic ones.
+        rigid: joint-free, so it may sleep when `may_sleep`.
+        radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
+    """
+
+    uid: int
+    model_id: int
+    parts: List[Part]
+    axes: List[Axis] = field(default_factory=list)
+    more: Tuple[int, ...] = ()
+    moves: bool = True
+    rigid: bool = True
+    may_sleep: bool = True
+    radius: float = 0.0
+    still: int = 0
+
+    @property
+    def uids(self) -> Tuple[int, ...]:
+        """All PyBullet numbers it holds."""
+        return (self.uid,) + self.more
+
+    @property
+    def base(self) -> Optional[Part]:
+        """The part that PyBullet's base is."""
+        return self.parts[0] if self.parts[0].index == BASE else None
+
+
+class Builder:
+    """Builds the bodies of one model; on a fault it removes what it had built."""
+
+    def __init__(self, model_id: int, model: Model, pose: Pose, meshes: MeshTable,
+                 shapes: ShapeFactory, link_rows: int, joint_rows: Dict[str, int]) -> None:
+        self.model_id = model_id
+        self.model = model
+        self.pose = pose
+        self.meshes = meshes
+        self.shapes = shapes
+        self.first_row = link_rows
+        self.joint_rows = joint_rows
+        self.built: List[Body] = []
+
+    def build(self, plans: Sequence[BodyPlan]) -> List[Body]:
+        """All bodies, at their initial poses, with Gazebo's dynamics instead of PyBullet's."""
+        try:
+            for plan in plans:
+                self.built.append(self._rigid(plan) if plan.is_rigid else self._tree(plan))
+            self._ignore_each_other()
+        except Exception:
+            for body in self.built:
+                remove(body)
+            raise
+        return self.built
+
+    def _rigid(self, plan: BodyPlan) -> Body:
+        link = self.model.links[plan.links[0].index]
+        static = self.model.static or link.kinematic
+        com, moments = (IDENTITY, (0.0, 0.0, 0.0)) if static else principal(link.inertial)
+        mass = 0.0 if static else link.inertial.mass
+        pieces = self.shapes.compounds(link.collisions, self.meshes, inverse(com), static)
+        at = compose(compose(self.pose, link.pose), com)
+        uids = [
+            pybullet.createMultiBody(mass, piece, -1, at.position, at.orientation,
+                                     useMaximalCoordinates=1)
+            for piece in (pieces or [-1])
+        ]
+        part = Part(self.first_row + plan.links[0].index, BASE, com, mass, link.gravity)
+        body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]), moves=not static,
+                    may_sleep=self._may_sleep(link))
+        for uid in uids:
+            set_dynamics(uid, BASE, link, mass, moments, body.may_sleep and not static)
+        body.radius = _radius(uids[0])
+        return body
+
+    def _may_sleep(self, link: Link) -> bool:
+        return (self.model.allow_auto_disable and link.gravity
+                and not any(joint.type in _JOINT_TYPES for joint in self.model.joints))
+
+    def _tree(self, plan: BodyPlan) -> Body:
+        hung = plan.links if plan.fixed_base else plan.links[1:]
+        offset = 0 if plan.fixed_base else 1
+        frames = [principal(self.model.links[node.index].inertial) for node in plan.links]
+        shape = [self._tree_shape(node) for node in plan.links]
+        base_mass, base_shape, base_at, base_com = 0.0, -1, self.pose, IDENTITY
+        if not plan.fixed_base:
+            root = self.model.links[plan.links[0].index]
+            base_mass, base_shape = root.inertial.mass, shape[0]
+            base_at, base_com = compose(self.pose, root.pose), frames[0][0]
+        coms = [compose(inverse(node.link_from_frame), frames[offset + n][0])
+                for n, node in enumerate(hung)]
+        uid = pybullet.createMultiBody(
+            baseMass=base_mass, baseCollisionShapeIndex=base_shape,
+            basePosition=base_at.position, baseOrientation=base_at.orientation,
+            baseInertialFramePosition=base_com.position,
+            baseInertialFrameOrientation=base_com.orientation,
+            linkMasses=[self.model.links[node.index].inertial.mass for node in hung],
+            linkCollisionShapeIndices=shape[offset:],
+            linkVisualShapeIndices=[-1] * len(hung),
+            linkPositions=[node.parent_from_frame.position for node in hung],
+            linkOrientations=[node.parent_from_frame.orientation for node in hung],
+            linkInertialFramePositions=[com.position for com in coms],
+            linkInertialFrameOrientations=[com.orientation for com in coms],
+            linkParentIndices=[node.parent + 1 - offset if node.parent >= 0 else 0
+                               for node in hung],
+            linkJointTypes=[_JOINT_TYPES[node.joint.type] for node in hung
+                            if node.joint is not None],
+            linkJointAxis=[node.axis or (0.0, 0.0, 1.0) for node in hung],
+            flags=(pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
+                   | pybullet.URDF_USE_SELF_COLLISION) if self.model.self_collide else 0,
+        )
+        return self._finish_tree(uid, plan, frames, offset)
+
+    def _finish_tree(self, uid: int, plan: BodyPlan, frames: List[Tuple[Pose, Vec3]],
+                     offset: int) -> Body:
+        parts, axes = [], []
+        for n, node in enumerate(plan.links):
+            link, index = self.model.links[node.index], n - offset
+            parts.append(Part(self.first_row + node.index, index, frames[n][0],
+                              link.inertial.mass, link.gravity))
+            set_dynamics(uid, index, link, link.inertial.mass, frames[n][1], False)
+            if node.joint is not None and node.axis is not None:
+                axes.append(Axis(self.joint_rows[node.joint.name], index, node.joint.name))
+        if plan.fixed_base:
+            pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
+        return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False)
+
+    def _tree_shape(self, node: TreeLink) -> int:
+        link = self.model.links[node.index]
+        found = self.shapes.compounds(link.collisions, self.meshes,
+                                      inverse(node.link_from_frame), False)
+        return found[0] if found else -1
+
+    def _ignore_each_other(self) -> None:
+        """Links of one model collide only when self_collide asks (SDF 1.7, model/self_collide)."""
+        if self.model.self_collide or self.model.static:
+            return
+        for n, one in enumerate(self.built):
+            for other in self.built[n + 1:]:
+                for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
+                    for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
+                        pybullet.setCollisionFilterPair(one.uid, other.uid, a, b, 0)
+
+
+def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
+                 may_sleep: bool) -> None:
+    """Gazebo's dynamics for one link: the file's inertia, no hidden damping, its surface."""
+    surface = surfaces.of_link(link)
+    settings: Dict[str, object] = {
+        "lateralFriction": surfaces.friction(surface, mass == 0.0),
+        "spinningFriction": 0.0, "rollingFriction": 0.0,
+        "restitution": surfaces.restitution(surface),
+        "linearDamping": 0.0, "angularDamping": 0.0,
+        "contactProcessingThreshold": 0.0,
+        "maxJointVelocity": _FREE_JOINT_VELOCITY,
+    }
+    if mass > 0.0:
+        settings["mass"] = mass
+        settings["localInertiaDiagonal"] = moments
+        if may_sleep:
+            settings["activationState"] = pybullet.ACTIVATION_STATE_ENABLE_SLEEPING
+            settings["sleepThreshold"] = SLEEP_THRESHOLD
+        else:
+            settings["activationState"] = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
+    pybullet.changeDynamics(uid, index, **settings)
+
+
+def remove(body: Body) -> None:
+    """Take the body out of PyBullet."""
+    for uid in body.uids:
+        pybullet.removeBody(uid)
+
+
+def place(body: Body, link_pose: Pose) -> None:
+    """Put a body so that its first part's link frame has the world pose `link_pose`."""
+    at = body.parts[0].com_pose(link_pose)
+    for uid in body.uids:
+        pybullet.resetBasePositionAndOrientation(uid, at.position, at.orientation)
+
+
+def launch(body: Body, link_pose: Pose, twist: Twist) -> None:
+    """Give the base the velocity `twist` (at its link origin, world axes)."""
+    com = body.parts[0].com_twist(link_pose, twist)
+    pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
+
+
+def _radius(uid: int) -> float:
+    low, high = pybullet.getAABB(uid, BASE)
+    if not -1e9 < low[0] <= high[0] < 1e9:
+        return 0.0
+    centre = pybullet.getBasePositionAndOrientation(uid)[0]
+    corner = [max(abs(low[i] - centre[i]), abs(high[i] - centre[i])) for i in range(3)]
+    return (corner[0] ** 2 + corner[1] ** 2 + corner[2] ** 2) ** 0.5
+
+
+def weight(part: Part, gravity: Vec3) -> Vec3:
+    """The force of gravity on a part, N, world axes."""
+    return scale(gravity, part.mass)

@@ -1,0 +1,162 @@
+"""What acts on bodies anew in every step: timed loads, weightless links, stiff dampers, springs.
+
+PyBullet forgets external forces and joint torques after one step.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Dict, List, Tuple
+
+import pybullet
+
+from ...description.model import JointAxis
+from ...geometry import Vec3, add, cross, rotate, scale
+from ..api import Load
+from ..plan import BASE
+from .bodies import Axis, Body, Part
+
+_NOTHING = (0.0, 0.0, 0.0)
+
+
+@dataclass
+class Damper:
+    """Spring and damper of one axis, integrated implicitly so that no stiffness diverges.
+
+    With the effective inertia I of the axis, implicit Euler gives
+    w' = (w - dt k (q - r) / I) / (1 + dt d / I + dt^2 k / I); the torque is I (w' - w) / dt.
+    """
+
+    uid: int
+    index: int
+    inertia: float
+    spec: JointAxis
+
+    def torque(self, dt: float) -> float:
+        """The torque of this step, N m or N."""
+        position, rate = pybullet.getJointState(self.uid, self.index)[:2]
+        stiffness, damping = self.spec.spring_stiffness, self.spec.damping
+        pull = stiffness * (position - self.spec.spring_reference)
+        divisor = 1.0 + dt * (damping + dt * stiffness) / self.inertia
+        return (self.inertia * (rate / divisor - rate) / dt) - pull / divisor
+
+
+class Forces:
+    """All that `apply` must do before the next step."""
+
+    def __init__(self, wake: Callable[[List[Body]], None]) -> None:
+        self._wake = wake
+        self._loads: Dict[int, Load] = {}
+        self._acting: Dict[int, Load] = {}
+        self._parts: Dict[int, Tuple[Body, Part]] = {}
+        self._axes: Dict[int, Tuple[Body, Axis]] = {}
+        self._weightless: Dict[int, Tuple[Body, Part]] = {}
+        self._dampers: Dict[int, Damper] = {}
+
+    def add_body(self, body: Body) -> None:
+        """Know the rows of a new body."""
+        for part in body.parts:
+            self._parts[part.row] = (body, part)
+            if not part.gravity and body.moves:
+                self._weightless[part.row] = (body, part)
+        for axis in body.axes:
+            self._axes[axis.row] = (body, axis)
+
+    def add_damper(self, row: int, damper: Damper) -> None:
+        """Let a spring or damper act on the axis of `row`."""
+        self._dampers[row] = damper
+
+    def forget(self, body: Body) -> None:
+        """Drop a body and every load on it."""
+        for part in body.parts:
+            self._parts.pop(part.row, None)
+            self._weightless.pop(part.row, None)
+        for axis in body.axes:
+            self._axes.pop(axis.row, None)
+            self._dampers.pop(axis.row, None)
+        rows = {part.row for part in body.parts}
+        axes = {axis.row for axis in body.axes}
+        self.clear([load.load_id for load in self._loads.values()
+                    if load.row in (rows if load.effort is None else axes)])
+
+    def add_loads(self, loads: Tuple[Load, ...]) -> str:
+        """Queue loads; returns why not, or ""."""
+        for load in loads:
+            if load.row not in (self._parts if load.effort is None else self._axes):
+                return "the link or joint of the load does not exist"
+        self._loads.update({load.load_id: load for load in loads})
+        return ""
+
+    def clear(self, load_ids: "List[int] | Tuple[int, ...]") -> None:
+        """Drop loads by id."""
+        for load_id in load_ids:
+            self._loads.pop(load_id, None)
+            self._acting.pop(load_id, None)
+
+    def clear_all(self) -> None:
+        """Drop every load."""
+        self._loads.clear()
+        self._acting.clear()
+
+    @property
+    def idle(self) -> bool:
+        """True when a step needs nothing from here, now or later."""
+        return not (self._loads or self._weightless or self._dampers)
+
+    def apply(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Everything that acts in the step that begins at count `step`."""
+        efforts: Dict[int, float] = {}
+        if self._loads:
+            self._turn_over(step)
+            for load in self._acting.values():
+                if load.effort is None:
+                    self._push(load)
+                else:
+                    efforts[load.row] = efforts.get(load.row, 0.0) + load.effort
+        for row, damper in self._dampers.items():
+            efforts[row] = efforts.get(row, 0.0) + damper.torque(dt)
+        for row, effort in efforts.items():
+            body, axis = self._axes[row]
+            pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.TORQUE_CONTROL,
+                                           force=effort)
+        for body, part in self._weightless.values():
+            at = self._com(body, part)[0]
+            pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
+                                        pybullet.WORLD_FRAME)
+
+    def _turn_over(self, step: int) -> None:
+        starting = []
+        for load_id, load in list(self._loads.items()):
+            if step >= load.stop:
+                self.clear([load_id])
+            elif step >= load.start and load_id not in self._acting:
+                self._acting[load_id] = load
+                starting.append(load)
+        if starting:
+            self._wake([self._target(load) for load in starting])
+
+    def _target(self, load: Load) -> Body:
+        return (self._parts if load.effort is None else self._axes)[load.row][0]
+
+    def _push(self, load: Load) -> None:
+        body, part = self._parts[load.row]
+        if not body.moves:
+            return
+        at, turn = self._com(body, part)
+        force, torque, point = load.force, load.torque, load.point
+        if load.in_link_axes:
+            # The link's axes, not the principal ones that PyBullet's frame follows.
+            x, y, z, w = part.link_from_com.orientation
+            inverse_turn = (-x, -y, -z, w)
+            force, torque, point = (rotate(turn, rotate(inverse_turn, v))
+                                    for v in (force, torque, point))
+        torque = add(torque, cross(point, force))
+        if force != _NOTHING:
+            pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
+        if torque != _NOTHING:
+            pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
+
+    @staticmethod
+    def _com(body: Body, part: Part) -> "tuple":
+        if part.index == BASE:
+            return pybullet.getBasePositionAndOrientation(body.uid)
+        return pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)[:2]

@@ -1,0 +1,232 @@
+"""Reads the states of what may have moved, and of nothing else.
+
+PyBullet has no bulk read; a body costs about 2.4 us. A rigid body that was found at exactly zero
+velocity twice running is left alone until it is touched, woken or commanded. Whether a moving body
+touches a resting one is asked of the broad phase, with a margin, so that the question is repeated
+only after the mover has gone that far.
+"""
+from __future__ import annotations
+
+import struct
+from typing import Callable, Dict, List, Set, Tuple
+
+import numpy as np
+import pybullet
+
+from ...geometry import IDENTITY, Pose, inverse
+from ..plan import BASE
+from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
+from .bodies import Body
+
+_ROW = struct.Struct("=13d")
+_AXIS = struct.Struct("=2d")
+_STILL = (0.0, 0.0, 0.0)
+_MARGIN = 0.05     # m a mover goes before its neighbours are asked for again
+_ROUND_ROBIN = 8   # resting bodies looked at per read-out whatever the neighbours say
+_WORLD_SIZE = 1e9
+
+
+class Readout:
+    """The link and joint tables, kept up to date.
+
+    Attributes:
+        links: float64 array (LINKS, 13), rows as in the ring.
+        joints: float64 array (JOINTS, 2).
+    """
+
+    def __init__(self, diverged: Callable[[Body], None]) -> None:
+        self.links = np.zeros((LINKS, LINK_WIDTH))
+        self.joints = np.zeros((JOINTS, JOINT_WIDTH))
+        self.used_links = 0
+        self.used_joints = 0
+        self._diverged = diverged
+        self._link_bytes = memoryview(self.links.data).cast("B")
+        self._joint_bytes = memoryview(self.joints.data).cast("B")
+        self._awake: Dict[int, Body] = {}
+        self._trees: Dict[int, Body] = {}
+        self._resting: Dict[int, Body] = {}
+        self._guards: Dict[int, Tuple[Tuple[float, float, float], Set[int]]] = {}
+        self._offsets: Dict[int, Pose] = {}
+        self._patrol: List[int] = []
+        self._stepped = False
+
+    def add(self, body: Body) -> None:
+        """Know a new body."""
+        for part in body.parts:
+            self.used_links = max(self.used_links, part.row + 1)
+            if part.link_from_com != IDENTITY:
+                self._offsets[part.row] = inverse(part.link_from_com)
+            else:
+                self._offsets.pop(part.row, None)
+        for axis in body.axes:
+            self.used_joints = max(self.used_joints, axis.row + 1)
+        self.touch(body)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone; its rows stay as they are."""
+        for table in (self._awake, self._trees, self._resting, self._guards):
+            table.pop(body.uid, None)
+        for part in body.parts:
+            self._offsets.pop(part.row, None)
+
+    def touch(self, body: Body) -> None:
+        """The body may have moved: read it until it rests again."""
+        body.still = 0
+        self._resting.pop(body.uid, None)
+        self._guards.pop(body.uid, None)
+        if body.rigid:
+            self._awake[body.uid] = body
+        else:
+            self._trees[body.uid] = body
+
+    def is_resting(self, body: Body) -> bool:
+        """Found at zero velocity twice running."""
+        return body.uid in self._resting
+
+    @property
+    def idle(self) -> bool:
+        """True when there is nothing to read."""
+        return not self._awake and not self._trees
+
+    @property
+    def load(self) -> int:
+        """How many bodies a read-out looks at."""
+        return len(self._awake) + len(self._trees)
+
+    def read(self, stepped: bool) -> bool:
+        """Bring the tables up to date. Returns False when nothing can have changed.
+
+        `stepped` says whether the world has moved on since the last read-out: standing still
+        counts only then.
+        """
+        if self.idle:
+            return False
+        self._stepped = stepped
+        offset_rows: List[int] = []
+        self._read_all(list(self._awake.values()), offset_rows)
+        for body in list(self._trees.values()):
+            self._read_tree(body, offset_rows)
+        if self._resting:
+            self._look_around(offset_rows)
+        if offset_rows:
+            self._to_link_frames(offset_rows)
+        return True
+
+    def _read_all(self, todo: List[Body], offset_rows: List[int]) -> None:
+        """Read rigid bodies, and those found moving because of them, and so on."""
+        while todo:
+            woken: List[Body] = []
+            for body in todo:
+                self._read_rigid(body, offset_rows, woken)
+            todo = woken
+
+    def _read_rigid(self, body: Body, offset_rows: List[int], woken: List[Body]) -> None:
+        uid = body.uid
+        (x, y, z), (qx, qy, qz, qw) = pybullet.getBasePositionAndOrientation(uid)
+        linear, angular = pybullet.getBaseVelocity(uid)
+        total = x + y + z + qx + qy + qz + qw + sum(linear) + sum(angular)
+        if total - total != 0.0:
+            self._diverged(body)
+            return
+        row = body.parts[0].row
+        _ROW.pack_into(self._link_bytes, row * _ROW.size, x, y, z, qx, qy, qz, qw,
+                       *linear, *angular)
+        if row in self._offsets:
+            offset_rows.append(row)
+        if linear == _STILL and angular == _STILL:
+            body.still += self._stepped
+            if body.still >= 2:
+                self._awake.pop(uid, None)
+                self._guards.pop(uid, None)
+                if body.moves:
+                    self._resting[uid] = body
+            return
+        body.still = 0
+        if self._resting:
+            woken.extend(self._touched_by(uid, (x, y, z), body.radius))
+
+    def _touched_by(self, uid: int, at: Tuple[float, float, float], radius: float) -> List[Body]:
+        """Resting bodies near a moving one that move by now; they count as awake from here on."""
+        guard = self._guards.get(uid)
+        if guard is None or max(abs(at[0] - guard[0][0]), abs(at[1] - guard[0][1]),
+                                abs(at[2] - guard[0][2])) > _MARGIN:
+            reach = radius + _MARGIN + 0.02
+            guard = (at, self._near([c - reach for c in at], [c + reach for c in at]))
+            self._guards[uid] = guard
+        return self._wake_moving(guard[1])
+
+    def _near(self, low: List[float], high: List[float]) -> Set[int]:
+        found = pybullet.getOverlappingObjects(low, high) or ()
+        return {uid for uid, _ in found if uid in self._resting}
+
+    def _wake_moving(self, candidates: Set[int]) -> List[Body]:
+        woken = []
+        for uid in list(candidates):
+            body = self._resting.get(uid)
+            if body is None:
+                candidates.discard(uid)
+            elif pybullet.getBaseVelocity(uid) != (_STILL, _STILL):
+                self.touch(body)
+                woken.append(body)
+        return woken
+
+    def _look_around(self, offset_rows: List[int]) -> None:
+        """What trees may have touched, and a few resting bodies whatever the neighbours say."""
+        woken: List[Body] = []
+        for uid, tree in self._trees.items():
+            for index in [BASE] + [part.index for part in tree.parts if part.index != BASE]:
+                low, high = pybullet.getAABB(uid, index)
+                if high[0] - low[0] < _WORLD_SIZE:
+                    woken += self._wake_moving(self._near(
+                        [c - 0.02 for c in low], [c + 0.02 for c in high]))
+        if not self._patrol:
+            self._patrol = list(self._resting)
+        turn, self._patrol = set(self._patrol[:_ROUND_ROBIN]), self._patrol[_ROUND_ROBIN:]
+        self._read_all(woken + self._wake_moving(turn), offset_rows)
+
+    def _read_tree(self, body: Body, offset_rows: List[int]) -> None:
+        uid, links = body.uid, self._link_bytes
+        total = 0.0
+        hung = body.parts
+        if body.base is not None:
+            position, turn = pybullet.getBasePositionAndOrientation(uid)
+            linear, angular = pybullet.getBaseVelocity(uid)
+            _ROW.pack_into(links, body.parts[0].row * _ROW.size, *position, *turn, *linear,
+                           *angular)
+            total += sum(position) + sum(turn) + sum(linear) + sum(angular)
+            hung = body.parts[1:]
+        states = pybullet.getLinkStates(uid, [part.index for part in hung],
+                                        computeLinkVelocity=1, computeForwardKinematics=1)
+        for part, state in zip(hung, states):
+            _ROW.pack_into(links, part.row * _ROW.size, *state[0], *state[1], *state[6], *state[7])
+            total += sum(state[0]) + sum(state[6])
+        for axis in body.axes:
+            position_rate = pybullet.getJointState(uid, axis.index)[:2]
+            _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, *position_rate)
+            total += sum(position_rate)
+        if total - total != 0.0:
+            self._diverged(body)
+            return
+        offset_rows.extend(part.row for part in body.parts if part.row in self._offsets)
+
+    def _to_link_frames(self, rows: List[int]) -> None:
+        """Rows hold centres of mass; turn them into link frames: x += R p, v += w x R p."""
+        index = np.array(rows)
+        values = self.links[index]
+        offsets = [self._offsets[row] for row in rows]
+        p = np.array([offset.position for offset in offsets])
+        q = values[:, 3:7].copy()
+        u, w = q[:, :3], q[:, 3:4]
+        t = 2.0 * np.cross(u, p)
+        lever = p + w * t + np.cross(u, t)
+        values[:, 0:3] += lever
+        values[:, 7:10] += np.cross(values[:, 10:13], lever)
+        r = np.array([offset.orientation for offset in offsets])
+        values[:, 3:6] = (w * r[:, :3] + r[:, 3:4] * u + np.cross(u, r[:, :3]))
+        values[:, 6] = w[:, 0] * r[:, 3] - np.sum(u * r[:, :3], axis=1)
+        self.links[index] = values
+
+    def tables(self) -> Tuple[memoryview, memoryview]:
+        """The used rows as raw bytes, for the ring."""
+        return (self._link_bytes[:self.used_links * _ROW.size],
+                self._joint_bytes[:self.used_joints * _AXIS.size])

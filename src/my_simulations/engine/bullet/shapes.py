@@ -1,0 +1,190 @@
+"""Collision shapes of a link, in PyBullet's terms."""
+from __future__ import annotations
+
+import itertools
+import os
+import tempfile
+from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
+
+import numpy as np
+import pybullet
+
+from ...description.shapes import (
+    Box,
+    Collision,
+    Cylinder,
+    Empty,
+    Geometry,
+    Mesh,
+    MeshData,
+    MeshTable,
+    Plane,
+    Sphere,
+    mesh_key,
+)
+from ...geometry import IDENTITY, Pose, compose, multiply, transform
+
+MAX_SHAPES = 16
+"""Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
+
+
+class ShapeError(ValueError):
+    """A collision that PyBullet refuses; the message is one sentence for the user."""
+
+
+class ShapeFactory:
+    """Makes compounds. Meshes go through files in a private directory, removed at the end."""
+
+    def __init__(self) -> None:
+        self._scratch = tempfile.TemporaryDirectory(prefix="my_simulations_")
+        self._files: Dict[str, str] = {}
+        self._count = 0
+
+    def close(self) -> None:
+        """Remove the mesh files."""
+        self._scratch.cleanup()
+
+    def compounds(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
+                  static: bool) -> List[int]:
+        """Shapes of a link as PyBullet shape numbers: one, or several for a large static link.
+
+        Args:
+            collisions: the link's, poses in the link frame.
+            meshes: loaded meshes by `mesh_key`.
+            frame: the link frame seen from the frame the body is built in.
+            static: static meshes collide as triangles, others as their convex hull.
+
+        Raises:
+            ShapeError: PyBullet refused.
+        """
+        solid = [c for c in collisions if not isinstance(c.geometry, Empty)]
+        if static or len(solid) <= MAX_SHAPES:
+            return [self._compound(solid[at:at + MAX_SHAPES], meshes, frame, static)
+                    for at in range(0, len(solid), MAX_SHAPES)]
+        # A moving link must be one body: curved shapes first, the rest as hulls of one file.
+        solid.sort(key=lambda c: isinstance(c.geometry, (Box, Mesh)))
+        kept, rest = solid[:MAX_SHAPES - 1], solid[MAX_SHAPES - 1:]
+        return [self._compound(kept, meshes, frame, static, self._hulls(rest, meshes, frame))]
+
+    def _compound(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
+                  static: bool, more: Optional[Dict[str, Any]] = None) -> int:
+        columns = [self._column(c, meshes, frame, static) for c in collisions]
+        if more is not None:
+            columns.append(more)
+        shape = pybullet.createCollisionShapeArray(
+            shapeTypes=[c["type"] for c in columns],
+            halfExtents=[c.get("half", (0, 0, 0)) for c in columns],
+            radii=[c.get("radius", 0.0) for c in columns],
+            lengths=[c.get("length", 0.0) for c in columns],
+            fileNames=[c.get("file", "") for c in columns],
+            meshScales=[(1.0, 1.0, 1.0)] * len(columns),
+            planeNormals=[(0.0, 0.0, 1.0)] * len(columns),
+            flags=[c.get("flags", 0) for c in columns],
+            collisionFramePositions=[c["pose"].position for c in columns],
+            collisionFrameOrientations=[c["pose"].orientation for c in columns],
+        )
+        if shape < 0:
+            names = ", ".join(c.name for c in collisions)
+            raise ShapeError(f"the physics engine refused the collision shapes {names}")
+        return shape
+
+    def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
+                static: bool) -> Dict[str, Any]:
+        column = self._geometry(collision.geometry, meshes, static)
+        pose = compose(frame, collision.pose)
+        if isinstance(collision.geometry, Plane):
+            pose = Pose(pose.position, multiply(pose.orientation, _to_z(collision.geometry)))
+        column["pose"] = pose
+        return column
+
+    def _geometry(self, geometry: Geometry, meshes: MeshTable, static: bool) -> Dict[str, Any]:
+        if isinstance(geometry, Box):
+            return {"type": pybullet.GEOM_BOX, "half": tuple(s / 2.0 for s in geometry.size)}
+        if isinstance(geometry, Sphere):
+            return {"type": pybullet.GEOM_SPHERE, "radius": geometry.radius}
+        if isinstance(geometry, Cylinder):
+            return {"type": pybullet.GEOM_CYLINDER, "radius": geometry.radius,
+                    "length": geometry.length}
+        if isinstance(geometry, Plane):
+            return {"type": pybullet.GEOM_PLANE}
+        if isinstance(geometry, Mesh):
+            key = mesh_key(geometry)
+            if key not in meshes:
+                raise ShapeError(f"the mesh {geometry.uri} was not loaded")
+            flags = pybullet.GEOM_FORCE_CONCAVE_TRIMESH if static else 0
+            return {"type": pybullet.GEOM_MESH, "file": self._file(key, meshes[key]),
+                    "flags": flags}
+        raise ShapeError(f"no collision shape for {type(geometry).__name__}")
+
+    def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable,
+               frame: Pose) -> Dict[str, Any]:
+        """Several collisions as one file of convex parts, in the body's frame."""
+        self._count += 1
+        path = os.path.join(self._scratch.name, f"{self._count}.obj")
+        with open(path, "w", encoding="ascii") as stream:
+            first = 1
+            for collision in collisions:
+                points, triangles = _tessellated(collision, meshes)
+                pose = compose(frame, collision.pose)
+                moved = [transform(pose, (p[0], p[1], p[2])) for p in points.tolist()]
+                _write_part(stream, moved, triangles.tolist(), first)
+                first += len(moved)
+        return {"type": pybullet.GEOM_MESH, "file": path, "pose": IDENTITY}
+
+    def _file(self, key: str, mesh: MeshData) -> str:
+        """The mesh as a file: PyBullet takes compounds of meshes by file name only."""
+        if key not in self._files:
+            self._count += 1
+            path = os.path.join(self._scratch.name, f"{self._count}.obj")
+            _write_obj(path, np.asarray(mesh.vertices), np.asarray(mesh.triangles))
+            self._files[key] = path
+        return self._files[key]
+
+
+def _write_obj(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    with open(path, "w", encoding="ascii") as stream:
+        _write_part(stream, vertices.tolist(), triangles.tolist(), 1)
+
+
+def _write_part(stream: TextIO, vertices: Sequence[Sequence[float]],
+                triangles: Sequence[Sequence[int]], first: int) -> None:
+    """One OBJ object; `first` is the file-wide number of its first vertex."""
+    stream.write(f"o part{first}\n")
+    stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
+    stream.writelines(f"f {a + first} {b + first} {c + first}\n" for a, b, c in triangles)
+
+
+def _tessellated(collision: Collision, meshes: MeshTable) -> Tuple[np.ndarray, np.ndarray]:
+    """Points of a collision, and triangles that name them all (their hull is what counts)."""
+    geometry = collision.geometry
+    if isinstance(geometry, Mesh):
+        mesh = meshes[mesh_key(geometry)]
+        return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
+    if isinstance(geometry, Box):
+        points = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * geometry.size
+    elif isinstance(geometry, Cylinder):
+        turns = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
+        ring = np.stack([np.cos(turns), np.sin(turns)], axis=1) * geometry.radius
+        points = np.concatenate([np.c_[ring, np.full(32, z)] for z in
+                                 (-geometry.length / 2.0, geometry.length / 2.0)])
+    elif isinstance(geometry, Sphere):
+        steps = np.arange(128) + 0.5
+        polar, turn = np.arccos(1.0 - 2.0 * steps / 128), np.pi * (1.0 + 5.0**0.5) * steps
+        points = geometry.radius * np.stack(
+            [np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
+    else:
+        raise ShapeError(f"a moving link cannot have a {type(geometry).__name__.lower()} among "
+                         f"more than {MAX_SHAPES} collisions")
+    return points, np.array([(i, (i + 1) % len(points), (i + 2) % len(points))
+                             for i in range(len(points))])
+
+
+def _to_z(plane: Plane) -> "tuple[float, float, float, float]":
+    """The rotation that turns z into the plane's normal."""
+    n = np.asarray(plane.normal, dtype=float)
+    n = n / np.linalg.norm(n)
+    if n[2] < -1.0 + 1e-12:
+        return (1.0, 0.0, 0.0, 0.0)
+    q = np.array([-n[1], n[0], 0.0, 1.0 + n[2]])
+    q /= np.linalg.norm(q)
+    return (float(q[0]), float(q[1]), float(q[2]), float(q[3]))

@@ -1,0 +1,29 @@
+"""What PyBullet stores for a surface so that pairs come out as Gazebo's.
+
+PyBullet multiplies the coefficients of the two surfaces; Gazebo takes the smaller one. Stored as
+below, a pair of a static and a moving surface is exact when the static one has mu >= 1 and the
+larger mu (Gazebo's ground has 100), or when the moving one has mu 1 (the default); a pair of moving
+surfaces when one has mu 1 and the other mu <= 1. Other pairs get the product.
+"""
+from __future__ import annotations
+
+from ...description.model import Link
+from ...description.shapes import Surface
+
+NEVER_BOUNCES = 1e4
+"""A bounce threshold from here on (SDF's default is 100000 m/s) means no restitution."""
+
+
+def of_link(link: Link) -> Surface:
+    """The surface of a link: PyBullet knows one a link; the first collision's is taken."""
+    return link.collisions[0].surface if link.collisions else Surface()
+
+
+def friction(surface: Surface, static: bool) -> float:
+    """The lateral friction to store."""
+    return min(surface.mu, 1.0) if static else surface.mu
+
+
+def restitution(surface: Surface) -> float:
+    """The restitution to store: 0 unless the surface can reach its threshold."""
+    return surface.restitution if surface.bounce_threshold < NEVER_BOUNCES else 0.0

@@ -1,0 +1,269 @@
+"""Drives a backend: paces it against the wall clock, up to a horizon, commands between steps.
+
+The loop runs where the backend lives. With a rate it steps in real time, and late steps are made
+up; without one it steps in bursts. States are written to the ring after each step as long as that
+costs little, else for a bounded share of the time, and always before a reply.
+"""
+from __future__ import annotations
+
+import time
+import traceback
+from typing import List, Optional, Protocol, Tuple
+
+from .api import (
+    Advance,
+    Backend,
+    Batch,
+    Command,
+    Event,
+    Pause,
+    PhysicsSettings,
+    Ping,
+    Refused,
+    Reply,
+    Run,
+    SetClock,
+    SetPhysics,
+)
+from .ring import (
+    BELL,
+    DEMAND_NS,
+    HEARTBEAT,
+    LATEST,
+    STATUS,
+    STATUS_PAUSED,
+    STATUS_RUNNING,
+    STEP,
+    Clock,
+    RingWriter,
+    picoseconds,
+)
+
+_BURST_S = 0.0005        # bursts between two looks at the commands
+_MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
+_IDLE_S = 0.5            # heartbeat while paused
+_SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
+_SHARE_LATE = 0.03       # the same while late or unthrottled
+
+
+class Channel(Protocol):
+    """How commands arrive and replies leave."""
+
+    def receive(self, timeout: float) -> List[Tuple[int, Command]]:
+        """Commands with their numbers; waits up to `timeout` s for the first. Raises EOFError."""
+
+    def reply(self, number: int, reply: Reply) -> None:
+        """Answer a command."""
+
+    def event(self, event: Event) -> None:
+        """Report something."""
+
+    def bell(self) -> None:
+        """Wake whoever waits for the next step."""
+
+
+class Runner:
+    """The engine's loop."""
+
+    def __init__(self, backend: Backend, writer: RingWriter, channel: Channel) -> None:
+        self._backend = backend
+        self._writer = writer
+        self._words = writer.words
+        self._channel = channel
+        self._settings = PhysicsSettings()
+        self._clock = Clock(0, 0, picoseconds(self._settings.step_size))
+        self._step = 0
+        self._running = False
+        self._horizon = 0
+        self._reported_horizon = -1
+        self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
+        self._due = 0.0
+        self._burst = 1
+        self._allowance = 0.0
+        self._allowed_at = time.perf_counter()
+        self._demanded_at = 0.0
+        self._rung_at = 0.0
+        self._backend.configure(self._settings)
+        if not self._words[LATEST]:  # a second engine on the ring leaves the last states readable
+            self._write(force=True)
+
+    def run(self) -> None:
+        """Work until the other side hangs up."""
+        try:
+            while True:
+                self._words[HEARTBEAT] += 1
+                if self._advance is not None:
+                    self._serve(0.0)
+                    self._advance_burst()
+                elif not self._running or self._step >= self._horizon:
+                    self._report_horizon()
+                    self._serve(_IDLE_S)
+                elif self._settings.rate > 0.0:
+                    self._paced_step()
+                else:
+                    self._serve(0.0)
+                    if self._running:
+                        self._free_burst()
+        except EOFError:
+            return
+
+    # -- commands --------------------------------------------------------------------------------
+
+    def _serve(self, timeout: float) -> bool:
+        """Apply what has arrived; a snapshot that shows it precedes the replies."""
+        commands = self._channel.receive(timeout)
+        if not commands:
+            return False
+        answers = []
+        for number, command in commands:
+            try:
+                value = self._apply(number, command)
+                if not isinstance(command, Advance):
+                    answers.append((number, value, ""))
+            except Refused as refusal:
+                answers.append((number, None, str(refusal)))
+            except Exception as fault:  # a fault of the engine's own must not end the world
+                traceback.print_exc()
+                answers.append((number, None, f"the physics engine failed: {fault!r}"))
+        sequence = self._write(force=True)
+        for number, value, error in answers:
+            self._channel.reply(number, Reply(self._step, sequence, value, error))
+        self._report_events()
+        return True
+
+    def _apply(self, number: int, command: Command) -> object:
+        if isinstance(command, Batch):
+            return [self._apply(number, part) for part in command.commands]
+        if isinstance(command, Run):
+            if not self._running:
+                self._due = time.perf_counter()
+            self._running, self._horizon = True, command.horizon
+            return self._step
+        if isinstance(command, Pause):
+            self._running = False
+            return self._step
+        if isinstance(command, Advance):
+            if self._advance is not None:
+                raise Refused("another advance is under way")
+            self._advance = (number, self._step + max(0, command.steps))
+            return None
+        if isinstance(command, SetPhysics):
+            self._configure(command.settings)
+            return None
+        if isinstance(command, SetClock):
+            self._step = command.step
+            self._clock = Clock(command.step, command.sim_ns,
+                                picoseconds(self._settings.step_size))
+            return None
+        if isinstance(command, Ping):
+            return None
+        return self._backend.apply(command)
+
+    def _configure(self, settings: PhysicsSettings) -> None:
+        if not 0.0 < settings.step_size <= 10.0:
+            raise Refused(f"the step size {settings.step_size} s is not in 0 to 10 s")
+        if settings.step_size != self._settings.step_size:
+            now = self._clock.sim_ns(self._step)
+            self._clock = Clock(self._step, now, picoseconds(settings.step_size))
+        if settings.rate != self._settings.rate:
+            self._due = time.perf_counter()
+        self._settings = settings
+        self._backend.configure(settings)
+
+    # -- stepping --------------------------------------------------------------------------------
+
+    def _paced_step(self) -> None:
+        now = time.perf_counter()
+        wait = self._due - now
+        if wait > 0.0:
+            if self._serve(wait):
+                return
+            now = time.perf_counter()
+            if self._due > now:
+                return
+        elif self._serve(0.0) and not self._running:
+            return
+        self._backend.step(self._step, 1)
+        self._step += 1
+        self._words[STATUS] = STATUS_RUNNING
+        self._due = max(self._due + 1.0 / self._settings.rate, now - _MAX_DEBT_S)
+        late = self._due < time.perf_counter()
+        self._after_steps(_SHARE_LATE if late else _SHARE_ON_TIME)
+
+    def _free_burst(self) -> None:
+        count = min(self._burst, self._horizon - self._step)
+        self._burst_of(count)
+        self._after_steps(_SHARE_LATE)
+
+    def _advance_burst(self) -> None:
+        if self._advance is None:
+            return
+        number, last = self._advance
+        count = min(self._burst, last - self._step)
+        if count > 0:
+            self._burst_of(count)
+        if self._step < last:
+            self._after_steps(_SHARE_LATE)
+            return
+        self._advance = None
+        sequence = self._write(force=True)
+        self._channel.reply(number, Reply(self._step, sequence, self._step))
+        self._report_events()
+
+    def _burst_of(self, count: int) -> None:
+        started = time.perf_counter()
+        self._backend.step(self._step, count)
+        self._step += count
+        self._words[STATUS] = STATUS_RUNNING
+        took = time.perf_counter() - started
+        if count == self._burst:
+            fit = int(count * _BURST_S / max(took, 1e-9))
+            self._burst = max(1, min(fit, self._burst * 2, 1000))
+
+    # -- snapshots -------------------------------------------------------------------------------
+
+    def _after_steps(self, share: float) -> None:
+        """Publish the step; read states out when demanded or when the share of time allows it."""
+        self._words[STEP] = self._step
+        now = time.perf_counter()
+        self._allowance = min(self._allowance + (now - self._allowed_at) * share, 0.01)
+        self._allowed_at = now
+        demand = self._words[DEMAND_NS]
+        demanded = demand > 0 and (now - self._demanded_at) * 1e9 >= demand - 2e5
+        if demanded or self._allowance > 0.0:
+            if demanded:
+                self._demanded_at = now
+            self._write()
+            self._allowance -= time.perf_counter() - now
+            self._report_events()
+        if self._words[BELL] and now - self._rung_at >= 0.0005:
+            self._rung_at = now
+            self._channel.bell()
+
+    def _write(self, force: bool = False) -> int:
+        """Write a snapshot if anything may have changed; returns the newest one's sequence."""
+        self._words[STATUS] = STATUS_RUNNING if self._moving else STATUS_PAUSED
+        changed = self._backend.read()
+        if not (changed or force):
+            return self._words[LATEST]
+        links, joints = self._backend.tables()
+        sequence = self._writer.write(self._step, self._clock, links, joints)
+        if force and self._words[BELL]:
+            self._channel.bell()
+        return sequence
+
+    @property
+    def _moving(self) -> bool:
+        return self._advance is not None or self._running
+
+    def _report_horizon(self) -> None:
+        """Say once that the world stands at the horizon."""
+        if not self._running or self._reported_horizon == self._step:
+            return
+        self._reported_horizon = self._step
+        self._write(force=True)
+        self._channel.event(Event("horizon", "", step=self._step))
+
+    def _report_events(self) -> None:
+        for event in self._backend.events():
+            self._channel.event(event)

@@ -1,0 +1,235 @@
+"""Who is in the world: models by name, their rows in the ring, and what a name means."""
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Tuple
+
+from ..description.model import Model
+from ..description.shapes import MeshTable
+from ..engine.ring import Snapshot
+from ..engine.rows import moving_joints
+from ..errors import CommandError
+from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
+
+WORLD_FRAMES = ("", "world", "map", "/map")
+"""The names of the world frame (Gazebo behaviour)."""
+
+
+class UnknownEntity(CommandError):
+    """No model, link or joint of that name."""
+
+
+class UnknownFrame(CommandError):
+    """A reference frame that is neither the world nor an entity."""
+
+
+@dataclass
+class Entity:
+    """A model in the world.
+
+    Attributes:
+        model_id: its number in the engine.
+        model: flattened description.
+        initial_pose: world pose of the model frame that a reset restores.
+        first_link_row, first_joint_row: where its rows begin.
+        meshes: what its collisions need, kept for a restart of the engine.
+        pose: world pose of a model without links; others are where their canonical link is.
+    """
+
+    model_id: int
+    model: Model
+    initial_pose: Pose
+    first_link_row: int
+    first_joint_row: int
+    meshes: MeshTable = field(default_factory=dict)
+    pose: Pose = IDENTITY
+
+    def __post_init__(self) -> None:
+        self.pose = self.initial_pose
+        self.link_names = [link.name for link in self.model.links]
+        self.joint_names = [joint.name for joint in moving_joints(self.model)]
+        self.canonical = 0
+        if self.model.canonical_link in self.link_names:
+            self.canonical = self.link_names.index(self.model.canonical_link)
+        self.link_from_model = IDENTITY
+        if self.model.links:
+            self.link_from_model = inverse(self.model.links[self.canonical].pose)
+
+    @property
+    def canonical_row(self) -> int:
+        """Row of the link that carries the model frame."""
+        return self.first_link_row + self.canonical
+
+    def state(self, snapshot: Snapshot) -> Tuple[Pose, Twist]:
+        """World pose of the model frame, twist of the canonical link at its origin."""
+        if not self.link_names:
+            return self.pose, STILL
+        pose, twist = snapshot.link(self.canonical_row)
+        if self.link_from_model is not IDENTITY and self.link_from_model != IDENTITY:
+            pose = compose(pose, self.link_from_model)
+        return pose, twist
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """What a reference name means: a link's row and an offset, or a fixed pose (row -1)."""
+
+    row: int
+    offset: Pose = IDENTITY
+
+    def state(self, snapshot: Snapshot) -> Tuple[Pose, Twist]:
+        """World pose and twist of the frame."""
+        if self.row < 0:
+            return self.offset, STILL
+        pose, twist = snapshot.link(self.row)
+        return compose(pose, self.offset), twist
+
+
+class Rows:
+    """Hands out contiguous rows of a table, first fit."""
+
+    def __init__(self, size: int) -> None:
+        self._free: List[Tuple[int, int]] = [(0, size)]
+
+    def take(self, count: int) -> Optional[int]:
+        """The first of `count` free rows, or None."""
+        if count == 0:
+            return 0
+        for n, (start, length) in enumerate(self._free):
+            if length >= count:
+                rest = (start + count, length - count)
+                self._free[n:n + 1] = [rest] if rest[1] else []
+                return start
+        return None
+
+    def give(self, start: int, count: int) -> None:
+        """Free rows again."""
+        if count == 0:
+            return
+        self._free.append((start, count))
+        self._free.sort()
+        merged: List[Tuple[int, int]] = []
+        for at, length in self._free:
+            if merged and merged[-1][0] + merged[-1][1] == at:
+                merged[-1] = (merged[-1][0], merged[-1][1] + length)
+            else:
+                merged.append((at, length))
+        self._free = merged
+
+
+class Registry:
+    """The entities in the order in which they came. Not thread safe: its owner locks."""
+
+    def __init__(self) -> None:
+        self._entities: Dict[str, Entity] = {}
+        self._plain_links: Dict[str, List[Tuple[Entity, int]]] = {}
+        self.revision = 0
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._entities
+
+    def names(self) -> List[str]:
+        """Model names, in order."""
+        return list(self._entities)
+
+    def entities(self) -> List[Entity]:
+        """All entities, in order."""
+        return list(self._entities.values())
+
+    def add(self, entity: Entity) -> None:
+        """A model has come; it goes last, also when it replaces one of its name."""
+        if entity.model.name in self._entities:
+            self.remove(entity.model.name)
+        self._entities[entity.model.name] = entity
+        for index, link in enumerate(entity.link_names):
+            self._plain_links.setdefault(link, []).append((entity, index))
+        self.revision += 1
+
+    def remove(self, name: str) -> Entity:
+        """A model has gone."""
+        entity = self._entities.pop(name)
+        for link in entity.link_names:
+            left = [pair for pair in self._plain_links[link] if pair[0] is not entity]
+            if left:
+                self._plain_links[link] = left
+            else:
+                del self._plain_links[link]
+        self.revision += 1
+        return entity
+
+    def model(self, name: str) -> Entity:
+        """The entity of a model name. Raises UnknownEntity."""
+        found = self._entities.get(name)
+        if found is None:
+            raise UnknownEntity(f"there is no model '{name}'" + self._nearest(name))
+        return found
+
+    def link(self, name: str) -> Tuple[Entity, int]:
+        """A link by `model::link` or by its plain name (the first in the world).
+
+        Raises UnknownEntity.
+        """
+        found = self._scoped_link(name) or self._plain_link(name)
+        if found is None:
+            raise UnknownEntity(f"there is no link '{name}'" + self._nearest(name))
+        return found
+
+    def joint_row(self, name: str) -> int:
+        """The row of a movable joint by plain or scoped name. Raises UnknownEntity."""
+        for entity in self._entities.values():
+            plain = name
+            if name.startswith(entity.model.name + "::"):
+                plain = name[len(entity.model.name) + 2:]
+            if plain in entity.joint_names:
+                return entity.first_joint_row + entity.joint_names.index(plain)
+        raise UnknownEntity(f"there is no movable joint '{name}'")
+
+    def frame(self, name: str) -> Optional[Anchor]:
+        """What a reference frame name means; None for the world frame.
+
+        Entities are searched first (models before links before collisions), then the literals.
+        Raises UnknownFrame.
+        """
+        entity = self._entities.get(name)
+        if entity is not None:
+            if not entity.link_names:
+                return Anchor(-1, entity.pose)
+            return Anchor(entity.canonical_row, entity.link_from_model)
+        link = self._scoped_link(name) or self._plain_link(name)
+        if link is not None:
+            return Anchor(link[0].first_link_row + link[1])
+        collision = self._collision(name)
+        if collision is not None:
+            return collision
+        if name in WORLD_FRAMES:
+            return None
+        raise UnknownFrame(f"there is no model, link or frame '{name}'" + self._nearest(name))
+
+    def _scoped_link(self, name: str) -> Optional[Tuple[Entity, int]]:
+        at = name.find("::")
+        while at > 0:
+            entity = self._entities.get(name[:at])
+            if entity is not None and name[at + 2:] in entity.link_names:
+                return entity, entity.link_names.index(name[at + 2:])
+            at = name.find("::", at + 2)
+        return None
+
+    def _plain_link(self, name: str) -> Optional[Tuple[Entity, int]]:
+        found = self._plain_links.get(name)
+        return found[0] if found else None
+
+    def _collision(self, name: str) -> Optional[Anchor]:
+        head, _, last = name.rpartition("::")
+        link = self._scoped_link(head) if head else None
+        if link is None:
+            return None
+        entity, index = link
+        for collision in entity.model.links[index].collisions:
+            if collision.name == last:
+                return Anchor(entity.first_link_row + index, collision.pose)
+        return None
+
+    def _nearest(self, name: str) -> str:
+        near = difflib.get_close_matches(name, self._entities, n=3)
+        return f"; did you mean {' or '.join(near)}?" if near else ""

@@ -1,0 +1,163 @@
+"""Keeps an engine alive: restarts it after a death and has the world put back.
+
+A death costs one command at most, the first that had no answer; the others are sent again. All
+engines are started from the supervisor's own thread, because the kernel ends a child with the
+thread that started it.
+"""
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from typing import Callable, List, Optional, Tuple
+
+from ..engine.api import Command, Engine, EngineGone, Reply
+from ..engine.ring import HEARTBEAT
+from ..errors import CommandError, EngineLost, Issue, error
+
+_COMMAND_S = 120.0    # after this a command counts as lost (a heavy mesh may take a while)
+_STALL_S = 30.0       # an engine that shows no heartbeat for so long is killed
+_RAPID_S = 10.0       # this many seconds, so many deaths: the world itself kills the engine
+_RAPID_DEATHS = 3
+
+
+class Supervisor:
+    """The only one who talks to the engine.
+
+    Args:
+        engine_factory: makes the engine; called once, in the supervisor's thread.
+        restore: called in that thread after each restart with a submit function; puts the world
+            back. With `paused` True it must leave it paused.
+        log: who is told of deaths.
+    """
+
+    def __init__(self, engine_factory: Callable[[], Engine],
+                 restore: Callable[["Callable[[Command], Reply]", bool], None],
+                 log: Callable[[Issue], None]) -> None:
+        self._restore = restore
+        self._log = log
+        self._ready = threading.Event()
+        self._closing = False
+        self._deaths: "queue.Queue[Optional[Tuple[str, List[Command]]]]" = queue.Queue()
+        self._killers: List[Tuple[Command, str]] = []
+        self._recent: List[float] = []
+        self._failure: Optional[str] = None
+        self._engine: Optional[Engine] = None
+        self._made = threading.Event()
+        self._factory = engine_factory
+        self._thread = threading.Thread(target=self._watch, name="engine supervisor", daemon=True)
+        self._thread.start()
+
+    @property
+    def engine(self) -> Engine:
+        """The engine; waits until it has been made."""
+        self._made.wait()
+        if self._engine is None:
+            raise CommandError(self._failure or "the physics engine could not be started")
+        return self._engine
+
+    def call(self, command: Command) -> Reply:
+        """Have a command carried out and wait for its answer.
+
+        Raises:
+            CommandError: refused, or no engine can be had.
+            EngineLost: the engine died over it.
+        """
+        while True:
+            engine = self.engine
+            if not self._ready.wait(_COMMAND_S):
+                raise CommandError("the physics engine has not come back")
+            if self._failure:
+                raise CommandError(self._failure)
+            try:
+                reply = engine.submit(command).result(_COMMAND_S)
+            except EngineGone as gone:
+                self._await_restart(command, str(gone))
+                continue
+            if reply.error:
+                raise CommandError(reply.error)
+            return reply
+
+    def close(self) -> None:
+        """End the engine and the thread."""
+        self._closing = True
+        self._ready.set()
+        self._deaths.put(None)
+        if self._thread is not threading.current_thread():
+            self._thread.join(10.0)
+
+    def _await_restart(self, command: Command, reason: str) -> None:
+        if self._closing:
+            raise CommandError("the simulator is ending")
+        for killer, why in list(self._killers):
+            if killer is command:
+                self._killers.remove((killer, why))
+                self._ready.wait(_COMMAND_S)
+                raise EngineLost(f"{why} over this request; the world was put back as it was "
+                                 "before")
+        time.sleep(0.005)  # the supervisor clears `ready` a moment after the future fails
+
+    # -- the supervisor's thread -----------------------------------------------------------------
+
+    def _watch(self) -> None:
+        try:
+            self._engine = self._factory()
+            self._engine.on_death(self._on_death)
+            self._ready.set()
+        except OSError as fault:
+            self._failure = f"the physics engine could not be started: {fault}"
+        self._made.set()
+        beat, since = -1, time.monotonic()
+        while self._engine is not None:
+            try:
+                death = self._deaths.get(timeout=2.0)
+            except queue.Empty:
+                now = self._engine.ring.words[HEARTBEAT]
+                if now != beat or not self._ready.is_set():
+                    beat, since = now, time.monotonic()
+                elif time.monotonic() - since > _STALL_S:
+                    self._log(error("engine-stalled", "the physics engine has shown no sign of "
+                                    f"life for {_STALL_S:.0f} s and is started anew"))
+                    self._engine.kill()
+                continue
+            if death is None or self._closing:
+                break
+            self._revive(death[0])
+        if self._engine is not None:
+            self._engine.close()
+
+    def _on_death(self, reason: str, unanswered: List[Command]) -> None:
+        """Called from the engine's reader thread, before the futures fail."""
+        if self._closing:
+            return
+        self._ready.clear()
+        if unanswered:
+            self._killers.append((unanswered[0], reason))
+        self._deaths.put((reason, unanswered))
+
+    def _revive(self, reason: str) -> None:
+        now = time.monotonic()
+        self._recent = [at for at in self._recent if now - at < _RAPID_S] + [now]
+        paused = len(self._recent) >= _RAPID_DEATHS
+        if len(self._recent) > 3 * _RAPID_DEATHS:
+            self._failure = f"{reason} again and again; the simulator must be started anew"
+            self._log(error("engine-lost", self._failure))
+            self._ready.set()
+            return
+        self._log(error("engine-died", f"{reason}; a new one continues from the last snapshot"
+                        + (", paused, because this is happening again and again" if paused
+                           else "")))
+        assert self._engine is not None
+        try:
+            self._engine.restart()
+            self._restore(self._submit, paused)
+        except EngineGone:
+            return  # it died again: that death is in the queue
+        except (OSError, CommandError) as fault:
+            self._failure = f"the physics engine could not be restored: {fault}"
+            self._log(error("engine-lost", self._failure))
+        self._ready.set()
+
+    def _submit(self, command: Command) -> Reply:
+        assert self._engine is not None
+        return self._engine.submit(command).result(_COMMAND_S)
