@@ -1,0 +1,10 @@
+"""Tells catkin where the Python package is; not to be called by hand."""
+from setuptools import find_packages, setup
+
+from catkin_pkg.python_setup import generate_distutils_setup
+
+setup(**generate_distutils_setup(
+    packages=find_packages("src"),
+    package_dir={"": "src"},
+    package_data={"my_simulations": ["py.typed"]},
+))
