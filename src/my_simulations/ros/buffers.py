@@ -50,12 +50,23 @@ class StatesBuffer:
     """The bytes of a ModelStates or LinkStates message, packed again only as far as needed."""
 
     def __init__(self) -> None:
-        self._names: Sequence[str] = ()
-        self._packed_names = packed_strings(())
+        self._revision = self._sequence = -1
+        self._names = self._packed = b""
 
-    def pack(self, names: Sequence[str], poses: Sequence[Pose], twists: Sequence[Twist]) -> bytes:
-        """The message of three parallel arrays."""
-        if names is not self._names and names != self._names:
-            self._packed_names = packed_strings(names)
-        self._names = names
-        return b"".join((self._packed_names, packed_poses(poses), packed_twists(twists)))
+    def pack(self, revision: int, sequence: int, names: Sequence[str], poses: Sequence[Pose],
+             twists: Sequence[Twist]) -> bytes:
+        """The message of three parallel arrays.
+
+        Args:
+            revision: changes when the names do.
+            sequence: changes when anything does.
+            names: one an entity.
+            poses: in the world.
+            twists: in world axes.
+        """
+        if revision != self._revision:
+            self._names = packed_strings(names)
+        if revision != self._revision or sequence != self._sequence:
+            self._packed = b"".join((self._names, packed_poses(poses), packed_twists(twists)))
+        self._revision, self._sequence = revision, sequence
+        return self._packed

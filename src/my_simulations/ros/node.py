@@ -28,6 +28,7 @@ class Node:
         self._subscribers: List[Any] = []
         self._publishers: Optional[Any] = None
         self._parameters = _private_parameters()
+        self._engine_pid = 0
 
     def advertise(self) -> None:
         """Offer topics, services and parameters; `/clock` first, since all else waits for it."""
@@ -42,6 +43,7 @@ class Node:
             self._advertise_api()
         rospy.set_param("~world_base_name", base_name(self._simulator.world.file))
         rospy.set_param("~my_simulations/version", __version__)
+        self.keep_up()
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
 
@@ -56,6 +58,13 @@ class Node:
                  ModelServices(self._simulator, self._resolver, log_issue))
         self._services = advertise(row for face in faces for row in face.endpoints())
         self._subscribers = states.subscribe()
+
+    def keep_up(self) -> None:
+        """Keep `~my_simulations/engine_pid` true; call it now and then."""
+        pid = self._simulator.engine_pid
+        if pid != self._engine_pid:
+            self._engine_pid = pid
+            rospy.set_param("~my_simulations/engine_pid", pid)
 
     def start_publishing(self) -> None:
         """Begin to publish `/clock` and the states."""

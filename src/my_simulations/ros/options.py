@@ -52,6 +52,7 @@ def parser(program: str = "gzserver") -> argparse.ArgumentParser:
     for ignored in (("-g", "--gui-client-plugin"), ("-o", "--profile")):
         made.add_argument(*ignored, metavar="X", action="append", default=[],
                           help=argparse.SUPPRESS)
+    made.add_argument("-r", "--record", action="store_true", help=argparse.SUPPRESS)
     made.add_argument("--lockstep", "--minimal_comms", dest="lockstep", action="store_true",
                       help=argparse.SUPPRESS)
     made.add_argument("--seed", type=int, help=argparse.SUPPRESS)
@@ -87,6 +88,7 @@ def _notices(given: argparse.Namespace, reader: argparse.ArgumentParser) -> List
     idle: List[Optional[str]] = [
         "--profile" if given.profile else None,
         "--lockstep or --minimal_comms" if given.lockstep else None,
+        "--record" if given.record else None,
         "--seed" if given.seed is not None else None,
     ]
     named = [option for option in idle if option]

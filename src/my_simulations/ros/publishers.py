@@ -206,8 +206,7 @@ class Publishers:
         states = self._simulator.states()
         for channel in due:
             if channel is self._models:
-                channel.send(channel.buffer.pack(states.model_names, states.model_poses,
-                                                 states.model_twists))
+                arrays = (states.model_names, states.model_poses, states.model_twists)
             else:
-                channel.send(channel.buffer.pack(states.link_names, states.link_poses,
-                                                 states.link_twists))
+                arrays = (states.link_names, states.link_poses, states.link_twists)
+            channel.send(channel.buffer.pack(states.revision, states.sequence, *arrays))

@@ -10,9 +10,10 @@ import signal
 import threading
 from typing import Any, Callable, List, Optional, Sequence
 
-from ..engine.api import Engine
 from ..errors import InputError, Issue
 from . import master
+from .engines import EngineSupply
+from .lean import import_genpy
 from .options import ServerOptions
 from .profile import StartProfile
 
@@ -20,41 +21,11 @@ NODE = "gazebo"
 END_SECONDS = 3.0
 """Longest orderly end; a thread that is stuck in a network call does not keep the process."""
 
+UPKEEP_SECONDS = 0.5
+
 OK, FAILED = 0, 1
 
 Say = Callable[[str], None]
-
-
-class EngineSupply:
-    """Makes engines for the simulator; the first is on its way before it is asked for."""
-
-    def __init__(self, make: Callable[[], Engine]) -> None:
-        self._make = make
-        self._first: Optional[Engine] = make()
-        self._current: Optional[Engine] = self._first
-        self._hear: Callable[[int], None] = lambda pid: None
-
-    def __call__(self) -> Engine:
-        """The next engine; the simulator calls this again after a crash."""
-        engine, self._first = self._first or self._make(), None
-        self._current = engine
-        self._hear(self.pid)
-        return engine
-
-    @property
-    def pid(self) -> int:
-        """Process id of the newest engine; 0 for one without a process."""
-        return int(getattr(self._current, "pid", 0) or 0)
-
-    def on_new(self, hear: Callable[[int], None]) -> None:
-        """Tell `hear` the process id, now and for every engine to come."""
-        self._hear = hear
-        hear(self.pid)
-
-    def close(self) -> None:
-        """End an engine that nobody took."""
-        if self._first is not None:
-            self._first.close()
 
 
 class IssueLog:
@@ -113,17 +84,15 @@ class WorldLoader:
 
     def _load(self) -> None:
         world_file, engines, log = self._given
-        from ..formats.load import read_world
         from ..resources.resolver import Resolver
         from ..simulator.simulator import Simulator
+        from .loading import load_world
 
         self._profile.mark("readers imported")
         self.resolver = Resolver.from_environment()
-        world, issues = read_world(world_file, self.resolver)
-        for issue in issues:
-            log(issue)
+        world, meshes = load_world(world_file, self.resolver, log)
         self._profile.mark("world read")
-        simulator = Simulator(world, engine_factory=engines, paused=True, log=log)
+        simulator = Simulator(world, engine_factory=engines, paused=True, log=log, meshes=meshes)
         simulator.start()
         self.simulator = simulator
         self._profile.mark("world loaded into the engine")
@@ -138,10 +107,19 @@ class WorldLoader:
 class Server:
     """Runs the node until a signal, a shutdown request or a fault ends it."""
 
-    def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say) -> None:
-        """Args: the parsed options, the whole command line, and where words go before rospy."""
+    def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say,
+                 engines: EngineSupply, profile: StartProfile) -> None:
+        """Take over a start that has begun.
+
+        Args:
+            options: the parsed command line.
+            argv: the whole command line, for rospy.
+            say: where words go before rospy can log them.
+            engines: holds the engine that was started first of all.
+            profile: gets the phases.
+        """
         self._options, self._argv, self._say = options, list(argv), say
-        self._profile = StartProfile()
+        self._engines, self._profile = engines, profile
         self._ended = threading.Event()
         self._settled = threading.Event()
         self._log = IssueLog()
@@ -150,14 +128,11 @@ class Server:
 
     def run(self) -> int:
         """Exit status: 0 after a signal, 1 when the node could not start."""
-        from ..engine.process import ProcessEngine
-
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._on_signal)
-        self._profile.mark("command line read")
-        engines = EngineSupply(ProcessEngine)
-        self._profile.mark("engine process started")
-        loader = WorldLoader(self._options.world, engines, self._log, self._profile,
+        import_genpy()
+        self._profile.mark("messages imported")
+        loader = WorldLoader(self._options.world, self._engines, self._log, self._profile,
                              self._settled.set)
         node: Any = None
         try:
@@ -167,11 +142,12 @@ class Server:
             loader.wait()
             if loader.fault is not None:
                 return self._refuse(loader.fault)
-            node = self._start_node(loader, engines)
-            self._ended.wait()
+            node = self._start_node(loader)
+            while not self._ended.wait(UPKEEP_SECONDS):
+                node.keep_up()
             return OK
         finally:
-            self._end(node, loader, engines)
+            self._end(node, loader)
 
     def _on_signal(self, _number: int, _frame: Any) -> None:
         if self._ended.is_set():
@@ -210,13 +186,16 @@ class Server:
         import rospy
 
         self._profile.mark("rospy imported")
-        watcher = threading.Thread(target=self._break_off, daemon=True)
-        watcher.start()
+        threading.Thread(target=self._break_off, daemon=True).start()
+        faces = threading.Thread(target=_import_faces, daemon=True)
+        faces.start()
         level = rospy.DEBUG if self._options.verbose else rospy.INFO
         rospy.init_node(NODE, argv=self._argv, disable_rostime=True, disable_signals=True,
                         log_level=level)
         rospy.on_shutdown(self._ended.set)
         self._profile.mark("node registered")
+        faces.join()
+        self._profile.mark("interface imported")
 
     def _break_off(self) -> None:
         """Make `rospy.init_node` give up when the end comes while it waits for the master."""
@@ -226,7 +205,7 @@ class Server:
         if not rospy.core.is_initialized():
             rospy.signal_shutdown("ended")
 
-    def _start_node(self, loader: WorldLoader, engines: EngineSupply) -> Any:
+    def _start_node(self, loader: WorldLoader) -> Any:
         import rospy
 
         from .log import log_issue
@@ -234,9 +213,8 @@ class Server:
 
         self._log.open(log_issue)
         for notice in self._options.notices:
-            rospy.logwarn("%s", notice)
+            rospy.loginfo("%s", notice)
         node = Node(loader.simulator, loader.resolver)
-        self._profile.mark("interface imported")
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
@@ -244,7 +222,6 @@ class Server:
         if not self._options.paused:
             loader.simulator.unpause()
         self._profile.mark("running")
-        engines.on_new(lambda pid: rospy.set_param("~my_simulations/engine_pid", pid))
         for line in self._profile.lines():
             self._say(line)
         return node
@@ -255,7 +232,7 @@ class Server:
         fail([str(issue) for issue in fault.issues] or [str(fault)])
         return FAILED
 
-    def _end(self, node: Any, loader: WorldLoader, engines: EngineSupply) -> None:
+    def _end(self, node: Any, loader: WorldLoader) -> None:
         watchdog = threading.Timer(END_SECONDS, os._exit, (OK,))
         watchdog.daemon = True
         watchdog.start()
@@ -264,9 +241,14 @@ class Server:
             node.stop()
         if loader.simulator is not None:
             loader.simulator.close()
-        engines.close()
+        self._engines.close()
         import rospy
 
         if rospy.core.is_initialized():
             rospy.signal_shutdown("the server ends")
         watchdog.cancel()
+
+
+def _import_faces() -> None:
+    """Import the services and topics while `rospy.init_node` sleeps on its registration."""
+    from . import models, publishers, states, world  # noqa: F401

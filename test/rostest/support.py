@@ -1,0 +1,224 @@
+"""What the rostests share: waiting with deadlines, the API's proxies, small models."""
+from __future__ import annotations
+
+import math
+import os
+import signal
+import subprocess
+import threading
+import time
+
+import rospy
+import rostest
+from gazebo_msgs import srv
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from rosgraph_msgs.msg import Log
+from std_srvs.srv import Empty
+
+PACKAGE = "my_simulations"
+SECONDS = 20.0
+
+TYPES = {
+    "spawn_urdf_model": srv.SpawnModel,
+    "spawn_sdf_model": srv.SpawnModel,
+    "delete_model": srv.DeleteModel,
+    "get_world_properties": srv.GetWorldProperties,
+    "get_model_properties": srv.GetModelProperties,
+    "get_model_state": srv.GetModelState,
+    "set_model_state": srv.SetModelState,
+    "get_link_state": srv.GetLinkState,
+    "set_link_state": srv.SetLinkState,
+    "get_physics_properties": srv.GetPhysicsProperties,
+    "set_physics_properties": srv.SetPhysicsProperties,
+    "pause_physics": Empty,
+    "unpause_physics": Empty,
+    "reset_world": Empty,
+    "reset_simulation": Empty,
+}
+
+
+def wait_for(condition, what, seconds=SECONDS):
+    """The first true value of `condition()`; an AssertionError that says `what` is missing."""
+    until = time.monotonic() + seconds
+    while True:
+        found = condition()
+        if found:
+            return found
+        if time.monotonic() > until:
+            raise AssertionError(f"{what} did not happen within {seconds} s")
+        time.sleep(0.01)
+
+
+class Gazebo:
+    """The services of a running server, each as a method."""
+
+    def __init__(self, node="/gazebo", persistent=True):
+        self.node = node
+        for name, service_class in TYPES.items():
+            rospy.wait_for_service(f"{node}/{name}", timeout=SECONDS)
+            setattr(self, name, rospy.ServiceProxy(f"{node}/{name}", service_class,
+                                                   persistent=persistent))
+
+    def names(self):
+        """Models of the world, in its order."""
+        return list(self.get_world_properties().model_names)
+
+    def sim_time(self):
+        return self.get_world_properties().sim_time
+
+    def is_paused(self):
+        return self.get_physics_properties().pause
+
+    def z(self, model):
+        return self.get_model_state(model, "").pose.position.z
+
+    def spawn(self, name, xml=None, where=None, frame="", namespace=""):
+        return self.spawn_urdf_model(name, box() if xml is None else xml, namespace,
+                                     where or pose(), frame)
+
+    def place(self, model, where, twist=None, frame=""):
+        request = srv.SetModelStateRequest()
+        request.model_state.model_name = model
+        request.model_state.pose = where
+        request.model_state.twist = twist or Twist()
+        request.model_state.reference_frame = frame
+        return self.set_model_state(request)
+
+    def place_link(self, link, where, twist=None, frame=""):
+        request = srv.SetLinkStateRequest()
+        request.link_state.link_name = link
+        request.link_state.pose = where
+        request.link_state.twist = twist or Twist()
+        request.link_state.reference_frame = frame
+        return self.set_link_state(request)
+
+    def clear(self, keep=("ground_plane",)):
+        """Delete every model that a test has put in."""
+        for name in self.names():
+            if name not in keep:
+                self.delete_model(name)
+
+
+def pose(x=0.0, y=0.0, z=0.0, yaw=0.0):
+    """A geometry_msgs/Pose turned about z."""
+    return Pose(Point(x, y, z), Quaternion(0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
+
+
+def twist(linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0)):
+    return Twist(Vector3(*linear), Vector3(*angular))
+
+
+def numbers(where):
+    """Position and orientation as a flat tuple."""
+    p, q = where.position, where.orientation
+    return (p.x, p.y, p.z, q.x, q.y, q.z, q.w)
+
+
+def box(size=0.2, mass=1.0, link="body", extra="", attributes=""):
+    """A URDF box with the inertia of its size."""
+    i = mass * size * size / 6.0
+    geometry = f'<geometry><box size="{size} {size} {size}"/></geometry>'
+    return (f'<robot name="a_box" {attributes}><link name="{link}">'
+            f'<inertial><mass value="{mass}"/>'
+            f'<inertia ixx="{i}" ixy="0" ixz="0" iyy="{i}" iyz="0" izz="{i}"/></inertial>'
+            f"<collision>{geometry}</collision><visual>{geometry}</visual></link>{extra}</robot>")
+
+
+def static_box_sdf(own_pose="0 0 0 0 0 0"):
+    """An SDF document with a static box."""
+    return ('<sdf version="1.6"><model name="block"><static>true</static>'
+            f"<pose>{own_pose}</pose>"
+            '<link name="body"><collision name="c"><geometry><box><size>1 1 1</size></box>'
+            "</geometry></collision></link></model></sdf>")
+
+
+class Collected:
+    """Everything that arrives on a topic, with a lock."""
+
+    def __init__(self, topic, message_class, **options):
+        self._lock = threading.Lock()
+        self._messages = []
+        self._subscriber = rospy.Subscriber(topic, message_class, self._add, tcp_nodelay=True,
+                                            **options)
+
+    def _add(self, message):
+        with self._lock:
+            self._messages.append(message)
+
+    def all(self):
+        with self._lock:
+            return list(self._messages)
+
+    def clear(self):
+        with self._lock:
+            self._messages.clear()
+
+    def close(self):
+        self._subscriber.unregister()
+
+
+def heard_on_rosout(text, seconds=SECONDS):
+    """A function that waits until a log line holds `text`; call it after the fault."""
+    lines = Collected("/rosout_agg", Log)
+    wait_for(lambda: lines._subscriber.get_num_connections() > 0, "a connection to /rosout_agg")
+
+    def wait():
+        return wait_for(lambda: [line for line in lines.all() if text in line.msg],
+                        f"a log line with {text!r}", seconds)
+
+    return wait
+
+
+def executable(package, name):
+    """Path of a node's executable, as roslaunch would find it."""
+    import roslib.packages
+
+    found = roslib.packages.find_node(package, name)
+    assert found, f"{package} has no executable {name}"
+    return found[0]
+
+
+class Program:
+    """A program of ours, with its output; always ended."""
+
+    def __init__(self, words, **environment):
+        self.process = subprocess.Popen(
+            words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+            text=True, env={**os.environ, **environment})
+        self._text = []
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        for line in self.process.stdout:
+            self._text.append(line)
+
+    @property
+    def text(self):
+        return "".join(self._text)
+
+    def ended(self, seconds=SECONDS):
+        """Its exit status."""
+        status = self.process.wait(seconds)
+        self._reader.join(SECONDS)
+        return status
+
+    def interrupt(self):
+        self.process.send_signal(signal.SIGINT)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+
+
+def run(test_name):
+    """Run every test case of the module `test_name` as a rostest.
+
+    The node runs on wall time: the world may stand still.
+    """
+    rospy.init_node(test_name, disable_rostime=True)
+    rostest.rosrun(PACKAGE, test_name, test_name)
