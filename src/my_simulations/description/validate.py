@@ -1,0 +1,229 @@
+"""What makes a model impossible to simulate, whatever file it came from.
+
+The rules need no file: readers add file and line through `locate`, requests made in a program use
+`validate` as it is.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Set
+
+from ..errors import Issue, Severity
+from ..geometry import is_finite, norm, pose_is_finite
+from .model import WORLD, Inertial, Joint, JointAxis, Link, Model
+from .shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere
+
+JOINT_TYPES = (
+    "revolute", "prismatic", "fixed", "continuous", "revolute2", "universal", "ball", "screw",
+    "gearbox",
+)
+"""Joint types of the format (SDF spec, joint@type)."""
+
+_AXIS_FREE = ("fixed", "ball")
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault of a model; `subject` is the object of the description that has it."""
+
+    code: str
+    message: str
+    subject: Any
+    severity: Severity = Severity.ERROR
+    hint: str = ""
+
+
+Locate = Callable[[Any], Dict[str, Any]]
+"""From an object of the description to `file`, `line`, `xpath` of an `Issue`."""
+
+
+def validate(model: Model, locate: Optional[Locate] = None) -> List[Issue]:
+    """Every fault of the model; with one of severity ERROR it cannot be simulated as described."""
+    return [
+        Issue(fault.severity, fault.code, fault.message, hint=fault.hint,
+              **(locate(fault.subject) if locate else {}))
+        for fault in faults(model)
+    ]
+
+
+def faults(model: Model, static: bool = False) -> Iterator[Fault]:
+    """Every fault of the model and of those nested in it; `static` when an outer model is."""
+    static = static or model.static
+    if not model.name:
+        yield Fault("name-empty", "the model has no name", model)
+    if not pose_is_finite(model.pose):
+        yield Fault("pose-not-finite", f"the pose of model {model.name!r} is not finite", model)
+    yield from _repeated("link", model.links)
+    yield from _repeated("joint", model.joints)
+    yield from _repeated("model", model.models)
+    for link in model.links:
+        yield from link_faults(link, static)
+    known = set(link_names(model))
+    for joint in model.joints:
+        yield from joint_faults(joint, known)
+    if model.canonical_link and model.canonical_link not in known:
+        yield Fault("link-unknown", f"canonical_link names {model.canonical_link!r}, which is not"
+                    " a link of the model", model, Severity.WARNING)
+    for nested in model.models:
+        yield from faults(nested, static)
+
+
+def link_names(model: Model) -> Iterator[str]:
+    """Names of all links as seen from the model: `link`, `nested::link`."""
+    for link in model.links:
+        yield link.name
+    for nested in model.models:
+        for name in link_names(nested):
+            yield f"{nested.name}::{name}"
+
+
+def _repeated(kind: str, items: Sequence[Any]) -> Iterator[Fault]:
+    seen: Set[str] = set()
+    for item in items:
+        if not item.name:
+            # A nested model reports its own empty name.
+            if kind != "model":
+                yield Fault("name-empty", f"a {kind} has no name", item)
+        elif item.name in seen:
+            yield Fault("name-repeated", f"there are two {kind}s named {item.name!r}", item,
+                        hint="names are unique within a model")
+        seen.add(item.name)
+
+
+def link_faults(link: Link, static: bool) -> Iterator[Fault]:
+    """Faults of one link; mass and inertia count for links that can move only."""
+    if not pose_is_finite(link.pose):
+        yield Fault("pose-not-finite", f"the pose of link {link.name!r} is not finite", link)
+    if not static:
+        yield from inertial_faults(link.inertial, link.name)
+    for collision in link.collisions:
+        problem = geometry_fault(collision.geometry)
+        if not pose_is_finite(collision.pose):
+            problem = "the pose is not finite"
+        if problem:
+            yield Fault("bad-shape", f"collision {collision.name!r} of link {link.name!r}:"
+                        f" {problem}", collision)
+    for visual in link.visuals:
+        problem = geometry_fault(visual.geometry)
+        if problem:
+            yield Fault("bad-shape", f"visual {visual.name!r} of link {link.name!r}: {problem}",
+                        visual, Severity.WARNING)
+
+
+def inertial_faults(inertial: Inertial, link: str) -> Iterator[Fault]:
+    """Mass above zero; inertia finite and positive definite."""
+    tensor = (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz)
+    if not is_finite(inertial.mass, *tensor) or not pose_is_finite(inertial.pose):
+        yield Fault("inertia-not-finite", f"mass or inertia of link {link!r} is not finite",
+                    inertial)
+        return
+    if inertial.mass <= 0:
+        yield Fault("mass-not-positive", f"the mass of link {link!r} is {inertial.mass:g} kg; a"
+                    " link that can move needs more than 0", inertial,
+                    hint="give it a mass, or make the model static")
+    if not is_positive_definite(inertial):
+        yield Fault("inertia-not-positive", f"the inertia of link {link!r} is not positive"
+                    f" definite: {_tensor(inertial)}", inertial,
+                    hint="a body's principal moments of inertia are all above 0")
+    elif not _is_a_body(inertial):
+        yield Fault("inertia-impossible", f"no body has the inertia of link {link!r}: one principal"
+                    f" moment is larger than the sum of the others: {_tensor(inertial)}", inertial,
+                    Severity.WARNING)
+
+
+def _tensor(i: Inertial) -> str:
+    return (f"ixx {i.ixx:g}, iyy {i.iyy:g}, izz {i.izz:g}, ixy {i.ixy:g}, ixz {i.ixz:g},"
+            f" iyz {i.iyz:g}")
+
+
+def is_positive_definite(i: Inertial) -> bool:
+    """True when all leading minors of the tensor are above zero (Sylvester)."""
+    return i.ixx > 0 and i.ixx * i.iyy - i.ixy * i.ixy > 0 and _determinant(
+        i.ixx, i.iyy, i.izz, i.ixy, i.ixz, i.iyz) > 0
+
+
+def _determinant(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> float:
+    return (xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz))
+
+
+def _is_a_body(i: Inertial) -> bool:
+    """The triangle inequality of the principal moments: trace/2 E - I has no negative eigenvalue.
+
+    With a tolerance of 1e-4 of the trace, since files round their numbers.
+    """
+    half = (i.ixx + i.iyy + i.izz) / 2 * (1 + 1e-4)
+    xx, yy, zz = half - i.ixx, half - i.iyy, half - i.izz
+    return xx >= 0 and xx * yy - i.ixy ** 2 >= 0 and _determinant(
+        xx, yy, zz, -i.ixy, -i.ixz, -i.iyz) >= 0
+
+
+def geometry_fault(geometry: Geometry) -> str:
+    """What is wrong with a shape's numbers, as a phrase; "" when nothing is."""
+    if isinstance(geometry, Box):
+        return _not_positive("size of the box", geometry.size)
+    if isinstance(geometry, Sphere):
+        return _not_positive("radius of the sphere", (geometry.radius,))
+    if isinstance(geometry, Cylinder):
+        return (_not_positive("radius of the cylinder", (geometry.radius,))
+                or _not_positive("length of the cylinder", (geometry.length,)))
+    if isinstance(geometry, Plane):
+        if not is_finite(*geometry.normal) or norm(geometry.normal) < 1e-12:
+            return "the normal of the plane has no direction"
+    if isinstance(geometry, Mesh):
+        if not is_finite(*geometry.scale) or 0.0 in geometry.scale:
+            shown = " ".join(f"{value:g}" for value in geometry.scale)
+            return f"the scale of the mesh must not be 0, found {shown}"
+    return ""
+
+
+def has_zero_size(geometry: Geometry) -> bool:
+    """True for a shape that is merely flat or empty: some size 0, none negative or not finite."""
+    sizes: Sequence[float] = ()
+    if isinstance(geometry, Box):
+        sizes = geometry.size
+    elif isinstance(geometry, Sphere):
+        sizes = (geometry.radius,)
+    elif isinstance(geometry, Cylinder):
+        sizes = (geometry.radius, geometry.length)
+    return 0 in sizes and is_finite(*sizes) and min(sizes) >= 0
+
+
+def _not_positive(what: str, values: Sequence[float]) -> str:
+    if is_finite(*values) and min(values) > 0:
+        return ""
+    shown = " ".join(f"{value:g}" for value in values)
+    return f"the {what} must be above 0, found {shown}"
+
+
+def joint_faults(joint: Joint, links: Set[str]) -> Iterator[Fault]:
+    """Faults of one joint; `links` are the names it may connect, besides the world."""
+    name = joint.name
+    for role, link in (("parent", joint.parent), ("child", joint.child)):
+        if not link:
+            yield Fault("joint-link-missing", f"joint {name!r} has no {role} link", joint)
+        elif link not in links and (link != WORLD or role == "child"):
+            yield Fault("joint-link-unknown", f"joint {name!r} names {link!r} as its {role}, which"
+                        " is not a link of the model", joint)
+    if joint.parent and joint.parent == joint.child:
+        yield Fault("joint-link-repeated", f"joint {name!r} connects {joint.child!r} with itself",
+                    joint)
+    if not pose_is_finite(joint.pose):
+        yield Fault("pose-not-finite", f"the pose of joint {name!r} is not finite", joint)
+    if joint.axis is None and joint.type not in _AXIS_FREE:
+        yield Fault("joint-axis-missing", f"joint {name!r} of type {joint.type} has no axis", joint)
+    for axis in (joint.axis, joint.axis2):
+        if axis is not None and joint.type != "fixed":
+            yield from _axis_faults(axis, joint)
+
+
+def _axis_faults(axis: JointAxis, joint: Joint) -> Iterator[Fault]:
+    if not is_finite(*axis.xyz) or norm(axis.xyz) < 1e-12:
+        yield Fault("joint-axis-zero", f"the axis of joint {joint.name!r} has no direction", joint)
+    plain = (axis.damping, axis.friction, axis.spring_reference, axis.spring_stiffness)
+    limits = (axis.lower, axis.upper, axis.effort, axis.velocity)
+    if not is_finite(*plain) or any(limit != limit for limit in limits):
+        yield Fault("joint-not-finite", f"a number of joint {joint.name!r} is not finite", joint)
+    elif axis.lower > axis.upper:
+        yield Fault("joint-limits-reversed", f"the lower limit of joint {joint.name!r},"
+                    f" {axis.lower:g}, is above the upper one, {axis.upper:g}", joint,
+                    Severity.WARNING)

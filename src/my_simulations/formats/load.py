@@ -1,0 +1,137 @@
+"""Reading whole files and texts: worlds, models, lights, of SDF or URDF."""
+from __future__ import annotations
+
+import os
+from typing import Any, List, Tuple, Union
+
+from ..description.model import Model
+from ..description.world import Light, World
+from ..errors import InputError, Issue, error, errors_of
+from ..resources.resolver import Resolver
+from .sdf_include import read_include
+from .sdf_light import LightPlacement, read_light
+from .sdf_model import Placement, read_model
+from .sdf_versions import upgrade
+from .sdf_world import read_world_element
+from .source import Log, Source
+from .xmltext import parse
+
+Text = Union[str, bytes]
+Entity = Union[Model, Light]
+
+_SDF_ROOTS = ("sdf", "gazebo")  # `<gazebo version="1.x">` is SDF from before it had its name
+
+
+def read_world(path: str, resolver: Resolver) -> Tuple[World, List[Issue]]:
+    """The first world of a file, with every issue met on the way.
+
+    A model that cannot be used is left out whole, with its errors among the issues.
+
+    Raises:
+        InputError: nothing usable: no such file, cut-off XML, no `<world>`.
+    """
+    return read_world_text(_content(path), resolver, path)
+
+
+def read_world_text(text: Text, resolver: Resolver,
+                    file: str = "<world>") -> Tuple[World, List[Issue]]:
+    """As `read_world`, from text; `file` names it and, where it is a path, anchors relative URIs.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    source, root = _open(text, resolver, file)
+    if root.tag not in _SDF_ROOTS:
+        raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root)
+    element = root.find("world")
+    if element is None:
+        raise _unusable(source, "world-missing", "the file holds no <world>", root)
+    world = read_world_element(element, source)
+    if len(root.findall("world")) > 1:
+        source.warn("world-many", "the file holds several worlds; the first is used", root)
+    return world, source.log.issues
+
+
+def read_file(path: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
+    """The model or light of a file; see `read_entity`.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    return read_entity(_content(path), resolver, path)
+
+
+def read_entity(text: Text, resolver: Resolver,
+                file: str = "<model_xml>") -> Tuple[Entity, List[Issue]]:
+    """The first model or light of a document: `<robot>`, or `<sdf>` with one, also in a world.
+
+    With an issue of severity ERROR the result is not what the document describes.
+
+    Args:
+        text: the document; bytes in any declared encoding.
+        resolver: finds what it names.
+        file: for the issues; where it is a path, relative URIs start from its folder.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    source, root = _open(text, resolver, file)
+    if root.tag == "robot":
+        from .urdf import read_robot
+
+        entity: Entity = read_robot(root, source)
+    elif root.tag in _SDF_ROOTS:
+        entity = _first_entity(root, source)
+    else:
+        hint = "put it into <sdf version='1.7'>…</sdf>" if root.tag in ("model", "light") else ""
+        raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
+                        root, hint)
+    return entity, source.log.issues
+
+
+def _first_entity(root: Any, source: Source) -> Entity:
+    for child in root:
+        holders = child if child.tag == "world" else (child,)
+        for element in holders:
+            found: Any = None
+            if element.tag == "model":
+                found = read_model(element, source)
+            elif element.tag == "light":
+                found = read_light(element, source)
+            elif element.tag == "include":
+                found = read_include(element, source)
+                if found is None:
+                    raise InputError(source.log.issues)
+            if isinstance(found, Placement):
+                return found.model
+            if isinstance(found, LightPlacement):
+                return found.light
+    raise _unusable(source, "model-missing", "the document holds no model and no light", root)
+
+
+def _content(path: str) -> bytes:
+    try:
+        with open(path, "rb") as stream:
+            return stream.read()
+    except OSError as fault:
+        code = "file-not-found" if isinstance(fault, FileNotFoundError) else "file-unreadable"
+        raise InputError(
+            [error(code, f"cannot be read: {fault.strerror or fault}", file=path)]
+        ) from None
+
+
+def _open(text: Text, resolver: Resolver, file: str) -> Tuple[Source, Any]:
+    log = Log()
+    base_dir = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""
+    trail = (os.path.abspath(file),) if base_dir else ()
+    source = Source(file, base_dir, resolver, log, trail)
+    try:
+        root = parse(text, file, log)
+    except InputError as fault:
+        raise InputError([*fault.issues, *log.issues]) from None
+    return source, upgrade(root, source) if root.tag in _SDF_ROOTS else root
+
+
+def _unusable(source: Source, code: str, message: str, element: Any, hint: str = "") -> InputError:
+    issue = error(code, message, hint=hint, **source.where(element))
+    return InputError([issue, *errors_of(source.log.issues)])

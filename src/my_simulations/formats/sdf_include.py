@@ -1,0 +1,135 @@
+"""`<include>`: the model or light of another file, with changes."""
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from typing import Any, List, Optional, Union
+
+from ..description.world import Light
+from ..errors import InputError
+from ..resources.resolver import NotFound
+from .sdf_light import LightPlacement, read_light
+from .sdf_model import Changes, Placement, read_model, read_plugin, relative_to
+from .sdf_tables import INCLUDE
+from .sdf_versions import upgrade
+from .source import Level, Source
+from .tables import fill
+from .xmltext import parse
+
+_DEEPEST = 20
+_MOST = 20000
+
+Included = Union[Placement, LightPlacement]
+
+
+def read_include(element: Any, source: Source, static: bool = False) -> Optional[Included]:
+    """What an `<include>` brings; None, with an issue, where nothing usable comes.
+
+    Name, pose and static replace those of the included model; plugins are added. Source: SDF spec
+    1.7, include; a missing file leaves the include out, and the world loads (Gazebo behaviour).
+    """
+    probe = _Include()
+    found = fill(probe, element, INCLUDE, source, [])
+    if not probe.uri:
+        source.report(Level.ERROR, "include-uri-missing", "<include> has no <uri>; it is left out",
+                      element)
+        return None
+    changes = Changes(
+        probe.name or None, probe.pose, relative_to(found), probe.static,
+        [read_plugin(plugin) for plugin in found.get("plugin", ())],
+    )
+    try:
+        path = source.resolver.model_file(probe.uri, source.base_dir)
+    except NotFound as missing:
+        source.report(
+            Level.ERROR, "model-not-found", f"the included model {missing}", element,
+            hint="install it in ~/.gazebo/models or a folder of GAZEBO_MODEL_PATH; nothing is"
+                 " downloaded",
+        )
+        return None
+    return _read_file(path, element, source, changes, static, probe.uri)
+
+
+class _Include:
+    """The values of an `<include>`."""
+
+    def __init__(self) -> None:
+        self.uri = ""
+        self.name = ""
+        self.pose: Any = None
+        self.static: Optional[bool] = None
+
+
+def _read_file(path: str, element: Any, source: Source, changes: Changes, static: bool,
+               uri: str) -> Optional[Included]:
+    if path in source.trail or len(source.trail) >= _DEEPEST:
+        chain = " -> ".join(os.path.basename(os.path.dirname(p)) for p in (*source.trail, path))
+        source.report(Level.ERROR, "include-cycle", f"models include each other: {chain}", element)
+        return None
+    source.log.includes += 1
+    if source.log.includes > _MOST:
+        source.report(Level.ERROR, "include-many", f"more than {_MOST} includes; the rest is left"
+                      " out", element)
+        return None
+    inner = replace(source, file=path, base_dir=os.path.dirname(path),
+                    trail=(*source.trail, path))
+    root = _root(path, inner, element, source)
+    if root is None:
+        return None
+    if root.tag == "robot":
+        from .urdf import read_robot
+
+        model = read_robot(root, inner, changes)
+        model.uri = uri
+        return Placement(model, changes.relative_to)
+    for child in root:
+        if child.tag == "model":
+            placement = read_model(child, inner, changes, static)
+            placement.model.uri = uri
+            return placement
+        if child.tag == "light":
+            light = read_light(child, inner)
+            return _changed_light(light, changes)
+        if child.tag == "actor":
+            source.warn("actor-unsupported", f"{uri!r} is an actor, which is not simulated yet",
+                        element)
+            return None
+    source.report(Level.ERROR, "include-empty", f"{path} holds no model and no light", element)
+    return None
+
+
+def _changed_light(placement: LightPlacement, changes: Changes) -> LightPlacement:
+    light: Light = placement.light
+    if changes.name is not None:
+        light.name = changes.name
+    if changes.pose is not None:
+        light.pose = changes.pose
+        return LightPlacement(light, changes.relative_to)
+    return placement
+
+
+def _root(path: str, inner: Source, element: Any, source: Source) -> Optional[Any]:
+    if path in source.parsed:
+        return source.parsed[path]
+    root: Optional[Any] = None
+    try:
+        with open(path, "rb") as stream:
+            data = stream.read()
+        root = parse(data, path, source.log)
+        if root.tag in ("sdf", "gazebo"):
+            root = upgrade(root, inner)
+        elif root.tag != "robot":
+            source.report(Level.ERROR, "include-empty", f"{path} is neither SDF nor URDF, its root"
+                          f" is <{root.tag}>", element)
+            root = None
+    except OSError as fault:
+        source.report(Level.ERROR, "file-unreadable", f"{path} cannot be read:"
+                      f" {fault.strerror or fault}", element)
+    except InputError as fault:
+        for issue in fault.issues:
+            source.log.add(issue)
+    source.parsed[path] = root
+    return root
+
+
+__all__: List[str] = ["read_include", "Included"]

@@ -1,0 +1,135 @@
+"""SDF collisions and visuals: geometry, surface, material."""
+from __future__ import annotations
+
+import os
+from typing import Any, List, Optional, Sequence, Tuple
+
+from ..description.shapes import Collision, Empty, Geometry, Material, Mesh, Visual
+from ..description.validate import geometry_fault, has_zero_size
+from ..resources.resolver import NotFound
+from .sdf_tables import COLLISION, GEOMETRIES, KNOWN_GEOMETRIES, MATERIAL, VISUAL
+from .source import Level, Source
+from .tables import BAD, Found, closest, fill, to_xml
+
+
+def read_collision(
+    element: Any, source: Source, static: bool, kept: List[str]
+) -> Optional[Tuple[Collision, Found]]:
+    """A collision; None where it is left out: its XML is then in `kept`.
+
+    Source: SDF spec 1.7, link/collision.
+    """
+    collision = Collision(element.get("name", ""), Empty())
+    found = fill(collision, element, COLLISION, source, collision.extra)
+    geometry = _geometry(found.get("geometry", ()), element, source, True, static)
+    if geometry is None:
+        kept.append(to_xml(element))
+        return None
+    collision.geometry = geometry
+    return collision, found
+
+
+def read_visual(element: Any, source: Source, kept: List[str]) -> Optional[Tuple[Visual, Found]]:
+    """A visual; None where it is left out: its XML is then in `kept`.
+
+    Source: SDF spec 1.7, link/visual.
+    """
+    visual = Visual(element.get("name", ""), Empty())
+    found = fill(visual, element, VISUAL, source, visual.extra)
+    geometry = _geometry(found.get("geometry", ()), element, source, False, False)
+    if geometry is None:
+        kept.append(to_xml(element))
+        return None
+    visual.geometry = geometry
+    for child in found.get("material", ()):
+        visual.material = fill_material(child, source, visual.extra)
+    return visual, found
+
+
+def fill_material(element: Any, source: Source, extra: List[str]) -> Material:
+    """A `<material>`; what is not simulated of it goes to `extra`. Source: SDF spec, material."""
+    material = Material()
+    kept: List[str] = []
+    fill(material, element, MATERIAL, source, kept)
+    extra += [f"<material>{xml}</material>" for xml in kept]
+    material.script_uris = [_anchored(uri, source.base_dir) for uri in material.script_uris]
+    return material
+
+
+def _anchored(uri: str, base_dir: str) -> str:
+    """A relative URI made absolute while the folder it starts from is still known."""
+    if base_dir and "://" not in uri and not os.path.isabs(uri):
+        path = os.path.join(base_dir, uri)
+        return path if os.path.exists(path) else uri
+    return uri
+
+
+def _geometry(
+    elements: Sequence[Any], owner: Any, source: Source, collides: bool, static: bool
+) -> Optional[Geometry]:
+    level = Level.ERROR if collides else Level.WARNING
+    shapes = [child for element in elements for child in element if isinstance(child.tag, str)]
+    if not elements:
+        source.report(level, "geometry-missing", f"<{owner.tag}> has no <geometry>", owner)
+        return None
+    if not shapes:
+        return Empty()
+    shape = shapes[0]
+    if len(shapes) > 1 and shape.tag != "polyline":
+        source.warn("geometry-many", f"<geometry> holds several shapes; <{shape.tag}> is used",
+                    shapes[1])
+    table = GEOMETRIES.get(shape.tag)
+    if table is None:
+        unknown_shape(shape, owner.tag, level, source, list(GEOMETRIES), KNOWN_GEOMETRIES)
+        return None
+    geometry: Geometry = table.of()
+    extra: List[str] = []
+    if BAD in fill(geometry, shape, table, source, extra, level):
+        return None
+    return checked(geometry, shape, owner.tag, source, static)
+
+
+def unknown_shape(shape: Any, owner: str, level: Level, source: Source,
+                  known: Sequence[str], later: Sequence[str]) -> None:
+    """Report a shape that is left out: a warning for one of `later`, else of the given level."""
+    if shape.tag in later:
+        source.warn("geometry-unsupported",
+                    f"<{shape.tag}> is not simulated yet; this {owner} is left out", shape)
+    else:
+        source.report(level, "geometry-unknown",
+                      f"<{shape.tag}> is not a known shape; this {owner} is left out", shape,
+                      closest(shape.tag, [*known, *later]))
+
+
+def checked(geometry: Geometry, shape: Any, owner: str, source: Source,
+            static: bool) -> Optional[Geometry]:
+    """The shape where it can be used, its mesh found; None, with an issue, where it cannot."""
+    collides = owner == "collision"
+    if isinstance(geometry, Mesh) and not find_mesh(geometry, shape, source, collides):
+        return None
+    problem = geometry_fault(geometry)
+    if problem:
+        # Care-O-bot's static objects hold boxes of size zero; they are not there to be touched.
+        mild = not collides or (static and has_zero_size(geometry))
+        source.report(Level.WARNING if mild else Level.ERROR, "bad-shape",
+                      f"{problem}; this {owner} is left out", shape)
+        return None
+    return geometry
+
+
+def find_mesh(mesh: Mesh, element: Any, source: Source, collides: bool) -> bool:
+    """Set the mesh's path; False where its owner must be left out.
+
+    A visual whose file is missing stays, without a path, so that saving loses nothing.
+    """
+    try:
+        mesh.path = source.resolver.resolve(mesh.uri, source.base_dir)
+    except NotFound as missing:
+        owner = "collision" if collides else "visual"
+        source.report(
+            Level.ERROR if collides else Level.WARNING, "mesh-not-found",
+            f"the mesh of this {owner} {missing}", element,
+            hint="check the path, GAZEBO_MODEL_PATH and ROS_PACKAGE_PATH",
+        )
+        return not collides
+    return True

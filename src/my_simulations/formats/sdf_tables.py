@@ -1,0 +1,225 @@
+"""The elements of SDF 1.7 that are simulated, as tables. Source: the SDF specification, 1.2 to 1.7."""
+from __future__ import annotations
+
+from typing import Dict, Mapping
+
+from ..description.model import Inertial, Joint, JointAxis, Link, Model
+from ..description.shapes import (
+    Box,
+    Collision,
+    Cylinder,
+    Empty,
+    Material,
+    Mesh,
+    Plane,
+    Sphere,
+    Surface,
+    Visual,
+)
+from ..description.world import Light, Physics, World
+from .source import Level
+from .tables import Entry, Group, Kept, Part, Table, Value
+from .values import BOOL, COLOR, FLOAT, INT, LIMIT, POSE, SCALE, TEXT, VECTOR2, VECTOR3
+
+FATAL, ERROR, WARNING = Level.FATAL, Level.ERROR, Level.WARNING
+
+
+def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
+    return {name: Kept(since) for name in names}
+
+
+GEOMETRIES: Mapping[str, Table] = {
+    "box": Table("box", Box, {"size": Value("size", VECTOR3)}),
+    "sphere": Table("sphere", Sphere, {"radius": Value("radius", FLOAT)}),
+    "cylinder": Table("cylinder", Cylinder, {
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }),
+    "plane": Table("plane", Plane, {
+        "normal": Value("normal", VECTOR3), "size": Value("size", VECTOR2),
+    }),
+    "mesh": Table("mesh", Mesh, {
+        "uri": Value("uri", TEXT),
+        "filename": Value("uri", TEXT),  # SDF 1.0 to 1.2
+        "scale": Value("scale", SCALE),
+        "submesh": Group({"name": Value("submesh", TEXT), "center": Value("center", BOOL)}),
+        "convex_decomposition": Kept("1.11"),
+    }),
+    "empty": Table("empty", Empty),
+}
+
+KNOWN_GEOMETRIES = (
+    "heightmap", "image", "polyline", "capsule", "ellipsoid", "cone",
+)
+"""Shapes of the format that are kept as XML, not simulated."""
+
+_ODE_FRICTION = Group({
+    "mu": Value("mu", FLOAT), "mu2": Value("mu2", FLOAT), "fdir1": Value("fdir1", VECTOR3),
+    "slip1": Value("slip1", FLOAT), "slip2": Value("slip2", FLOAT),
+})
+_ODE_CONTACT = Group({
+    "kp": Value("kp", FLOAT), "kd": Value("kd", FLOAT), "max_vel": Value("max_vel", FLOAT),
+    "min_depth": Value("min_depth", FLOAT), **_kept("soft_cfm", "soft_erp"),
+})
+SURFACE_CHILDREN: Mapping[str, Entry] = {
+    "bounce": Group({
+        "restitution_coefficient": Value("restitution", FLOAT),
+        "threshold": Value("bounce_threshold", FLOAT),
+    }),
+    "friction": Group({"ode": _ODE_FRICTION, **_kept("bullet", "torsional")}),
+    "contact": Group({
+        "ode": _ODE_CONTACT,
+        "collide_without_contact": Value("collide_without_contact", BOOL),
+        "collide_bitmask": Value("collide_bitmask", INT),
+        **_kept("bullet", "collide_without_contact_bitmask", "category_bitmask", "poissons_ratio",
+                "elastic_modulus"),
+    }),
+    **_kept("soft_contact"),
+}
+SURFACE = Table("surface", Surface, SURFACE_CHILDREN)
+
+COLLISION = Table("collision", Collision, {
+    "pose": Value("pose", POSE, FATAL),
+    "geometry": Part(),
+    "surface": Group(SURFACE_CHILDREN, part="surface"),
+    "max_contacts": Value("max_contacts", INT),
+    "laser_retro": Value("laser_retro", FLOAT),
+    **_kept("frame", "density", "mass"),
+}, known_attributes=("name",))
+
+VISUAL = Table("visual", Visual, {
+    "pose": Value("pose", POSE),
+    "geometry": Part(),
+    "material": Part(),
+    "cast_shadows": Value("cast_shadows", BOOL),
+    "transparency": Value("transparency", FLOAT),
+    "laser_retro": Value("laser_retro", FLOAT),
+    **_kept("frame", "visibility_flags", "meta", "plugin"),
+}, level=WARNING, known_attributes=("name",))
+
+MATERIAL = Table("material", Material, {
+    "ambient": Value("ambient", COLOR), "diffuse": Value("diffuse", COLOR),
+    "specular": Value("specular", COLOR), "emissive": Value("emissive", COLOR),
+    "script": Group({
+        "uri": Value("script_uris", TEXT, repeated=True), "name": Value("script_name", TEXT),
+    }),
+    **_kept("shader", "lighting", "shininess", "double_sided", "pbr", "render_order"),
+}, level=WARNING)
+
+INERTIAL = Table("inertial", Inertial, {
+    "mass": Value("mass", FLOAT),
+    "pose": Value("pose", POSE),
+    "inertia": Group({
+        name: Value(name, FLOAT) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    }),
+    **_kept("frame", "density", "fluid_added_mass"),
+}, level=FATAL, known_attributes=("auto",))
+
+LINK = Table("link", Link, {
+    "pose": Value("pose", POSE, FATAL),
+    "inertial": Part(),
+    "collision": Part(),
+    "visual": Part(),
+    "gravity": Value("gravity", BOOL),
+    "kinematic": Value("kinematic", BOOL),
+    "self_collide": Value("self_collide", BOOL),
+    "velocity_decay": Group({
+        "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
+    }),
+    **_kept("frame", "sensor", "light", "projector", "audio_source", "audio_sink", "battery",
+            "enable_wind", "must_be_base_link", "particle_emitter", "plugin"),
+}, known_attributes=("name",))
+
+_AXIS_CHILDREN: Mapping[str, Entry] = {
+    "xyz": Part(),
+    "limit": Group({
+        "lower": Value("lower", LIMIT), "upper": Value("upper", LIMIT),
+        "effort": Value("effort", LIMIT), "velocity": Value("velocity", LIMIT),
+        **_kept("stiffness", "dissipation"),
+    }),
+    "dynamics": Group({
+        "damping": Value("damping", FLOAT), "friction": Value("friction", FLOAT),
+        "spring_reference": Value("spring_reference", FLOAT),
+        "spring_stiffness": Value("spring_stiffness", FLOAT),
+    }),
+    **_kept("initial_position", "mimic"),
+}
+AXIS = Table("axis", JointAxis, _AXIS_CHILDREN, level=FATAL)
+AXIS2 = Table("axis2", JointAxis, _AXIS_CHILDREN, level=FATAL)
+
+JOINT = Table("joint", Joint, {
+    "parent": Value("parent", TEXT), "child": Value("child", TEXT),
+    "pose": Value("pose", POSE, FATAL),
+    "axis": Part(),
+    "axis2": Part(),
+    **_kept("frame", "thread_pitch", "screw_thread_pitch", "gearbox_ratio",
+            "gearbox_reference_body", "physics", "sensor"),
+}, known_attributes=("name", "type"))
+
+FRAME = Table("frame", Link, {"pose": Value("pose", POSE, FATAL)},
+              known_attributes=("name", "attached_to"))
+
+MODEL = Table("model", Model, {
+    "pose": Value("pose", POSE, FATAL),
+    "static": Value("static", BOOL),
+    "self_collide": Value("self_collide", BOOL),
+    "allow_auto_disable": Value("allow_auto_disable", BOOL),
+    "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
+    "frame": Part("1.5"), "plugin": Part(),
+    **_kept("gripper", "enable_wind"),
+}, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
+   known_attributes=("name", "placement_frame"))
+
+INCLUDE = Table("include", Model, {
+    "uri": Value("uri", TEXT),
+    "name": Value("name", TEXT),
+    "pose": Value("pose", POSE, FATAL),
+    "static": Value("static", BOOL),
+    "plugin": Part(),
+    **_kept("placement_frame"),
+}, known_attributes=("merge",))
+
+LIGHT = Table("light", Light, {
+    "pose": Value("pose", POSE),
+    "cast_shadows": Value("cast_shadows", BOOL),
+    "diffuse": Value("diffuse", COLOR), "specular": Value("specular", COLOR),
+    "attenuation": Group({
+        name: Value(name, FLOAT) for name in ("range", "constant", "linear", "quadratic")
+    }),
+    "direction": Value("direction", VECTOR3),
+    "spot": Group({
+        "inner_angle": Value("inner_angle", FLOAT), "outer_angle": Value("outer_angle", FLOAT),
+        "falloff": Value("falloff", FLOAT),
+    }),
+    **_kept("frame", "intensity", "light_on", "visualize", "plugin"),
+}, attributes={"type": Value("type", TEXT)}, level=WARNING, known_attributes=("name",))
+
+PHYSICS = Table("physics", Physics, {
+    "max_step_size": Value("max_step_size", FLOAT),
+    "real_time_factor": Value("real_time_factor", FLOAT),
+    "real_time_update_rate": Value("real_time_update_rate", FLOAT),
+    "max_contacts": Value("max_contacts", INT, part="ode"),
+    "ode": Group({
+        "solver": Group({
+            "iters": Value("iters", INT), "precon_iters": Value("precon_iters", INT),
+            "sor": Value("sor", FLOAT),
+            **_kept("type", "min_step_size", "island_threads", "thread_position_correction",
+                    "use_dynamic_moi_rescaling", "friction_model"),
+        }),
+        "constraints": Group({
+            "cfm": Value("cfm", FLOAT), "erp": Value("erp", FLOAT),
+            "contact_max_correcting_vel": Value("contact_max_correcting_vel", FLOAT),
+            "contact_surface_layer": Value("contact_surface_layer", FLOAT),
+        }),
+        "max_contacts": Value("max_contacts", INT),
+        **_kept("provide_feedback"),
+    }, part="ode"),
+    **_kept("bullet", "simbody", "dart"),
+}, attributes={"name": Value("name", TEXT), "type": Value("type", TEXT)},
+   known_attributes=("default",))
+
+WORLD = Table("world", World, {
+    "gravity": Value("gravity", VECTOR3, since="1.6"),
+    "physics": Part(), "light": Part(), "model": Part(), "include": Part(), "plugin": Part(),
+    **_kept("audio", "wind", "magnetic_field", "atmosphere", "spherical_coordinates", "gui",
+            "scene", "actor", "road", "population", "frame", "state", "joint"),
+}, known_attributes=("name",))

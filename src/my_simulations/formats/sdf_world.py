@@ -1,0 +1,129 @@
+"""SDF worlds: models, lights, physics, and what is kept."""
+from __future__ import annotations
+
+from typing import Any, Callable, List, Optional, Sequence, Set
+
+from ..description.model import Model
+from ..description.world import Light, Physics, World
+from ..geometry import is_finite
+from .sdf_frames import FrameFault, FrameTree
+from .sdf_include import read_include
+from .sdf_light import LightPlacement, read_light
+from .sdf_model import Placement, read_model, read_plugin
+from .sdf_tables import PHYSICS, WORLD
+from .source import Level, Source
+from .tables import Found, fill, to_xml
+from .values import BOOL
+
+
+def read_world_element(element: Any, source: Source) -> World:
+    """A world; models with a fatal fault are left out whole. Source: SDF spec 1.7, world."""
+    world = World(element.get("name") or "default", file=source.file)
+    found = fill(world, element, WORLD, source, world.extra)
+    world.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+    _read_physics(found.get("physics", ()), world, source)
+    _Entities(world, source, found).read(element)
+    return world
+
+
+class _Entities:
+    """The models and lights of a world, in the order of the file."""
+
+    def __init__(self, world: World, source: Source, found: Found) -> None:
+        self._world = world
+        self._source = source
+        self._models: Set[str] = set()
+        self._lights: Set[str] = set()
+        self._frames = FrameTree("world")
+        self._waiting: List[Any] = []  # (model or light, name of its frame, element)
+
+    def read(self, element: Any) -> None:
+        readers: dict[str, Callable[[Any], Any]] = {
+            "model": lambda child: read_model(child, self._source),
+            "include": lambda child: read_include(child, self._source),
+            "light": lambda child: read_light(child, self._source),
+        }
+        for child in element:
+            reader = readers.get(child.tag)
+            if reader is None:
+                continue
+            before = self._source.log.fatal
+            entity = reader(child)
+            if entity is not None and self._source.log.fatal == before:
+                self._add(entity, child)
+        self._place()
+
+    def _add(self, entity: Any, element: Any) -> None:
+        if isinstance(entity, Placement):
+            model: Model = entity.model
+            if self._is_new(model.name, self._models, "model", element):
+                self._world.models.append(model)
+                self._frames.add(model.name, model.pose, entity.relative_to, element)
+                if entity.relative_to:
+                    self._waiting.append((model, element))
+        elif isinstance(entity, LightPlacement):
+            light: Light = entity.light
+            if self._is_new(light.name, self._lights, "light", element):
+                self._world.lights.append(light)
+                if entity.relative_to:
+                    self._frames.add(f"(light) {light.name}", light.pose, entity.relative_to,
+                                     element)
+                    self._waiting.append((light, element))
+
+    def _is_new(self, name: str, names: Set[str], kind: str, element: Any) -> bool:
+        if name in names:
+            self._source.warn("name-repeated", f"there are two {kind}s named {name!r}; the second"
+                              " is left out", element)
+            return False
+        names.add(name)
+        return True
+
+    def _place(self) -> None:
+        for entity, element in self._waiting:
+            name = entity.name if isinstance(entity, Model) else f"(light) {entity.name}"
+            try:
+                entity.pose = self._frames.pose(name)
+            except FrameFault as fault:
+                self._source.report(Level.ERROR, "frame-unknown", f"{entity.name!r} is left out:"
+                                    f" {fault}", element)
+                if isinstance(entity, Model):
+                    self._world.models.remove(entity)
+                else:
+                    self._world.lights.remove(entity)
+
+
+def _read_physics(elements: Sequence[Any], world: World, source: Source) -> None:
+    """The first preset with default="true", else the first; the others are kept."""
+    chosen = next((e for e in elements if _is_default(e)), elements[0] if elements else None)
+    for element in elements:
+        if element is not chosen:
+            world.extra.append(to_xml(element))
+    if chosen is None:
+        return
+    kept: List[str] = []
+    physics = Physics()
+    fill(physics, chosen, PHYSICS, source, kept)
+    world.extra += [f"<physics>{xml}</physics>" for xml in kept]
+    _check_physics(physics, chosen, source)
+    world.physics = physics
+
+
+def _is_default(element: Any) -> bool:
+    try:
+        return BOOL.parse(element.get("default") or "false")
+    except ValueError:
+        return False
+
+
+def _check_physics(physics: Physics, element: Any, source: Source) -> None:
+    usual = Physics()
+    positive: Optional[str] = None
+    if not is_finite(physics.max_step_size) or physics.max_step_size <= 0:
+        positive, physics.max_step_size = "max_step_size", usual.max_step_size
+    elif physics.real_time_update_rate < 0:
+        positive, physics.real_time_update_rate = "real_time_update_rate", 0.0
+    elif physics.ode.iters < 1:
+        positive, physics.ode.iters = "ode/solver/iters", usual.ode.iters
+    if positive:
+        source.report(Level.ERROR, "physics-range", f"{positive} is out of range; the default is"
+                      " used", element)

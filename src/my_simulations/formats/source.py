@@ -1,0 +1,82 @@
+"""The file being read: where its elements lie, what was found wrong, how its URIs resolve."""
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Optional, Set, Tuple
+
+from ..errors import Issue, Severity
+from ..resources.resolver import Resolver
+
+
+class Level(enum.Enum):
+    """What a broken value or element does to what it belongs to."""
+
+    FATAL = "fatal"      # an error; the whole model (or light) cannot be used
+    ERROR = "error"      # an error; only the element is left out
+    WARNING = "warning"  # Gazebo would go on as well
+
+
+class Log:
+    """Issues of one reading, without exact repeats (a model may be included a thousand times).
+
+    Attributes:
+        fatal: how many of them make the entity they are in unusable.
+        includes: how many includes were followed.
+    """
+
+    def __init__(self) -> None:
+        self.issues: List[Issue] = []
+        self.fatal = 0
+        self.includes = 0
+        self._seen: Set[Issue] = set()
+
+    def add(self, issue: Issue, fatal: bool = False) -> None:
+        """Note an issue; `fatal` ones are counted even when they repeat."""
+        self.fatal += fatal
+        if issue not in self._seen:
+            self._seen.add(issue)
+            self.issues.append(issue)
+
+
+@dataclass
+class Source:
+    """One file (or text) in the course of being read.
+
+    Attributes:
+        file: path, or a name for text from elsewhere.
+        base_dir: what relative URIs start from, "" where there is no file.
+        resolver: finds URIs.
+        log: shared by all files of one reading.
+        trail: files that are being included, outermost first.
+        parsed: roots of included files by path, shared by all files of one reading.
+    """
+
+    file: str
+    base_dir: str
+    resolver: Resolver
+    log: Log = field(default_factory=Log)
+    trail: Tuple[str, ...] = ()
+    parsed: Dict[str, Any] = field(default_factory=dict)
+
+    def where(self, element: Optional[Any]) -> Dict[str, Any]:
+        """`file`, `line` and `xpath` of an element, as arguments of an `Issue`."""
+        if element is None:
+            return {"file": self.file}
+        return {
+            "file": self.file,
+            "line": element.sourceline or 0,
+            "xpath": element.getroottree().getpath(element),
+        }
+
+    def report(
+        self, level: Level, code: str, message: str, element: Optional[Any] = None, hint: str = ""
+    ) -> None:
+        """Note a fault of `element`."""
+        severity = Severity.WARNING if level is Level.WARNING else Severity.ERROR
+        issue = Issue(severity, code, message, hint=hint, **self.where(element))
+        self.log.add(issue, fatal=level is Level.FATAL)
+
+    def warn(self, code: str, message: str, element: Optional[Any] = None, hint: str = "") -> None:
+        """Note a fault that Gazebo, too, would only mention."""
+        self.report(Level.WARNING, code, message, element, hint)

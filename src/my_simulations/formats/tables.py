@@ -1,0 +1,246 @@
+"""How an element of a file fills a dataclass, as data.
+
+A table maps the children and attributes of an element to the fields they fill. The same tables
+say which names are known, since which version of the format, and with which default: that of the
+dataclass, so that it is written down once.
+"""
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field, fields
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
+
+from .source import Level, Source
+from .values import UNSET, Kind
+
+
+@dataclass(frozen=True)
+class Value:
+    """A child element (its text) or an attribute that holds one value.
+
+    Attributes:
+        field: the field it fills; of a list field, one entry.
+        kind: how its text is read.
+        level: what a text that cannot be read means; None for the table's own.
+        since: the version of the format that introduced it.
+        repeated: may stand more than once.
+        part: a field with the dataclass that `field` belongs to, "" for the table's own.
+    """
+
+    field: str
+    kind: Kind
+    level: Optional[Level] = None
+    since: str = ""
+    repeated: bool = False
+    part: str = ""
+
+
+@dataclass(frozen=True)
+class Group:
+    """A child element whose own children and attributes fill the same object.
+
+    `part` names a field with a dataclass that they fill instead.
+    """
+
+    children: Mapping[str, "Entry"] = field(default_factory=dict)
+    attributes: Mapping[str, Value] = field(default_factory=dict)
+    part: str = ""
+    since: str = ""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A child element with a reader of its own."""
+
+    since: str = ""
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A child element that is known and kept as XML, not simulated."""
+
+    since: str = ""
+
+
+Entry = Union[Value, Group, Part, Kept]
+
+
+@dataclass(frozen=True)
+class Table:
+    """An element.
+
+    Attributes:
+        name: its tag.
+        of: the dataclass it fills.
+        attributes, children: by name.
+        level: what a value that cannot be read means, where the value itself does not say.
+        known_attributes: names read elsewhere.
+    """
+
+    name: str
+    of: Any
+    children: Mapping[str, Entry] = field(default_factory=dict)
+    attributes: Mapping[str, Value] = field(default_factory=dict)
+    level: Level = Level.ERROR
+    known_attributes: Tuple[str, ...] = ()
+
+    def values(self) -> Iterator[Tuple[str, Value, Any]]:
+        """(path, value, default) of every value; attributes as `@name`; for writers and tests."""
+        return _values(self.children, self.attributes, self.of, "")
+
+
+def _values(children: Mapping[str, Entry], attributes: Mapping[str, Value], of: Any,
+            path: str) -> Iterator[Tuple[str, Value, Any]]:
+    for name, value in attributes.items():
+        yield f"{path}@{name}", value, default_of(of, value.field)
+    for name, entry in children.items():
+        if isinstance(entry, Value):
+            owner = type(default_of(of, entry.part)) if entry.part else of
+            yield f"{path}{name}", entry, default_of(owner, entry.field)
+        elif isinstance(entry, Group):
+            inner = type(default_of(of, entry.part)) if entry.part else of
+            yield from _values(entry.children, entry.attributes, inner, f"{path}{name}/")
+
+
+def default_of(of: Any, name: str) -> Any:
+    """The default of a dataclass's field; None where it has none."""
+    for item in fields(of):
+        if item.name == name:
+            if callable(item.default_factory):
+                return item.default_factory()
+            return item.default if item.default.__class__.__name__ != "_MISSING_TYPE" else None
+    raise AttributeError(f"{of.__name__} has no field {name}")
+
+
+Found = Dict[str, List[Any]]
+"""Elements that have a reader of their own, by tag, in order."""
+
+BAD = "(bad)"
+"""In `Found`: the elements with a value that could not be read."""
+
+
+def fill(target: Any, element: Any, table: Table, source: Source, extra: List[str],
+         level: Optional[Level] = None) -> Found:
+    """Fill `target` from `element` by `table`.
+
+    Args:
+        target: an instance of the table's dataclass.
+        element: lxml element.
+        table: what is known about it.
+        source: where faults go.
+        extra: takes the XML of children that are kept or unknown.
+        level: what a value that cannot be read means, instead of what the table says.
+
+    Returns:
+        the children that have a reader of their own, poses with attributes, and under `BAD` the
+        elements whose value could not be read.
+    """
+    found: Found = {}
+    _Filler(table, source, extra, found, level).fill(
+        target, element, table.children, table.attributes, table.known_attributes, ()
+    )
+    return found
+
+
+def set_value(target: Any, value: Value, text: str, element: Any, name: str, source: Source,
+              level: Level) -> bool:
+    """Set one field from text; an empty or unset text changes nothing.
+
+    Args:
+        target: the object with the field.
+        value: which field, and how to read it.
+        text, element: what is read, and where it stands.
+        name: for the issue: the tag, or `@attribute`.
+        source: where faults go.
+        level: what a text that cannot be read means.
+
+    Returns:
+        False when the text could not be read; the field is as it was.
+    """
+    text = text.strip()
+    if not text or text == UNSET:
+        return True
+    try:
+        parsed = value.kind.parse(text)
+    except ValueError as fault:
+        shown = f"attribute {name[1:]} of <{element.tag}>" if name[0] == "@" else f"<{name}>"
+        source.report(level, "bad-value", f"{shown}: {fault}", element)
+        return False
+    if value.part:
+        target = getattr(target, value.part)
+    if value.repeated:
+        getattr(target, value.field).append(parsed)
+    else:
+        setattr(target, value.field, parsed)
+    return True
+
+
+class _Filler:
+    __slots__ = ("_table", "_source", "_extra", "_found", "_level")
+
+    def __init__(self, table: Table, source: Source, extra: List[str], found: Found,
+                 level: Optional[Level]) -> None:
+        self._level = level
+        self._table = table
+        self._source = source
+        self._extra = extra
+        self._found = found
+
+    def fill(self, target: Any, element: Any, children: Mapping[str, Entry],
+             attributes: Mapping[str, Value], more: Tuple[str, ...],
+             wrap: Tuple[str, ...]) -> None:
+        for name, text in element.items():
+            known = attributes.get(name)
+            if known is not None:
+                self._set(target, known, text, element, f"@{name}")
+            elif name not in more and ":" not in name and name[0] != "{":
+                self._unknown(f"attribute {name}", name, element, [*attributes, *more])
+        for child in element:
+            tag = child.tag
+            entry = children.get(tag)
+            if entry.__class__ is Value:
+                self._set(target, entry, child.text or "", child, tag)  # type: ignore[arg-type]
+                if tag == "pose" and child.attrib:
+                    self._found.setdefault("pose", []).append(child)
+            elif entry.__class__ is Part:
+                self._found.setdefault(tag, []).append(child)
+            elif entry.__class__ is Group:
+                assert isinstance(entry, Group)
+                inner = getattr(target, entry.part) if entry.part else target
+                self.fill(inner, child, entry.children, entry.attributes, (), (*wrap, tag))
+            elif entry is not None:
+                self._extra.append(to_xml(child, wrap))
+            elif isinstance(tag, str):
+                self._extra.append(to_xml(child, wrap))
+                if ":" not in tag and tag[0] != "{":
+                    self._unknown(f"element <{tag}>", tag, child, list(children))
+
+    def _set(self, target: Any, value: Value, text: str, element: Any, name: str) -> None:
+        level = self._level or value.level or self._table.level
+        if not set_value(target, value, text, element, name, self._source, level):
+            self._found.setdefault(BAD, []).append(element)
+
+    def _unknown(self, what: str, name: str, element: Any, known: List[str]) -> None:
+        parent = element.getparent() if what.startswith("element") else element
+        inside = parent.tag if parent is not None else self._table.name
+        self._source.warn(
+            "unknown-element" if what.startswith("element") else "unknown-attribute",
+            f"{what} is not known in <{inside}>; it is kept, without effect", element,
+            closest(name, known),
+        )
+
+
+def closest(name: str, known: List[str]) -> str:
+    """A hint with the known name most like `name`, or empty."""
+    matches = difflib.get_close_matches(name, known, 1)
+    return f"did you mean {matches[0]}?" if matches else ""
+
+
+def to_xml(element: Any, wrap: Tuple[str, ...] = ()) -> str:
+    """The element as text, inside the elements named by `wrap` (outermost first)."""
+    from lxml import etree
+
+    text: str = etree.tostring(element, encoding="unicode", with_tail=False)
+    for tag in reversed(wrap):
+        text = f"<{tag}>{text}</{tag}>"
+    return text

@@ -1,0 +1,202 @@
+"""Closing tags that were forgotten.
+
+An end tag that does not fit closes what is open inside the element it names; one that names no
+open element is dropped. libxml2's own recovery closes the innermost element whatever the end tag
+says, and so nests everything that follows one level too deep.
+"""
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import List, Tuple
+
+_STOP = re.compile(r"""["'>]""")
+_NAME = re.compile(r"[A-Za-z_:À-￿][^\s/>\"'<=]*")
+_ATTRIBUTE = re.compile(r"""([A-Za-z_:][\w:.-]*)\s*=\s*("[^"]*"|'[^']*'|[^\s"'=]+)""")
+MAX_DEPTH = 200
+_MAX_REPAIRS = 200
+_SKIP = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">"))
+
+
+@dataclass(frozen=True)
+class Repair:
+    """One change of the text; `unclosed` tells a forgotten end tag from a stray one."""
+
+    message: str
+    line: int
+    column: int
+    unclosed: bool
+
+
+@dataclass
+class Balanced:
+    """A text whose tags pair.
+
+    Attributes:
+        text: with end tags put in or taken out; its lines are those of the original.
+        elements: how many start tags it holds.
+        hopeless: why no repair was tried any more, "" where all was repaired.
+        repairs: what was changed.
+        cut_off: what is missing at the end of the text, "" where nothing is.
+        cut_off_line: where that began.
+    """
+
+    text: str = ""
+    elements: int = 0
+    hopeless: str = ""
+    repairs: List[Repair] = field(default_factory=list)
+    cut_off: str = ""
+    cut_off_line: int = 0
+
+
+def balanced(text: str) -> Balanced:
+    """`text` with its tags paired; linear in its length."""
+    return _Balancer(text).run()
+
+
+class _Balancer:
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._result = Balanced()
+        self._parts: List[str] = []
+        self._kept = 0  # everything before it is in _parts
+        self._open: List[Tuple[str, int]] = []  # (name, position)
+
+    def run(self) -> Balanced:
+        text, result = self._text, self._result
+        at = text.find("<")
+        while at >= 0 and not result.cut_off and not result.hopeless:
+            after = self._one(at)
+            if result.elements and not self._open:
+                self._drop_rest(after)
+                break
+            at = text.find("<", after)
+        if not result.cut_off and self._open:
+            name, position = self._open[-1]
+            self._cut_off(f"<{name}> is never closed", position)
+        self._parts.append(self._text[self._kept:])
+        result.text = "".join(self._parts)
+        return result
+
+    def _drop_rest(self, after: int) -> None:
+        rest = self._text[after:]
+        self._text = self._text[:after]
+        if rest.strip("\0 \t\r\n") and not rest.lstrip().startswith("<!--"):
+            self._repair("what follows the root element is ignored", after, unclosed=False)
+
+    def _one(self, at: int) -> int:
+        """Handle the markup at `at`; the position behind it."""
+        text = self._text
+        for start, stop in _SKIP:
+            if text.startswith(start, at):
+                end = self._doctype_end(at) if start == "<!" else text.find(stop, at + len(start))
+                if end < 0:
+                    self._cut_off(f"{start} has no {stop}", at)
+                    return len(text)
+                return end + len(stop)
+        if text.startswith("</", at):
+            return self._end_tag(at)
+        name = _NAME.match(text, at + 1)
+        if name is None:
+            return at + 1  # a stray `<`; libxml2 says so
+        return self._start_tag(name.group(), at, name.end())
+
+    def _doctype_end(self, at: int) -> int:
+        bracket = self._text.find("[", at)
+        close = self._text.find(">", at)
+        if 0 <= bracket < close:
+            inside = self._text.find("]", bracket)
+            return self._text.find(">", inside) if inside >= 0 else -1
+        return close
+
+    def _start_tag(self, name: str, at: int, position: int) -> int:
+        end = self._tag_end(position)
+        if end < 0:
+            self._cut_off(f"<{name} has no >", at)
+            return len(self._text)
+        self._result.elements += 1
+        self._quote(at, position, end)
+        if self._text[end - 1] != "/":
+            self._open.append((name, at))
+            if len(self._open) > MAX_DEPTH:
+                self._result.hopeless = "elements are nested too deeply"
+        return end + 1
+
+    def _quote(self, at: int, position: int, end: int) -> None:
+        """Quotes and blanks that attributes lack."""
+        inside = self._text[position:end]
+        found = list(_ATTRIBUTE.finditer(inside))
+        bare = [a for a in found if a.group(2)[0] not in "\"'"]
+        tight = [a for a in found if a.start() and not inside[a.start() - 1].isspace()]
+        if not bare and not tight:
+            return
+        parts, last = [], 0
+        for attribute in found:
+            value = attribute.group(2)
+            slash = value.endswith("/") and attribute.end() == len(inside)
+            quoted = value if value[0] in "\"'" else '"' + (value[:-1] if slash else value) + '"'
+            parts += [inside[last:attribute.start()], " ", attribute.group(1), "=", quoted]
+            parts += ["/"] if slash and value[0] not in "\"'" else []
+            last = attribute.end()
+        self._parts += [self._text[self._kept:position], *parts, inside[last:]]
+        self._kept = end
+        lacking = "quotes" if bare else "blank before it"
+        name = (bare or tight)[0].group(1)
+        self._repair(f"attribute {name} has no {lacking}", at, unclosed=False)
+
+    def _tag_end(self, position: int) -> int:
+        """Where the `>` of a start tag is: the first one outside quotes."""
+        text = self._text
+        first = text.find(">", position)
+        while True:
+            stop = _STOP.search(text, position)
+            if stop is None:
+                return first
+            if stop.group() == ">":
+                return stop.start()
+            closing = text.find(stop.group(), stop.end())
+            # A value holds no `<`; where one would, the quote was never closed.
+            if closing < 0 or "<" in text[stop.end():closing]:
+                return first
+            position = closing + 1
+
+    def _end_tag(self, at: int) -> int:
+        text = self._text
+        end = text.find(">", at)
+        if end < 0 or text.find("<", at + 1, end) >= 0:
+            self._cut_off(f"{text[at:at + 20]!r} has no >", at)
+            return len(text)
+        name = text[at + 2:end].strip()
+        if self._open and self._open[-1][0] == name:
+            self._open.pop()
+        elif any(name == opened for opened, _ in reversed(self._open)):
+            self._close_down_to(name, at)
+        else:
+            self._repair(f"</{name}> closes nothing", at, unclosed=False)
+            self._parts.append(text[self._kept:at])
+            # Its line breaks stay, so that what follows keeps its line.
+            self._parts.append("\n" * text.count("\n", at, end))
+            self._kept = end + 1
+        return end + 1
+
+    def _close_down_to(self, name: str, at: int) -> None:
+        self._parts.append(self._text[self._kept:at])
+        self._kept = at
+        while self._open[-1][0] != name:
+            inner, position = self._open.pop()
+            self._repair(f"<{inner}> is never closed", position, unclosed=True)
+            self._parts.append(f"</{inner}>")
+        self._open.pop()
+
+    def _repair(self, message: str, at: int, unclosed: bool) -> None:
+        line, column = self._place(at)
+        self._result.repairs.append(Repair(message, line, column, unclosed))
+        if len(self._result.repairs) > _MAX_REPAIRS:
+            self._result.hopeless = f"more than {_MAX_REPAIRS} mistakes in its markup"
+
+    def _cut_off(self, message: str, at: int) -> None:
+        self._result.cut_off = message
+        self._result.cut_off_line = self._place(at)[0]
+
+    def _place(self, at: int) -> Tuple[int, int]:
+        return self._text.count("\n", 0, at) + 1, at - (self._text.rfind("\n", 0, at) + 1) + 1

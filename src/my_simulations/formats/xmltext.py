@@ -1,0 +1,157 @@
+"""From bytes or text to an XML tree, leniently with mistakes and strictly with attacks.
+
+Real model files are often not well formed; Gazebo's reader is lax. What can be completed without
+guessing at content is read with a warning; what is cut off is an error. No entity is expanded, no
+DTD loaded, no network used, and depth is bounded.
+"""
+from __future__ import annotations
+
+import functools
+import re
+from typing import Any, Union
+
+from ..errors import InputError, error
+from .source import Log
+from .xmlrepair import balanced
+
+_DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
+_ENCODING = re.compile(rb"""<\?xml[^>]*\bencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
+_BOMS = (
+    (b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe\x00\x00", "utf-32"),
+    (b"\x00\x00\xfe\xff", "utf-32"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"),
+)
+_LARGEST = 64 << 20
+
+
+def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
+    """The root element of a document.
+
+    Args:
+        text: the document; a `str` may carry any encoding declaration.
+        file: for the issues.
+        log: takes warnings about what had to be repaired.
+
+    Raises:
+        InputError: nothing usable: empty, cut off, no element, entities, too deep.
+    """
+    from lxml import etree
+
+    data = text.encode("utf-8", "replace") if isinstance(text, str) else text
+    if len(data) > _LARGEST:
+        raise _fault("xml-too-large", f"the document is larger than {_LARGEST >> 20} MB", file)
+    if not data.strip(b" \t\r\n\0"):
+        raise _fault("xml-empty", "the document is empty", file)
+    _refuse_entities(data, file)
+    try:
+        root = etree.fromstring(
+            _declaration_first(data), _strict_parser("utf-8" if isinstance(text, str) else None)
+        )
+    except etree.XMLSyntaxError as fault:
+        root = _recover(_decoded(data, isinstance(text, str), file, log), fault, file, log)
+    if root is None:
+        raise _fault("xml-no-root", "the document holds no element", file)
+    return root
+
+
+def _fault(code: str, message: str, file: str, line: int = 0, column: int = 0,
+           hint: str = "") -> InputError:
+    return InputError([error(code, message, file=file, line=line, column=column, hint=hint)])
+
+
+def _refuse_entities(data: bytes, file: str) -> None:
+    plain = data.replace(b"\0", b"") if b"\0" in data[:400] else data
+    if b"<!ENTITY" in plain and b"<!DOCTYPE" in plain:
+        line = plain[: plain.index(b"<!ENTITY")].count(b"\n") + 1
+        raise _fault(
+            "xml-entities", "the document declares entities, which are not read", file, line,
+            hint="write the text out instead",
+        )
+
+
+def _declaration_first(data: bytes) -> bytes:
+    """The XML declaration moved to the front; lines keep their numbers."""
+    if data[:5] == b"<?xml" or data[:2] in (b"\xff\xfe", b"\xfe\xff") or data[:1] == b"\0":
+        return data
+    start = 3 if data[:3] == b"\xef\xbb\xbf" else 0
+    found = _DECLARATION.search(data, start, start + 20000)
+    if found is None or found.start() == start:
+        return data
+    before = data[start:found.start()]
+    if before.strip() and not before.lstrip().startswith(b"<!--"):
+        return data
+    return found.group() + before + data[found.end():]
+
+
+@functools.lru_cache(maxsize=4)
+def _parser(encoding: str, recover: bool) -> Any:
+    from lxml import etree
+
+    return etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, dtd_validation=False,
+        huge_tree=False, remove_comments=True, remove_pis=True, recover=recover,
+        encoding=encoding or None,
+    )
+
+
+def _strict_parser(encoding: Any) -> Any:
+    return _parser(encoding or "", False)
+
+
+def _decoded(data: bytes, was_text: bool, file: str, log: Log) -> str:
+    if was_text:
+        return data.decode("utf-8")
+    encoding = next((name for mark, name in _BOMS if data.startswith(mark)), "")
+    if not encoding:
+        declared = _ENCODING.search(data[:2000])
+        encoding = declared.group(1).decode("ascii") if declared else "utf-8"
+    try:
+        return data.decode(encoding)
+    except (UnicodeDecodeError, LookupError):
+        from ..errors import warning
+
+        log.add(warning("xml-encoding", f"the text is not {encoding}; read as Latin-1", file=file))
+        return data.decode("latin-1")
+
+
+def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
+    """A second attempt, over text with its tags balanced; raises InputError where cut off."""
+    from lxml import etree
+
+    from ..errors import warning
+
+    line, column = fault.position
+    if "Excessive depth" in fault.msg:
+        raise _fault("xml-too-deep", "elements are nested too deeply", file, line, column)
+    result = balanced(text)
+    if result.hopeless:
+        raise _fault("xml-malformed", f"not well formed: {result.hopeless}", file, line, column)
+    if result.elements == 0:
+        raise _fault("xml-no-root", "the document holds no element", file, line, column)
+    if result.cut_off:
+        raise _fault(
+            "xml-truncated", f"the document is cut off: {result.cut_off}", file,
+            result.cut_off_line, hint="the end of the file is missing",
+        )
+    parser = _parser("utf-8", True)
+    root = etree.fromstring(_declaration_first(result.text.encode("utf-8", "replace")), parser)
+    faults = [
+        entry for entry in parser.error_log
+        if entry.domain_name != "NAMESPACE" and entry.level_name != "WARNING"
+    ]
+    if root is None or _count(root) < result.elements:
+        message = faults[-1].message if faults else fault.msg
+        raise _fault("xml-malformed", f"not well formed: {message}", file, line, column)
+    for repair in result.repairs:
+        log.add(warning("xml-malformed", repair.message, file=file, line=repair.line,
+                        column=repair.column, hint="read as if it were closed there"
+                        if repair.unclosed else ""))
+    if faults:
+        first = faults[0]
+        more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+        log.add(warning("xml-malformed", f"not well formed: {first.message}{more}", file=file,
+                        line=first.line, column=first.column))
+    return root
+
+
+def _count(root: Any) -> int:
+    return sum(1 for _ in root.iter())

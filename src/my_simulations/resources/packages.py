@@ -1,0 +1,75 @@
+"""ROS packages: where one lies, and which Gazebo folders they export.
+
+rospkg is imported, and the package path crawled, at the first question only: the node must not
+pay for it at start-up.
+"""
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, field
+from typing import Any, Callable, List, Optional
+
+FindPackage = Callable[[str], Optional[str]]
+"""From a package's name to its folder, None where it is unknown."""
+
+_EXPORT = re.compile(r"<gazebo_ros\b([^>]*)>")
+_ATTRIBUTE = re.compile(r"""(gazebo_model_path|gazebo_media_path)\s*=\s*["']([^"']*)["']""")
+
+
+@dataclass
+class ExportedPaths:
+    """Folders named by `<gazebo_ros gazebo_model_path= gazebo_media_path=>` in package.xml."""
+
+    models: List[str] = field(default_factory=list)
+    media: List[str] = field(default_factory=list)
+
+
+class PackageIndex:
+    """The packages of ROS_PACKAGE_PATH (or of `rospack`, for tests)."""
+
+    def __init__(self, rospack: Optional[Any] = None) -> None:
+        self._rospack = rospack
+
+    def find(self, name: str) -> Optional[str]:
+        """The folder of package `name`, None where it is unknown or ROS is not there."""
+        rospack = self._get()
+        if rospack is None:
+            return None
+        try:
+            return str(rospack.get_path(name))
+        except KeyError:  # rospkg.ResourceNotFound is one
+            return None
+
+    def exported(self) -> ExportedPaths:
+        """What all packages export, in the order rospkg lists them."""
+        rospack = self._get()
+        paths = ExportedPaths()
+        for name in rospack.list() if rospack is not None else ():
+            folder = self.find(name)
+            if folder:
+                _add_exports(os.path.join(folder, "package.xml"), folder, paths)
+        return paths
+
+    def _get(self) -> Optional[Any]:
+        if self._rospack is None:
+            try:
+                import rospkg
+            except ImportError:
+                return None
+            self._rospack = rospkg.RosPack()
+        return self._rospack
+
+
+def _add_exports(manifest: str, prefix: str, paths: ExportedPaths) -> None:
+    try:
+        with open(manifest, encoding="utf-8", errors="replace") as stream:
+            text = stream.read()
+    except OSError:
+        return
+    for tag in _EXPORT.findall(text):
+        for attribute, value in _ATTRIBUTE.findall(tag):
+            into = paths.models if attribute == "gazebo_model_path" else paths.media
+            for entry in value.replace("${prefix}", prefix).split(os.pathsep):
+                if entry and entry not in into:
+                    into.append(entry)

@@ -1,0 +1,176 @@
+"""From `model://`, `package://`, `file://` and plain paths to a file on this machine.
+
+The order of search is Gazebo's; nothing is ever fetched from a network. Look-up is lazy: an answer
+found in the first places never makes the package path be crawled.
+"""
+from __future__ import annotations
+
+import os
+from typing import Callable, Iterator, List, Optional, Sequence, Tuple
+from urllib.parse import unquote
+
+from .model_config import description_in
+from .own import PACKAGE, own_directory
+from .packages import ExportedPaths, FindPackage, PackageIndex
+
+_MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
+
+
+class NotFound(Exception):
+    """No file for a URI.
+
+    Attributes:
+        uri: as asked for.
+        tried: every place looked at, in order.
+        reason: why nothing was looked at, or empty.
+    """
+
+    def __init__(self, uri: str, tried: Sequence[str] = (), reason: str = "") -> None:
+        self.uri = uri
+        self.tried: List[str] = list(tried)
+        self.reason = reason
+        places = ", ".join(self.tried)
+        why = reason or (f"tried {places}" if places else "no place to look in")
+        super().__init__(f"{uri!r} was not found: {why}")
+
+
+class Resolver:
+    """Finds files by URI.
+
+    Args:
+        model_paths: folders whose children are models (`model://child/...`), best first.
+        resource_paths: folders that plain relative paths and `file://` start from.
+        find_package: from a ROS package's name to its folder; never called for other URIs.
+        exported: more of both lists, asked for once, when the first ones hold no answer.
+    """
+
+    def __init__(
+        self,
+        model_paths: Sequence[str] = (),
+        resource_paths: Sequence[str] = (),
+        find_package: FindPackage = lambda name: None,
+        exported: Callable[[], ExportedPaths] = ExportedPaths,
+    ) -> None:
+        self._model_paths = list(model_paths)
+        self._resource_paths = list(resource_paths)
+        self._find_package = find_package
+        self._exported = exported
+        self._late: Optional[ExportedPaths] = None
+
+    @classmethod
+    def from_environment(cls) -> "Resolver":
+        """A resolver with Gazebo's variables, ~/.gazebo/models, our own models and ROS packages."""
+        own = own_directory()
+        models = [os.path.expanduser("~/.gazebo/models"), *_listed("GAZEBO_MODEL_PATH")]
+        resources = _listed("GAZEBO_RESOURCE_PATH")
+        if own:
+            models.append(os.path.join(own, "models"))
+            # `worlds/empty.world` and `empty.world` both name the world in our `world/` folder.
+            resources += [os.path.join(own, "world"), own]
+        packages = PackageIndex()
+
+        def find(name: str) -> Optional[str]:
+            return own if name == PACKAGE and own else packages.find(name)
+
+        return cls(models, resources, find, packages.exported)
+
+    def resolve(self, uri: str, base_dir: str = "") -> str:
+        """The absolute path of what `uri` names, a file or a folder.
+
+        Args:
+            uri: `model://`, `package://`, `file://`, or a path.
+            base_dir: folder of the file that holds the URI, "" for none.
+
+        Raises:
+            NotFound: nothing is there.
+        """
+        uri = uri.strip()
+        if not uri or uri == "__default__":
+            raise NotFound(uri, reason="the URI is empty")
+        tried: List[str] = []
+        for candidate in self._candidates(uri, base_dir):
+            if os.path.exists(candidate):
+                return os.path.abspath(candidate)
+            if candidate not in tried:
+                tried.append(candidate)
+        raise NotFound(uri, tried)
+
+    def model_file(self, uri: str, base_dir: str = "") -> str:
+        """The description file `uri` names: the file itself, or the one its folder's config picks.
+
+        Raises:
+            NotFound: nothing is there, or the folder holds no description.
+        """
+        path = self.resolve(uri, base_dir)
+        if not os.path.isdir(path):
+            return path
+        found = description_in(path)
+        if found is None:
+            raise NotFound(
+                uri,
+                [os.path.join(path, "model.config"), os.path.join(path, "manifest.xml"),
+                 os.path.join(path, "model.sdf")],
+            )
+        return found
+
+    def _candidates(self, uri: str, base_dir: str) -> Iterator[str]:
+        scheme, separator, rest = uri.partition("://")
+        if not separator:
+            yield from self._for_path(uri, base_dir)
+        elif scheme == "file":
+            yield from self._for_path(rest, base_dir)
+            if "%" in rest:
+                yield from self._for_path(unquote(rest), base_dir)
+        elif scheme == "model":
+            yield from self._for_model(rest)
+            yield from self._for_package(uri, rest)
+        elif scheme == "package":
+            yield from self._for_package(uri, rest)
+            yield from self._for_model(rest)
+        else:
+            known = "model://, package://, file:// or a path"
+            raise NotFound(uri, reason=f"{scheme}:// is not read; use {known}")
+
+    def _for_model(self, rest: str) -> Iterator[str]:
+        for folder in self._all("models"):
+            yield os.path.join(folder, rest)
+
+    def _for_package(self, uri: str, rest: str) -> Iterator[str]:
+        name, inside = _split_package(rest)
+        if not name:
+            raise NotFound(uri, reason="no name follows ://")
+        folder = self._find_package(name)
+        yield os.path.join(folder, inside) if folder else f"ROS package {name}"
+
+    def _for_path(self, path: str, base_dir: str) -> Iterator[str]:
+        if os.path.isabs(path):
+            yield path
+            for folder in self._all("models"):
+                yield os.path.join(folder, path.lstrip("/"))
+            return
+        if base_dir:
+            yield os.path.join(base_dir, path)
+        yield os.path.abspath(path)
+        # `worlds/` of a resource path is where Gazebo keeps worlds; ours is called `world/`.
+        inside = path[len("worlds/"):] if path.startswith("worlds/") else ""
+        for folder in self._all("media"):
+            for suffix in _MEDIA_SUFFIXES:
+                yield os.path.join(folder, suffix, path)
+            if inside:
+                yield os.path.join(folder, "world", inside)
+
+    def _all(self, kind: str) -> Iterator[str]:
+        first = self._model_paths if kind == "models" else self._resource_paths
+        yield from first
+        if self._late is None:
+            self._late = self._exported()
+        yield from self._late.models if kind == "models" else self._late.media
+
+
+def _listed(variable: str) -> List[str]:
+    return [entry for entry in os.environ.get(variable, "").split(os.pathsep) if entry]
+
+
+def _split_package(rest: str) -> Tuple[str, str]:
+    name, _, inside = rest.partition("/")
+    return name, inside
