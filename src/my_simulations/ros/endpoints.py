@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import socket
 import struct
+import traceback
 from dataclasses import dataclass
 from typing import Any, Callable, Iterable, List
 
@@ -22,21 +23,14 @@ class Endpoint:
         type: service class.
         handler: gets the request and the response to fill; returns the status message without its
             title, or raises `CommandError` or `InputError` for a failure.
+        response: class of the responses, when it is not the type's own.
     """
 
     name: str
     title: str
     type: Any
     handler: Callable[[Any, Any], str]
-
-
-class Faults:
-    """Words for what a user did wrong; every answer and log line goes through here."""
-
-    @staticmethod
-    def text(fault: Exception) -> str:
-        """One line for a status message: the first error, and how many more there are."""
-        return fault.summary() if isinstance(fault, InputError) else str(fault)
+    response: Any = None
 
 
 def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
@@ -45,7 +39,7 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
     A response without `success` (std_srvs/Empty) has no room for a fault; it fails at transport
     level, so that the client gets an exception with the text.
     """
-    response_class = endpoint.type._response_class
+    response_class = endpoint.response or endpoint.type._response_class
     has_status = "status_message" in response_class.__slots__
 
     def answer(request: Any) -> Any:
@@ -54,10 +48,10 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
             text = endpoint.handler(request, response)
             succeeded = True
         except (CommandError, InputError) as fault:
-            text, succeeded = Faults.text(fault), False
+            text, succeeded = str(fault), False
         except Exception as fault:  # a defect of ours: the client still gets an answer
-            rospy.logerr("%s: unexpected fault in %s", endpoint.title, endpoint.name)
-            rospy.logerr_once("%s", _traceback())
+            rospy.logerr("%s: a defect in %s:\n%s", endpoint.title, endpoint.name,
+                         traceback.format_exc())
             text, succeeded = f"internal fault: {type(fault).__name__}: {fault}", False
         if has_status:
             response.success = succeeded
@@ -67,12 +61,6 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
         return response
 
     return answer
-
-
-def _traceback() -> str:
-    import traceback
-
-    return traceback.format_exc()
 
 
 class LastingService(rospy.Service):

@@ -13,7 +13,7 @@ from ..geometry import IDENTITY, Pose, compose
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 from .convert import pose_from_message
-from .document import asks_to_replace, checked_name, named, root_of
+from .document import REPLACE_ATTRIBUTE, asks_to_replace, checked_name, named, root_of
 from .endpoints import Endpoint
 from .entities import require_model
 
@@ -85,7 +85,9 @@ class ModelServices:
             raise CommandError("the document describes a light; lights come with the world file")
         model = named(entity, name if name is not None else entity.name, namespace)
         meshes, mesh_issues = collision_meshes(model)
-        issues = [*issues, *mesh_issues]
+        # Every message about the attribute is about what was read from it already.
+        issues = [issue for issue in (*issues, *mesh_issues)
+                  if REPLACE_ATTRIBUTE not in issue.message]
         self._report(issues)
         if errors_of(issues):
             raise InputError(issues)

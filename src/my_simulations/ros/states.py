@@ -24,6 +24,12 @@ WORLD_FRAMES = ("", "world", "map", "/map")
 """The literals that mean the world frame (Gazebo); tf is never asked."""
 
 
+class _CountedResponse(srv.GetModelStateResponse):
+    """Keeps our `header.seq`; in a class that says it has a header, rospy puts its own there."""
+
+    _has_header = False
+
+
 class StateServices:
     """Where models and links are, and putting them elsewhere."""
 
@@ -35,7 +41,8 @@ class StateServices:
     def endpoints(self) -> List[Endpoint]:
         """Its rows of the table."""
         return [
-            Endpoint("get_model_state", "GetModelState", srv.GetModelState, self.get_model),
+            Endpoint("get_model_state", "GetModelState", srv.GetModelState, self.get_model,
+                     _CountedResponse),
             Endpoint("set_model_state", "SetModelState", srv.SetModelState, self.set_model),
             Endpoint("get_link_state", "GetLinkState", srv.GetLinkState, self.get_link),
             Endpoint("set_link_state", "SetLinkState", srv.SetLinkState, self.set_link),
