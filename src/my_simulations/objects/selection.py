@@ -18,13 +18,13 @@ class Selection:
 
     Attributes:
         objects: sound objects, each once, in the order asked for.
-        named: names of objects asked for one by one, not through `all` or a group.
+        names: every name asked for that the list has, of sound and of faulty objects.
         unknown: words and group members that are no object of the list.
         issues: everything that is wrong with the request or with the objects it names.
     """
 
     objects: List[PlacedObject] = field(default_factory=list)
-    named: List[str] = field(default_factory=list)
+    names: List[str] = field(default_factory=list)
     unknown: List[str] = field(default_factory=list)
     issues: List[Issue] = field(default_factory=list)
 
@@ -108,9 +108,8 @@ def select(words: Sequence[str], listing: ObjectList,
             for member in groups[word]:
                 _choose(member, listing, aliases, f"(member of group '{word}')", chosen, result)
         else:
-            found = _choose(word, listing, aliases, "in the object list", chosen, result,
-                            list(groups))
-            result.named.extend(found)
+            _choose(word, listing, aliases, "in the object list", chosen, result, list(groups))
+    result.names = list(chosen)
     for name in chosen:
         result.issues.extend(listing.faults.get(name, []))
         if name in listing.objects:
@@ -120,12 +119,11 @@ def select(words: Sequence[str], listing: ObjectList,
 
 def _choose(name: str, listing: ObjectList, aliases: Mapping[str, str], where: str,
             chosen: Dict[str, None], result: Selection,
-            more: Sequence[str] = ()) -> List[str]:
+            more: Sequence[str] = ()) -> None:
     known = listing.names
     found = name if name in listing.objects or name in listing.faults else aliases.get(name)
     if not name or found is None:
         result.unknown.append(name)
         result.issues.append(unknown_name(name, [*known, *more], where))
-        return []
-    chosen[found] = None
-    return [found]
+    else:
+        chosen[found] = None

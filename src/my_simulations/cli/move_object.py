@@ -1,0 +1,228 @@
+"""`move_object.py`: put a model somewhere, or move it along a polygon or a circle."""
+from __future__ import annotations
+
+import argparse
+import math
+import re
+import time
+from typing import Any, List, Optional, Sequence, Union
+
+from ..errors import InputError
+from ..geometry import Pose, quat_from_rpy
+from ..objects.route import Circle, Polygon, parse_numbers, parse_points
+from ..objects.selection import unknown_name
+from . import object_client as client
+
+NAME = "move_object.py"
+RATE = 100.0
+"""Placements a second of ROS time."""
+
+BLOCKED_SECONDS = 60.0
+"""ROS time after which a blocked object begins again (Care-O-bot tools)."""
+
+NEAR = 0.01
+"""Metres within which an initial pose counts as reached (Care-O-bot tools)."""
+
+Route = Union[Polygon, Circle]
+
+
+class Stopped(Exception):
+    """ROS shuts this program down."""
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = argparse.ArgumentParser(
+        prog=NAME, description="Move a model of the running world. Polygons and circles go round "
+        "until Ctrl-C.",
+        epilog="Exit code: 0 when all went well (also when ended by Ctrl-C on its way), 1 when "
+        "something failed, 2 for a wrong command line.")
+    made.add_argument("-m", "--mode", required=True, choices=("initialpose", "polygon", "circle"))
+    made.add_argument("-n", "--name", required=True, help="the model")
+    made.add_argument("-i", "--initialpose", metavar="[X,Y,Z,R,P,Y]",
+                      help="pose for mode initialpose, metres and radians")
+    made.add_argument("-p", "--polygon", metavar="[[X,Y],...]", help="corners for mode polygon")
+    made.add_argument("-c", "--center", metavar="[X,Y]", help="centre for mode circle")
+    made.add_argument("-r", "--radius", type=float, help="radius for mode circle, metres")
+    made.add_argument("-v", "--velocity", type=float, default=0.5,
+                      help="metres a second of ROS time (default %(default)g)")
+    made.add_argument("-z", "--height", type=float, default=0.0,
+                      help="height of the path, metres (default %(default)g)")
+    made.add_argument("-o", "--stop-objects", default="", metavar="\"NAME ...\"",
+                      help="wait while one of these models is near the next point")
+    made.add_argument("-d", "--distance", type=float, default=2.0,
+                      help="what near means, metres (default %(default)g)")
+    made.add_argument("--laps", type=int, default=0,
+                      help="end after so many rounds (default: never)")
+    client.common_options(made)
+    return made
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Runs the tool.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 when the model was moved, 1 when it was not, 2 for wrong usage.
+    """
+    words, remappings = client.plain_words(argv)
+    made = parser()
+    options = made.parse_args(words)
+    try:
+        target = target_of(options)
+    except InputError as fault:
+        made.error(fault.issues[0].message)
+    return client.run(NAME, lambda: _move(options, target, remappings))
+
+
+def target_of(options: argparse.Namespace) -> Union[Pose, Route]:
+    """The pose or the route that the options describe.
+
+    Raises:
+        InputError: an option that the mode needs is missing or wrong.
+    """
+    from ..errors import error
+
+    if not all(map(math.isfinite, (options.velocity, options.height, options.distance))) \
+            or options.velocity <= 0.0:
+        raise InputError([error("argument", "the velocity must be greater than 0, and every "
+                                "number finite")])
+
+    def given(value: Any, option: str) -> Any:
+        if value is None:
+            raise InputError([error("argument", f"mode {options.mode} needs {option}")])
+        return value
+
+    if options.mode == "initialpose":
+        x, y, z, *rpy = parse_numbers(given(options.initialpose, "-i"), 6, "-i")
+        return Pose((x, y, z), quat_from_rpy(*rpy))
+    if options.mode == "polygon":
+        return Polygon(parse_points(given(options.polygon, "-p"), "-p"))
+    cx, cy = parse_numbers(given(options.center, "-c"), 2, "-c")
+    return Circle((cx, cy), given(options.radius, "-r"))
+
+
+def _move(options: argparse.Namespace, target: Union[Pose, Route],
+          remappings: Sequence[str]) -> int:
+    parameters = client.Parameters(remappings)
+    simulator = client.Simulator(
+        parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
+    stops = options.stop_objects.split()
+    _wait_for_models(simulator, parameters, [options.name, *stops], options.timeout)
+    if isinstance(target, Pose):
+        _place(simulator, parameters, options, target)
+        print(f"{options.name} is at its pose")
+        return client.OK
+    try:
+        _follow(simulator, options, target, stops, remappings)
+    except (Stopped, KeyboardInterrupt):
+        print(f"{NAME}: ended")
+    return client.OK
+
+
+def _wait_for_models(simulator: client.Simulator, parameters: client.Parameters,
+                     names: Sequence[str], timeout: float) -> None:
+    def all_there() -> bool:
+        return set(names) <= set(simulator.model_names())
+
+    try:
+        parameters.wait(all_there, timeout, "models", "")
+    except client.ToolError:
+        world = simulator.model_names()
+        missing = [name for name in names if name not in world]
+        if not missing:
+            return
+        hint = unknown_name(missing[0], world, "in the world").hint
+        raise client.ToolError(f"there is no model '{missing[0]}' in the world after "
+                               f"{timeout:g} s; {hint}") from None
+
+
+def _place(simulator: client.Simulator, parameters: client.Parameters,
+           options: argparse.Namespace, pose: Pose) -> None:
+    def reached() -> bool:
+        simulator.place(options.name, pose)
+        state = simulator.model_state(options.name)
+        if state is None:
+            raise client.ToolError(f"the model '{options.name}' is gone")
+        at = state.pose.position
+        return math.dist((at.x, at.y, at.z), pose.position) < NEAR
+
+    parameters.wait(reached, options.timeout, f"'{options.name}' at its pose",
+                    "something holds it back")
+
+
+def _follow(simulator: client.Simulator, options: argparse.Namespace, route: Route,
+            stops: List[str], remappings: Sequence[str]) -> None:
+    import rospy
+
+    clean = re.sub(r"\W", "_", options.name)
+    rospy.init_node(f"move_{clean}", argv=list(remappings), anonymous=True)
+    clock = _Clock(options.timeout)
+    distance, last = 0.0, clock.now()
+    blocked_since: Optional[float] = None
+    while not options.laps or distance < options.laps * route.length:
+        now = clock.tick()
+        ahead = distance + options.velocity * max(0.0, now - last)
+        last = now
+        if _blocked(simulator, route, ahead, stops, options):
+            blocked_since = now if blocked_since is None or now < blocked_since else blocked_since
+            if now - blocked_since >= BLOCKED_SECONDS:
+                distance, blocked_since = route.restart(distance), now
+        else:
+            distance, blocked_since = ahead, None
+        place = route.at(distance)
+        simulator.place(options.name, Pose((place.x, place.y, options.height),
+                                           quat_from_rpy(0.0, 0.0, place.yaw)))
+
+
+def _blocked(simulator: client.Simulator, route: Route, ahead: float, stops: List[str],
+             options: argparse.Namespace) -> bool:
+    point = route.at(ahead)
+    for name in stops:
+        state = simulator.model_state(name)
+        # A stop object that was deleted stands in nobody's way.
+        if state is not None and math.hypot(state.pose.position.x - point.x,
+                                            state.pose.position.y - point.y) < options.distance:
+            return True
+    return False
+
+
+class _Clock:
+    """ROS time, with a wall-clock limit on its standing still."""
+
+    def __init__(self, limit: float) -> None:
+        self._limit = limit
+        self._next = self.now()
+
+    def now(self) -> float:
+        import rospy
+
+        return rospy.get_time()
+
+    def tick(self) -> float:
+        """Waits until the next placement is due; the ROS time then.
+
+        Raises:
+            Stopped: ROS shuts down.
+            ToolError: ROS time stands still.
+        """
+        import rospy
+
+        seen, since = self.now(), time.monotonic()
+        while True:
+            now = self.now()
+            # A reset world begins again at zero.
+            if now >= self._next or now < self._next - 1.0:
+                self._next = now + 1.0 / RATE
+                return now
+            if rospy.is_shutdown():
+                raise Stopped
+            if now != seen:
+                seen, since = now, time.monotonic()
+            elif time.monotonic() - since > self._limit:
+                raise client.ToolError(
+                    f"ROS time stood still for {self._limit:g} s; is the world paused? "
+                    "rosservice call /gazebo/unpause_physics lets it run")
+            time.sleep(0.001)

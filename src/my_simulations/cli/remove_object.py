@@ -1,0 +1,96 @@
+"""`remove_object.py`: take objects out of the running world."""
+from __future__ import annotations
+
+import argparse
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+
+from ..errors import Issue
+from ..objects.listing import ObjectList
+from ..objects.selection import ALL, select, unknown_name
+from . import object_client as client
+from .progress import Progress
+
+NAME = "remove_object.py"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = argparse.ArgumentParser(
+        prog=NAME, description="Remove objects from the world. A name may be any model of the "
+        "world; 'all' and groups mean the objects of the list that are there.",
+        epilog="Exit code: 0 when all went well, 1 when something failed, 2 for a wrong command "
+        "line.")
+    made.add_argument("names", nargs="+", metavar="NAME",
+                      help="a model, a group of /object_groups, or 'all'")
+    client.common_options(made)
+    return made
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Runs the tool.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 when no object asked for is in the world any more and every name was known, 1 otherwise,
+        2 for wrong usage.
+    """
+    words, remappings = client.plain_words(argv)
+    options = parser().parse_args(words)
+    return client.run(NAME, lambda: _remove_all(options, remappings))
+
+
+def chosen_models(words: Sequence[str], world: Sequence[str], listing: ObjectList,
+                  groups: Mapping[str, Sequence[str]]) -> Tuple[List[str], List[Issue]]:
+    """The models to remove, each once, and the words that mean none.
+
+    A model of the world comes before a group of the same name. Objects that `all` or a group
+    names and the world does not hold are already as asked for, and no fault.
+    """
+    names: Dict[str, None] = {}
+    issues: List[Issue] = []
+    for word in words:
+        if word in world and word != ALL:
+            names[word] = None
+            continue
+        selection = select([word], listing, groups)
+        names.update(dict.fromkeys(name for name in selection.names if name in world))
+        if word == ALL or word in groups:
+            # A member may be a model that is in the world, but in no list.
+            names.update(dict.fromkeys(name for name in selection.unknown if name in world))
+        elif not any(name in world for name in selection.names):
+            issues.append(unknown_name(word, [*world, *groups], "in the world"))
+    return list(names), issues
+
+
+def _remove_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
+    parameters = client.Parameters(remappings)
+    simulator = client.Simulator(
+        parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
+    listing, groups, issues = client.read_list(parameters, "my_simulations", 0.0)
+    if listing is None and ALL in options.names:
+        raise client.ToolError(client.no_list(parameters))
+    names, unknown = chosen_models(options.names, simulator.model_names(),
+                                   listing or ObjectList(), groups)
+    issues = [*issues, *unknown]
+    client.show(issues)
+    if not names and not unknown:
+        print(f"{NAME}: none of these objects is in the world")
+    wrong = _remove_each(names, simulator)
+    return client.FAILED if wrong or client.has_errors(issues) else client.OK
+
+
+def _remove_each(names: Sequence[str], simulator: client.Simulator) -> int:
+    progress = Progress(len(names))
+    wrong = 0
+    for name in names:
+        progress.start(name)
+        try:
+            simulator.delete(name)
+            progress.done(f"{name} removed")
+        except client.ToolError as fault:
+            wrong += 1
+            progress.failed(f"{NAME}: {name} was not removed: {fault}")
+    progress.end(f"{NAME}: {len(names) - wrong} of {len(names)} objects removed")
+    return wrong

@@ -1,0 +1,99 @@
+"""`spawn_object.py`: put objects of the list into the running world."""
+from __future__ import annotations
+
+import argparse
+from typing import List, Optional, Sequence, Set
+
+from ..errors import InputError
+from ..objects.document import marked_for_replacement
+from ..objects.listing import PlacedObject
+from ..objects.selection import select
+from . import object_client as client
+from .object_documents import load, package_finder
+from .progress import Progress
+
+NAME = "spawn_object.py"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = argparse.ArgumentParser(
+        prog=NAME, description="Spawn objects of the list at /objects. An object that is already "
+        "there is replaced at its listed place.",
+        epilog="Exit code: 0 when all went well, 1 when something failed, 2 for a wrong command "
+        "line.")
+    made.add_argument("names", nargs="+", metavar="NAME",
+                      help="an object, a group of /object_groups, or 'all'")
+    made.add_argument("--package", default="my_simulations", metavar="PKG",
+                      help="package whose folder 'objects' holds the files of entries with "
+                      "model_type (default %(default)s)")
+    client.common_options(made)
+    return made
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Runs the tool.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 when every object asked for is in the world, 1 when one is not, 2 for wrong usage.
+    """
+    words, remappings = client.plain_words(argv)
+    options = parser().parse_args(words)
+    return client.run(NAME, lambda: _spawn_all(options, remappings))
+
+
+def _spawn_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
+    parameters = client.Parameters(remappings)
+    simulator = client.Simulator(
+        parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
+    listing, groups, issues = client.read_list(
+        parameters, options.package, min(options.timeout, client.LIST_SECONDS))
+    if listing is None:
+        raise client.ToolError(client.no_list(parameters))
+    selection = select(options.names, listing, groups)
+    issues = [*issues, *selection.issues]
+    client.show(issues)
+    failed = client.has_errors(issues)
+    if not selection.objects:
+        if not failed:
+            print(f"{NAME}: nothing to spawn")
+        return client.FAILED if failed else client.OK
+    wrong = _spawn_each(selection.objects, simulator, options.timeout)
+    return client.FAILED if failed or wrong else client.OK
+
+
+def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeout: float) -> int:
+    """Spawns one after the other; how many failed."""
+    find = package_finder()
+    there = set(simulator.model_names())
+    progress = Progress(len(objects))
+    wrong = 0
+    for placed in objects:
+        progress.start(placed.name)
+        try:
+            xml, sdf = load(placed, find, timeout)
+            progress.done(_spawn_one(placed, xml, sdf, simulator, there))
+        except InputError as fault:
+            wrong += 1
+            progress.failed("\n".join(map(str, fault.issues)))
+        except client.ToolError as fault:
+            wrong += 1
+            progress.failed(f"{NAME}: {placed.name} was not spawned: {fault}")
+    progress.end(f"{NAME}: {len(objects) - wrong} of {len(objects)} objects spawned")
+    return wrong
+
+
+def _spawn_one(placed: PlacedObject, xml: str, sdf: bool, simulator: client.Simulator,
+               there: Set[str]) -> str:
+    replaced = placed.name in there
+    if replaced and simulator.replaces:
+        xml = marked_for_replacement(xml)
+    elif replaced:
+        simulator.delete(placed.name)
+    simulator.spawn(placed.name, xml, sdf, placed.position, placed.rpy)
+    there.add(placed.name)
+    x, y, z = placed.position
+    return f"{placed.name} {'replaced' if replaced else 'spawned'} at {x:g} {y:g} {z:g}"

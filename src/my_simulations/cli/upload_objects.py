@@ -1,0 +1,146 @@
+"""`upload_objects.py`: load a world's object list to the parameter server."""
+from __future__ import annotations
+
+import argparse
+import os
+import xmlrpc.client
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+from ..errors import InputError, Issue, error, warning
+from ..objects.listing import parse_objects
+from ..objects.selection import parse_groups
+from ..objects.yaml_source import read_yaml
+from . import object_client as client
+from .object_documents import package_finder
+
+NAME = "upload_objects.py"
+LOCATIONS = "object_locations.yaml"
+GROUPS = "object_groups.yaml"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = argparse.ArgumentParser(
+        prog=NAME, description="Load config/WORLD_NAME/object_locations.yaml to /objects and "
+        "object_groups.yaml to /object_groups; what was there before is dropped.",
+        epilog="Exit code: 0 when all went well (a world without a list is a warning), 1 when "
+        "something failed, 2 for a wrong command line.")
+    made.add_argument("--world", default="", metavar="NAME",
+                      help="the world's name or its file (default: the world that runs now)")
+    made.add_argument("--package", default="my_simulations", metavar="PKG",
+                      help="package whose folder 'config' holds the list (default %(default)s)")
+    client.common_options(made)
+    return made
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Runs the tool.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 when the list is loaded whole or there is none, 1 otherwise, 2 for wrong usage.
+    """
+    words, remappings = client.plain_words(argv)
+    options = parser().parse_args(words)
+    return client.run(NAME, lambda: _upload(options, remappings))
+
+
+def world_name(world: str) -> str:
+    """A world's base name, from its name or the path of its file."""
+    base = os.path.basename(world.strip())
+    root, ending = os.path.splitext(base)
+    return root if ending in (".world", ".sdf", ".xml") else base
+
+
+def transferable(tree: Mapping[Any, Any], source_where: Any) -> Tuple[Dict[str, Any], List[Issue]]:
+    """The entries of a list that the parameter server can hold.
+
+    Args:
+        tree: the entries by name.
+        source_where: from a path of keys to the place for an `Issue`.
+
+    Returns:
+        The entries that can be sent, faulty ones among them, and an error for each that cannot.
+    """
+    kept: Dict[str, Any] = {}
+    issues: List[Issue] = []
+    for name, value in tree.items():
+        try:
+            # rosparam's limits: texts as keys, no null, integers of 32 bits, no cycles.
+            xmlrpc.client.dumps(({name: value},))
+        except (TypeError, OverflowError, RecursionError, ValueError) as fault:
+            issues.append(error("not-a-parameter",
+                                f"'{name}' cannot be sent to the parameter server: {fault}",
+                                **source_where((str(name),))))
+        else:
+            kept[name] = value
+    return kept, issues
+
+
+def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
+    parameters = client.Parameters(remappings)
+    name = world_name(options.world) or _running_world(parameters, options, remappings)
+    folder = package_finder()(options.package)
+    if folder is None:
+        raise client.ToolError(f"there is no ROS package '{options.package}'; source the "
+                               "workspace that holds it, or correct --package")
+    parameters.delete(client.LIST_MARK)
+    file = os.path.join(folder, "config", name, LOCATIONS)
+    if os.path.isfile(file):
+        count, issues = _load(parameters, file, client.OBJECTS, options.package)
+        groups_file = os.path.join(folder, "config", name, GROUPS)
+        groups, more = (_load(parameters, groups_file, client.GROUPS, options.package)
+                        if os.path.isfile(groups_file) else (0, []))
+        if not groups:
+            parameters.delete(client.GROUPS)
+        issues += more
+        print(f"{NAME}: world '{name}': {count} objects, {groups} groups from "
+              f"{os.path.dirname(file)}", flush=True)
+    else:
+        parameters.delete(client.OBJECTS)
+        parameters.delete(client.GROUPS)
+        issues = [warning("no-object-list", f"the world '{name}' has no object list", file=file,
+                          hint="write one to spawn objects by name")]
+        file = ""
+    parameters.set(client.LIST_MARK, {"world": name, "file": file})
+    client.show(issues)
+    return client.FAILED if client.has_errors(issues) else client.OK
+
+
+def _running_world(parameters: client.Parameters, options: argparse.Namespace,
+                   remappings: Sequence[str]) -> str:
+    node = client.full_name(options.gazebo_namespace, remappings)
+    param = f"{node}/world_base_name"
+    return str(parameters.wait(
+        lambda: parameters.get(param), options.timeout,
+        f"the name of the running world (parameter {param})",
+        "is the simulator running? Otherwise give the world: world_name:=NAME"))
+
+
+def _load(parameters: client.Parameters, file: str, param: str, package: str
+          ) -> Tuple[int, List[Issue]]:
+    """Loads one file to a parameter tree; how many entries, and what is wrong with them.
+
+    Faulty entries are loaded as well where that is possible, so that spawning one of them says
+    what is wrong instead of not knowing it.
+    """
+    try:
+        tree, source, issues = read_yaml(file, param)
+    except InputError as fault:
+        parameters.delete(param)
+        return 0, fault.issues
+    if param == client.OBJECTS:
+        issues += parse_objects(tree, source, package).issues()
+    else:
+        issues += parse_groups(tree, source)[1]
+    if not isinstance(tree, Mapping) or not tree:
+        parameters.delete(param)
+        return 0, issues
+    kept, more = transferable(tree, source.where)
+    if kept:
+        parameters.set(param, kept)
+    else:
+        parameters.delete(param)
+    return len(kept), issues + more
