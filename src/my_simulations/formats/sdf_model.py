@@ -146,7 +146,7 @@ class _ModelReader:
             self._given_in.append((thing, frame, link.name))
 
     def _distinct(self, kind: str, items: List[Any], link: Link) -> None:
-        """Names that differ: a suffix is put to repeated ones, as one is to those that are empty."""
+        """Give a suffix to names that are repeated, and a name to what has none."""
         used: Set[str] = set()
         for item in items:
             wanted = item.name or f"{link.name}_{kind}"
@@ -156,8 +156,8 @@ class _ModelReader:
                 name = f"{wanted}_{count}"
             if name != item.name:
                 self._source.warn(
-                    "name-changed", f"{kind} {item.name!r} of link {link.name!r} is called {name!r},"
-                    " since names are unique within a link", self._elements[id(item)],
+                    "name-changed", f"{kind} {item.name!r} of link {link.name!r} is called"
+                    f" {name!r}, since names are unique within a link", self._elements[id(item)],
                 )
                 item.name = name
             used.add(name)

@@ -1,4 +1,4 @@
-"""The elements of SDF 1.7 that are simulated, as tables. Source: the SDF specification, 1.2 to 1.7."""
+"""The elements of SDF 1.7 that are simulated, as tables. Source: SDF specification, 1.2 to 1.7."""
 from __future__ import annotations
 
 from typing import Dict, Mapping

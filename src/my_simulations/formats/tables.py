@@ -149,7 +149,8 @@ def set_value(target: Any, value: Value, text: str, element: Any, name: str, sou
     Args:
         target: the object with the field.
         value: which field, and how to read it.
-        text, element: what is read, and where it stands.
+        text: what is read.
+        element: where it stands.
         name: for the issue: the tag, or `@attribute`.
         source: where faults go.
         level: what a text that cannot be read means.
@@ -164,7 +165,8 @@ def set_value(target: Any, value: Value, text: str, element: Any, name: str, sou
         parsed = value.kind.parse(text)
     except ValueError as fault:
         shown = f"attribute {name[1:]} of <{element.tag}>" if name[0] == "@" else f"<{name}>"
-        source.report(level, "bad-value", f"{shown}: {fault}", element)
+        hint = "the text is xacro; expand it with the xacro command first" if "${" in text else ""
+        source.report(level, "bad-value", f"{shown}: {fault}", element, hint)
         return False
     if value.part:
         target = getattr(target, value.part)

@@ -11,7 +11,7 @@ from .sdf_shapes import fill_material
 from .sdf_tables import COLLISION as SDF_COLLISION
 from .sdf_tables import VISUAL as SDF_VISUAL
 from .source import Level, Source
-from .tables import Value, fill, set_value, to_xml
+from .tables import Value, closest, fill, set_value, to_xml
 from .urdf_tables import (
     GAZEBO_COLLISION,
     GAZEBO_JOINT,
@@ -72,7 +72,12 @@ class Extensions:
         return self._by_reference.get(reference, []) if reference else []
 
     def _to_link(self, child: Any, body: Body) -> None:
-        tag, source, link = child.tag, self._source, body.link
+        if not self._set_values(child, body) and not self._merge(child, body):
+            self._keep(child, body)
+
+    def _set_values(self, child: Any, body: Body) -> bool:
+        """Tags with one value."""
+        tag, link = child.tag, body.link
         if tag in GAZEBO_COLLISION:
             for _, collision in body.collisions:
                 self._set(collision, GAZEBO_COLLISION[tag], child)
@@ -83,7 +88,14 @@ class Extensions:
             for _, visual in body.visuals:
                 visual.material = Material(script_name=(child.text or "").strip(),
                                            script_uris=[BUILT_IN_MATERIALS])
-        elif tag == "collision":
+        else:
+            return False
+        return True
+
+    def _merge(self, child: Any, body: Body) -> bool:
+        """Tags with SDF elements that go into what the link has."""
+        tag, source = child.tag, self._source
+        if tag == "collision":
             for _, collision in body.collisions:
                 fill(collision, child, SDF_COLLISION, source, collision.extra)
         elif tag == "visual":
@@ -95,13 +107,20 @@ class Extensions:
             for inner in child:
                 decay = _DECAY.get(inner.tag)
                 if decay is not None:
-                    self._set(link, decay, inner)
-        elif isinstance(tag, str):
-            if tag not in GAZEBO_LINK_KEPT and not _is_joint_tag(tag) and ":" not in tag:
-                source.warn("unknown-element", f"element <{tag}> is not known in <gazebo>; it is"
-                            " kept, without effect", child)
-            if not _is_joint_tag(tag):
-                link.extra.append(to_xml(child))
+                    self._set(body.link, decay, inner)
+        else:
+            return False
+        return True
+
+    def _keep(self, child: Any, body: Body) -> None:
+        tag = child.tag
+        if _is_joint_tag(tag):
+            return  # a link and a joint may share their name
+        if tag not in GAZEBO_LINK_KEPT and ":" not in tag and tag[0] != "{":
+            known = [*GAZEBO_COLLISION, *GAZEBO_LINK, *GAZEBO_LINK_KEPT, "material"]
+            self._source.warn("unknown-element", f"element <{tag}> is not known in <gazebo>; it is"
+                              " kept, without effect", child, closest(tag, known))
+        body.link.extra.append(to_xml(child))
 
     def _to_joint(self, child: Any, connection: Connection) -> None:
         tag, joint = child.tag, connection.joint

@@ -81,7 +81,8 @@ def merged(a: Optional[Inertial], b: Optional[Inertial], b_pose: Pose) -> Option
     """Two rigidly joined bodies as one, in the frame of `a`.
 
     Args:
-        a, b: None or mass 0 for no mass.
+        a: None or mass 0 for no mass.
+        b: likewise.
         b_pose: the link frame of `b` in that of `a`.
 
     Returns:

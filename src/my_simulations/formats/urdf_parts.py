@@ -94,8 +94,8 @@ def _geometry(elements: Sequence[Any], owner: Any, source: Source, collides: boo
     table, needed = GEOMETRIES[shape.tag]
     missing = [name for name in needed if not (shape.get(name) or "").strip()]
     if missing:
-        source.report(level, "attribute-missing", f"<{shape.tag}> has no {' and no '.join(missing)};"
-                      f" this {owner.tag} is left out", shape)
+        what = f"<{shape.tag}> has no {' and no '.join(missing)}"
+        source.report(level, "attribute-missing", f"{what}; this {owner.tag} is left out", shape)
         return None
     geometry: Geometry = table.of()
     if BAD in fill(geometry, shape, table, source, [], level):

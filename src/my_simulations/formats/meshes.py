@@ -1,0 +1,156 @@
+"""Mesh files: DAE, STL and OBJ as triangles in metres."""
+from __future__ import annotations
+
+import functools
+import os
+from dataclasses import replace
+from typing import Any, Callable, Dict, Iterator, List, Tuple
+
+from ..description.model import Link, Model
+from ..description.shapes import Collision, Mesh, MeshData, MeshTable, mesh_key
+from ..errors import InputError, Issue, error
+from .mesh_collada import read_collada
+from .mesh_part import MeshFault, MeshPart
+from .mesh_plain import read_obj, read_stl
+from .tables import closest
+
+_READERS: Dict[str, Callable[[bytes], List[MeshPart]]] = {
+    ".dae": read_collada, ".stl": read_stl, ".stlb": read_stl, ".stla": read_stl, ".obj": read_obj,
+}
+
+
+def load_mesh(mesh: Mesh) -> MeshData:
+    """The triangles of a mesh file, with its unit and the mesh's scale, part and centring applied.
+
+    The up axis of the file is not (Gazebo behaviour). The arrays are shared between calls and
+    cannot be written to.
+
+    Raises:
+        InputError: with one issue: `mesh-not-found`, `mesh-unreadable`, `mesh-empty` (no faces, or
+            no such part) or `mesh-not-finite`.
+    """
+    try:
+        status = os.stat(mesh.path) if mesh.path else None
+    except OSError:
+        status = None
+    if status is None or not os.path.isfile(mesh.path):
+        raise _fault("mesh-not-found", f"the mesh {mesh.uri!r} was not found", mesh.path)
+    return _loaded(mesh.path, status.st_mtime_ns, status.st_size, mesh.scale, mesh.submesh,
+                   mesh.center)
+
+
+def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
+    """What the collisions of a model need, by `mesh_key`, and an error for each that cannot be had.
+
+    A collision whose mesh is not in the table cannot be simulated; `without_missing_meshes` leaves
+    such ones out. Nested models are included.
+    """
+    table: MeshTable = {}
+    issues: List[Issue] = []
+    for scope, link, collision in _collisions(model, ""):
+        mesh = collision.geometry
+        if not isinstance(mesh, Mesh) or mesh_key(mesh) in table:
+            continue
+        try:
+            table[mesh_key(mesh)] = load_mesh(mesh)
+        except InputError as fault:
+            where = f"collision {collision.name!r} of link {scope + link.name!r}"
+            issues += [replace(issue, message=f"{where}: {issue.message}")
+                       for issue in fault.issues]
+    return table, issues
+
+
+def without_missing_meshes(model: Model, table: MeshTable) -> Model:
+    """The model without the collisions whose mesh is not in `table`; the links stay."""
+
+    def usable(collision: Collision) -> bool:
+        mesh = collision.geometry
+        return not isinstance(mesh, Mesh) or mesh_key(mesh) in table
+
+    if all(usable(collision) for _, _, collision in _collisions(model, "")):
+        return model
+    links = [replace(link, collisions=[c for c in link.collisions if usable(c)])
+             for link in model.links]
+    return replace(model, links=links,
+                   models=[without_missing_meshes(inner, table) for inner in model.models])
+
+
+def _collisions(model: Model, scope: str) -> Iterator[Tuple[str, Link, Collision]]:
+    for link in model.links:
+        for collision in link.collisions:
+            yield scope, link, collision
+    for inner in model.models:
+        yield from _collisions(inner, f"{scope}{inner.name}::")
+
+
+def _fault(code: str, message: str, path: str, line: int = 0, hint: str = "") -> InputError:
+    return InputError([error(code, message, file=path, line=line, hint=hint)])
+
+
+@functools.lru_cache(maxsize=32)
+def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float], submesh: str,
+            center: bool) -> MeshData:
+    """Kept by the file's time and size, so that an object spawned again costs nothing."""
+    return _to_data(_chosen(_parts(path), submesh, path), path, scale, bool(submesh and center))
+
+
+def _parts(path: str) -> List[MeshPart]:
+    extension = os.path.splitext(path)[1].lower()
+    reader = _READERS.get(extension)
+    if reader is None:
+        raise _fault("mesh-unreadable", f"{extension or 'a file without extension'} is not a mesh"
+                     " format that is read", path, hint="use .dae, .stl or .obj")
+    try:
+        with open(path, "rb") as stream:
+            return reader(stream.read())
+    except OSError as fault:
+        raise _fault("mesh-unreadable", f"cannot be read: {fault.strerror}", path) from None
+    except MeshFault as fault:
+        raise _fault("mesh-unreadable", f"the mesh cannot be read: {fault}", path,
+                     fault.line) from None
+    except (ValueError, OverflowError) as fault:  # an attribute that should be a number
+        raise _fault("mesh-unreadable", f"the mesh cannot be read: {fault}", path) from None
+
+
+def _chosen(parts: List[MeshPart], submesh: str, path: str) -> List[MeshPart]:
+    if not submesh:
+        return parts
+    chosen = [part for part in parts if submesh in part.names]
+    if not chosen:
+        known = [name for part in parts for name in part.names]
+        raise _fault("mesh-empty", f"the mesh has no part {submesh!r}", path,
+                     hint=closest(submesh, known))
+    return chosen
+
+
+def _to_data(parts: List[MeshPart], path: str, scale: Tuple[float, float, float],
+             center: bool) -> MeshData:
+    import numpy as np
+
+    if not sum(len(part.triangles) for part in parts):
+        raise _fault("mesh-empty", "the mesh has no faces", path)
+    vertices, triangles = _joined(parts)
+    if not np.isfinite(vertices).all():
+        raise _fault("mesh-not-finite", "the mesh has vertices that are not finite numbers", path)
+    if center:
+        vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    vertices = vertices * np.array(scale)
+    if scale[0] * scale[1] * scale[2] < 0:
+        triangles = triangles[:, ::-1]  # a mirrored mesh is inside out
+    vertices = np.ascontiguousarray(vertices)
+    triangles = np.ascontiguousarray(triangles, dtype=np.int32)
+    vertices.flags.writeable = triangles.flags.writeable = False
+    return MeshData(vertices, triangles)
+
+
+def _joined(parts: List[MeshPart]) -> Tuple[Any, Any]:
+    """One array of the vertices in use, and the triangles over it."""
+    import numpy as np
+
+    vertices, triangles, first = [], [], 0
+    for part in parts:
+        used, inverse = np.unique(part.triangles, return_inverse=True)
+        vertices.append(part.vertices[used])
+        triangles.append(inverse.reshape(-1, 3) + first)
+        first += len(used)
+    return np.concatenate(vertices), np.concatenate(triangles)
