@@ -1,0 +1,144 @@
+# shellcheck shell=bash
+# Which catkin workspace this clone belongs to, and what is linked into it. Nothing here installs.
+
+# choose_workspace: sets WORKSPACE (absolute, may not exist yet) for the clone at CLONE.
+choose_workspace() {
+  if [ -n "${MY_SIMULATIONS_WS:-}" ]; then
+    WORKSPACE=$(realpath -m -- "$MY_SIMULATIONS_WS")
+    return
+  fi
+  local place
+  for place in "$CLONE_AS_CALLED" "$CLONE"; do
+    case $place in
+      */src/my_simulations)
+        WORKSPACE=${place%/src/my_simulations}
+        # ~/src is a folder of sources, not a workspace whose build belongs in the home folder.
+        [ "$WORKSPACE" = "$HOME" ] || [ -z "$WORKSPACE" ] || return 0 ;;
+    esac
+  done
+  WORKSPACE="$HOME/simulation_ws"
+}
+
+# package_name FOLDER: the name in its package.xml, or nothing.
+package_name() {
+  [ -f "$1/package.xml" ] || return 0
+  tr '\n' ' ' <"$1/package.xml" |
+    sed -n 's/<!--[^>]*-->//g; s/.*<name>[[:space:]]*\([^<[:space:]]*\)[[:space:]]*<\/name>.*/\1/p'
+}
+
+# package_folders SRC: every package in a source space, as catkin finds them.
+package_folders() {
+  [ -d "$1" ] || return 0
+  find -L "$1" -maxdepth 4 -name package.xml -printf '%h\n' 2>/dev/null | sort |
+    awk '{ for (outer in seen) if (index($0, outer "/") == 1) next; seen[$0] = 1; print }'
+}
+
+# foreign_package SRC: the folder there of a package my_simulations that is not this clone.
+foreign_package() {
+  local folder
+  while IFS= read -r folder; do
+    [ "$(package_name "$folder")" = my_simulations ] || continue
+    [ "$(realpath -- "$folder")" = "$CLONE" ] || { printf '%s\n' "$folder"; return; }
+  done < <(package_folders "$1")
+  folder="$1/my_simulations"
+  if [ -e "$folder" ] && [ "$(realpath -- "$folder")" != "$CLONE" ]; then
+    printf '%s\n' "$folder"
+  fi
+}
+
+# own_package SRC: the folder there through which catkin sees this clone, or nothing.
+own_package() {
+  local folder
+  while IFS= read -r folder; do
+    [ "$(realpath -- "$folder")" != "$CLONE" ] || { printf '%s\n' "$folder"; return; }
+  done < <(package_folders "$1")
+}
+
+# link TARGET NAME: make the symbolic link NAME, or leave it when it is right.
+link() {
+  [ "$(readlink -- "$2" || true)" = "$1" ] || ln -sfn -- "$1" "$2"
+}
+
+# others_in SRC: colon-separated package folders of a source space that do not lie in this clone.
+others_in() {
+  local folder real paths=''
+  while IFS= read -r folder; do
+    real=$(realpath -- "$folder")
+    case $real/ in "$CLONE"/*) continue ;; esac
+    paths="$paths:$folder"
+  done < <(package_folders "$1")
+  printf '%s' "${paths#:}"
+}
+
+# real_package NAME SRC...: where rospack finds NAME outside of this clone's companions.
+real_package() {
+  local name="$1" paths='' entry source_space
+  shift
+  for source_space in "$@"; do paths="$paths:$(others_in "$source_space")"; done
+  while IFS= read -r entry; do
+    case $entry/ in
+      "$WORKSPACE"/* | "$CLONE"/*) ;;
+      *) paths="$paths:$entry" ;;
+    esac
+  done < <(tr ':' '\n' <<<"${ROS_PACKAGE_PATH:-}")
+  ROS_PACKAGE_PATH="$paths" rospack find "$name" 2>/dev/null || true
+}
+
+# forget_build NAME: remove what an earlier build left of a companion that is linked no more.
+forget_build() {
+  local name="$1" devel="${BUILD_WORKSPACE:?}/devel"
+  # shellcheck disable=SC2115
+  rm -rf -- "$BUILD_WORKSPACE/build/$name" "$devel/share/$name" "$devel/lib/$name" \
+    "$devel/lib/pkgconfig/$name.pc" "$devel/include/$name" \
+    "$devel/lib/python3/dist-packages/$name" \
+    "$devel/etc/catkin/profile.d/50.my_simulations_$name.sh"
+  [ "$name" != xacro ] || rm -f -- "$devel/bin/xacro" "$devel/bin/xacro.py"
+  [ "$name" != gazebo_ros ] || rm -rf -- "$devel/lib/gazebo_ros_commands"
+}
+
+# link_companions: link each package of compat/ that rospack finds nowhere else.
+link_companions() {
+  local name target place real
+  COMPANIONS=
+  for name in gazebo_msgs gazebo_ros xacro; do
+    target="$CLONE/compat/$name"
+    place="$BUILD_WORKSPACE/src/$name"
+    real=$(real_package "$name" "$WORKSPACE/src")
+    if [ -n "$real" ] && [ "$name" = gazebo_ros ] && [ "$USE_COMPANIONS" = 1 ]; then
+      case $real/ in
+        "$BUILD_WORKSPACE"/src/*)
+          stop "gazebo_ros lies in this workspace, at $real: two packages of one name cannot." \
+            "Take that folder out of the workspace, or leave out --use-companions." ;;
+      esac
+      real=
+    fi
+    if [ -z "$real" ]; then
+      link "$target" "$place"
+      COMPANIONS="$COMPANIONS $name"
+    elif [ -L "$place" ] && [ "$(readlink -- "$place")" = "$target" ]; then
+      rm -- "$place"
+      forget_build "$name"
+    fi
+  done
+}
+
+# compose_overlay FOREIGN: a package folder in the overlay workspace, made of links: this clone,
+# with the launch, world and urdf files of FOREIGN in place of ours of the same name.
+compose_overlay() {
+  local foreign="$1" package="$BUILD_WORKSPACE/src/my_simulations" entry name kind
+  mkdir -p -- "$package"
+  find "$package" -type l -delete
+  for entry in "$CLONE"/*; do
+    name=${entry##*/}
+    case $name in
+      launch | world | urdf | build | devel | install) ;;
+      *) link "$entry" "$package/$name" ;;
+    esac
+  done
+  for kind in launch world urdf; do
+    mkdir -p -- "$package/$kind"
+    cp -rs -- "$CLONE/$kind/." "$package/$kind/"
+    [ ! -d "$foreign/$kind" ] ||
+      cp -rs --remove-destination -- "$(realpath -- "$foreign/$kind")/." "$package/$kind/"
+  done
+}
