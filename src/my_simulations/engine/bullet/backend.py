@@ -90,9 +90,9 @@ class BulletBackend:
     def configure(self, settings: PhysicsSettings) -> None:
         """Use other settings from the next step on; a changed gravity wakes everything."""
         before, self._settings = self._settings, settings
-        self._configure_bullet()
         if settings.gravity != before.gravity:
-            self._waker.everything()
+            self._waker.everything()  # first: Bullet tells only awake bodies of a new gravity
+        self._configure_bullet()
         if settings.step_size != before.step_size:
             for entry in self._models.values():
                 for body in entry.bodies:

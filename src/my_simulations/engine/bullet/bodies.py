@@ -207,23 +207,25 @@ def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
                  may_sleep: bool) -> None:
     """Gazebo's dynamics for one link: the file's inertia, no hidden damping, its surface."""
     surface = surfaces.of_link(link)
-    settings: Dict[str, object] = {
-        "lateralFriction": surfaces.friction(surface, mass == 0.0),
-        "spinningFriction": 0.0, "rollingFriction": 0.0,
-        "restitution": surfaces.restitution(surface),
-        "linearDamping": 0.0, "angularDamping": 0.0,
-        "contactProcessingThreshold": 0.0,
-        "maxJointVelocity": _FREE_JOINT_VELOCITY,
-    }
+
+    # One call each: some settings make PyBullet apply all of a call to the base (measured, 3.2.7:
+    # with maxJointVelocity, the mass of a link became that of the base and freed a fixed one).
+    def change(**settings: object) -> None:
+        pybullet.changeDynamics(uid, index, **settings)
+
     if mass > 0.0:
-        settings["mass"] = mass
-        settings["localInertiaDiagonal"] = moments
-        if may_sleep:
-            settings["activationState"] = pybullet.ACTIVATION_STATE_ENABLE_SLEEPING
-            settings["sleepThreshold"] = SLEEP_THRESHOLD
-        else:
-            settings["activationState"] = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
-    pybullet.changeDynamics(uid, index, **settings)
+        change(mass=mass, localInertiaDiagonal=moments)
+    change(lateralFriction=surfaces.friction(surface, mass == 0.0), spinningFriction=0.0,
+           rollingFriction=0.0, restitution=surfaces.restitution(surface))
+    change(contactProcessingThreshold=0.0)
+    change(linearDamping=0.0, angularDamping=0.0)
+    if index != BASE:
+        change(maxJointVelocity=_FREE_JOINT_VELOCITY)
+    if mass > 0.0 and may_sleep:
+        change(activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
+               sleepThreshold=SLEEP_THRESHOLD)
+    elif mass > 0.0:
+        change(activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
 
 
 def remove(body: Body) -> None:

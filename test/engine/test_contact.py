@@ -1,0 +1,247 @@
+"""Friction, bounces, resting and sleeping."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from conftest import Lab, ball, box, ground, slab
+from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.shapes import (Box, Collision, Cylinder, Mesh, MeshData, Sphere,
+                                               Surface, mesh_key)
+from my_simulations.engine.api import FOREVER, AddLoads, Load, SetModelState
+from my_simulations.geometry import Pose, Twist, quat_from_rpy
+
+G = 9.8
+
+
+@pytest.mark.parametrize("mu", [0.3, 0.5, 1.0])
+def test_a_sliding_box_stops_after_v2_over_2_mu_g(lab: Lab, mu: float):
+    lab.load(ground(100.0))
+    # Flat, so that it slides instead of tipping over.
+    flat = Model("flat", links=[Link("link", inertial=Inertial(1, Pose(), .1, 0, 0, .1, 0, .2),
+                                     collisions=[Collision("c", Box((1, 1, 0.1)),
+                                                           surface=Surface(mu=mu))])])
+    sliding = lab.load(flat, (0, 0, 0.05))
+    lab.steps(300)
+    start = lab.pose(sliding).position[0]
+    lab.push(sliding, (2, 0, 0))
+    lab.seconds(2)
+    assert lab.pose(sliding).position[0] - start == pytest.approx(4 / (2 * mu * G), rel=0.03)
+
+
+@pytest.mark.parametrize("degrees, slides", [(24.0, False), (29.0, True)])
+def test_a_box_slides_beyond_the_angle_of_friction(lab: Lab, degrees: float, slides: bool):
+    tilt = quat_from_rpy(0.0, math.radians(degrees), 0.0)  # atan 0.5 = 26.6 degrees
+    slope = slab("slope", (20, 4, 0.2))
+    slope.links[0].collisions[0].surface = Surface(mu=100.0)
+    lab.load(slope, orientation=tilt)
+    flat = Model("flat", links=[Link("link", inertial=Inertial(1, Pose(), .1, 0, 0, .1, 0, .2),
+                                     collisions=[Collision("c", Box((1, 1, 0.1)),
+                                                           surface=Surface(mu=0.5))])])
+    normal = (0.15 * math.sin(math.radians(degrees)), 0.0, 0.15 * math.cos(math.radians(degrees)))
+    on_it = lab.load(flat, normal, tilt)
+    lab.seconds(1)
+    moved = math.dist(lab.pose(on_it).position, normal)
+    assert (moved > 0.1) is slides
+
+
+@pytest.mark.parametrize("e", [1.0, 0.5])
+def test_a_bounce_rises_to_e_squared_of_the_height(lab: Lab, e: float):
+    lab.load(ground(surface=Surface(restitution=1.0, bounce_threshold=0.0)))
+    dropped = lab.load(ball(surface=Surface(restitution=e, bounce_threshold=0.0)), (0, 0, 1.5))
+    heights = []
+    for _ in range(1200):
+        lab.steps(1)
+        heights.append(lab.pose(dropped).position[2] - 0.5)
+    bottom = int(np.argmin(heights[:600]))
+    assert max(heights[bottom:]) == pytest.approx(e * e, rel=0.05)
+
+
+def test_surfaces_do_not_bounce_by_default(lab: Lab):
+    lab.load(ground())
+    dropped = lab.load(ball(surface=Surface(restitution=1.0)), (0, 0, 1.5))
+    lab.seconds(2)
+    assert lab.pose(dropped).position[2] == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_body_spawned_in_the_ground_settles_without_being_thrown(lab: Lab):
+    lab.load(ground())
+    deep = lab.load(box(), (0, 0, 0.3))
+    top = 0.0
+    for _ in range(300):
+        lab.steps(10)
+        top = max(top, lab.pose(deep).position[2])
+    assert top < 0.52
+    assert lab.pose(deep).position[2] == pytest.approx(0.5, abs=0.01)
+
+
+def test_ten_boxes_on_each_other_stand(lab: Lab):
+    lab.load(ground())
+    tower = [lab.load(box(f"b{n}"), (0, 0, 0.5 + n)) for n in range(10)]
+    lab.seconds(10)
+    for n, model in enumerate(tower):
+        assert lab.pose(model).position == pytest.approx((0, 0, 0.5 + n), abs=0.02)
+
+
+def _asleep(lab: Lab, model: int) -> bool:
+    before = lab.pose(model)
+    lab.steps(50)
+    return lab.twist(model) == Twist() and lab.pose(model) == before
+
+
+def _sleeper(lab: Lab) -> int:
+    lab.load(ground())
+    model = lab.load(box(), (0, 0, 0.5))
+    lab.seconds(4)
+    assert _asleep(lab, model)
+    return model
+
+
+def test_a_slow_body_is_not_frozen(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    coasting = lab.load(box())
+    lab.push(coasting, (0.15, 0, 0))
+    lab.seconds(5)
+    assert lab.pose(coasting).position[0] == pytest.approx(0.75, abs=1e-6)
+
+
+def test_a_sleeper_takes_a_commanded_velocity(lab: Lab):
+    sleeper = _sleeper(lab)
+    lab.push(sleeper, (0, 0, 3))
+    lab.steps(100)
+    assert lab.pose(sleeper).position[2] > 0.7
+
+
+def test_a_sleeper_falls_when_its_support_is_deleted(lab: Lab):
+    table = lab.load(slab("table", (2, 2, 0.5)), (0, 0, 2))
+    lower = lab.load(box("lower"), (0, 0, 2.75))
+    upper = lab.load(box("upper"), (0, 0, 3.75))
+    lab.seconds(5)
+    assert _asleep(lab, lower) and _asleep(lab, upper)
+    lab.remove(table)
+    lab.seconds(0.5)
+    assert lab.pose(lower).position[2] < 1.7
+    assert lab.pose(upper).position[2] < 2.7
+
+
+def test_a_sleeper_falls_when_its_support_is_moved_away(lab: Lab):
+    table = lab.load(slab("table", (2, 2, 0.5)), (0, 0, 2))
+    sleeper = lab.load(box(), (0, 0, 2.75))
+    lab.seconds(5)
+    assert _asleep(lab, sleeper)
+    lab.apply(SetModelState(table, Pose((10, 0, 2)), Twist()))
+    lab.seconds(0.5)
+    assert lab.pose(sleeper).position[2] < 2.0
+
+
+def test_a_sleeper_moves_when_a_static_body_is_put_into_it(lab: Lab):
+    sleeper = _sleeper(lab)
+    block = lab.load(slab("block", (1, 1, 1)), (5, 0, 0.5))
+    lab.apply(SetModelState(block, Pose((0.9, 0, 0.5)), Twist()))
+    lab.seconds(1)
+    assert lab.pose(sleeper).position[0] < -0.05
+
+
+def test_a_sleeper_answers_a_wrench(lab: Lab):
+    sleeper = _sleeper(lab)
+    lab.apply(AddLoads((Load(1, lab.rows[sleeper, "link"], lab.step, FOREVER,
+                             force=(0, 0, 20.0)),)))
+    lab.steps(500)
+    assert lab.pose(sleeper).position[2] > 0.9
+
+
+def test_a_sleeper_hit_by_a_moving_body_is_read_at_once(lab: Lab):
+    sleeper = _sleeper(lab)
+    hitter = lab.load(ball(mass=5.0), (-3, 0, 0.5))
+    lab.push(hitter, (6, 0, 0))
+    for _ in range(700):
+        lab.steps(1)
+        linear = lab.twist(sleeper).linear
+        if abs(linear[0]) > 1e-3:
+            break
+    import pybullet
+    real = pybullet.getBaseVelocity(lab.backend._rows[lab.rows[sleeper, "link"]][0].uid)[0]
+    assert real[0] != 0.0 and linear == pytest.approx(real)
+
+
+def test_a_domino_chain_of_sleepers_is_read_as_it_falls(lab: Lab):
+    import pybullet
+    lab.load(ground())
+    thin = Inertial(0.2, Pose(), 2e-3, 0, 0, 2e-3, 0, 5e-4)
+    stones = [lab.load(Model(f"d{n}", links=[Link("link", inertial=thin, collisions=[
+        Collision("c", Box((0.04, 0.2, 0.4)))])]), (0.15 * n, 0, 0.2)) for n in range(12)]
+    lab.seconds(5)
+    assert all(_asleep(lab, stone) for stone in stones)
+    lab.push(stones[0], (0.0, 0, 0), (0, 3.0, 0))
+    lab.seconds(3)
+    for stone in stones:
+        uid = lab.backend._rows[lab.rows[stone, "link"]][0].uid
+        position, turn = pybullet.getBasePositionAndOrientation(uid)
+        assert lab.pose(stone).position == pytest.approx(position, abs=1e-6)
+        assert lab.pose(stone).orientation == pytest.approx(turn, abs=1e-6)
+    assert lab.pose(stones[-1]).position[2] < 0.15
+
+
+def _cube_mesh() -> MeshData:
+    corners = np.array([[x, y, z] for x in (-.5, .5) for y in (-.5, .5) for z in (-.5, .5)])
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7],
+             [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+    return MeshData(corners, np.array(faces, dtype=np.int32))
+
+
+def test_a_moving_mesh_collides_as_its_hull(lab: Lab):
+    mesh = Mesh("cube", "/cube")
+    cube = Model("cube", links=[Link("link", inertial=Inertial(1, Pose(), 1/6, 0, 0, 1/6, 0, 1/6),
+                                     collisions=[Collision("c", mesh)])])
+    lab.load(ground())
+    falling = lab.load(cube, (0, 0, 1), meshes={mesh_key(mesh): _cube_mesh()})
+    lab.seconds(3)
+    assert lab.pose(falling).position[2] == pytest.approx(0.5, abs=2e-3)
+
+
+def test_a_static_mesh_collides_as_triangles(lab: Lab):
+    # An open tray: a ball dropped inside stays at floor height, which a hull would not allow.
+    tray = [Collision(f"c{n}", Box(size), Pose(at)) for n, (size, at) in enumerate([
+        ((2, 2, 0.1), (0, 0, 0)), ((0.1, 2, 1), (1, 0, 0.5)), ((0.1, 2, 1), (-1, 0, 0.5)),
+        ((2, 0.1, 1), (0, 1, 0.5)), ((2, 0.1, 1), (0, -1, 0.5))])]
+    cube = _cube_mesh()
+    vertices, triangles = [], []
+    for piece in tray:
+        triangles.append(cube.triangles + 8 * len(vertices))
+        vertices.append(cube.vertices * piece.geometry.size + piece.pose.position)
+    mesh = Mesh("tray", "/tray")
+    data = MeshData(np.concatenate(vertices), np.concatenate(triangles))
+    lab.load(Model("tray", static=True, links=[Link("link", collisions=[Collision("c", mesh)])]),
+             meshes={mesh_key(mesh): data})
+    dropped = lab.load(ball(radius=0.2), (0, 0, 2))
+    lab.seconds(3)
+    assert lab.pose(dropped).position[2] == pytest.approx(0.25, abs=5e-3)
+
+
+@pytest.mark.parametrize("static", [True, False])
+def test_a_link_may_have_more_collisions_than_a_bullet_compound(lab: Lab, static: bool):
+    posts = [Collision(f"c{n}", Box((0.5, 0.5, 0.2)), Pose((n, 0, 0))) for n in range(40)]
+    posts.append(Collision("round", Cylinder(0.25, 0.2), Pose((40, 0, 0))))
+    row = Model("row", static=static, links=[Link(
+        "link", inertial=Inertial(40, Pose((20, 0, 0)), 1, 0, 0, 6000, 0, 6000),
+        collisions=posts)])
+    lab.load(ground())
+    model = lab.load(row, (0, 0, 0.1))
+    probes = [lab.load(ball(f"p{n}", radius=0.1), (x, 0, 0.6)) for n, x in enumerate((0, 33, 40))]
+    lab.seconds(1.5)
+    for probe in probes:
+        assert lab.pose(probe).position[2] == pytest.approx(0.3, abs=0.01)
+    assert lab.pose(model).position[2] == pytest.approx(0.1, abs=5e-3)
+
+
+def test_links_of_one_model_do_not_collide(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = Inertial(1, Pose(), 0.1, 0, 0, 0.1, 0, 0.1)
+    pair = Model("pair", links=[
+        Link("a", Pose(), inertial, [Collision("c", Sphere(0.5))]),
+        Link("b", Pose((0.6, 0, 0)), inertial, [Collision("c", Sphere(0.5))])])
+    model = lab.load(pair)
+    lab.steps(500)
+    assert lab.pose(model, "a").position == pytest.approx((0, 0, 0), abs=1e-9)
+    assert lab.pose(model, "b").position == pytest.approx((0.6, 0, 0), abs=1e-9)

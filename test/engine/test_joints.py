@@ -1,0 +1,263 @@
+"""Articulated bodies against closed forms."""
+from __future__ import annotations
+
+import math
+
+import pytest
+from conftest import Lab, arm, box, inertial_of_box
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.engine.api import (FOREVER, AddLoads, LinkState, Load, ModelState, Refused,
+                                       SetJoints, SetLinkState, SetModelState)
+from my_simulations.geometry import IDENTITY, Pose, Twist, compose, quat_from_rpy, transform
+
+Y = (0.0, 1.0, 0.0)
+
+
+def _reference_pendulum(angle: float, inertia: float, torque: float, seconds: float) -> float:
+    """The angle after `seconds` by Runge-Kutta 4: I a'' = torque cos a."""
+    rate, h = 0.0, 1e-4
+    for _ in range(round(seconds / h)):
+        def f(a: float, w: float):
+            return w, torque * math.cos(a) / inertia
+        k1 = f(angle, rate)
+        k2 = f(angle + h / 2 * k1[0], rate + h / 2 * k1[1])
+        k3 = f(angle + h / 2 * k2[0], rate + h / 2 * k2[1])
+        k4 = f(angle + h * k3[0], rate + h * k3[1])
+        angle += h / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0])
+        rate += h / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1])
+    return angle
+
+
+def test_a_horizontal_pendulum_swings_as_a_runge_kutta_reference(lab: Lab):
+    # No hidden motor, no hidden damping, the inertia of the file.
+    model = lab.load(arm("revolute", JointAxis(Y), mass=2.0, moment=0.3))
+    lab.seconds(5)
+    expected = _reference_pendulum(0.0, 2.0 + 0.3, 2.0 * 9.8, 5.0)
+    assert lab.joint(model)[0] == pytest.approx(expected, abs=0.005)
+
+
+def test_the_link_follows_the_joint(lab: Lab):
+    model = lab.load(arm("revolute", JointAxis(Y)), (1, 2, 3), quat_from_rpy(0, 0, 0.5))
+    lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.3, 0.0),)))
+    lab.backend.read()
+    expected = compose(Pose((1, 2, 3), quat_from_rpy(0, 0, 0.5)),
+                       Pose((0, 0, 0), quat_from_rpy(0, 0.3, 0)))
+    assert lab.pose(model, "bob").position == pytest.approx(expected.position, abs=1e-12)
+    assert lab.pose(model, "bob").orientation == pytest.approx(expected.orientation, abs=1e-12)
+
+
+@pytest.mark.parametrize("damping", [0.05, 5.0, 2000.0, 1e5])
+def test_joint_damping_decays_exponentially_and_never_diverges(lab: Lab, damping: float):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(arm("revolute", JointAxis(Y, damping=damping), mass=1.0, moment=0.0 + 1e-6))
+    lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.0, 1.0),)))
+    lab.steps(100)
+    # Implicit Euler: (1 + dt d / I) ** -n, which tends to exp(-d t / I).
+    expected = (1 + 1e-3 * damping) ** -100
+    assert lab.joint(model)[1] == pytest.approx(expected, rel=0.02, abs=1e-6)
+
+
+def test_a_spring_swings_with_its_own_period(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(arm("prismatic", JointAxis((1, 0, 0), spring_stiffness=40.0), mass=10.0))
+    lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.1, 0.0),)))
+    lab.steps(round(1000 * math.pi))  # half a period: 2 pi sqrt(10 / 40) / 2 = pi / 2 twice
+    assert lab.joint(model)[0] == pytest.approx(0.1, abs=2e-3)
+
+
+@pytest.mark.parametrize("mass", [0.001, 1.0, 1000.0])
+def test_a_prismatic_limit_holds_the_weight(lab: Lab, mass: float):
+    model = lab.load(arm("prismatic", JointAxis((0, 0, 1), lower=-0.2, upper=0.1), mass=mass,
+                         moment=1e-3 * mass))
+    lab.seconds(2)
+    assert lab.joint(model)[0] == pytest.approx(-0.2, abs=1e-3)
+
+
+def test_a_revolute_limit_holds_the_weight(lab: Lab):
+    model = lab.load(arm("revolute", JointAxis(Y, lower=-1.0, upper=0.5), mass=3.0))
+    lab.seconds(3)
+    assert lab.joint(model)[0] == pytest.approx(0.5, abs=2e-3)
+
+
+def test_joint_rates_are_not_clamped(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(arm("revolute", JointAxis((0, 0, 1))))
+    lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.0, 250.0),)))
+    lab.steps(100)
+    assert lab.joint(model)[1] == pytest.approx(250.0, rel=1e-3)
+
+
+def test_joint_friction_holds_up_to_its_torque(lab: Lab):
+    holding = lab.load(arm("revolute", JointAxis(Y, friction=12.0)))   # weight 9.8 N m
+    slipping = lab.load(arm("revolute", JointAxis(Y, friction=8.0)), (0, 5, 0))
+    lab.seconds(0.5)
+    assert lab.joint(holding)[0] == pytest.approx(0.0, abs=1e-6)
+    assert lab.joint(slipping)[0] > 0.1
+
+
+def test_a_joint_effort_accelerates_by_torque_over_inertia_for_its_steps(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(arm("revolute", JointAxis((0, 0, 1)), mass=2.0, moment=0.5))
+    row = lab.joint_rows[model, "hinge"]
+    lab.apply(AddLoads((Load(1, row, 100, 200, effort=3.0), Load(2, row, 150, 200, effort=2.0))))
+    lab.steps(100)
+    assert lab.joint(model)[1] == 0.0
+    lab.steps(500)
+    assert lab.joint(model)[1] == pytest.approx((3.0 * 0.1 + 2.0 * 0.05) / 2.5, rel=1e-6)
+
+
+def test_wrenches_add_up_and_act_exactly_in_their_steps(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(box(mass=2.0))
+    row = lab.rows[model, "link"]
+    lab.apply(AddLoads((Load(1, row, 10, 20, force=(4, 0, 0)), Load(2, row, 15, 20, force=(4, 0, 0)),
+                        Load(3, row, 10, 11, torque=(0, 0, 1)))))
+    lab.steps(10)
+    assert lab.twist(model) == Twist()
+    lab.steps(50)
+    assert lab.twist(model).linear == pytest.approx((15 * 4 * 1e-3 / 2, 0, 0), abs=1e-12)
+    assert lab.twist(model).angular == pytest.approx((0, 0, 1e-3 / (2 / 6)), abs=1e-9)
+
+
+@pytest.mark.parametrize("jointed", [False, True])
+def test_wrenches_are_in_world_axes_or_in_link_axes_as_asked(lab: Lab, jointed: bool):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    turned = quat_from_rpy(0, 0, math.pi / 2)
+    inertial = inertial_of_box(1.0, 1, 1, 1, Pose((0, 0, 0), quat_from_rpy(0.3, 0, 0)))
+    model = Model("m", links=[Link("link", inertial=inertial)])
+    if jointed:
+        model.links.append(Link("tip", Pose((0, 0, 3)), inertial_of_box(1e-6, .1, .1, .1)))
+        model.joints.append(Joint("hinge", "revolute", "link", "tip", axis=JointAxis()))
+    for in_link_axes, expected in ((False, (1, 0, 0)), (True, (0, 1, 0))):
+        one = lab.load(model, (20.0 * in_link_axes, 0, 0), turned)
+        lab.steps(1)  # a body's first step has the inertia of its shape (PyBullet)
+        lab.apply(AddLoads((Load(one, lab.rows[one, "link"], lab.step, lab.step + 1,
+                                 force=(1000, 0, 0), torque=(100, 0, 0),
+                                 in_link_axes=in_link_axes),)))
+        lab.steps(1)
+        assert lab.twist(one).linear == pytest.approx(expected, abs=1e-3)
+        assert lab.twist(one).angular == pytest.approx([0.6 * v for v in expected], abs=1e-3)
+
+
+def test_a_force_off_the_centre_turns_the_body(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(box())
+    lab.steps(1)
+    lab.apply(AddLoads((Load(1, lab.rows[model, "link"], 1, 2, force=(0, 10, 0),
+                             point=(0.5, 0, 0)),)))
+    lab.steps(1)
+    assert lab.twist(model).angular == pytest.approx((0, 0, 5e-3 * 6), abs=1e-9)
+
+
+def _chain(count: int) -> Model:
+    inertial = inertial_of_box(0.1, 0.1, 0.1, 0.1)
+    return Model("chain", links=[Link(f"l{n}", Pose((0.2 * n, 0, 0)), inertial)
+                                 for n in range(count)],
+                 joints=[Joint(f"j{n}", "revolute", f"l{n}", f"l{n + 1}",
+                               axis=JointAxis((0, 0, 1))) for n in range(count - 1)])
+
+
+def test_a_chain_of_128_links_keeps_them_all(lab: Lab):
+    model = lab.load(_chain(128))
+    lab.steps(10)
+    assert lab.pose(model, "l127").position[0] == pytest.approx(0.2 * 127, abs=1e-6)
+
+
+def test_a_longer_chain_is_refused_and_leaves_nothing_behind(lab: Lab):
+    import pybullet
+    before = pybullet.getNumBodies()
+    with pytest.raises(Refused, match="129"):
+        lab.load(_chain(129))
+    assert pybullet.getNumBodies() == before
+
+
+def test_joint_frames_and_reversed_joints_keep_the_initial_poses(lab: Lab):
+    inertial = inertial_of_box(1.0, 0.3, 0.2, 0.1, Pose((0.05, 0, 0), quat_from_rpy(0.1, 0, 0)))
+    links = [Link("a", Pose((0, 0, 1), quat_from_rpy(0.2, 0, 0)), inertial),
+             Link("b", Pose((1, 0, 1), quat_from_rpy(0, 0.3, 0)), inertial),
+             Link("c", Pose((1, 1, 1), quat_from_rpy(0, 0, 0.4)), inertial)]
+    joints = [Joint("ab", "revolute", "a", "b", Pose((-0.2, 0.1, 0), quat_from_rpy(0, 0.5, 0)),
+                    JointAxis((0, 0, 1))),
+              Joint("cb", "prismatic", "c", "b", Pose((0, 0.3, 0)), JointAxis((1, 0, 0)))]
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(Model("m", links=links, joints=joints), (5, 0, 0))
+    for link in links:
+        expected = compose(Pose((5, 0, 0)), link.pose)
+        assert lab.pose(model, link.name).position == pytest.approx(expected.position, abs=1e-9)
+        assert lab.pose(model, link.name).orientation == pytest.approx(expected.orientation,
+                                                                       abs=1e-9)
+    before = compose(Pose((5, 0, 0)), links[2].pose)
+    lab.apply(SetJoints(((lab.joint_rows[model, "cb"], 0.25, 0.0),)))
+    lab.backend.read()
+    # b moves by +0.25 along its joint axis as seen from c; with a as root, c moves the other way.
+    axis_end = transform(compose(Pose((5, 0, 0)), links[1].pose), (0.25, 0.3, 0))
+    axis_start = transform(compose(Pose((5, 0, 0)), links[1].pose), (0, 0.3, 0))
+    moved = [b - (e - s) for b, e, s in zip(before.position, axis_end, axis_start)]
+    assert lab.pose(model, "c").position == pytest.approx(moved, abs=1e-9)
+
+
+def test_a_model_moves_rigidly_and_joints_keep_their_positions(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
+    model = lab.load(Model("m", links=[Link("a", inertial=inertial),
+                                       Link("b", Pose((1, 0, 0)), inertial)],
+                           joints=[Joint("hinge", "revolute", "a", "b", axis=JointAxis())]))
+    lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.7, 2.0),)))
+    lab.apply(SetModelState(model, Pose((0, 5, 0), quat_from_rpy(0, 0, 1)),
+                            Twist((1, 0, 0), (0, 0, 2))))
+    lab.backend.read()
+    assert lab.joint(model) == pytest.approx((0.7, 0.0), abs=1e-12)
+    tip = compose(Pose((0, 5, 0), quat_from_rpy(0, 0, 1)), Pose((1, 0, 0), quat_from_rpy(0, 0, .7)))
+    assert lab.pose(model, "b").position == pytest.approx(tip.position, abs=1e-9)
+    lever = (tip.position[0], tip.position[1] - 5)
+    assert lab.twist(model, "b").linear == pytest.approx((1 - 2 * lever[1], 2 * lever[0], 0),
+                                                         abs=1e-9)
+
+
+def test_setting_a_link_takes_its_articulated_body_along(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
+    model = lab.load(Model("m", links=[Link("a", inertial=inertial),
+                                       Link("b", Pose((1, 0, 0)), inertial)],
+                           joints=[Joint("hinge", "revolute", "a", "b", axis=JointAxis())]))
+    lab.apply(SetLinkState(lab.rows[model, "b"], Pose((3, 0, 0)), Twist((0, 1, 0))))
+    lab.backend.read()
+    assert lab.pose(model, "b").position == pytest.approx((3, 0, 0), abs=1e-9)
+    assert lab.pose(model, "a").position == pytest.approx((2, 0, 0), abs=1e-9)
+    assert lab.twist(model, "a").linear == pytest.approx((0, 1, 0), abs=1e-9)
+
+
+def test_a_link_joined_to_the_world_cannot_be_set(lab: Lab):
+    model = lab.load(arm("revolute", JointAxis(Y)))
+    with pytest.raises(Refused, match="joined to the world"):
+        lab.apply(SetLinkState(lab.rows[model, "bob"], IDENTITY))
+
+
+def test_a_state_is_restored_whole(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2, Pose((0.1, 0, 0)))
+    model = Model("m", links=[Link("a", inertial=inertial), Link("b", Pose((1, 0, 0)), inertial)],
+                  joints=[Joint("hinge", "revolute", "a", "b", axis=JointAxis())])
+    first = lab.load(model)
+    lab.apply(SetModelState(first, Pose((1, 2, 3), quat_from_rpy(.1, .2, .3)),
+                            Twist((1, 0, 0), (.1, .2, .3))))
+    lab.apply(SetJoints(((lab.joint_rows[first, "hinge"], 0.7, 2.0),)))
+    lab.steps(37)
+    state = ModelState(tuple(LinkState(lab.pose(first, n), lab.twist(first, n)) for n in "ab"),
+                       (lab.joint(first),))
+    lab.remove(first)
+    second = lab.load(model, state=state)
+    for n, link in enumerate("ab"):
+        assert lab.pose(second, link).position == pytest.approx(state.links[n].pose.position,
+                                                                abs=1e-9)
+        assert lab.twist(second, link).linear == pytest.approx(state.links[n].twist.linear,
+                                                               abs=1e-9)
+    assert lab.joint(second) == pytest.approx(state.joints[0], abs=1e-12)
+
+
+def test_loads_end_with_their_model(lab: Lab):
+    model = lab.load(box())
+    lab.apply(AddLoads((Load(1, lab.rows[model, "link"], 0, FOREVER, force=(1, 0, 0)),)))
+    lab.remove(model)
+    assert lab.backend._forces.idle
+    lab.steps(5)

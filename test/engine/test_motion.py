@@ -1,0 +1,97 @@
+"""Free motion against closed forms."""
+from __future__ import annotations
+
+import math
+
+import pytest
+from conftest import Lab, box
+from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.engine.api import SetModelState
+from my_simulations.geometry import Pose, Twist, quat_from_rpy, rotate
+
+
+def test_free_fall_is_the_integrators_own_formula(lab: Lab):
+    falling = lab.load(box(), (0, 0, 100))
+    lab.steps(1000)
+    # Semi-implicit Euler: z = z0 - g dt^2 n (n + 1) / 2, as ODE has it.
+    assert lab.pose(falling).position[2] == pytest.approx(100 - 9.8e-6 * 1000 * 1001 / 2, abs=1e-9)
+    assert lab.twist(falling).linear[2] == pytest.approx(-9.8, abs=1e-9)
+
+
+def test_a_projectile_keeps_its_horizontal_speed(lab: Lab):
+    thrown = lab.load(box(), (0, 0, 50))
+    lab.push(thrown, (10, -3, 5))
+    lab.steps(1000)
+    x, y, z = lab.pose(thrown).position
+    assert (x, y) == pytest.approx((10, -3), abs=1e-9)
+    assert z == pytest.approx(50 + 5 - 9.8e-6 * 1000 * 1001 / 2, abs=1e-9)
+
+
+def test_a_spin_without_torque_does_not_decay(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    top = lab.load(box())
+    lab.push(top, angular=(0, 0, 3))
+    lab.steps(5000)
+    assert lab.twist(top).angular == pytest.approx((0, 0, 3), abs=1e-9)
+
+
+def test_an_offset_centre_of_mass_travels_straight_while_the_link_circles_it(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    com = Pose((0.3, 0.1, 0.0), quat_from_rpy(0.0, 0.0, 0.4))
+    model = Model("odd", links=[Link("link", inertial=Inertial(2.0, com, 1, 0, 0, 2, 0, 2.5))])
+    odd = lab.load(model, (1, 2, 3), quat_from_rpy(0, 0, 0.7))
+    assert lab.pose(odd).position == pytest.approx((1, 2, 3))
+    assert lab.pose(odd).orientation == pytest.approx(quat_from_rpy(0, 0, 0.7))
+    lab.apply(SetModelState(odd, lab.pose(odd), Twist((0.5, 0, 0), (0, 0, 2))))
+    lab.steps(1)
+    arm = rotate(quat_from_rpy(0, 0, 0.7), com.position)
+    centre_speed = (0.5 - 2 * arm[1], 2 * arm[0], 0.0)
+    lab.steps(999)
+    expected = [1 + arm[0] + centre_speed[0], 2 + arm[1] + centre_speed[1]]
+    turned = rotate(quat_from_rpy(0, 0, 0.7 + 2.0), com.position)
+    x, y, _ = lab.pose(odd).position
+    assert (x + turned[0], y + turned[1]) == pytest.approx(expected, abs=1e-5)
+    # The twist is that of the link's origin: v - w x lever.
+    linear = lab.twist(odd).linear
+    assert linear[0] == pytest.approx(centre_speed[0] + 2 * turned[1], abs=1e-3)
+    assert linear[1] == pytest.approx(centre_speed[1] - 2 * turned[0], abs=1e-3)
+
+
+def test_setting_a_state_is_read_back_exactly_with_offset_and_tilted_inertia(lab: Lab):
+    tilted = Inertial(1.0, Pose((0.1, -0.2, 0.3), quat_from_rpy(0.3, 0.2, 0.1)),
+                      0.1, 0.01, 0.02, 0.2, 0.03, 0.25)
+    odd = lab.load(Model("odd", links=[Link("link", inertial=tilted)]))
+    pose = Pose((4, 5, 6), quat_from_rpy(0.4, -0.5, 0.6))
+    lab.apply(SetModelState(odd, pose, Twist((1, 2, 3), (0.3, 0.2, 0.1))))
+    lab.backend.read()
+    assert lab.pose(odd).position == pytest.approx(pose.position, abs=1e-12)
+    assert lab.pose(odd).orientation == pytest.approx(pose.orientation, abs=1e-12)
+    assert lab.twist(odd).linear == pytest.approx((1, 2, 3), abs=1e-12)
+    assert lab.twist(odd).angular == pytest.approx((0.3, 0.2, 0.1), abs=1e-12)
+
+
+def test_weightless_links_hang_still(lab: Lab):
+    floating = lab.load(box(gravity=False), (0, 0, 5))
+    lab.steps(2000)
+    assert lab.pose(floating).position == pytest.approx((0, 0, 5), abs=1e-9)
+
+
+def test_a_static_model_never_moves(lab: Lab):
+    from conftest import slab
+    wall = lab.load(slab("wall", (0.1, 2, 2)), (1, 0, 1))
+    thrown = lab.load(box(mass=50), (-1, 0, 1))
+    lab.push(thrown, (8, 0, 0))
+    lab.steps(1000)
+    assert lab.pose(wall) == Pose((1, 0, 1))
+    assert lab.pose(thrown).position[0] < 0.6
+
+
+def test_gravity_can_change_while_bodies_sleep(lab: Lab):
+    from conftest import ground
+    lab.load(ground())
+    resting = lab.load(box(), (0, 0, 0.5))
+    lab.seconds(4)
+    lab.configure(gravity=(0.0, 0.0, 2.0))
+    lab.steps(1000)
+    assert lab.pose(resting).position[2] == pytest.approx(0.5 + 1.0, abs=0.02)
+    assert math.isfinite(lab.twist(resting).linear[2])
