@@ -64,7 +64,8 @@ packages_of() { sed 's/#.*//; /^[[:space:]]*$/d' "$1"; }
 # missing_packages NAME...: those that dpkg does not have installed.
 missing_packages() {
   local present
-  present=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null |
+  # dpkg-query's status only says that one of the names is unknown to it.
+  present=$({ dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true; } |
     sed -n 's/^installed //p' | sort -u)
   comm -13 <(printf '%s\n' "$present") <(printf '%s\n' "$@" | sort -u)
 }

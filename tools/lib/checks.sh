@@ -1,0 +1,114 @@
+# shellcheck shell=bash
+# Running checks and tests one after the other, and counting what came of them.
+
+PASSED=0
+FAILED=0
+FAULTS=()         # the names of what failed, for the end
+MARK="$$.$(date +%s)"
+RESULTS=          # folder of the result files, set once the workspace is known
+
+# marked: the processes that a check started, told by a variable in their environment.
+marked() {
+  local file pid
+  for file in /proc/[0-9]*/environ; do
+    grep -qz "^MY_SIMULATIONS_TEST_RUN=$MARK\$" "$file" 2>/dev/null || continue
+    pid=${file#/proc/}
+    pid=${pid%/environ}
+    # A process that has ended and waits for its parent is none.
+    grep -q '^State:[[:space:]]*Z' "/proc/$pid/status" 2>/dev/null || printf '%s\n' "$pid"
+  done
+}
+
+# end_leftovers: end every process that a check started and did not end; says how many it had to.
+end_leftovers() {
+  local signal pids=() left tries
+  for signal in 0 INT TERM KILL; do
+    mapfile -t pids < <(marked)
+    left=${#pids[@]}
+    [ "$left" -gt 0 ] || return 0
+    [ "$signal" = 0 ] || printf '(ending %d processes left running: %s) ' "$left" "${pids[*]}"
+    kill -s "$signal" "${pids[@]}" 2>/dev/null || true
+    for ((tries = 0; tries < 30; tries++)); do
+      [ -n "$(marked)" ] || return 0
+      sleep 0.1
+    done
+  done
+}
+
+# attempt NAME SECONDS COMMAND...: run a check with a time limit; its output goes to a log. Returns
+# the check's status and leaves the log's path in LOG.
+attempt() {
+  local limit="$2" status=0
+  LOG="$LOGS/$1.log"
+  shift 2
+  printf '+ %s\n' "$*" >"$LOG"
+  MY_SIMULATIONS_TEST_RUN=$MARK timeout --foreground -k 20 "$limit" "$@" </dev/null 2>&1 |
+    follow "$LOG" || status=$?
+  [ "$status" -ne 124 ] || printf 'not done after %s s\n' "$limit" >>"$LOG"
+  end_leftovers
+  return "$status"
+}
+
+# judge NAME TESTS BROKEN STATUS: add to the counts and close the step. A status that no broken
+# test explains (a crash, a time limit, a check that is no test) counts as one failure.
+judge() {
+  local name="$1" tests="$2" broken="$3" status="$4"
+  if [ "$status" -ne 0 ] && [ "$broken" -eq 0 ]; then broken=1 tests=$((tests + 1)); fi
+  PASSED=$((PASSED + tests - broken))
+  FAILED=$((FAILED + broken))
+  if [ "$broken" -eq 0 ]; then
+    finish "${tests/#0/}${tests:+ }ok"
+    return
+  fi
+  FAULTS+=("$name: $broken failed, see $LOG")
+  finish "FAILED"
+  printf -- '--- the last lines of %s ---\n' "$LOG"
+  tail -n 60 "$LOG"
+  printf -- '---\n'
+}
+
+# check NAME SECONDS COMMAND...: a check that is right or wrong as a whole, and is no test.
+check() {
+  local status=0
+  begin "$1"
+  attempt "$@" || status=$?
+  judge "$1" 0 0 "$status"
+}
+
+# pytest_folder FOLDER SECONDS FILE...: the tests of the given files.
+pytest_folder() {
+  local folder="$1" limit="$2" status=0 head name results
+  name=${folder//\//-}
+  results="$RESULTS/$name.xml"
+  shift 2
+  begin "$folder"
+  attempt "$name" "$limit" env PYTHONPATH="$CLONE/src${PYTHONPATH:+:$PYTHONPATH}" \
+    "$VENV/bin/python3" -m pytest -p no:cacheprovider --junitxml="$results" "$@" || status=$?
+  head=$(grep -o '<testsuite [^>]*>' "$results" 2>/dev/null | head -n 1 || true)
+  judge "$folder" $(($(attribute tests "$head") - $(attribute skipped "$head"))) \
+    $(($(attribute errors "$head") + $(attribute failures "$head"))) "$status"
+}
+
+# attribute NAME ELEMENT: a number in an XML start tag, 0 where it is missing.
+attribute() {
+  local number
+  number=$(sed -n "s/.* $1=\"\([0-9]*\)\".*/\1/p" <<<"$2")
+  printf '%s' "${number:-0}"
+}
+
+# rostest_file FILE SECONDS: one launch file of tests, on a master of its own.
+rostest_file() {
+  local status=0 name
+  name=$(basename "$1" .test)
+  begin "rostest $name"
+  attempt "rostest-$name" "$2" env ROS_TEST_RESULTS_DIR="$RESULTS" \
+    rostest my_simulations "$(basename "$1")" || status=$?
+  judge "rostest $name" "$(summary TESTS)" $(($(summary ERRORS) + $(summary FAILURES))) "$status"
+}
+
+# summary WORD: the number behind WORD in the summary that rostest ends with, 0 without one.
+summary() {
+  local number
+  number=$(sed -n "s/^ \* $1: \([0-9]*\).*/\1/p" "$LOG" | tail -n 1)
+  printf '%s' "${number:-0}"
+}
