@@ -112,7 +112,7 @@ def _link_at(values: Sequence[float], at: int) -> "tuple[Pose, Twist]":
     )
 
 
-class _Memory:
+class Memory:
     """The mapping, as words and as doubles."""
 
     def __init__(self, fd: Optional[int]) -> None:
@@ -134,8 +134,8 @@ class _Memory:
 class RingWriter:
     """The engine's side. `fd` None keeps the ring inside this process."""
 
-    def __init__(self, fd: Optional[int] = None, memory: Optional[_Memory] = None) -> None:
-        self.memory = memory or _Memory(fd)
+    def __init__(self, fd: Optional[int] = None, memory: Optional[Memory] = None) -> None:
+        self.memory = memory or Memory(fd)
         self.words = self.memory.words
 
     def set_step(self, step: int) -> None:
@@ -167,8 +167,8 @@ class RingWriter:
 class RingReader:
     """The simulator's side; safe from any thread."""
 
-    def __init__(self, fd: Optional[int] = None, memory: Optional[_Memory] = None) -> None:
-        self.memory = memory or _Memory(fd)
+    def __init__(self, fd: Optional[int] = None, memory: Optional[Memory] = None) -> None:
+        self.memory = memory or Memory(fd)
         self.words = self.memory.words
 
     @property

@@ -1,0 +1,75 @@
+"""Which bodies a model becomes."""
+from __future__ import annotations
+
+import pytest
+from my_simulations.description.model import Joint, JointAxis, Link, Model
+from my_simulations.engine.plan import BASE, PlanError, open_joints, plan_bodies
+from my_simulations.geometry import Pose
+
+
+def model(names: str, *joints: str, static: bool = False) -> Model:
+    """`model("abc", "a>b", "world>c")`: revolute joints parent>child."""
+    made = []
+    for text in joints:
+        parent, child = text.split(">")
+        made.append(Joint(text, "revolute", parent, child, axis=JointAxis()))
+    return Model("m", static=static, joints=made,
+                 links=[Link(name, Pose((float(n), 0, 0))) for n, name in enumerate(names)])
+
+
+def shape(planned):
+    return [([link.index for link in body.links], body.fixed_base) for body in planned]
+
+
+def test_links_without_joints_are_rigid_bodies():
+    bodies = plan_bodies(model("abc"))
+    assert shape(bodies) == [([0], False), ([1], False), ([2], False)]
+    assert all(body.is_rigid for body in bodies)
+
+
+def test_joined_links_are_one_tree_from_the_link_no_joint_has_as_child():
+    assert shape(plan_bodies(model("abc", "c>a", "c>b"))) == [([2, 0, 1], False)]
+
+
+def test_a_joint_to_the_world_makes_a_fixed_base():
+    bodies = plan_bodies(model("ab", "world>a", "a>b"))
+    assert shape(bodies) == [([0, 1], True)]
+    assert bodies[0].links[0].parent == BASE and bodies[0].links[1].parent == 0
+
+
+def test_separate_trees_are_separate_bodies():
+    assert shape(plan_bodies(model("abcd", "a>b", "c>d"))) == [([0, 1], False), ([2, 3], False)]
+
+
+def test_a_static_model_is_immovable_links_whatever_its_joints():
+    assert shape(plan_bodies(model("ab", "a>b", static=True))) == [([0], False), ([1], False)]
+
+
+def test_a_loop_is_cut_and_the_open_joint_named():
+    looped = model("abc", "a>b", "b>c", "a>c")
+    bodies = plan_bodies(looped)
+    assert shape(bodies) == [([0, 1, 2], False)]
+    assert [joint.name for joint in open_joints(looped, bodies)] == ["b>c"]
+
+
+def test_a_ring_without_a_root_starts_at_the_first_link():
+    assert shape(plan_bodies(model("abc", "a>b", "b>c", "c>a"))) == [([0, 1, 2], False)]
+
+
+def test_a_child_with_two_parents_hangs_the_second_parent_on_the_reversed_joint():
+    planned = plan_bodies(model("abc", "a>c", "b>c"))
+    assert shape(planned) == [([0, 2, 1], False)]
+    assert planned[0].links[1].axis == (0.0, 0.0, 1.0)
+    assert planned[0].links[2].axis == (-0.0, -0.0, -1.0)
+
+
+@pytest.mark.parametrize("text", ["nobody>a", "a>nobody"])
+def test_a_joint_to_a_missing_link_is_an_error_that_names_it(text):
+    with pytest.raises(PlanError, match="nobody"):
+        plan_bodies(model("a", text))
+
+
+def test_unknown_joint_types_connect_nothing():
+    made = model("ab", "a>b")
+    made.joints[0].type = "ball"
+    assert shape(plan_bodies(made)) == [([0], False), ([1], False)]

@@ -1,0 +1,155 @@
+"""Pacing, horizon and commands between steps, on a backend without physics."""
+from __future__ import annotations
+
+import time
+from typing import List
+
+import pytest
+from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.engine.api import (FOREVER, Advance, Batch, Event, LoadModel, Pause,
+                                       PhysicsSettings, Ping, RemoveModel, Run, SetClock,
+                                       SetModelState, SetPhysics)
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.geometry import Pose, Twist
+
+WAIT = 10.0
+
+
+@pytest.fixture
+def engine():
+    made = InlineEngine(KinematicBackend)
+    yield made
+    made.close()
+
+
+def ask(engine, command):
+    return engine.submit(command).result(WAIT)
+
+
+def until(condition):
+    deadline = time.monotonic() + WAIT
+    while not condition():
+        assert time.monotonic() < deadline, "the condition never came true"
+        time.sleep(0.001)
+
+
+def probe(name="m"):
+    return Model(name, links=[Link("link", inertial=Inertial())])
+
+
+def load(engine, number=1, row=0, twist=None):
+    assert not ask(engine, LoadModel(number, probe(f"m{number}"), Pose(), row, 0)).error
+    if twist is not None:
+        ask(engine, SetModelState(number, Pose(), twist))
+
+
+def test_a_world_stands_still_until_it_is_run(engine):
+    assert engine.ring.step == 0 and not engine.ring.running
+    ask(engine, Run())
+    until(lambda: engine.ring.step > 5)
+    assert engine.ring.running
+
+
+def test_it_stops_exactly_at_the_horizon_and_says_so(engine):
+    events: List[Event] = []
+    engine.on_event(events.append)
+    ask(engine, SetPhysics(PhysicsSettings(rate=0.0)))
+    ask(engine, Run(1234))
+    until(lambda: events)
+    assert events[0].kind == "horizon" and events[0].step == 1234
+    assert ask(engine, Ping()).step == 1234
+    ask(engine, Run(2000))
+    until(lambda: len(events) == 2)
+    assert engine.ring.step == 2000
+
+
+def test_a_pause_stops_after_the_running_step_and_is_shown_in_the_ring(engine):
+    ask(engine, Run())
+    until(lambda: engine.ring.step > 3)
+    reply = ask(engine, Pause())
+    assert engine.ring.step == reply.step and not engine.ring.running
+    assert ask(engine, Ping()).step == reply.step
+
+
+def test_an_advance_makes_exactly_its_steps_also_while_paused(engine):
+    load(engine, twist=Twist((1.0, 0, 0)))
+    assert ask(engine, Advance(1000)).step == 1000
+    assert engine.ring.step == 1000
+    assert engine.ring.link(0)[0].position[0] == pytest.approx(1.0)
+
+
+def test_commands_work_while_paused_and_the_reply_names_a_snapshot_that_shows_them(engine):
+    load(engine)
+    reply = ask(engine, SetModelState(1, Pose((5, 0, 0)), Twist()))
+    assert engine.ring.latest >= reply.sequence
+    assert engine.ring.read(reply.sequence).link(0)[0].position == (5, 0, 0)
+
+
+def test_a_batch_is_applied_in_one_gap_and_ends_at_the_first_refusal(engine):
+    load(engine)
+    reply = ask(engine, Batch((SetModelState(1, Pose((1, 0, 0)), Twist()), RemoveModel(77),
+                               SetModelState(1, Pose((2, 0, 0)), Twist()))))
+    assert "not there" in reply.error
+    assert engine.ring.link(0)[0].position == (1, 0, 0)
+
+
+def test_real_time_is_kept_and_late_steps_are_made_up(engine):
+    ask(engine, Run())
+    until(lambda: engine.ring.step > 10)
+    first, started = engine.ring.step, time.perf_counter()
+    until(lambda: engine.ring.step > first + 200)
+    rate = (engine.ring.step - first) / (time.perf_counter() - started)
+    assert 300 < rate < 1300  # an order of magnitude: that it is paced at all
+
+
+def test_without_a_rate_it_runs_faster_than_real_time(engine):
+    ask(engine, SetPhysics(PhysicsSettings(rate=0.0)))
+    ask(engine, Run())
+    until(lambda: engine.ring.step > 20000)
+
+
+def test_a_changed_step_size_keeps_the_time_it_had(engine):
+    ask(engine, Advance(100))
+    ask(engine, SetPhysics(PhysicsSettings(step_size=0.01)))
+    ask(engine, Advance(10))
+    step, clock = engine.ring.clock()
+    assert (step, clock.sim_ns(step)) == (110, 200_000_000)
+
+
+@pytest.mark.parametrize("size", [0.0, -1.0, float("nan"), 11.0])
+def test_a_useless_step_size_is_refused(engine, size):
+    assert "step size" in ask(engine, SetPhysics(PhysicsSettings(step_size=size))).error
+    assert ask(engine, Advance(1)).step == 1
+
+
+def test_the_clock_can_be_set(engine):
+    ask(engine, SetClock(0, 0))
+    ask(engine, SetClock(5000, 5_000_000_000))
+    step, clock = engine.ring.clock()
+    assert (step, clock.sim_ns(step)) == (5000, 5_000_000_000)
+
+
+def test_states_are_published_while_bodies_move(engine):
+    load(engine, twist=Twist((1.0, 0, 0)))
+    ask(engine, Run())
+    until(lambda: engine.ring.link(0)[0].position[0] > 0.05)
+
+
+def test_the_bell_rings_for_steps_only_when_asked_to(engine):
+    from my_simulations.engine.ring import BELL
+    ask(engine, Run(FOREVER))
+    assert not engine.wait_bell(0.05)
+    engine.ring.words[BELL] = 1
+    assert engine.wait_bell(WAIT)
+
+
+def test_a_killed_engine_fails_what_it_has_not_answered(engine):
+    deaths = []
+    engine.on_death(lambda reason, commands: deaths.append((reason, commands)))
+    engine.kill()
+    assert deaths == [("the engine was killed", [])]
+    with pytest.raises(Exception, match="not running"):
+        ask(engine, Ping())
+    engine.restart()
+    assert ask(engine, Ping()).step == 0

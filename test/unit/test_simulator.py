@@ -1,0 +1,323 @@
+"""The simulator on an engine without physics."""
+from __future__ import annotations
+
+import math
+import threading
+import time
+
+import pytest
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.shapes import Box, Collision
+from my_simulations.description.world import World
+from my_simulations.engine.api import FOREVER, Load
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.errors import CommandError, EngineLost
+from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
+from my_simulations.simulator.registry import Rows, UnknownEntity, UnknownFrame
+from my_simulations.simulator.simulator import Simulator
+
+
+def box(name, links=("link",), **changes):
+    return Model(name, links=[Link(link, Pose((float(n), 0, 0)), Inertial(),
+                                   [Collision("c", Box(), Pose((0, 0, 2.0)))])
+                              for n, link in enumerate(links)], **changes)
+
+
+def arm(name):
+    made = box(name, ("base", "tip"))
+    made.joints.append(Joint("hinge", "revolute", "base", "tip", axis=JointAxis()))
+    return made
+
+
+class Case:
+    def __init__(self, *models, paused=True):
+        self.issues = []
+        self.engine = InlineEngine(KinematicBackend)
+        self.sim = Simulator(World(models=list(models)), engine_factory=lambda: self.engine,
+                             paused=paused, log=self.issues.append)
+        self.sim.start()
+
+
+@pytest.fixture
+def case():
+    made = []
+
+    def make(*models, paused=True):
+        made.append(Case(*models, paused=paused))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.sim.close()
+
+
+def close(pose, position, orientation=(0, 0, 0, 1)):
+    assert pose.position == pytest.approx(position, abs=1e-12)
+    assert pose.orientation == pytest.approx(orientation, abs=1e-12)
+
+
+def test_the_worlds_models_are_there_in_order(case):
+    sim = case(box("b"), box("a"), box("c")).sim
+    assert sim.model_names() == ["b", "a", "c"]
+
+
+def test_a_model_the_world_names_twice_is_logged_and_the_rest_loaded(case):
+    made = case(box("a"), box("a"), box("b"))
+    assert made.sim.model_names() == ["a", "b"]
+    assert [issue.code for issue in made.issues] == ["model-refused"]
+
+
+def test_a_spawned_model_is_where_it_was_asked_for(case):
+    sim = case().sim
+    sim.spawn(box("a"), Pose((1, 2, 3), (0, 0, 0, 2)))
+    close(sim.model_state("a")[0], (1, 2, 3))
+
+
+def test_a_spawn_pose_may_be_given_in_a_models_frame(case):
+    sim = case(box("base", pose=Pose((5, 0, 0), quat_from_rpy(0, 0, math.pi / 2)))).sim
+    sim.spawn(box("a"), Pose((1, 0, 0)), "base")
+    close(sim.model_state("a")[0], (5, 1, 0), quat_from_rpy(0, 0, math.pi / 2))
+
+
+@pytest.mark.parametrize("name", ["", "taken"])
+def test_an_empty_or_taken_name_is_refused(case, name):
+    sim = case(box("taken")).sim
+    with pytest.raises(CommandError):
+        sim.spawn(box(name))
+    assert sim.model_names() == ["taken"]
+
+
+def test_a_replaced_model_goes_last_and_is_never_absent(case):
+    sim = case(box("a"), box("b")).sim
+    absent = []
+    stop = threading.Event()
+
+    def watch():
+        while not stop.is_set():
+            if not sim.has_model("a"):
+                absent.append(True)
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    for n in range(50):
+        sim.spawn(box("a"), Pose((float(n), 0, 0)), replace=True)
+    stop.set()
+    watcher.join()
+    assert not absent
+    assert sim.model_names() == ["b", "a"]
+    close(sim.model_state("a")[0], (49, 0, 0))
+
+
+def test_a_deleted_model_is_gone_and_its_rows_are_used_again(case):
+    sim = case().sim
+    for _ in range(3):
+        sim.spawn(box("a"))
+        sim.delete("a")
+        assert not sim.has_model("a")
+        with pytest.raises(UnknownEntity):
+            sim.model_state("a")
+    sim.spawn(box("b"))
+    assert sim._registry.model("b").first_link_row == 0
+
+
+def test_an_unknown_name_is_answered_with_the_closest(case):
+    sim = case(box("cylinder")).sim
+    with pytest.raises(UnknownEntity, match="did you mean cylinder"):
+        sim.delete("cilinder")
+
+
+def test_links_are_found_by_scoped_and_by_plain_name(case):
+    sim = case(box("a", ("x", "y")), box("b", ("y", "z"))).sim
+    close(sim.link_state("b::y")[0], (0, 0, 0))
+    close(sim.link_state("y")[0], (1, 0, 0))   # the first in the world
+    close(sim.link_state("z")[0], (1, 0, 0))
+    with pytest.raises(UnknownEntity):
+        sim.link_state("a::z")
+
+
+def test_relative_states_turn_pose_and_velocity_difference_into_the_frame(case):
+    sim = case(box("a"), box("b")).sim
+    quarter = quat_from_rpy(0, 0, math.pi / 2)
+    sim.set_model_state("a", Pose((1, 0, 0), quarter), Twist((0, 1, 0), (0, 0, 1)))
+    sim.set_model_state("b", Pose((1, 2, 0), quarter), Twist((3, 1, 0), (0, 0, 2)))
+    pose, twist = sim.model_state("b", "a")
+    close(pose, (2, 0, 0))
+    assert twist.linear == pytest.approx((0, -3, 0))
+    assert twist.angular == pytest.approx((0, 0, 1))
+
+
+@pytest.mark.parametrize("frame", ["", "world", "map", "/map"])
+def test_the_world_frame_has_four_names(case, frame):
+    close(case(box("a", pose=Pose((1, 0, 0)))).sim.model_state("a", frame)[0], (1, 0, 0))
+
+
+def test_links_and_collisions_are_frames_and_tf_names_are_not(case):
+    sim = case(box("a", ("x", "y")), box("b")).sim
+    close(sim.model_state("b", "a::y")[0], (-1, 0, 0))
+    close(sim.model_state("b", "a::y::c")[0], (-1, 0, -2))
+    for unknown in ("/world", "base_link", "a::nothing"):
+        with pytest.raises(UnknownFrame):
+            sim.model_state("b", unknown)
+
+
+def test_an_entity_called_world_shadows_the_literal(case):
+    sim = case(box("world", pose=Pose((1, 0, 0))), box("b")).sim
+    close(sim.model_state("b", "world")[0], (-1, 0, 0))
+
+
+def test_a_model_moves_relative_to_its_own_link(case):
+    sim = case(box("a", ("x", "y"))).sim
+    for _ in range(3):
+        sim.set_model_state("a", Pose((0.1, 0, 0)), STILL, "a::x")
+    close(sim.model_state("a")[0], (0.3, 0, 0))
+    close(sim.link_state("a::y")[0], (1.3, 0, 0))
+
+
+@pytest.mark.parametrize("bad", [Pose((math.nan, 0, 0)), Pose((0, 0, 0), (0, 0, math.inf, 1))])
+def test_numbers_that_are_none_are_refused_and_nothing_moves(case, bad):
+    sim = case(box("a", pose=Pose((1, 0, 0)))).sim
+    for setter in (sim.set_model_state, sim.set_link_state):
+        with pytest.raises(CommandError, match="finite"):
+            setter("a" if setter == sim.set_model_state else "a::link", bad, STILL)
+    with pytest.raises(CommandError, match="finite"):
+        sim.set_model_state("a", IDENTITY, Twist((math.nan, 0, 0)))
+    close(sim.model_state("a")[0], (1, 0, 0))
+
+
+def test_a_zero_quaternion_is_identity(case):
+    sim = case(box("a")).sim
+    sim.set_model_state("a", Pose((1, 0, 0), (0, 0, 0, 0)), STILL)
+    close(sim.model_state("a")[0], (1, 0, 0))
+
+
+def test_a_model_without_links_is_listed_and_can_be_moved(case):
+    sim = case(Model("world_urdf", pose=Pose((1, 0, 0))), box("b")).sim
+    assert sim.model_names() == ["world_urdf", "b"]
+    sim.set_model_state("world_urdf", Pose((2, 0, 0)), STILL)
+    close(sim.model_state("world_urdf")[0], (2, 0, 0))
+    close(sim.model_state("b", "world_urdf")[0], (-2, 0, 0))
+    sim.delete("world_urdf")
+
+
+def test_states_are_parallel_lists_in_load_order(case):
+    sim = case(box("a", ("x", "y")), Model("empty"), box("b")).sim
+    states = sim.states()
+    assert states.model_names == ["a", "empty", "b"]
+    assert states.link_names == ["a::x", "a::y", "b::link"]
+    assert len(states.model_poses) == len(states.model_twists) == 3
+    assert len(states.link_poses) == len(states.link_twists) == 3
+    assert sim.states() is states
+    sim.set_model_state("b", Pose((1, 0, 0)), STILL)
+    assert sim.states() is not states
+
+
+def test_reset_world_keeps_time_and_joints(case):
+    sim = case(arm("a"), paused=True).sim
+    sim.set_joints({"hinge": 0.7})
+    sim.set_model_state("a", Pose((3, 0, 0)), Twist((1, 0, 0)))
+    sim.advance(10)
+    sim.reset_world()
+    close(sim.model_state("a")[0], (0, 0, 0))
+    assert sim.model_state("a")[1] == STILL
+    assert sim.joint_state("a::hinge")[0] == 0.7
+    assert sim.sim_ns() == 10_000_000
+
+
+def test_reset_simulation_restores_joints_and_time_and_keeps_what_was_spawned(case):
+    sim = case(arm("a"), box("gone")).sim
+    sim.spawn(box("late"), Pose((4, 0, 0)))
+    sim.delete("gone")
+    sim.set_joints({"hinge": 0.7})
+    sim.set_model_state("late", Pose((9, 9, 9)), STILL)
+    sim.add_loads([Load(0, 0, 0, FOREVER)])
+    sim.advance(10)
+    sim.reset_simulation()
+    assert sim.model_names() == ["a", "late"]
+    assert sim.joint_state("hinge") == (0.0, 0.0)
+    close(sim.model_state("late")[0], (4, 0, 0))
+    assert (sim.sim_ns(), sim.step()) == (0, 0)
+    assert not sim._loads
+
+
+def test_a_dead_engine_is_replaced_and_everything_is_as_in_the_last_snapshot(case):
+    made = case(arm("a"), box("b"))
+    sim = made.sim
+    sim.set_model_state("b", Pose((1, 2, 3), quat_from_rpy(0, 0, 1)), Twist((4, 5, 6), (7, 8, 9)))
+    sim.set_joints({"hinge": 0.5})
+    [kept] = sim.add_loads([Load(0, 0, 0, FOREVER)])
+    sim.add_loads([Load(0, 0, 0, 5)])   # over by the time of the crash
+    sim.advance(10)
+    before = sim.model_state("b"), sim.joint_state("hinge"), sim.sim_ns(), sim.step()
+    first = made.engine.backend
+    made.engine.kill()
+    sim.advance(0)
+    assert made.engine.backend is not first
+    assert (sim.model_state("b"), sim.joint_state("hinge"), sim.sim_ns(), sim.step()) == before
+    assert list(made.engine.backend.loads) == [kept]
+    assert [issue.code for issue in made.issues] == ["engine-died"]
+
+
+def test_a_restarted_world_runs_on_unless_it_was_paused(case):
+    made = case(box("a"), paused=False)
+    made.engine.kill()
+    made.sim.set_model_state("a", IDENTITY, STILL)
+    at = made.sim.step()
+    deadline = time.monotonic() + 10
+    while made.sim.step() == at:
+        assert time.monotonic() < deadline
+
+
+def test_the_command_that_killed_the_engine_fails_and_others_are_sent_again(case):
+    made = case(box("a"))
+    from my_simulations.engine import kinematic
+    blown = threading.Event()
+    original = kinematic.KinematicBackend.step
+
+    def blow_up(self, first, count):
+        if not blown.is_set() and self.models:
+            blown.set()
+            threading.Thread(target=made.engine.kill).start()
+            time.sleep(0.2)   # dies before it answers the advance
+        original(self, first, count)
+
+    kinematic.KinematicBackend.step = blow_up
+    try:
+        with pytest.raises(EngineLost, match="killed"):
+            made.sim.advance(5)
+    finally:
+        kinematic.KinematicBackend.step = original
+    made.sim.set_model_state("a", Pose((1, 0, 0)), STILL)
+    close(made.sim.model_state("a")[0], (1, 0, 0))
+
+
+def test_many_threads_may_spawn_move_and_delete_at_once(case):
+    sim = case(paused=False).sim
+    faults = []
+
+    def work(number):
+        try:
+            for turn in range(20):
+                name = f"m{number}_{turn}"
+                sim.spawn(box(name), Pose((number, turn, 0)))
+                sim.set_model_state(name, Pose((number, turn, 1)), STILL)
+                close(sim.model_state(name)[0], (number, turn, 1))
+                sim.delete(name)
+        except Exception as fault:
+            faults.append(fault)
+
+    threads = [threading.Thread(target=work, args=(n,)) for n in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert not faults
+    assert sim.model_names() == []
+
+
+def test_rows_are_handed_out_first_fit_and_merge_when_freed():
+    rows = Rows(10)
+    assert [rows.take(4), rows.take(4), rows.take(4)] == [0, 4, None]
+    rows.give(0, 4)
+    rows.give(4, 4)
+    assert rows.take(10) == 0
