@@ -1,0 +1,171 @@
+"""The engine in its own process: crashes, restarts, repeats."""
+from __future__ import annotations
+
+import hashlib
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from conftest import arm, ball, box, ground, slab
+from my_simulations.description.model import JointAxis
+from my_simulations.description.world import Physics, World
+from my_simulations.engine.api import FOREVER, Load
+from my_simulations.engine.process import ProcessEngine
+from my_simulations.errors import CommandError, EngineLost
+from my_simulations.geometry import STILL, Pose, Twist
+from my_simulations.simulator.simulator import Simulator
+
+
+@pytest.fixture
+def start():
+    made = []
+
+    def begin(*models, paused=True, physics=None):
+        issues = []
+        sim = Simulator(World(models=[ground(), *models], physics=physics or Physics()),
+                        engine_factory=ProcessEngine, paused=paused, log=issues.append)
+        sim.issues = issues
+        made.append(sim)
+        sim.start()
+        return sim
+
+    yield begin
+    for sim in made:
+        sim.close()
+
+
+def kill(sim: Simulator) -> int:
+    pid = sim.engine_pid
+    os.kill(pid, signal.SIGKILL)
+    deadline = time.monotonic() + 20
+    while sim.engine_pid == pid or not sim._supervisor._ready.is_set():
+        assert time.monotonic() < deadline, "no new engine came"
+        time.sleep(0.005)
+    return pid
+
+
+def whole_state(sim: Simulator):
+    states = sim.states()
+    return states.model_poses, states.model_twists, states.link_poses, states.link_twists
+
+
+def test_a_killed_engine_comes_back_with_poses_twists_joints_time_and_loads(start):
+    pendulum = arm("revolute", JointAxis((0, 1, 0)))
+    sim = start(box(), ball(), pendulum)
+    sim.set_model_state("ball", Pose((3, 0, 5)), Twist((1, 2, 3), (4, 5, 6)))
+    sim.add_loads([Load(0, sim._registry.link("box::link")[0].first_link_row, 0, 400,
+                        force=(0, 0, 30.0))])
+    sim.advance(300)
+    before, joints = whole_state(sim), sim.joint_state("hinge")
+    clock = sim.sim_ns(), sim.step()
+    kill(sim)
+    for was, now in zip(before, whole_state(sim)):
+        for a, b in zip(was, now):
+            assert [v for part in b for v in part] == pytest.approx(
+                [v for part in a for v in part], abs=1e-9)
+    assert sim.joint_state("hinge") == pytest.approx(joints, abs=1e-12)
+    assert joints[1] > 1.0
+    assert (sim.sim_ns(), sim.step()) == clock
+    assert sim.issues and "SIGKILL" in sim.issues[0].message
+    # The pending 100 steps of the load still act, and no more than they.
+    speed = sim.model_state("box")[1].linear[2]
+    sim.advance(100)
+    assert sim.model_state("box")[1].linear[2] - speed == pytest.approx(0.1 * (30 - 9.8), rel=1e-6)
+    sim.advance(100)
+    assert sim.model_state("box")[1].linear[2] - speed == pytest.approx(
+        0.1 * (30 - 9.8) - 0.98, rel=1e-6)
+
+
+def test_a_running_world_goes_on_after_a_crash_and_reads_never_fail(start):
+    sim = start(ball(), paused=False)
+    sim.set_model_state("ball", Pose((0, 0, 50)), STILL)
+    pid = sim.engine_pid
+    os.kill(pid, signal.SIGKILL)
+    at, deadline = sim.step(), time.monotonic() + 20
+    while sim.engine_pid == pid or sim.step() <= at + 50:
+        assert 0.4 < sim.model_state("ball")[0].position[2] <= 50.0
+        assert time.monotonic() < deadline
+    assert sim.model_state("ball")[1].linear[2] < -0.01
+
+
+def test_a_command_that_kills_the_engine_is_answered_with_an_error(start):
+    sim = start(box(), paused=False)
+    os.kill(sim.engine_pid, signal.SIGSTOP)   # it cannot answer any more
+    pid = sim.engine_pid
+    import threading
+    threading.Timer(0.3, os.kill, (pid, signal.SIGKILL)).start()
+    with pytest.raises(EngineLost, match="SIGKILL"):
+        sim.set_model_state("box", Pose((5, 0, 0.5)), STILL)
+    assert sim.model_state("box")[0].position[0] == pytest.approx(0.0, abs=0.1)
+    sim.set_model_state("box", Pose((5, 0, 0.5)), STILL)
+    assert sim.model_state("box")[0].position[0] == pytest.approx(5.0, abs=0.1)
+
+
+def test_a_refused_model_leaves_nothing_behind(start):
+    from test_joints import _chain
+    sim = start()
+    with pytest.raises(CommandError, match="129"):
+        sim.spawn(_chain(129))
+    assert sim.model_names() == ["ground"]
+    sim.spawn(_chain(3))
+
+
+def test_a_state_that_becomes_infinite_is_put_back_and_reported(start):
+    sim = start(box())
+    sim.advance(10)
+    sim.add_loads([Load(0, sim._registry.link("box::link")[0].first_link_row, 0, FOREVER,
+                        force=(1e308, 1e308, 0.0))])
+    sim.advance(20)
+    assert all(abs(v) < 1e300 for v in sim.model_state("box")[0].position)
+    assert any(issue.code == "state-diverged" for issue in sim.issues)
+
+
+def test_the_engine_ends_with_its_parent():
+    script = ("import sys, time; sys.path.insert(0, 'src')\n"
+              "from my_simulations.engine.process import ProcessEngine\n"
+              "from my_simulations.engine.api import Ping\n"
+              "engine = ProcessEngine(); engine.submit(Ping()).result()\n"
+              "print(engine.pid, flush=True); time.sleep(60)\n")
+    parent = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,
+                              env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
+    child = int(parent.stdout.readline())
+    parent.kill()
+    parent.wait()
+    deadline = time.monotonic() + 10
+    while os.path.exists(f"/proc/{child}") and _state(child) != "Z":
+        assert time.monotonic() < deadline, "the engine outlived its parent"
+        time.sleep(0.01)
+
+
+def _state(pid: int) -> str:
+    with open(f"/proc/{pid}/stat", encoding="ascii") as stream:
+        return stream.read().rsplit(")", 1)[1].split()[0]
+
+
+def _run(sim: Simulator) -> str:
+    digest = hashlib.sha256()
+    for _ in range(40):
+        sim.advance(50)
+        digest.update(repr(whole_state(sim)).encode())
+    return digest.hexdigest()
+
+
+
+def test_the_same_world_and_commands_give_the_same_bits_in_another_process_and_after_a_reset(start):
+    def build():
+        sim = start(paused=True)
+        for n in range(9):
+            sim.spawn(box(f"b{n}"), Pose((0.03 * n, 0.0, 0.5 + n)))
+        sim.spawn(ball("hitter"), Pose((-4, 0, 3)))
+        sim.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
+        return sim
+
+    first, second = build(), build()
+    expected = _run(first)
+    assert _run(second) == expected
+    first.reset_simulation()
+    first.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
+    assert _run(first) == expected
