@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass, field
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, List, Optional, Tuple, Type
 
 FindPackage = Callable[[str], Optional[str]]
 """From a package's name to its folder, None where it is unknown."""
@@ -30,6 +30,7 @@ class PackageIndex:
 
     def __init__(self, rospack: Optional[Any] = None) -> None:
         self._rospack = rospack
+        self._unknown: Tuple[Type[Exception], ...] = (KeyError,)
 
     def find(self, name: str) -> Optional[str]:
         """The folder of package `name`, None where it is unknown or ROS is not there."""
@@ -38,7 +39,7 @@ class PackageIndex:
             return None
         try:
             return str(rospack.get_path(name))
-        except KeyError:  # rospkg.ResourceNotFound is one
+        except self._unknown:
             return None
 
     def exported(self) -> ExportedPaths:
@@ -58,6 +59,7 @@ class PackageIndex:
             except ImportError:
                 return None
             self._rospack = rospkg.RosPack()
+            self._unknown = (KeyError, rospkg.ResourceNotFound)
         return self._rospack
 
 
