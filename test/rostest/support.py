@@ -8,6 +8,7 @@ import subprocess
 import threading
 import time
 
+import rosnode
 import rospy
 import rostest
 from gazebo_msgs import srv
@@ -153,18 +154,29 @@ class Collected:
         with self._lock:
             self._messages.clear()
 
+    def sources(self):
+        """Names of the nodes it listens to."""
+        return [connection.callerid_pub for connection in self._subscriber.impl.connections]
+
     def close(self):
         self._subscriber.unregister()
 
 
-def heard_on_rosout(text, seconds=SECONDS):
-    """A function that waits until a log line holds `text`; call it after the fault."""
-    lines = Collected("/rosout_agg", Log)
-    wait_for(lambda: lines._subscriber.get_num_connections() > 0, "a connection to /rosout_agg")
+def heard_on_rosout(text, node="/gazebo"):
+    """A function that waits until a log line of `node` holds `text`; call it after the fault.
+
+    A node that runs already is listened to when this returns.
+    """
+    lines = Collected("/rosout", Log)
+    if rosnode.rosnode_ping(node, max_count=1):
+        wait_for(lambda: node in lines.sources(), "a connection to the node's log")
 
     def wait():
-        return wait_for(lambda: [line for line in lines.all() if text in line.msg],
-                        f"a log line with {text!r}", seconds)
+        found = wait_for(lambda: [line for line in lines.all()
+                                  if line.name == node and text in line.msg],
+                         f"a log line with {text!r}")
+        lines.close()
+        return found
 
     return wait
 

@@ -1,27 +1,26 @@
-"""Finding what a request names, with the words Gazebo's clients know."""
+"""Gazebo's words for names that are not in the world, with the simulator's reason behind them.
+
+Clients match the beginnings; the rest says which name it was and which ones are near.
+"""
 from __future__ import annotations
 
-import difflib
-from typing import Iterable
+from contextlib import contextmanager
+from typing import Iterator
 
-from ..description.model import Model
 from ..errors import CommandError
-from ..simulator.simulator import Simulator
+from ..simulator.registry import UnknownEntity, UnknownFrame
 
 
-def closest(name: str, known: Iterable[str]) -> str:
-    """A hint with the most similar names, "" when nothing is similar."""
-    found = difflib.get_close_matches(name, list(known), n=3, cutoff=0.5)
-    return f"; did you mean {', '.join(repr(near) for near in found)}?" if found else ""
-
-
-def require_model(simulator: Simulator, name: str) -> Model:
-    """The description of a model.
+@contextmanager
+def in_gazebos_words(entity: str, frame: str = "") -> Iterator[None]:
+    """Put `entity` or `frame` before the text of an unknown name.
 
     Raises:
-        CommandError: there is none of that name; the text starts as Gazebo's does.
+        CommandError: with the words in front.
     """
-    if not simulator.has_model(name):
-        raise CommandError(f"model does not exist: no model is named {name!r}"
-                           + closest(name, simulator.model_names()))
-    return simulator.model(name)
+    try:
+        yield
+    except UnknownEntity as fault:
+        raise CommandError(f"{entity}, {fault}") from fault
+    except UnknownFrame as fault:
+        raise CommandError(f"{frame}, {fault}" if frame else str(fault)) from fault

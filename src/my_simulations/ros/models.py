@@ -15,7 +15,7 @@ from ..simulator.simulator import Simulator
 from .convert import pose_from_message
 from .document import REPLACE_ATTRIBUTE, asks_to_replace, checked_name, named, root_of
 from .endpoints import Endpoint
-from .entities import require_model
+from .entities import in_gazebos_words
 
 
 class ModelServices:
@@ -91,7 +91,8 @@ class ModelServices:
         self._report(issues)
         if errors_of(issues):
             raise InputError(issues)
-        self._simulator.spawn(model, compose(initial, model.pose), frame, meshes, replace)
+        with in_gazebos_words("", "reference reference_frame not found"):
+            self._simulator.spawn(model, compose(initial, model.pose), frame, meshes, replace)
         warnings = f" ({len(issues)} remarks in the log)" if issues else ""
         return f"Successfully spawned entity{warnings}"
 
@@ -101,8 +102,8 @@ class ModelServices:
 
     def delete(self, request: Any, _response: Any) -> str:
         """Take a model out; it is in no list any more when this answers."""
-        require_model(self._simulator, request.model_name)
-        self._simulator.delete(request.model_name)
+        with in_gazebos_words("model does not exist"):
+            self._simulator.delete(request.model_name)
         return "successfully deleted model"
 
 

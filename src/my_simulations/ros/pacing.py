@@ -1,7 +1,7 @@
 """Which steps to publish, and how many messages a wall second may cost."""
 from __future__ import annotations
 
-from typing import Callable, List
+from typing import Callable, List, Optional, Tuple
 
 CLOCK_MESSAGES_PER_SECOND = 1000.0
 """`/clock` messages a wall second when the world runs faster than real time."""
@@ -102,26 +102,37 @@ class StepSelector:
 class StateGate:
     """Says when a state message is due: every step, or at most `rate` times a second of sim time.
 
-    A changed world (`sequence`) is always due while it does not step, so that a paused world shows
-    what was done to it; and a new listener is owed one message.
+    A world that stands still is shown whenever it is not as last shown, whatever the rate; and a
+    new listener is owed one message.
     """
 
     def __init__(self, rate: float) -> None:
-        self.period_ns = round(1e9 / rate) if rate > 0.0 else 0
+        self._period_ns = round(1e9 / rate) if rate > 0.0 else 0
         self._step = -1
-        self._sequence = -1
         self._published_ns = -(1 << 62)
+        self._shown: Optional[Tuple[int, int]] = None
 
-    def due(self, step: int, sequence: int, sim_ns: int, owed: bool) -> bool:
-        """True when a message shall go out now; it is taken as sent."""
-        stepped = step != self._step
-        if owed:
+    def due(self, step: int, sim_ns: int, owed: bool,
+            standing: Callable[[], Optional[Tuple[int, int]]]) -> bool:
+        """True when a message shall go out now.
+
+        Args:
+            step: step count now.
+            sim_ns: its sim time.
+            owed: a listener has come.
+            standing: what a world that stands still looks like (any key); None while it runs.
+        """
+        waited = sim_ns - self._published_ns
+        stepped, self._step = step != self._step, step
+        if owed or (stepped and (waited < 0 or waited >= self._period_ns)):
             found = True
-        elif stepped:
-            waited = sim_ns - self._published_ns
-            found = waited < 0 or waited >= self.period_ns
         else:
-            found = sequence != self._sequence
+            key = standing()
+            found = key is not None and key != self._shown
         if found:
-            self._step, self._sequence, self._published_ns = step, sequence, sim_ns
+            self._published_ns = sim_ns
         return found
+
+    def sent(self, shown: Tuple[int, int]) -> None:
+        """A message went out; `shown` is the key of what it shows."""
+        self._shown = shown

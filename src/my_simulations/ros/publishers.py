@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import threading
 import time
-from typing import Any, Callable
+from typing import Any, Callable, List, Optional, Tuple
 
 import rospy
 from gazebo_msgs.msg import LinkStates, ModelStates
 from rosgraph_msgs.msg import Clock
 
+from ..geometry import Pose, Twist
 from ..simulator.simulator import Simulator
 from .buffers import StatesBuffer, packed_time
 from .pacing import StateGate, StepSelector
@@ -73,8 +74,8 @@ class Channel:
 
     def __init__(self, topic: str, data_class: Any, packed_class: Any, rate: float,
                  wake: threading.Event) -> None:
-        self.gate = StateGate(rate)
-        self.buffer = StatesBuffer()
+        self._gate = StateGate(rate)
+        self._buffer = StatesBuffer()
         self._message = packed_class()
         self._owed = threading.Event()
         self._wake = wake
@@ -91,16 +92,19 @@ class Channel:
         """True while anybody listens."""
         return self.publisher.get_num_connections() > 0
 
-    def is_due(self, step: int, sequence: int, sim_ns: int) -> bool:
-        """True when a message shall go out now."""
+    def is_due(self, step: int, sim_ns: int,
+               standing: Callable[[], Optional[Tuple[int, int]]]) -> bool:
+        """True when a message shall go out now; see `StateGate.due`."""
         owed = self._owed.is_set()
         self._owed.clear()
-        return self.gate.due(step, sequence, sim_ns, owed)
+        return self._gate.due(step, sim_ns, owed, standing)
 
-    def send(self, packed: bytes) -> None:
-        """Publish a message's bytes."""
-        self._message.packed = packed
+    def send(self, revision: int, sequence: int, names: List[str], poses: List[Pose],
+             twists: List[Twist]) -> None:
+        """Publish a message; see `StatesBuffer.pack`."""
+        self._message.packed = self._buffer.pack(revision, sequence, names, poses, twists)
         self.publisher.publish(self._message)
+        self._gate.sent((revision, sequence))
 
 
 class Publishers:
@@ -167,7 +171,7 @@ class Publishers:
                     self._stop.wait(1.0)
             self._pace(began, selector.step - before, selector.step)
 
-    def _channels(self) -> "list[Channel]":
+    def _channels(self) -> List[Channel]:
         return [channel for channel in (self._models, self._links) if channel is not None]
 
     def _set_demand(self, clock_wanted: bool, states_wanted: bool) -> None:
@@ -189,24 +193,30 @@ class Publishers:
             self._simulator.wait_step(step, PAUSED_LOOK_SECONDS)
 
     def _publish(self, selector: StepSelector, states_wanted: bool) -> None:
-        ring = self._simulator.ring
-        sequence = ring.latest
-        step, clock = ring.clock()
+        step, clock = self._simulator.ring.clock()
         for nanoseconds in selector.times(step, clock.sim_ns, time.monotonic()):
             self._clock_message.packed = packed_time(nanoseconds)
             self._clock.publish(self._clock_message)
         if states_wanted:
             sim_ns = clock.sim_ns(step)
             due = [channel for channel in self._channels()
-                   if channel.wanted and channel.is_due(step, sequence, sim_ns)]
+                   if channel.wanted and channel.is_due(step, sim_ns, self._standing)]
             if due:
                 self._send_states(due)
 
-    def _send_states(self, due: "list[Channel]") -> None:
+    def _standing(self) -> Optional[Tuple[int, int]]:
+        """What a world that stands still looks like; None while it runs."""
+        if self._simulator.ring.running:
+            return None
+        states = self._simulator.states()
+        return states.revision, states.sequence
+
+    def _send_states(self, due: List[Channel]) -> None:
         states = self._simulator.states()
         for channel in due:
             if channel is self._models:
-                arrays = (states.model_names, states.model_poses, states.model_twists)
+                channel.send(states.revision, states.sequence, states.model_names,
+                             states.model_poses, states.model_twists)
             else:
-                arrays = (states.link_names, states.link_poses, states.link_twists)
-            channel.send(channel.buffer.pack(states.revision, states.sequence, *arrays))
+                channel.send(states.revision, states.sequence, states.link_names,
+                             states.link_poses, states.link_twists)

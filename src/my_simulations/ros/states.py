@@ -18,10 +18,9 @@ from .convert import (
     twist_from_message,
 )
 from .endpoints import Endpoint
-from .entities import require_model
+from .entities import in_gazebos_words
 
-WORLD_FRAMES = ("", "world", "map", "/map")
-"""The literals that mean the world frame (Gazebo); tf is never asked."""
+NO_FRAME = "specified reference frame entity does not exist"
 
 
 class _CountedResponse(srv.GetModelStateResponse):
@@ -60,24 +59,24 @@ class StateServices:
     def get_model(self, request: Any, response: Any) -> str:
         """Pose and twist of a model in a frame; `seq` counts the calls for this model (Gazebo)."""
         name, frame = request.model_name, request.relative_entity_name
-        require_model(self._simulator, name)
+        with in_gazebos_words("model does not exist"):
+            self._simulator.model(name)
         with self._lock:
             self._calls[name] += 1
             response.header.seq = self._calls[name]
         response.header.frame_id = frame
         stamp = response.header.stamp
         stamp.secs, stamp.nsecs = seconds_and_nanoseconds(self._simulator.sim_ns())
-        try:
+        with in_gazebos_words("model does not exist", "reference relative_entity_name not found"):
             pose, twist = self._simulator.model_state(name, frame)
-        except CommandError as fault:
-            raise CommandError(f"reference relative_entity_name not found, {fault}") from fault
         fill_pose(response.pose, pose)
         fill_twist(response.twist, twist)
         return "got properties"
 
     def get_link(self, request: Any, response: Any) -> str:
         """Pose and twist of a link, named scoped or not, in a frame."""
-        pose, twist = self._simulator.link_state(request.link_name, request.reference_frame)
+        with in_gazebos_words("link not found", "reference reference_frame not found"):
+            pose, twist = self._simulator.link_state(request.link_name, request.reference_frame)
         state = response.link_state
         state.link_name, state.reference_frame = request.link_name, request.reference_frame
         fill_pose(state.pose, pose)
@@ -100,9 +99,9 @@ class StateServices:
         Raises:
             CommandError: unknown model or frame, or a number that is not finite.
         """
-        require_model(self._simulator, state.model_name)
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
-        self._simulator.set_model_state(state.model_name, pose, twist, state.reference_frame)
+        with in_gazebos_words("model does not exist", NO_FRAME):
+            self._simulator.set_model_state(state.model_name, pose, twist, state.reference_frame)
 
     def move_link(self, state: Any) -> None:
         """Apply a gazebo_msgs/LinkState.
@@ -111,7 +110,8 @@ class StateServices:
             CommandError: unknown link or frame, or a number that is not finite.
         """
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
-        self._simulator.set_link_state(state.link_name, pose, twist, state.reference_frame)
+        with in_gazebos_words("link does not exist", NO_FRAME):
+            self._simulator.set_link_state(state.link_name, pose, twist, state.reference_frame)
 
     def _on_model_state(self, state: Any) -> None:
         try:

@@ -12,7 +12,7 @@ from ..errors import CommandError
 from ..simulator.simulator import Simulator
 from .convert import finite
 from .endpoints import Endpoint
-from .entities import require_model
+from .entities import in_gazebos_words
 
 SCOPE = "::"
 """Between the names of a nested model and its link."""
@@ -64,7 +64,8 @@ class WorldServices:
 
     def get_model(self, request: Any, response: Any) -> str:
         """Links, collisions and joints of a model; names unscoped, as in Gazebo."""
-        model = require_model(self._simulator, request.model_name)
+        with in_gazebos_words("model does not exist"):
+            model = self._simulator.model(request.model_name)
         links = [link for link in model.links if SCOPE not in link.name]
         response.canonical_body_name = model.canonical_link or (links[0].name if links else "")
         response.body_names = [link.name for link in links]

@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+"""How the programs start, refuse to start, and end."""
+import os
+import signal
+import socket
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import rosgraph  # noqa: E402
+import rospy  # noqa: E402
+import support  # noqa: E402
+from support import Program, executable, wait_for  # noqa: E402
+
+WORLD = '<sdf version="1.5"><world name="default">{}</world></sdf>'
+
+
+def is_alive(pid):
+    """Whether a process runs (one that ended and was not waited for does not)."""
+    try:
+        with open(f"/proc/{pid}/stat", encoding="utf-8") as stat:
+            return stat.read().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def no_master():
+    """The URI of a port where nobody listens."""
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        return f"http://127.0.0.1:{unused.getsockname()[1]}"
+
+
+class NodeLife(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gazebo = support.Gazebo()
+        cls.server = executable("gazebo_ros", "gzserver")
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def world(self, text, name="a world.world"):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def is_registered(self, node):
+        return any(node in nodes for _, nodes in
+                   rosgraph.Master("/node_life").getSystemState()[2])
+
+    def ends_well(self, number):
+        """A second server, under a name of its own, ended by a signal, with all it started."""
+        world = self.world(WORLD.format(""))
+        with Program([self.server, world, "__name:=second"]) as program:
+            pid = wait_for(lambda: rospy.get_param("/second/my_simulations/engine_pid", 0),
+                           "the second server")
+            self.assertTrue(is_alive(pid))
+            program.process.send_signal(number)
+            self.assertEqual(program.ended(), 0, program.text)
+            wait_for(lambda: not is_alive(pid), "the end of its engine")
+            self.assertFalse(self.is_registered("/second"))
+        rospy.delete_param("/second")
+
+    def test_an_interrupt_ends_it_with_its_engine(self):
+        self.ends_well(signal.SIGINT)
+
+    def test_a_termination_ends_it_with_its_engine(self):
+        self.ends_well(signal.SIGTERM)
+
+    def test_an_engine_does_not_outlive_a_killed_server(self):
+        with Program([self.server, self.world(WORLD.format("")), "__name:=second"]) as program:
+            pid = wait_for(lambda: rospy.get_param("/second/my_simulations/engine_pid", 0),
+                           "the second server")
+            program.process.kill()
+            wait_for(lambda: not is_alive(pid), "the end of its engine")
+        rospy.delete_param("/second")
+
+    def test_a_second_node_of_the_name_is_refused_and_the_first_goes_on(self):
+        with Program([self.server, "__name:=gazebo"]) as program:
+            self.assertEqual(program.ended(), 1)
+            self.assertIn("a node /gazebo already runs", program.text)
+        before = self.gazebo.sim_time()
+        wait_for(lambda: self.gazebo.sim_time() > before, "a step of the first node")
+
+    def test_a_world_with_blanks_in_its_path_is_found_and_names_the_node(self):
+        with Program([self.server, "-u", self.world(WORLD.format("")), "__name:=second"]):
+            gazebo = support.Gazebo("/second")
+            self.assertTrue(gazebo.is_paused())
+            self.assertEqual(gazebo.sim_time(), 0.0)
+            self.assertEqual(rospy.get_param("/second/world_base_name"), "a world")
+        rospy.delete_param("/second")
+
+    def assert_refused(self, *words, argument):
+        """No node comes up; the reason is on standard error and on /rosout."""
+        told = support.heard_on_rosout(words[0], node="/second")
+        with Program([self.server, argument, "__name:=second"]) as program:
+            told()
+            self.assertEqual(program.ended(), 1)
+            for word in words:
+                self.assertIn(word, program.text)
+
+    def test_a_missing_world_file_is_refused(self):
+        missing = os.path.join(self.folder, "none.world")
+        self.assert_refused(missing, argument=missing)
+
+    def test_a_world_file_that_is_cut_off_is_refused_with_its_line(self):
+        path = self.world('<sdf version="1.5">\n<world name="w">\n<model name="m">\n<link')
+        self.assert_refused(f"{path}:4", argument=path)
+
+    def test_a_file_without_a_world_is_refused(self):
+        path = self.world('<sdf version="1.5"></sdf>')
+        self.assert_refused("no <world>", path, argument=path)
+
+    def test_a_folder_is_no_world_file(self):
+        self.assert_refused(self.folder, argument=self.folder)
+
+    def test_an_unknown_model_is_told_and_the_rest_of_the_world_loads(self):
+        path = self.world(WORLD.format(
+            "<include><uri>model://no_such_model</uri></include>"
+            "<include><uri>model://ground_plane</uri></include>"))
+        told = support.heard_on_rosout("model://no_such_model", node="/second")
+        with Program([self.server, path, "__name:=second"]):
+            told()
+            self.assertEqual(support.Gazebo("/second").names(), ["ground_plane"])
+        rospy.delete_param("/second")
+
+    def test_without_a_master_it_says_so_and_can_be_ended(self):
+        uri = no_master()
+        with Program([self.server], ROS_MASTER_URI=uri) as program:
+            wait_for(lambda: uri in program.text, "a word about the master")
+            self.assertIn("roscore", program.text)
+            program.interrupt()
+            self.assertEqual(program.ended(5.0), 0, program.text)
+
+    def test_a_bad_world_is_told_without_a_master_too(self):
+        missing = os.path.join(self.folder, "none.world")
+        with Program([self.server, missing], ROS_MASTER_URI=no_master()) as program:
+            self.assertEqual(program.ended(), 1)
+            self.assertIn(missing, program.text)
+
+    def test_unknown_options_are_refused_with_the_usage(self):
+        with Program([self.server, "--no-such-option"]) as program:
+            self.assertEqual(program.ended(), 2)
+            self.assertIn("usage: gzserver", program.text)
+
+    def test_the_client_says_in_one_line_where_the_interface_is(self):
+        client = executable("gazebo_ros", "gzclient")
+        with Program([client, "--verbose", "__name:=gazebo_gui", "__log:=x.log"]) as program:
+            self.assertEqual(program.ended(), 0)
+            self.assertEqual(program.text.count("\n"), 1)
+            self.assertIn("/gazebo", program.text)
+
+    def test_gazebo_is_server_and_client_in_one(self):
+        both = executable("gazebo_ros", "gazebo")
+        with Program([both, "-u", self.world(WORLD.format("")), "__name:=second"]) as program:
+            self.assertEqual(support.Gazebo("/second").names(), [])
+            self.assertIn("gzclient", program.text)
+            program.interrupt()
+            self.assertEqual(program.ended(), 0)
+        rospy.delete_param("/second")
+
+    def test_a_node_can_live_in_a_namespace(self):
+        world = self.world(WORLD.format(""))
+        with Program([self.server, "-u", world], ROS_NAMESPACE="/deep/down"):
+            self.assertEqual(support.Gazebo("/deep/down/gazebo").names(), [])
+        rospy.delete_param("/deep")
+
+
+if __name__ == "__main__":
+    support.run("node_life")

@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""pub_clock_frequency and model_states_rate are rates of sim time."""
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import support  # noqa: E402
+from gazebo_msgs.msg import ModelStates  # noqa: E402
+from rosgraph_msgs.msg import Clock  # noqa: E402
+
+
+class ThrottledTopics(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gazebo = support.Gazebo()
+
+    def test_the_clock_ticks_at_its_frequency_also_after_a_reset(self):
+        clock = support.Collected("/clock", Clock)
+        for prepare in (lambda: None, self.gazebo.reset_simulation):
+            prepare()
+            clock.clear()
+            support.wait_for(lambda: len(clock.all()) > 50, "50 ticks")
+            heard = [message.clock.to_nsec() for message in clock.all()]
+            gaps = {b - a for a, b in zip(heard[2:], heard[3:])}
+            self.assertEqual(gaps, {10000000})
+        clock.close()
+
+    def test_states_come_at_their_rate(self):
+        clock = support.Collected("/clock", Clock)
+        states = support.Collected("/gazebo/model_states", ModelStates)
+        support.wait_for(lambda: clock.all() and states.all(), "both topics")
+        states.clear()
+        first = clock.all()[-1].clock.to_sec()
+        support.wait_for(lambda: len(states.all()) >= 50, "50 states")
+        seconds = clock.all()[-1].clock.to_sec() - first
+        self.assertAlmostEqual(seconds, 1.0, delta=0.1)
+        clock.close()
+        states.close()
+
+
+if __name__ == "__main__":
+    support.run("throttled_topics")
