@@ -6,10 +6,10 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rosgraph  # noqa: E402
-import rospy  # noqa: E402
-import rosservice  # noqa: E402
-import support  # noqa: E402
+import rosgraph
+import rospy
+import rosservice
+import support
 
 PUBLISHED = {
     "/clock": "rosgraph_msgs/Clock",

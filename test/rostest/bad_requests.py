@@ -9,11 +9,11 @@ from urllib.parse import urlparse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rosgraph  # noqa: E402
-import rospy  # noqa: E402
-import support  # noqa: E402
-from gazebo_msgs.srv import SpawnModel  # noqa: E402
-from support import box, pose, twist  # noqa: E402
+import rosgraph
+import rospy
+import support
+from gazebo_msgs.srv import SpawnModel
+from support import box, pose, twist
 
 NAN = float("nan")
 SDF = '<sdf version="1.6">{}</sdf>'

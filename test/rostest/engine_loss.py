@@ -8,9 +8,9 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rospy  # noqa: E402
-import support  # noqa: E402
-from support import pose, twist  # noqa: E402
+import rospy
+import support
+from support import pose, twist
 
 PID = "/gazebo/my_simulations/engine_pid"
 

@@ -7,10 +7,10 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rospy  # noqa: E402
-import support  # noqa: E402
-from gazebo_msgs.msg import LinkState, ModelState  # noqa: E402
-from support import numbers, pose, twist  # noqa: E402
+import rospy
+import support
+from gazebo_msgs.msg import LinkState, ModelState
+from support import numbers, pose, twist
 
 PENDULUM = """<robot name="arm">
   <link name="base"><inertial><mass value="5"/>

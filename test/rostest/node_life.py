@@ -9,10 +9,10 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rosgraph  # noqa: E402
-import rospy  # noqa: E402
-import support  # noqa: E402
-from support import Program, executable, wait_for  # noqa: E402
+import rosgraph
+import rospy
+import support
+from support import Program, executable, wait_for
 
 WORLD = '<sdf version="1.5"><world name="default">{}</world></sdf>'
 

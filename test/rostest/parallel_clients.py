@@ -7,8 +7,8 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import support  # noqa: E402
-from support import pose  # noqa: E402
+import support
+from support import pose
 
 CLIENTS, ROUNDS = 8, 15
 

@@ -8,10 +8,10 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rospy  # noqa: E402
-import support  # noqa: E402
-from gazebo_ros import gazebo_interface  # noqa: E402
-from support import Program, box, executable, pose, wait_for  # noqa: E402
+import rospy
+import support
+from gazebo_ros import gazebo_interface
+from support import Program, box, executable, pose, wait_for
 
 
 class SpawnModelProgram(unittest.TestCase):

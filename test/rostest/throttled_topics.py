@@ -6,9 +6,9 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import support  # noqa: E402
-from gazebo_msgs.msg import ModelStates  # noqa: E402
-from rosgraph_msgs.msg import Clock  # noqa: E402
+import support
+from gazebo_msgs.msg import ModelStates
+from rosgraph_msgs.msg import Clock
 
 
 class ThrottledTopics(unittest.TestCase):

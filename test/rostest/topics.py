@@ -6,11 +6,11 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rospy  # noqa: E402
-import support  # noqa: E402
-from gazebo_msgs.msg import LinkStates, ModelStates  # noqa: E402
-from rosgraph_msgs.msg import Clock  # noqa: E402
-from support import Collected, numbers, pose, twist  # noqa: E402
+import rospy
+import support
+from gazebo_msgs.msg import LinkStates, ModelStates
+from rosgraph_msgs.msg import Clock
+from support import Collected, numbers, pose, twist
 
 STEP_NS = 1000000
 

@@ -14,6 +14,7 @@ from gazebo_msgs.srv import (
     SpawnModel,
     SpawnModelRequest,
 )
+
 from my_simulations.ros.client import NotThere, api_name, service
 
 
