@@ -86,9 +86,9 @@ def target_of(options: argparse.Namespace) -> Union[Pose, Route]:
     from ..errors import error
 
     if not all(map(math.isfinite, (options.velocity, options.height, options.distance))) \
-            or options.velocity <= 0.0:
-        raise InputError([error("argument", "the velocity must be greater than 0, and every "
-                                "number finite")])
+            or options.velocity <= 0.0 or options.laps < 0:
+        raise InputError([error("argument", "the velocity must be greater than 0, laps not "
+                                "negative, and every number finite")])
 
     def given(value: Any, option: str) -> Any:
         if value is None:
@@ -161,10 +161,11 @@ def _follow(simulator: client.Simulator, options: argparse.Namespace, route: Rou
     rospy.init_node(f"move_{clean}", argv=list(remappings), anonymous=True)
     clock = _Clock(options.timeout)
     distance, last = 0.0, clock.now()
+    end = options.laps * route.length or math.inf
     blocked_since: Optional[float] = None
-    while not options.laps or distance < options.laps * route.length:
+    while distance < end:
         now = clock.tick()
-        ahead = distance + options.velocity * max(0.0, now - last)
+        ahead = min(end, distance + options.velocity * max(0.0, now - last))
         last = now
         if _blocked(simulator, route, ahead, stops, options):
             blocked_since = now if blocked_since is None or now < blocked_since else blocked_since

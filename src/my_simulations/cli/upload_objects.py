@@ -121,7 +121,7 @@ def _running_world(parameters: client.Parameters, options: argparse.Namespace,
 
 def _load(parameters: client.Parameters, file: str, param: str, package: str
           ) -> Tuple[int, List[Issue]]:
-    """Loads one file to a parameter tree; how many entries, and what is wrong with them.
+    """Loads one file to a parameter tree; how many sound entries, and what is wrong with others.
 
     Faulty entries are loaded as well where that is possible, so that spawning one of them says
     what is wrong instead of not knowing it.
@@ -132,9 +132,11 @@ def _load(parameters: client.Parameters, file: str, param: str, package: str
         parameters.delete(param)
         return 0, fault.issues
     if param == client.OBJECTS:
-        issues += parse_objects(tree, source, package).issues()
+        listing = parse_objects(tree, source, package)
+        issues, count = issues + listing.issues(), len(listing.objects)
     else:
-        issues += parse_groups(tree, source)[1]
+        groups, faults = parse_groups(tree, source)
+        issues, count = issues + faults, len(groups)
     if not isinstance(tree, Mapping) or not tree:
         parameters.delete(param)
         return 0, issues
@@ -143,4 +145,4 @@ def _load(parameters: client.Parameters, file: str, param: str, package: str
         parameters.set(param, kept)
     else:
         parameters.delete(param)
-    return len(kept), issues + more
+    return count, issues + more

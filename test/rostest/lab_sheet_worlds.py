@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Every shipped world by its launch file, with all objects of its list."""
+import glob
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import socket
+
+import object_flow_support as flow
+import support
+
+
+def free_port():
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+class Worlds(unittest.TestCase):
+    """One test for each world file, added below."""
+
+    def check(self, world):
+        port = free_port()
+        master = f"http://127.0.0.1:{port}"
+        launch = ["roslaunch", "-p", str(port), "my_simulations", f"{world}.launch", "gui:=false",
+                  "robot:=true"]
+        with support.Program(launch, ROS_MASTER_URI=master) as server:
+            support.wait_for(lambda: "robot_description: " in server.text, f"{world} to start", 60)
+            with flow.tool("spawn_object.py", "all", ROS_MASTER_URI=master) as program:
+                self.assertEqual(program.ended(60), 0, program.text)
+            self.assertIn("MY_OBJECT spawned", program.text)
+            server.interrupt()
+            self.assertEqual(server.ended(60), 0, server.text)
+        self.assertIn("robot_description: Successfully spawned", server.text)
+        self.assertNotIn("error", server.text.lower())
+        self.assertNotIn("[WARN]", server.text)
+
+
+WORLDS = [os.path.splitext(os.path.basename(path))[0] for path in
+          glob.glob(os.path.join(flow.package_file("world"), "**", "*.world"), recursive=True)]
+
+for name in WORLDS:
+    setattr(Worlds, f"test_{name}_starts_and_takes_its_objects",
+            lambda self, name=name: self.check(name))
+
+
+if __name__ == "__main__":
+    support.run("lab_sheet_worlds")
