@@ -1,0 +1,102 @@
+"""What a shell that sourced the workspace finds: commands, packages, launch files."""
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from rospkg import RosPack
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+ROBOT = REPOSITORY / "urdf" / "robo.urdf.xacro"
+
+LAUNCH = """<launch>
+  <param name="text" command="{command} '{robot}'"/>
+</launch>
+"""
+
+
+def _run(*words, **variables):
+    return subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=60, env={**os.environ, **variables})
+
+
+@pytest.mark.parametrize("command", ["xacro", "xacro.py", "$(find xacro)/xacro",
+                                     "$(find xacro)/xacro.py"])
+def test_xacro_works_in_a_launch_file_by_every_name(command, tmp_path):
+    launch = tmp_path / "robot.launch"
+    launch.write_text(LAUNCH.format(command=command, robot=ROBOT))
+    done = _run("roslaunch", "--dump-params", str(launch))
+    assert done.returncode == 0, done.stderr
+    assert "<link name=" in done.stdout
+
+
+def test_xacro_by_path_works_where_python3_is_another_one(tmp_path):
+    decoy = tmp_path / "python3"
+    decoy.write_text("#!/bin/sh\nexec /usr/bin/python3 -S \"$@\"\n")
+    decoy.chmod(0o755)
+    found = Path(RosPack().get_path("xacro")) / "xacro"
+    done = _run(str(found), str(ROBOT), PATH=f"{tmp_path}:{os.environ['PATH']}")
+    assert done.returncode == 0, done.stderr
+    assert "<link name=" in done.stdout
+
+
+def test_rosrun_finds_xacro():
+    done = _run("rosrun", "xacro", "xacro", str(ROBOT))
+    assert done.returncode == 0, done.stderr
+    assert "<link name=" in done.stdout
+
+
+def test_xacro_fails_with_a_status_on_a_missing_file():
+    assert _run("xacro", "/nowhere.urdf.xacro").returncode != 0
+
+
+@pytest.mark.parametrize("launch", sorted(
+    path.name for path in (REPOSITORY / "compat/gazebo_ros/launch").glob("*.launch")))
+def test_world_launch_file_forwards_every_argument(launch):
+    done = _run("roslaunch", "--args", "/gazebo", "gazebo_ros", launch, "paused:=true",
+                "recording:=true", "verbose:=true", "physics:=ode", "extra_gazebo_args:=--seed 7",
+                "world_name:=some.world", "gui:=false")
+    assert done.returncode == 0, done.stderr
+    words = done.stdout.split()
+    assert words[0].endswith("/gzserver")
+    assert words[1:9] == ["-u", "-r", "--verbose", "-e", "ode", "--seed", "7", "some.world"]
+
+
+def test_launch_file_sets_the_parameters_of_its_arguments():
+    done = _run("roslaunch", "--dump-params", "gazebo_ros", "empty_world.launch",
+                "use_clock_frequency:=true", "pub_clock_frequency:=50", "enable_ros_network:=false",
+                "use_sim_time:=false")
+    assert done.returncode == 0, done.stderr
+    assert "/gazebo/pub_clock_frequency: 50" in done.stdout
+    assert "/gazebo/enable_ros_network: false" in done.stdout
+    assert "/use_sim_time: false" in done.stdout
+
+
+def test_debug_starts_the_server_through_its_own_script():
+    done = _run("roslaunch", "--args", "/gazebo", "gazebo_ros", "empty_world.launch", "debug:=true")
+    assert done.stdout.split()[0].endswith("/debug")
+
+
+def test_gui_argument_decides_about_the_client_node():
+    without = _run("roslaunch", "--nodes", "gazebo_ros", "empty_world.launch", "gui:=false")
+    both = _run("roslaunch", "--nodes", "gazebo_ros", "empty_world.launch")
+    assert without.stdout.split() == ["/gazebo"]
+    assert sorted(both.stdout.split()) == ["/gazebo", "/gazebo_gui"]
+
+
+@pytest.mark.parametrize("shell", ["bash", "sh"])
+def test_own_commands_stay_behind_real_ones(shell, tmp_path):
+    real = tmp_path / "gzserver"
+    real.write_text("#!/bin/sh\n")
+    real.chmod(0o755)
+    prefix = os.environ["CMAKE_PREFIX_PATH"].split(":")[0]
+    script = f". {prefix}/setup.{shell}; . {prefix}/setup.{shell}; command -v gzserver; " \
+             "command -v gzclient; echo $PATH"
+    done = _run(shell, "-c", f"_CATKIN_SETUP_DIR={prefix}; {script}",
+                PATH=f"{tmp_path}:/usr/local/bin:/usr/bin:/bin")
+    gzserver, gzclient, path = done.stdout.split()
+    assert gzserver == str(real)
+    assert gzclient.endswith("/lib/gazebo_ros_commands/gzclient")
+    assert path.count("/gazebo_ros_commands") == 1
