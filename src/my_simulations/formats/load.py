@@ -10,15 +10,16 @@ from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
 from .sdf_include import read_include
 from .sdf_light import LightPlacement, read_light
-from .sdf_model import Placement, read_model
+from .sdf_model import Changes, Placement, read_model
 from .sdf_versions import upgrade
 from .sdf_world import read_world_element
-from .source import Log, Source
+from .source import Level, Log, Source
 from .xmltext import parse
 
 Text = Union[str, bytes]
 Entity = Union[Model, Light]
 
+_UNNAMED = "unnamed"
 _SDF_ROOTS = ("sdf", "gazebo")  # `<gazebo version="1.x">` is SDF from before it had its name
 
 
@@ -79,7 +80,8 @@ def read_entity(text: Text, resolver: Resolver,
     if root.tag == "robot":
         from .urdf import read_robot
 
-        entity: Entity = read_robot(root, source)
+        _refuse_xacro(root, source)
+        entity: Entity = read_robot(root, source, _name_if_missing(root, source))
     elif root.tag in _SDF_ROOTS:
         entity = _first_entity(root, source)
     else:
@@ -95,7 +97,7 @@ def _first_entity(root: Any, source: Source) -> Entity:
         for element in holders:
             found: Any = None
             if element.tag == "model":
-                found = read_model(element, source)
+                found = read_model(element, source, _name_if_missing(element, source))
             elif element.tag == "light":
                 found = read_light(element, source)
             elif element.tag == "include":
@@ -107,6 +109,22 @@ def _first_entity(root: Any, source: Source) -> Entity:
             if isinstance(found, LightPlacement):
                 return found.light
     raise _unusable(source, "model-missing", "the document holds no model and no light", root)
+
+
+def _name_if_missing(element: Any, source: Source) -> Changes:
+    """A spawn request brings a name of its own; a document without one will do for it."""
+    if (element.get("name") or "").strip():
+        return Changes()
+    source.warn("name-missing", f"<{element.tag}> has no name; it is called {_UNNAMED!r}", element)
+    return Changes(name=_UNNAMED)
+
+
+def _refuse_xacro(root: Any, source: Source) -> None:
+    for element in root.iter("{http://www.ros.org/wiki/xacro}*", "{http://wiki.ros.org/xacro}*",
+                             "{http://ros.org/wiki/xacro}*"):
+        source.report(Level.FATAL, "xacro-unexpanded", "the text is xacro, not URDF", element,
+                      "expand it with the xacro command first")
+        return
 
 
 def _content(path: str) -> bytes:

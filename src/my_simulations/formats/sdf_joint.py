@@ -1,16 +1,16 @@
 """SDF joints: their links, their axes, and the frames both are given in."""
 from __future__ import annotations
 
-from typing import Any, Callable, Optional
+from typing import Any, Callable, List, Optional, Tuple
 
-from ..description.model import INFINITE, WORLD, Joint, JointAxis
+from ..description.model import INFINITE, Joint, JointAxis
 from ..description.validate import JOINT_TYPES
 from ..geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
 from .sdf_frames import FrameFault
 from .sdf_tables import AXIS, AXIS2, JOINT
 from .sdf_versions import WORLD_AXES
 from .source import Level, Source
-from .tables import Found, closest, fill
+from .tables import Found, Table, closest, fill
 from .values import VECTOR3
 
 MOVED = ("revolute", "prismatic", "fixed")
@@ -20,29 +20,34 @@ PoseOf = Callable[[str], Pose]
 """From the name of a frame to its pose in the model; raises `FrameFault`."""
 
 
-def read_joint(element: Any, source: Source) -> "tuple[Joint, Found]":
+def read_joint(element: Any, source: Source) -> Tuple[Joint, Found]:
     """A joint with its pose as written; `place_axes` completes it once all frames are known.
 
     Source: SDF spec 1.7, joint.
     """
     joint = Joint(element.get("name", ""), _type(element, source), "", "")
     found = fill(joint, element, JOINT, source, joint.extra)
+    joint.axis = _axis("axis", AXIS, found, source, joint)
+    joint.axis2 = _axis("axis2", AXIS2, found, source, joint)
     if joint.type == "continuous":
         joint.type = "revolute"
-        _clear_limits = True
-    else:
-        _clear_limits = False
-    for axis in found.get("axis", ()):
-        joint.axis = JointAxis()
-        found.update({f"axis/{k}": v for k, v in
-                      fill(joint.axis, axis, AXIS, source, joint.extra).items()})
-        if _clear_limits:
+        if joint.axis is not None:
             joint.axis.lower, joint.axis.upper = -INFINITE, INFINITE
-    for axis in found.get("axis2", ()):
-        joint.axis2 = JointAxis()
-        found.update({f"axis2/{k}": v for k, v in
-                      fill(joint.axis2, axis, AXIS2, source, joint.extra).items()})
     return joint, found
+
+
+def _axis(tag: str, table: Table, found: Found, source: Source,
+          joint: Joint) -> Optional[JointAxis]:
+    """The axis without its direction, whose elements go to `found` as `<tag>/xyz`."""
+    elements = found.get(tag)
+    if not elements:
+        return None
+    axis = JointAxis()
+    kept: List[str] = []
+    inside = fill(axis, elements[0], table, source, kept)
+    joint.extra += [f"<{tag}>{xml}</{tag}>" for xml in kept]
+    found[f"{tag}/xyz"] = inside.get("xyz", [])
+    return axis
 
 
 def _type(element: Any, source: Source) -> str:
@@ -115,14 +120,12 @@ def _in_joint(vector: Vec3, expressed_in: str, joint: Joint, pose_of: PoseOf,
     return rotate(conjugate(joint.pose.orientation), in_child)
 
 
-def turned_round(joint: Joint, pose_in_parent: Pose) -> Joint:
-    """The same connection with parent and child exchanged, for a joint whose child is the world.
+def reverse_axes(joint: Joint) -> None:
+    """Turn the axes of a joint whose parent and child were exchanged.
 
-    The position keeps its sign: what turned the world against the link by an angle about the axis
-    turns the link against the world by it about the opposite axis.
+    The position keeps its sign: what turned the child against the parent by an angle about the axis
+    turns the parent against the child by it about the opposite axis.
     """
     for axis in (joint.axis, joint.axis2):
         if axis is not None:
             axis.xyz = scale(axis.xyz, -1.0)
-    joint.parent, joint.child, joint.pose = WORLD, joint.parent, pose_in_parent
-    return joint

@@ -9,7 +9,7 @@ from ..description.validate import faults, link_names
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose, inverse
 from .sdf_frames import FrameFault, FrameTree
-from .sdf_joint import place_axes, read_joint, turned_round
+from .sdf_joint import place_axes, read_joint, reverse_axes
 from .sdf_shapes import read_collision, read_visual
 from .sdf_tables import FRAME, INERTIAL, LINK, MODEL
 from .source import Level, Source
@@ -210,14 +210,18 @@ class _ModelReader:
         names = set(link_names(model))
         if joint.child not in names and not (joint.child == WORLD and joint.parent in names):
             return  # reported with the other faults of the model
-        if relative_to(found) or joint.child == WORLD:
+        if relative_to(found):
             base = self._pose_of(self._joint_base(joint), element)
             joint.pose = compose(inverse(base), self._pose_of(joint.name, element))
-        if joint.child == WORLD:
-            in_parent = compose(inverse(self._pose_of(joint.parent, element)),
-                                self._pose_of(joint.name, element))
-            turned_round(joint, in_parent)
+        turned = joint.child == WORLD
+        if turned:
+            # The description knows the world as a parent only.
+            joint.parent, joint.child = WORLD, joint.parent
+            joint.pose = compose(inverse(self._pose_of(joint.child, element)),
+                                 self._pose_of(joint.name, element))
         place_axes(joint, found, self._source, self._frames.pose, model.pose.orientation)
+        if turned:
+            reverse_axes(joint)
 
     def _check(self, model: Model) -> None:
         """The faults of the finished model, at the places they come from."""

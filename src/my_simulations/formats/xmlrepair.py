@@ -61,6 +61,7 @@ class _Balancer:
         self._parts: List[str] = []
         self._kept = 0  # everything before it is in _parts
         self._open: List[Tuple[str, int]] = []  # (name, position)
+        self._strays = 0
 
     def run(self) -> Balanced:
         text, result = self._text, self._result
@@ -98,7 +99,10 @@ class _Balancer:
             return self._end_tag(at)
         name = _NAME.match(text, at + 1)
         if name is None:
-            return at + 1  # a stray `<`; libxml2 says so
+            self._strays += 1  # libxml2 says so
+            if self._strays > _MAX_REPAIRS:
+                self._result.hopeless = f"more than {_MAX_REPAIRS} mistakes in its markup"
+            return at + 1
         return self._start_tag(name.group(), at, name.end())
 
     def _doctype_end(self, at: int) -> int:

@@ -1,0 +1,190 @@
+"""URIs become paths the way Gazebo finds them, without a network and without needless crawling."""
+import os
+
+import pytest
+from my_simulations.resources.model_config import description_in, version_of
+from my_simulations.resources.packages import ExportedPaths, PackageIndex
+from my_simulations.resources.resolver import NotFound, Resolver
+
+
+@pytest.fixture
+def tree(tmp_path):
+    for path in ("first/crate/a.dae", "second/crate/a.dae", "second/lamp/b.dae",
+                 "pkg/meshes/c.dae", "media/worlds/w.world", "media/Media/models/d.dae",
+                 "media/models/e.dae", "base/f.dae", "late/g/h.dae", "media/with space.dae"):
+        file = tmp_path / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(path)
+    return tmp_path
+
+
+@pytest.fixture
+def resolver(tree):
+    return Resolver(
+        [str(tree / "first"), str(tree / "second")], [str(tree / "media")],
+        {"pkg": str(tree / "pkg")}.get, lambda: ExportedPaths([str(tree / "late")], []))
+
+
+def found(resolver, uri, tree, base=""):
+    return os.path.relpath(resolver.resolve(uri, base), tree)
+
+
+def test_a_model_uri_is_looked_for_in_the_model_paths_in_their_order(resolver, tree):
+    assert found(resolver, "model://crate/a.dae", tree) == "first/crate/a.dae"
+    assert found(resolver, "model://lamp/b.dae", tree) == "second/lamp/b.dae"
+
+
+def test_a_model_uri_may_name_a_package(resolver, tree):
+    assert found(resolver, "model://pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
+
+
+def test_a_package_uri_is_looked_for_in_the_package_then_in_the_model_paths(resolver, tree):
+    assert found(resolver, "package://pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
+    assert found(resolver, "package://lamp/b.dae", tree) == "second/lamp/b.dae"
+
+
+def test_a_relative_path_starts_from_the_folder_of_its_file(resolver, tree):
+    assert found(resolver, "f.dae", tree, str(tree / "base")) == "base/f.dae"
+    assert found(resolver, "file://f.dae", tree, str(tree / "base")) == "base/f.dae"
+
+
+def test_a_relative_path_is_looked_for_in_the_resource_paths_and_their_media_folders(
+        resolver, tree):
+    assert found(resolver, "worlds/w.world", tree) == "media/worlds/w.world"
+    assert found(resolver, "file://d.dae", tree) == "media/Media/models/d.dae"
+    assert found(resolver, "e.dae", tree) == "media/models/e.dae"
+
+
+def test_a_relative_path_is_looked_for_in_the_working_directory(resolver, tree, monkeypatch):
+    monkeypatch.chdir(tree / "base")
+    assert found(resolver, "f.dae", tree) == "base/f.dae"
+
+
+def test_an_absolute_path_is_taken_as_it_is_then_under_the_model_paths(resolver, tree):
+    assert found(resolver, str(tree / "base/f.dae"), tree) == "base/f.dae"
+    assert found(resolver, "file://" + str(tree / "base/f.dae"), tree) == "base/f.dae"
+    assert found(resolver, "/crate/a.dae", tree) == "first/crate/a.dae"
+
+
+def test_percent_signs_of_a_file_uri_are_decoded(resolver, tree):
+    assert found(resolver, "file://with%20space.dae", tree) == "media/with space.dae"
+
+
+def test_what_is_nowhere_raises_with_every_place_tried(resolver, tree):
+    with pytest.raises(NotFound) as caught:
+        resolver.resolve("model://gone/x.dae")
+    assert caught.value.uri == "model://gone/x.dae"
+    assert caught.value.tried == [
+        str(tree / "first/gone/x.dae"), str(tree / "second/gone/x.dae"),
+        str(tree / "late/gone/x.dae"), "ROS package gone"]
+    for place in caught.value.tried:
+        assert place in str(caught.value)
+
+
+@pytest.mark.parametrize("uri", ["", "  ", "__default__", "http://example.invalid/a.dae", "model://",
+                                 "package://"])
+def test_what_names_no_file_here_raises(resolver, uri):
+    with pytest.raises(NotFound):
+        Resolver().resolve(uri)
+
+
+def test_exported_paths_are_asked_for_only_when_the_others_hold_no_answer(tree):
+    asked = []
+
+    def exported():
+        asked.append(1)
+        return ExportedPaths([str(tree / "late")], [])
+
+    resolver = Resolver([str(tree / "first")], [], lambda name: None, exported)
+    resolver.resolve("model://crate/a.dae")
+    assert asked == []
+    resolver.resolve("model://g/h.dae")
+    resolver.resolve("model://g/h.dae")
+    assert asked == [1]
+
+
+def test_the_package_finder_is_asked_for_packages_only(tree):
+    def find(name):
+        raise AssertionError(name)
+
+    resolver = Resolver([str(tree / "first")], [str(tree / "media")], find)
+    resolver.resolve("model://crate/a.dae")
+    resolver.resolve("e.dae")
+
+
+class FakeRospack:
+    def __init__(self, folders):
+        self.folders = folders
+
+    def list(self):
+        return list(self.folders)
+
+    def get_path(self, name):
+        return self.folders[name]
+
+
+def test_packages_export_model_and_media_folders(tmp_path):
+    (tmp_path / "package.xml").write_text(
+        '<package><export>\n<gazebo_ros gazebo_model_path="${prefix}/models:/elsewhere"\n'
+        " gazebo_media_path='${prefix}'/></export></package>")
+    index = PackageIndex(FakeRospack({"a": str(tmp_path), "gone": str(tmp_path / "gone")}))
+    paths = index.exported()
+    assert paths.models == [f"{tmp_path}/models", "/elsewhere"]
+    assert paths.media == [str(tmp_path)]
+
+
+def test_an_unknown_package_is_none():
+    assert PackageIndex(FakeRospack({})).find("nothing") is None
+
+
+def test_the_environment_gives_gazebos_variables_and_our_own_models(tree, monkeypatch):
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", f"{tree / 'second'}:")
+    monkeypatch.setenv("GAZEBO_RESOURCE_PATH", str(tree / "media"))
+    monkeypatch.setenv("HOME", str(tree))
+    (tree / ".gazebo/models/sun").mkdir(parents=True)
+    resolver = Resolver.from_environment()
+    assert found(resolver, "model://crate/a.dae", tree) == "second/crate/a.dae"
+    assert found(resolver, "worlds/w.world", tree) == "media/worlds/w.world"
+    assert found(resolver, "model://sun", tree) == ".gazebo/models/sun"
+    assert resolver.model_file("model://ground_plane").endswith("models/ground_plane/model.sdf")
+    assert resolver.resolve("worlds/empty.world").endswith("empty.world")
+    own = resolver.resolve("package://my_simulations/models/ground_plane/model.sdf")
+    assert own == resolver.model_file("model://ground_plane")
+
+
+def config(folder, text, name="model.config"):
+    (folder / name).write_text(text)
+
+
+def test_the_highest_version_that_is_known_is_taken(tmp_path):
+    for name in ("a.sdf", "b.sdf", "c.sdf"):
+        (tmp_path / name).write_text("")
+    config(tmp_path, "<model><sdf version='1.4'>a.sdf</sdf><sdf version='1.10'>c.sdf</sdf>"
+                     "<sdf version='1.7'>b.sdf</sdf></model>")
+    assert description_in(str(tmp_path)) == str(tmp_path / "b.sdf")
+
+
+def test_without_versions_the_first_is_taken(tmp_path):
+    for name in ("a.sdf", "b.sdf"):
+        (tmp_path / name).write_text("")
+    config(tmp_path, "<model><sdf>a.sdf</sdf><sdf>b.sdf</sdf></model>", "manifest.xml")
+    assert description_in(str(tmp_path)) == str(tmp_path / "a.sdf")
+
+
+def test_a_folder_without_config_may_hold_one_description(tmp_path):
+    assert description_in(str(tmp_path)) is None
+    (tmp_path / "only.urdf").write_text("")
+    assert description_in(str(tmp_path)) == str(tmp_path / "only.urdf")
+    config(tmp_path, "this is not XML")
+    assert description_in(str(tmp_path)) == str(tmp_path / "only.urdf")
+
+
+def test_a_folder_without_description_is_not_a_model(tmp_path):
+    (tmp_path / "thing").mkdir()
+    with pytest.raises(NotFound) as caught:
+        Resolver([str(tmp_path)]).model_file("model://thing")
+    assert str(tmp_path / "thing" / "model.config") in caught.value.tried
+
+
+def test_versions_compare_by_their_numbers():
+    assert version_of("1.10") > version_of("1.7") > version_of("")

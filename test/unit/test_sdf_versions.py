@@ -1,0 +1,114 @@
+"""What older documents mean, and newer ones."""
+import math
+
+import pytest
+from my_simulations.formats.load import read_entity
+from my_simulations.resources.resolver import Resolver
+from reading import INERTIAL, codes, errors, link_of, model_of, warnings, world_of
+
+TURNED = f'<link name="a">{INERTIAL}</link><link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose>{INERTIAL}</link>'
+
+
+def axis_of(version, axis, parent="a", joint_pose=""):
+    model, issues = model_of(
+        TURNED + f'<joint name="j" type="revolute"><parent>{parent}</parent><child>b</child>'
+        f"{joint_pose}<axis>{axis}</axis></joint>", version)
+    assert errors(issues) == []
+    return model.joints[0].axis.xyz
+
+
+def test_an_axis_of_1_4_is_in_the_model_frame_and_of_1_6_in_the_joint_frame():
+    assert axis_of("1.4", "<xyz>1 0 0</xyz>") == pytest.approx((0, -1, 0))
+    assert axis_of("1.6", "<xyz>1 0 0</xyz>") == pytest.approx((1, 0, 0))
+    assert axis_of("1.7", "<xyz>1 0 0</xyz>") == pytest.approx((1, 0, 0))
+
+
+def test_use_parent_model_frame_counts_from_1_5_on():
+    flag = "<use_parent_model_frame>{}</use_parent_model_frame>"
+    assert axis_of("1.5", "<xyz>1 0 0</xyz>" + flag.format("true")) == pytest.approx((0, -1, 0))
+    assert axis_of("1.6", "<xyz>1 0 0</xyz>" + flag.format("1")) == pytest.approx((0, -1, 0))
+    assert axis_of("1.6", "<xyz>1 0 0</xyz>" + flag.format("0")) == pytest.approx((1, 0, 0))
+
+
+def test_the_default_axis_of_1_4_is_the_models_z():
+    model, _ = model_of(
+        f'<link name="a">{INERTIAL}</link>'
+        f'<link name="b"><pose>0 0 0 1.5707963267948966 0 0</pose>{INERTIAL}</link>'
+        '<joint name="j" type="revolute"><parent>a</parent><child>b</child><axis/></joint>', "1.4")
+    assert model.joints[0].axis.xyz == pytest.approx((0, 1, 0))
+
+
+def test_an_axis_counts_the_turn_of_the_joint_too():
+    pose = "<pose>0 0 0 0 0 1.5707963267948966</pose>"
+    assert axis_of("1.4", "<xyz>1 0 0</xyz>", joint_pose=pose) == pytest.approx((-1, 0, 0))
+
+
+def test_expressed_in_names_the_frame_of_an_axis_in_1_7():
+    assert axis_of("1.7", '<xyz expressed_in="__model__">1 0 0</xyz>') == pytest.approx((0, -1, 0))
+    assert axis_of("1.7", '<xyz expressed_in="a">0 2 0</xyz>') == pytest.approx((1, 0, 0))
+
+
+def test_an_old_axis_of_a_joint_to_the_world_is_in_world_axes():
+    model, issues = model_of(
+        f'<pose>0 0 0 0 0 1.5707963267948966</pose><link name="b">{INERTIAL}</link>'
+        '<joint name="j" type="prismatic"><parent>world</parent><child>b</child>'
+        "<axis><xyz>1 0 0</xyz></axis></joint>", "1.4")
+    assert errors(issues) == []
+    assert model.joints[0].axis.xyz == pytest.approx((0, -1, 0))
+
+
+def test_gravity_inside_physics_is_the_worlds_up_to_1_5():
+    physics = '<physics type="ode"><gravity>0 0 -1.6</gravity></physics>'
+    assert world_of(physics, "1.5")[0].gravity == (0, 0, -1.6)
+    world, issues = world_of("<gravity>0 0 -1.6</gravity>", "1.6")
+    assert world.gravity == (0, 0, -1.6) and issues == []
+
+
+def test_rates_and_steps_of_1_2_have_their_new_names():
+    world, issues = world_of(
+        '<physics type="ode"><update_rate>500</update_rate><ode><solver><dt>0.002</dt>'
+        "<iters>20</iters></solver></ode></physics>", "1.2")
+    assert issues == []
+    assert world.physics.real_time_update_rate == 500
+    assert world.physics.max_step_size == 0.002
+    assert world.physics.ode.iters == 20
+
+
+def test_origin_with_a_pose_is_a_pose_in_1_2():
+    link, issues = link_of('<origin pose="1 2 3 0 0 0"/>', "1.2")
+    assert link.pose.position == (1, 2, 3) and issues == []
+
+
+def test_the_frame_of_a_pose_is_relative_to_in_1_6():
+    model, issues = model_of(
+        '<link name="a"><pose>1 0 0 0 0 0</pose></link>'
+        '<link name="b"><pose frame="a">1 0 0 0 0 0</pose></link>'
+        '<link name="c"><pose frame="">5 0 0 0 0 0</pose></link>', "1.6")
+    assert [link.pose.position[0] for link in model.links] == [1, 2, 5]
+    assert errors(issues) == []
+
+
+def test_an_old_gazebo_root_is_read_as_sdf():
+    model, _ = read_entity('<gazebo version="1.2"><model name="m"><link name="l"/></model></gazebo>',
+                           Resolver())
+    assert model.links[0].name == "l"
+
+
+def test_a_newer_version_is_read_with_one_warning():
+    _, issues = model_of('<link name="l"/>', "1.9")
+    assert codes(issues) == ["sdf-newer"]
+
+
+def test_degrees_and_quaternions_of_1_9_are_read():
+    model, issues = model_of(
+        '<link name="a"><pose degrees="true">0 0 0 0 0 90</pose></link>'
+        '<link name="b"><pose rotation_format="quat_xyzw">0 0 0 0 0 1 1</pose></link>', "1.9")
+    half = math.sqrt(0.5)
+    for link in model.links:
+        assert link.pose.orientation == pytest.approx((0, 0, half, half))
+    assert errors(issues) == []
+
+
+def test_a_missing_version_warns_and_counts_as_1_7():
+    model, issues = read_entity('<sdf><model name="m"><link name="l"/></model></sdf>', Resolver())
+    assert warnings(issues) == ["sdf-version"] and model.name == "m"
