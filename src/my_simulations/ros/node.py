@@ -60,11 +60,18 @@ class Node:
         self._subscribers = states.subscribe()
 
     def keep_up(self) -> None:
-        """Keep `~my_simulations/engine_pid` true; call it now and then."""
+        """Keep `~my_simulations/engine_pid` true; call it now and then.
+
+        A master that is away is asked again the next time.
+        """
         pid = self._simulator.engine_pid
-        if pid != self._engine_pid:
-            self._engine_pid = pid
+        if pid == self._engine_pid:
+            return
+        try:
             rospy.set_param("~my_simulations/engine_pid", pid)
+            self._engine_pid = pid
+        except OSError as fault:
+            rospy.logdebug("the master does not answer: %s", fault)
 
     def start_publishing(self) -> None:
         """Begin to publish `/clock` and the states."""

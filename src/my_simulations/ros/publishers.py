@@ -19,7 +19,10 @@ from .buffers import StatesBuffer, packed_time
 from .pacing import StateGate, StepSelector
 
 LOOK_SECONDS = 0.001
-"""Between two looks at a world that makes several steps in that time."""
+"""Between two looks at a world that makes many steps in that time."""
+
+FEW_STEPS = 2
+"""As many as a world in real time makes between two looks, one of them a little late."""
 
 PAUSED_LOOK_SECONDS = 0.05
 """Between two looks at a world that does not step."""
@@ -185,7 +188,7 @@ class Publishers:
 
     def _pace(self, began: float, made: int, step: int) -> None:
         """Wait for the next step; in a world of many steps a millisecond, look once in one."""
-        if made > 1:
+        if made > FEW_STEPS:
             left = began + LOOK_SECONDS - time.monotonic()
             if left > 0.0:
                 time.sleep(left)

@@ -10,7 +10,7 @@ import signal
 import threading
 from typing import Any, Callable, List, Optional, Sequence
 
-from ..errors import InputError, Issue
+from ..errors import CommandError, InputError, Issue, error
 from . import master
 from .engines import EngineSupply
 from .lean import import_genpy
@@ -77,6 +77,9 @@ class WorldLoader:
             self._load()
         except InputError as fault:
             self.fault = fault
+            self._on_fault()
+        except CommandError as fault:
+            self.fault = InputError([error("world-not-started", str(fault))])
             self._on_fault()
         except Exception as defect:  # raised again in the main thread, by `wait`
             self.defect = defect
@@ -146,6 +149,10 @@ class Server:
             while not self._ended.wait(UPKEEP_SECONDS):
                 node.keep_up()
             return OK
+        except OSError as fault:
+            if not self._ended.is_set():
+                self._say(f"the ROS master at {self._master} stopped answering: {fault}")
+            return OK if self._ended.is_set() else FAILED
         finally:
             self._end(node, loader)
 

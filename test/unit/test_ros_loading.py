@@ -1,0 +1,71 @@
+import pytest
+
+from my_simulations.errors import InputError, Severity, warning
+from my_simulations.resources.resolver import Resolver
+from my_simulations.ros.engines import EngineSupply
+from my_simulations.ros.loading import load_world
+from my_simulations.ros.server import IssueLog
+
+WORLD = """<sdf version="1.6"><world name="w">
+<model name="good"><static>true</static><link name="l"><collision name="c"><geometry>
+<box><size>1 1 1</size></box></geometry></collision></link></model>
+<model name="bad"><static>true</static><link name="l"><collision name="c"><geometry>
+<mesh><uri>broken.stl</uri></mesh></geometry></collision></link></model>
+</world></sdf>"""
+
+
+def test_a_world_that_is_nowhere_lists_the_places(tmp_path):
+    with pytest.raises(InputError) as fault:
+        load_world("none.world", Resolver(resource_paths=[str(tmp_path)]), lambda issue: None)
+    assert "none.world" in str(fault.value) and str(tmp_path) in str(fault.value)
+
+
+def test_a_model_whose_mesh_is_broken_is_left_out_and_the_rest_loads(tmp_path):
+    (tmp_path / "broken.stl").write_text("solid nothing\nendsolid nothing\n")
+    (tmp_path / "room.world").write_text(WORLD)
+    issues = []
+    world, meshes = load_world("room.world", Resolver(resource_paths=[str(tmp_path)]),
+                               issues.append)
+    assert [model.name for model in world.models] == ["good"]
+    assert list(meshes) == ["good"]
+    assert any(issue.severity is Severity.ERROR and "broken.stl" in str(issue)
+               for issue in issues)
+
+
+def test_issues_wait_until_there_is_a_log():
+    log, heard = IssueLog(), []
+    log(warning("early", "before the node"))
+    assert heard == []
+    log.open(heard.append)
+    log(warning("late", "after it"))
+    assert [issue.code for issue in heard] == ["early", "late"]
+
+
+class FakeEngine:
+    def __init__(self):
+        self.closed = False
+
+    def close(self):
+        self.closed = True
+
+
+def test_the_first_engine_is_made_ahead_and_handed_out_once():
+    made = []
+
+    def make():
+        made.append(FakeEngine())
+        return made[-1]
+
+    supply = EngineSupply(make)
+    assert len(made) == 1
+    assert supply() is made[0]
+    assert supply() is made[1]
+    supply.close()
+    assert not made[0].closed
+
+
+def test_an_engine_nobody_took_is_ended():
+    supply = EngineSupply(FakeEngine)
+    first = supply._first
+    supply.close()
+    assert first.closed
