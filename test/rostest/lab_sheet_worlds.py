@@ -28,7 +28,8 @@ class Worlds(unittest.TestCase):
         launch = ["roslaunch", "-p", str(port), "my_simulations", f"{world}.launch", "gui:=false",
                   "robot:=true"]
         with support.Program(launch, ROS_MASTER_URI=master) as server:
-            support.wait_for(lambda: "robot_description: " in server.text, f"{world} to start", 60)
+            support.wait_for(lambda: "Successfully spawned" in server.text or server.text.count(
+                "not spawned"), f"{world} with its robot", 60)
             with flow.tool("spawn_object.py", "all", ROS_MASTER_URI=master) as program:
                 self.assertEqual(program.ended(60), 0, program.text)
             self.assertIn("MY_OBJECT spawned", program.text)

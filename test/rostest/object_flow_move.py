@@ -45,14 +45,19 @@ class Moving(flow.ToolCase, unittest.TestCase):
         self.assert_at("block", 1.0, 1.0, 1.0, delta=1e-6)
 
     def test_a_polygon_is_gone_round_and_ends_where_it_began(self):
+        corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0)]
         states = support.Collected("/gazebo/model_states", ModelStates)
-        self.run_tool("move_object.py", "-m", "polygon", "-n", "block", "-v", "4",
-                      "-p", "[[0,0],[2,0],[2,2]]", "--laps", "1")
+        self.run_tool("move_object.py", "-m", "polygon", "-n", "block", "-v", "2",
+                      "-p", str(corners), "--laps", "1")
         self.assert_at("block", 0.0, 0.0, 0.0, delta=1e-6)
-        support.wait_for(lambda: any(math.dist(p, (2, 2)) < 0.1 for p in self.path(states)),
-                         "the last corner")
         states.close()
-        self.assertTrue(any(math.dist(p, (2, 0)) < 0.1 for p in self.path(states)))
+        edges = list(zip(corners, [*corners[1:], corners[0]]))
+        places = [place for place in self.path(states) if place not in corners]
+        on_edge = [[i for i, (a, b) in enumerate(edges)
+                    if math.dist(a, p) + math.dist(p, b) < math.dist(a, b) + 1e-6]
+                   for p in places]
+        self.assertTrue(all(on_edge), "a place off the edges")
+        self.assertEqual({i for found in on_edge for i in found}, {0, 1, 2})
 
     def test_a_circle_keeps_its_distance_from_the_centre(self):
         states = support.Collected("/gazebo/model_states", ModelStates)

@@ -130,7 +130,8 @@ def origin(element: ElementTree.Element) -> Pose:
     found = element.find("origin")
     if found is None:
         return IDENTITY
-    return pose_from_xyzrpy(*numbers(found.get("xyz", "0 0 0")), *numbers(found.get("rpy", "0 0 0")))
+    return pose_from_xyzrpy(*numbers(found.get("xyz", "0 0 0")),
+                            *numbers(found.get("rpy", "0 0 0")))
 
 
 def urdf_solid(shape: ElementTree.Element, pose: Pose) -> solids.Solid:

@@ -13,7 +13,8 @@ TUTORIAL = Path(__file__).resolve().parents[1] / "data" / "tutorial"
 
 @pytest.mark.parametrize("prologue", [
     "", "<?xml version='1.0'?>\n", "\ufeff<?xml version='1.0'?>",
-    "<!-- a <robot> in a comment -->\n", "<?xml version='1.0'?><!DOCTYPE robot [<!ENTITY a 'b'>]>\n",
+    "<!-- a <robot> in a comment -->\n",
+    "<?xml version='1.0'?><!DOCTYPE robot [<!ENTITY a 'b'>]>\n",
     "  \n<?note <x/>?><!-- -->"])
 def test_the_mark_goes_to_the_root_element_whatever_comes_before(prologue):
     marked = marked_for_replacement(prologue + "<robot name='a'><link name='b'/></robot>")

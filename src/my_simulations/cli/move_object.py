@@ -5,7 +5,7 @@ import argparse
 import math
 import re
 import time
-from typing import Any, List, Optional, Sequence, Union
+from typing import Any, Callable, List, Optional, Sequence, Union
 
 from ..errors import InputError
 from ..geometry import Pose, quat_from_rpy
@@ -194,10 +194,18 @@ class _Clock:
     """ROS time, with a wall-clock limit on its standing still."""
 
     def __init__(self, limit: float) -> None:
+        """Waits for the first time: until /clock is heard, simulated ROS time is 0.
+
+        Raises:
+            Stopped: ROS shuts down.
+            ToolError: no time is heard.
+        """
         self._limit = limit
-        self._next = self.now()
+        self._next = 0.0
+        self._wait_until(lambda now: now > 0.0)
 
     def now(self) -> float:
+        """ROS time in seconds."""
         import rospy
 
         return rospy.get_time()
@@ -209,14 +217,18 @@ class _Clock:
             Stopped: ROS shuts down.
             ToolError: ROS time stands still.
         """
+        # A reset world begins again at zero.
+        now = self._wait_until(lambda now: now >= self._next or now < self._next - 1.0)
+        self._next = now + 1.0 / RATE
+        return now
+
+    def _wait_until(self, due: Callable[[float], bool]) -> float:
         import rospy
 
         seen, since = self.now(), time.monotonic()
         while True:
             now = self.now()
-            # A reset world begins again at zero.
-            if now >= self._next or now < self._next - 1.0:
-                self._next = now + 1.0 / RATE
+            if due(now):
                 return now
             if rospy.is_shutdown():
                 raise Stopped
