@@ -12,7 +12,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rosgraph
 import rospy
 import support
-from gazebo_msgs.srv import SpawnModel
+from gazebo_msgs.srv import GetModelState, SpawnModel
 from support import box, pose, twist
 
 NAN = float("nan")
@@ -150,6 +150,15 @@ class BadRequests(unittest.TestCase):
             self.assertEqual(ok, 0)
             self.assertIn("cannot be read", self.received(raw, length).decode())
 
+    def test_a_client_that_says_nothing_keeps_nobody_out(self):
+        with self.socket():
+            state = rospy.ServiceProxy("/gazebo/get_model_state", GetModelState)
+            self.assertTrue(state("ground_plane", "").success)
+
+    def test_a_handshake_that_is_no_handshake(self):
+        with self.socket() as raw:
+            raw.sendall(b"GET / HTTP/1.0\r\n\r\n")
+
     def test_a_client_that_hangs_up_in_the_middle(self):
         with self.connection() as raw:
             raw.sendall(struct.pack("<I", 100) + b"half")
@@ -161,8 +170,7 @@ class BadRequests(unittest.TestCase):
 
     def connection(self):
         """A service connection to spawn_urdf_model after its handshake."""
-        uri = urlparse(rosgraph.Master("/raw").lookupService("/gazebo/spawn_urdf_model"))
-        raw = socket.create_connection((uri.hostname, uri.port), timeout=support.SECONDS)
+        raw = self.socket()
         fields = [b"callerid=/raw", b"service=/gazebo/spawn_urdf_model",
                   b"md5sum=" + SpawnModel._md5sum.encode(), b"persistent=1"]
         header = b"".join(struct.pack("<I", len(field)) + field for field in fields)
@@ -170,6 +178,12 @@ class BadRequests(unittest.TestCase):
         (length,) = struct.unpack("<I", self.received(raw, 4))
         self.received(raw, length)
         return raw
+
+    @staticmethod
+    def socket():
+        """A connection to the node before any handshake."""
+        uri = urlparse(rosgraph.Master("/raw").lookupService("/gazebo/spawn_urdf_model"))
+        return socket.create_connection((uri.hostname, uri.port), timeout=support.SECONDS)
 
     @staticmethod
     def received(raw, count):

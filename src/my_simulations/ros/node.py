@@ -32,6 +32,7 @@ class Node:
 
     def advertise(self) -> None:
         """Offer topics, services and parameters; `/clock` first, since all else waits for it."""
+        from .connections import take_side_by_side
         from .publishers import Publishers
 
         network = _flag(self._parameters, "enable_ros_network", True)
@@ -39,6 +40,7 @@ class Node:
             self._simulator, states=network,
             clock_hz=_number(self._parameters, "pub_clock_frequency", 0.0),
             states_hz=_number(self._parameters, "model_states_rate", 0.0))
+        take_side_by_side()
         if network:
             self._advertise_api()
         rospy.set_param("~world_base_name", base_name(self._simulator.world.file))

@@ -1,0 +1,31 @@
+"""Taking connections so that no client can keep the others out.
+
+rospy reads the handshake of a new connection in the thread that accepts them all: one client that
+connects and says nothing (a port scanner, a process that is stopped) blocks every service and topic
+of the node for ever. Here each handshake has a thread and a deadline of its own.
+"""
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from rospy.impl import tcpros_base
+
+HANDSHAKE_SECONDS = 10.0
+
+
+def take_side_by_side() -> None:
+    """Give every handshake its own thread; call it once, after the first publisher or service.
+
+    rospy has no interface for this, so its server object is changed (rospy 1.14 to 1.17, the
+    versions of ROS 1's last distributions, have it in the same place).
+    """
+    server = tcpros_base._tcpros_server.tcp_ros_server
+    shake_hands = server.inbound_handler
+
+    def take(connection: Any, address: Any) -> None:
+        # rospy makes the socket blocking again once the handshake is read.
+        connection.settimeout(HANDSHAKE_SECONDS)
+        threading.Thread(target=shake_hands, args=(connection, address), daemon=True).start()
+
+    server.inbound_handler = take
