@@ -4,11 +4,12 @@ import shutil
 
 import numpy as np
 import pytest
+from reading import INVALID, VALID
+
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh, mesh_key
 from my_simulations.errors import InputError, Severity
 from my_simulations.formats.meshes import collision_meshes, load_mesh, without_missing_meshes
-from reading import INVALID, VALID
 
 
 def load(name, **options):
@@ -100,7 +101,7 @@ def test_polygons_strips_fans_and_skins_of_collada_are_read(tmp_path):
     path = tmp_path / "skin.dae"
     path.write_text((text[:start] + pieces["polylist"] + text[end:])
                     .replace("<library_visual", skin + "<library_visual")
-                    .replace('instance_geometry url="#tri-geometry"', 'instance_controller url="#c"'))
+                    .replace('geometry url="#tri-geometry"', 'controller url="#c"'))
     assert bounds(load_mesh(Mesh("skin", str(path)))) == ([0, 0, 7], [1, 1, 7])
 
 

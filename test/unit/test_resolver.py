@@ -2,6 +2,7 @@
 import os
 
 import pytest
+
 from my_simulations.resources.model_config import description_in, version_of
 from my_simulations.resources.packages import ExportedPaths, PackageIndex
 from my_simulations.resources.resolver import NotFound, Resolver

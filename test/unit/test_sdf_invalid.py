@@ -2,11 +2,12 @@
 import os
 
 import pytest
+from reading import INVALID, VALID, refusal
+
 from my_simulations.description.validate import validate
 from my_simulations.errors import InputError, Severity, errors_of
 from my_simulations.formats.load import read_file, read_world, read_world_text
 from my_simulations.resources.resolver import Resolver
-from reading import INVALID, VALID, refusal
 
 MODEL_FAULTS = {
     "mass_zero.sdf": ("mass-not-positive", 5),

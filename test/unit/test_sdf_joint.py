@@ -1,7 +1,8 @@
 """Joints of SDF."""
 import pytest
-from my_simulations.description.model import INFINITE, JointAxis
 from reading import INERTIAL, codes, errors, model_of, warnings
+
+from my_simulations.description.model import INFINITE, JointAxis
 
 LINKS = f'<link name="a">{INERTIAL}</link><link name="b"><pose>1 0 0 0 0 0</pose>{INERTIAL}</link>'
 
@@ -54,7 +55,8 @@ def test_types_for_later_are_kept_with_a_warning(kind):
 
 
 def test_reversed_limits_are_a_warning():
-    _, issues = joint_of("revolute", "<axis><limit><lower>1</lower><upper>-1</upper></limit></axis>")
+    _, issues = joint_of("revolute",
+                         "<axis><limit><lower>1</lower><upper>-1</upper></limit></axis>")
     assert errors(issues) == [] and warnings(issues) == ["joint-limits-reversed"]
 
 

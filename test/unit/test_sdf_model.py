@@ -3,6 +3,8 @@ import math
 import random
 
 import pytest
+from reading import INERTIAL, VALID, codes, errors, link_of, model_of, sdf, warnings
+
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import Box, Cylinder, Empty, Mesh, Plane, Sphere, Surface
@@ -10,7 +12,6 @@ from my_simulations.errors import Severity
 from my_simulations.formats.load import read_entity
 from my_simulations.geometry import quat_from_rpy
 from my_simulations.resources.resolver import Resolver
-from reading import INERTIAL, VALID, codes, errors, link_of, model_of, sdf, warnings
 
 
 def collision_of(inside):
@@ -57,7 +58,8 @@ def test_a_link_says_nothing_of_self_collision_where_the_file_does_not():
 def test_every_shape_is_read():
     assert geometry_of("<box><size>1 2 3</size></box>") == Box((1, 2, 3))
     assert geometry_of("<sphere><radius>2</radius></sphere>") == Sphere(2)
-    assert geometry_of("<cylinder><radius>2</radius><length>3</length></cylinder>") == Cylinder(2, 3)
+    assert geometry_of("<cylinder><radius>2</radius><length>3</length></cylinder>") == Cylinder(
+        2, 3)
     assert geometry_of("<plane><normal>0 1 0</normal><size>5 6</size></plane>") == Plane(
         (0, 1, 0), (5, 6))
     assert geometry_of("<empty/>") == Empty()

@@ -2,6 +2,7 @@
 import inspect
 
 import pytest
+
 from my_simulations.formats import sdf_tables, urdf_tables
 from my_simulations.formats.tables import Table
 

@@ -2,11 +2,13 @@
 import math
 
 import pytest
-from my_simulations.formats.load import read_entity
-from my_simulations.resources.resolver import Resolver
 from reading import INERTIAL, codes, errors, link_of, model_of, warnings, world_of
 
-TURNED = f'<link name="a">{INERTIAL}</link><link name="b"><pose>1 0 0 0 0 1.5707963267948966</pose>{INERTIAL}</link>'
+from my_simulations.formats.load import read_entity
+from my_simulations.resources.resolver import Resolver
+
+TURNED = (f'<link name="a">{INERTIAL}</link><link name="b">'
+          f"<pose>1 0 0 0 0 1.5707963267948966</pose>{INERTIAL}</link>")
 
 
 def axis_of(version, axis, parent="a", joint_pose=""):
@@ -89,8 +91,8 @@ def test_the_frame_of_a_pose_is_relative_to_in_1_6():
 
 
 def test_an_old_gazebo_root_is_read_as_sdf():
-    model, _ = read_entity('<gazebo version="1.2"><model name="m"><link name="l"/></model></gazebo>',
-                           Resolver())
+    text = '<gazebo version="1.2"><model name="m"><link name="l"/></model></gazebo>'
+    model, _ = read_entity(text, Resolver())
     assert model.links[0].name == "l"
 
 

@@ -2,10 +2,11 @@
 import os
 
 import pytest
+from reading import INERTIAL, codes, errors, sdf, warnings, world_of
+
 from my_simulations.description.world import Light, Physics
 from my_simulations.formats.load import read_entity, read_world, read_world_text
 from my_simulations.resources.resolver import Resolver
-from reading import INERTIAL, codes, errors, sdf, warnings, world_of
 
 BOX = '<link name="l"><collision name="c"><geometry><box/></geometry></collision></link>'
 

@@ -1,15 +1,15 @@
 """Leniency with mistakes of markup, strictness with attacks."""
 import os
-import time
 
 import pytest
+from reading import DATA, codes, errors, refusal, sdf, warnings
+
 from my_simulations.errors import InputError, Severity
 from my_simulations.formats.load import read_entity
 from my_simulations.formats.source import Log
 from my_simulations.formats.xmlrepair import balanced
 from my_simulations.formats.xmltext import parse
 from my_simulations.resources.resolver import Resolver
-from reading import DATA, codes, errors, refusal, sdf, warnings
 
 MODEL = '<model name="m"><link name="l"/></model>'
 
@@ -119,12 +119,10 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", sorted(HOSTILE))
-def test_hostile_documents_are_refused_in_bounded_work(name):
-    start = time.process_time()
+def test_hostile_documents_are_refused(name):
+    # Expanding or walking any of them would never end, or exhaust the stack.
     with pytest.raises(InputError):
         read(HOSTILE[name])
-    # Not a measurement: what is meant is "at all"; expansion would take hours.
-    assert time.process_time() - start < 20
 
 
 def test_models_that_include_each_other_are_an_error_not_a_loop(tmp_path):

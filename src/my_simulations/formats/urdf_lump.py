@@ -9,7 +9,7 @@ from typing import List, Optional, Tuple
 
 from ..description.model import WORLD, Inertial
 from ..geometry import Pose, Quat, Vec3, compose, rotate, scale, subtract, transform
-from .urdf_tree import LUMP, Body, Connection, children_first
+from .urdf_tree import LUMP, Body, Connection, parents_first
 from .values import POSE
 
 Matrix = Tuple[Vec3, Vec3, Vec3]
@@ -18,12 +18,13 @@ Matrix = Tuple[Vec3, Vec3, Vec3]
 def lump(root: Body) -> List[str]:
     """Lump every body whose fixed joint is not kept; returns `<frame>`s that mark their places."""
     frames: List[str] = []
-    for body in children_first(root):
+    for body in parents_first(root):
         if body.up is not None and is_lumped(body.up):
-            _into_parent(body, body.up.parent, body.up)
+            parent = body.up.parent
+            body.into = standing(parent)
+            body.offset = compose(parent.offset, body.up.origin)
+            _move(body, body.into)
             frames += _frames(body.up)
-    for body in children_first(root):
-        body.offset = _offset(body)
     return frames
 
 
@@ -36,33 +37,18 @@ def is_lumped(connection: Connection) -> bool:
 
 def standing(body: Body) -> Body:
     """The body that `body` has become part of, itself where it stays."""
-    while body.into is not None:
-        body = body.into
-    return body
+    return body.into if body.into is not None else body
 
 
-def _offset(body: Body) -> Pose:
-    pose = Pose()
-    while body.into is not None and body.up is not None:
-        pose = compose(body.up.origin, pose)
-        body = body.into
-    return pose
-
-
-def _into_parent(child: Body, parent: Body, connection: Connection) -> None:
-    child.into = parent
-    origin = connection.origin
+def _move(child: Body, into: Body) -> None:
+    """Shapes and mass of `child`, to the end of those of `into`."""
     for stem, collision in child.collisions:
-        collision.pose = compose(origin, collision.pose)
-        parent.collisions.append((_lumped(stem), collision))
+        collision.pose = compose(child.offset, collision.pose)
+        into.collisions.append((LUMP + stem, collision))
     for stem, visual in child.visuals:
-        visual.pose = compose(origin, visual.pose)
-        parent.visuals.append((_lumped(stem), visual))
-    parent.inertial = merged(parent.inertial, child.inertial, origin)
-
-
-def _lumped(stem: str) -> str:
-    return stem if stem.startswith(LUMP) else LUMP + stem
+        visual.pose = compose(child.offset, visual.pose)
+        into.visuals.append((LUMP + stem, visual))
+    into.inertial = merged(into.inertial, child.inertial, child.offset)
 
 
 def _frames(connection: Connection) -> List[str]:

@@ -22,7 +22,7 @@ class Body:
         collisions, visuals: with the stem of the name each will have.
         up: what connects it with its parent, None for the root.
         down: what connects it with its children, sorted by joint name.
-        into: the body it was lumped into, None where it stays.
+        into: the body it has become part of, itself not lumped; None where it stays.
         offset: its frame in the body that stands for it.
     """
 
@@ -60,14 +60,3 @@ def parents_first(root: Body) -> Iterator[Body]:
         body = waiting.pop()
         yield body
         waiting += [connection.child for connection in reversed(body.down)]
-
-
-def children_first(root: Body) -> List[Body]:
-    """The bodies below and with `root`, each after all of those below it, siblings in order."""
-    order: List[Body] = []
-    waiting = [root]
-    while waiting:
-        body = waiting.pop()
-        order.append(body)
-        waiting += [connection.child for connection in body.down]
-    return order[::-1]
