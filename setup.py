@@ -1,7 +1,6 @@
 """Tells catkin where the Python package is; not to be called by hand."""
-from setuptools import find_packages, setup
-
 from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import find_packages, setup
 
 setup(**generate_distutils_setup(
     packages=find_packages("src"),

@@ -9,7 +9,7 @@ sys.path[:] = [entry for entry in sys.path
                if not os.path.isfile(os.path.join(entry or os.curdir, "xacro.py"))]
 
 
-def main():
+def main() -> int:
     """Run xacro here, or in the workspace's Python where this one has none."""
     if importlib.util.find_spec("xacro") is not None:
         import xacro

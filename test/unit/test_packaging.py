@@ -1,0 +1,89 @@
+"""The files that tell catkin, roslaunch and pip about the packages."""
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+LAUNCH = REPOSITORY / "compat" / "gazebo_ros" / "launch"
+
+ARGUMENTS = {
+    "paused": "false", "use_sim_time": "true", "extra_gazebo_args": "", "gui": "true",
+    "recording": "false", "headless": "false", "debug": "false", "physics": "ode",
+    "verbose": "false", "output": "screen", "world_name": "worlds/empty.world",
+    "respawn_gazebo": "false", "use_clock_frequency": "false", "pub_clock_frequency": "100",
+    "enable_ros_network": "true", "server_required": "false", "gui_required": "false",
+}
+"""Arguments of gazebo_ros' empty_world.launch, with their defaults."""
+
+
+def _arguments(path):
+    return [arg for arg in ET.parse(path).getroot().findall("arg") if "default" in arg.attrib]
+
+
+def test_empty_world_launch_has_gazebos_arguments_and_defaults():
+    arguments = _arguments(LAUNCH / "empty_world.launch")
+    found = {arg.get("name"): arg.get("default") for arg in arguments}
+    assert found == ARGUMENTS
+
+
+@pytest.mark.parametrize("path", sorted(LAUNCH.glob("*.launch")), ids=lambda path: path.name)
+def test_world_launch_file_documents_and_offers_every_argument(path):
+    arguments = _arguments(path)
+    assert all(arg.get("doc") for arg in arguments)
+    assert set(ARGUMENTS) <= {arg.get("name") for arg in arguments}
+
+
+@pytest.mark.parametrize("name", ["empty", "shapes", "mud", "rubble", "willowgarage"])
+def test_world_that_a_launch_file_names_is_shipped(name):
+    arguments = {arg.get("name"): arg.get("default")
+                 for arg in _arguments(LAUNCH / f"{name}_world.launch")}
+    assert (REPOSITORY / "world" / arguments["world_name"]).is_file()
+
+
+PACKAGES = [REPOSITORY, *sorted((REPOSITORY / "compat").iterdir())]
+
+
+@pytest.mark.parametrize("folder", PACKAGES, ids=lambda folder: folder.name)
+def test_package_and_project_have_one_name_and_licence(folder):
+    package = ET.parse(folder / "package.xml").getroot()
+    project = re.search(r"project\((\w+)\)", (folder / "CMakeLists.txt").read_text()).group(1)
+    assert package.findtext("name") == project
+    assert package.findtext("license") == "Apache-2.0"
+
+
+def test_every_launched_program_is_executable_and_started_by_python3():
+    programs = [*(REPOSITORY / "scripts").iterdir(),
+                *(REPOSITORY / "compat" / "gazebo_ros" / "scripts").iterdir(),
+                REPOSITORY / "compat" / "xacro" / "xacro",
+                REPOSITORY / "compat" / "xacro" / "xacro.py"]
+    for program in programs:
+        if program.name == "__pycache__":
+            continue
+        assert program.read_text().startswith("#!/usr/bin/env python3\n"), program
+        assert program.stat().st_mode & 0o111, program
+
+
+def test_both_names_of_xacro_are_the_same_program():
+    folder = REPOSITORY / "compat" / "xacro"
+    assert (folder / "xacro").read_text() == (folder / "xacro.py").read_text()
+
+
+@pytest.mark.parametrize("name", ["requirements.txt", "requirements-test.txt"])
+def test_pip_requirements_are_pinned(name):
+    lines = [line for line in (REPOSITORY / name).read_text().splitlines()
+             if line and not line.startswith("#")]
+    assert lines
+    for line in lines:
+        assert re.match(r"[\w-]+==[\w.]+(; python_version [<>=]+ \"3\.\d+\")?$", line), line
+
+
+def test_every_top_level_folder_of_data_is_installed():
+    text = (REPOSITORY / "CMakeLists.txt").read_text()
+    installed = re.search(r"foreach\(folder ([^)]*)\)", text).group(1).split()
+    data = {"Media", "config", "launch", "models", "objects", "urdf", "world"}
+    assert set(installed) == data
+    assert all((REPOSITORY / folder).is_dir() for folder in data)
