@@ -73,7 +73,6 @@ class BulletBackend:
         self._waker = Waker(self._bodies, self._readout.touch)
         self._forces = Forces(self._waker.around)
         self._events: List[Event] = []
-        self._stepped = False
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             SetModelState: self._set_model, SetLinkState: self._set_link,
@@ -100,7 +99,7 @@ class BulletBackend:
 
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
-        self._stepped = True
+        self._readout.stepped()
         one = pybullet.stepSimulation
         if self._forces.idle:
             for _ in range(count):
@@ -113,8 +112,7 @@ class BulletBackend:
 
     def read(self) -> bool:
         """Bring the tables up to date."""
-        stepped, self._stepped = self._stepped, False
-        return self._readout.read(stepped)
+        return self._readout.read()
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows."""
@@ -257,7 +255,7 @@ class BulletBackend:
 
     def _set_model(self, command: SetModelState) -> None:
         entry = self._entry(command.model_id)
-        self._readout.read(False)
+        self._readout.read()
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         names = [link.name for link in entry.model.links]
         canonical = names.index(entry.model.canonical_link) if entry.model.canonical_link else 0
@@ -273,7 +271,7 @@ class BulletBackend:
     def _set_link(self, command: SetLinkState) -> None:
         if command.row not in self._rows:
             raise Refused("the link is not there any more")
-        self._readout.read(False)
+        self._readout.read()
         body, part = self._rows[command.row]
         if not body.rigid and body.base is None:
             raise Refused("the link belongs to a body that is joined to the world")

@@ -20,7 +20,10 @@ from .bodies import Body
 
 _ROW = struct.Struct("=13d")
 _AXIS = struct.Struct("=2d")
-_STILL = (0.0, 0.0, 0.0)
+_ROW_BYTES = _ROW.size
+_NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_pose_of = pybullet.getBasePositionAndOrientation
+_velocity_of = pybullet.getBaseVelocity
 _MARGIN = 0.05     # m a mover goes before its neighbours are asked for again
 _ROUND_ROBIN = 8   # resting bodies looked at per read-out whatever the neighbours say
 _WORLD_SIZE = 1e9
@@ -48,6 +51,7 @@ class Readout:
         self._guards: Dict[int, Tuple[Tuple[float, float, float], Set[int]]] = {}
         self._offsets: Dict[int, Pose] = {}
         self._patrol: List[int] = []
+        self._touched: Dict[int, Body] = {}
         self._stepped = False
 
     def add(self, body: Body) -> None:
@@ -64,7 +68,7 @@ class Readout:
 
     def forget(self, body: Body) -> None:
         """A body is gone; its rows stay as they are."""
-        for table in (self._awake, self._trees, self._resting, self._guards):
+        for table in (self._awake, self._trees, self._resting, self._guards, self._touched):
             table.pop(body.uid, None)
         for part in body.parts:
             self._offsets.pop(part.row, None)
@@ -72,6 +76,7 @@ class Readout:
     def touch(self, body: Body) -> None:
         """The body may have moved: read it until it rests again."""
         body.still = 0
+        self._touched[body.uid] = body
         self._resting.pop(body.uid, None)
         self._guards.pop(body.uid, None)
         if body.rigid:
@@ -84,32 +89,37 @@ class Readout:
         return body.uid in self._resting
 
     @property
-    def idle(self) -> bool:
-        """True when there is nothing to read."""
-        return not self._awake and not self._trees
-
-    @property
     def load(self) -> int:
         """How many bodies a read-out looks at."""
         return len(self._awake) + len(self._trees)
 
-    def read(self, stepped: bool) -> bool:
+    def stepped(self) -> None:
+        """The world has moved on: everything awake may be elsewhere."""
+        self._stepped = True
+
+    def read(self) -> bool:
         """Bring the tables up to date. Returns False when nothing can have changed.
 
-        `stepped` says whether the world has moved on since the last read-out: standing still
-        counts only then.
+        Without a step since the last read-out only what was touched is read. Standing still counts
+        only over a step.
         """
-        if self.idle:
+        touched, self._touched = self._touched, {}
+        rigid, trees = self._awake, self._trees
+        if not self._stepped:
+            rigid = {uid: body for uid, body in touched.items() if body.rigid}
+            trees = {uid: body for uid, body in touched.items() if not body.rigid}
+        if not rigid and not trees:
+            self._stepped = False
             return False
-        self._stepped = stepped
         offset_rows: List[int] = []
-        self._read_all(list(self._awake.values()), offset_rows)
-        for body in list(self._trees.values()):
+        self._read_all(list(rigid.values()), offset_rows)
+        for body in list(trees.values()):
             self._read_tree(body, offset_rows)
-        if self._resting:
+        if self._resting and self._stepped:
             self._look_around(offset_rows)
         if offset_rows:
             self._to_link_frames(offset_rows)
+        self._stepped = False
         return True
 
     def _read_all(self, todo: List[Body], offset_rows: List[int]) -> None:
@@ -121,19 +131,19 @@ class Readout:
             todo = woken
 
     def _read_rigid(self, body: Body, offset_rows: List[int], woken: List[Body]) -> None:
-        uid = body.uid
-        (x, y, z), (qx, qy, qz, qw) = pybullet.getBasePositionAndOrientation(uid)
-        linear, angular = pybullet.getBaseVelocity(uid)
-        total = x + y + z + qx + qy + qz + qw + sum(linear) + sum(angular)
+        uid, row = body.uid, body.parts[0].row
+        position, turn = _pose_of(uid)
+        velocity = _velocity_of(uid)
+        (vx, vy, vz), (wx, wy, wz) = velocity
+        x, y, z = position
+        total = x + y + z + turn[0] + turn[3] + vx + vy + vz + wx + wy + wz
         if total - total != 0.0:
             self._diverged(body)
             return
-        row = body.parts[0].row
-        _ROW.pack_into(self._link_bytes, row * _ROW.size, x, y, z, qx, qy, qz, qw,
-                       *linear, *angular)
+        _ROW.pack_into(self._link_bytes, row * _ROW_BYTES, x, y, z, *turn, vx, vy, vz, wx, wy, wz)
         if row in self._offsets:
             offset_rows.append(row)
-        if linear == _STILL and angular == _STILL:
+        if velocity == _NO_VELOCITY:
             body.still += self._stepped
             if body.still >= 2:
                 self._awake.pop(uid, None)
@@ -143,7 +153,7 @@ class Readout:
             return
         body.still = 0
         if self._resting:
-            woken.extend(self._touched_by(uid, (x, y, z), body.radius))
+            woken.extend(self._touched_by(uid, position, body.radius))
 
     def _touched_by(self, uid: int, at: Tuple[float, float, float], radius: float) -> List[Body]:
         """Resting bodies near a moving one that move by now; they count as awake from here on."""
@@ -165,8 +175,10 @@ class Readout:
             body = self._resting.get(uid)
             if body is None:
                 candidates.discard(uid)
-            elif pybullet.getBaseVelocity(uid) != (_STILL, _STILL):
-                self.touch(body)
+            elif _velocity_of(uid) != _NO_VELOCITY:
+                self._resting.pop(uid)
+                body.still = 0
+                self._awake[uid] = body
                 woken.append(body)
         return woken
 

@@ -1,0 +1,246 @@
+#!/usr/bin/env python3
+"""Prints a table of speeds. Run it in a shell that has sourced the workspace, on a quiet machine.
+
+usage: bench.py [ROW …]     rows: start, rest, services, full, asleep, stacks, resting; default all
+
+Figures are compared within one run: "bare" is PyBullet's stepSimulation alone with the same bodies,
+measured just before and after. Nothing here fails on a slow machine.
+"""
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+import time
+from typing import Callable, Dict, List, Tuple
+
+sys.path.insert(0, __file__.rsplit("/", 1)[0])
+import scenes  # noqa: E402
+from server import Server, master, processor, resident, wait  # noqa: E402
+
+Row = Tuple[str, str, str, bool]
+EMPTY = scenes.world("boxes", 0, True, 1000.0)
+
+
+def milliseconds(values: List[float], share: float = 0.5) -> float:
+    """The quantile `share` of some seconds, in ms."""
+    return sorted(values)[min(len(values) - 1, int(share * len(values)))] * 1e3
+
+
+class Clock:
+    """Counts what arrives on /clock."""
+
+    def __init__(self) -> None:
+        import rospy
+        from rosgraph_msgs.msg import Clock as Message
+        self.first = 0.0
+        self.count = 0
+        self.sim = 0.0
+        self._subscriber = rospy.Subscriber("/clock", Message, self._hear)
+
+    def _hear(self, message: object) -> None:
+        self.sim = message.clock.to_sec()
+        self.count += 1
+        if not self.first:
+            self.first = time.perf_counter()
+
+    def close(self) -> None:
+        self._subscriber.unregister()
+
+
+def start() -> List[Row]:
+    took = []
+    for _ in range(5):
+        clock = Clock()
+        with Server(EMPTY) as server:
+            wait(lambda c=clock: c.first, 30, "/clock")
+            took.append(clock.first - server.started)
+        clock.close()
+    middle = statistics.median(took)
+    return [("node start to first /clock", f"{middle:.2f} s", "0.8 s", middle <= 0.8)]
+
+
+def rest() -> List[Row]:
+    import rospy
+    with Server(EMPTY) as server:
+        rospy.wait_for_service("/gazebo/get_world_properties", 30)
+        time.sleep(3.0)  # let start-up work end: this is the thing measured, not a wait for it
+        memory = resident(server.pids())
+        before, since = processor(server.pids()), time.perf_counter()
+        time.sleep(10.0)
+        share = (processor(server.pids()) - before) / (time.perf_counter() - since) * 100
+    return [("memory, empty world, at rest", f"{memory:.0f} MiB", "130 MiB", memory <= 130),
+            ("processor at rest, empty world", f"{share:.1f} %", "10 %", share <= 10)]
+
+
+def _timed(call: Callable[[int], object], count: int) -> List[float]:
+    found = []
+    for n in range(count):
+        began = time.perf_counter()
+        answer = call(n)
+        found.append(time.perf_counter() - began)
+        if not getattr(answer, "success", True):
+            raise RuntimeError(str(answer))
+    return found
+
+
+def services() -> List[Row]:
+    import rospy
+    from gazebo_msgs.msg import ModelState
+    from gazebo_msgs.srv import DeleteModel, GetModelState, SetModelState, SpawnModel
+    from geometry_msgs.msg import Pose
+    rows: List[Row] = []
+
+    def proxy(name: str, kind: type) -> object:
+        rospy.wait_for_service("/gazebo/" + name, 30)
+        return rospy.ServiceProxy("/gazebo/" + name, kind, persistent=True)
+
+    with Server(EMPTY):
+        spawn, delete = proxy("spawn_urdf_model", SpawnModel), proxy("delete_model", DeleteModel)
+        get, put = proxy("get_model_state", GetModelState), proxy("set_model_state", SetModelState)
+
+        def spawned(n: int) -> object:
+            pose = Pose()
+            pose.position.x, pose.position.y, pose.position.z = 2.0 * (n % 32), 2.0 * (n // 32), .5
+            return spawn(f"b{n}", scenes.box_urdf(f"b{n}"), "", pose, "")
+
+        took = _timed(spawned, 1000)
+        first, last = milliseconds(took[:100]), milliseconds(took[-100:])
+        middle, tail = milliseconds(took), milliseconds(took, 0.95)
+        rows.append(("spawn_urdf_model of a box, median / p95", f"{middle:.2f} / {tail:.2f} ms",
+                     "3 / 10 ms", middle <= 3 and tail <= 10))
+        rows.append(("the last 100 of 1000 against the first", f"{last / first:.2f} times",
+                     "2 times", last <= 2 * first))
+        took = _timed(lambda n: delete(f"b{n}"), 1000)
+        middle, tail = milliseconds(took), milliseconds(took, 0.95)
+        rows.append(("delete_model, median / p95", f"{middle:.2f} / {tail:.2f} ms", "3 / 10 ms",
+                     middle <= 3 and tail <= 10))
+        spawned(0)
+        _state_rows(rows, get, put, ModelState, "idle world", (0.25, 1.0), 1)
+        for n in range(1, 100):
+            spawned(n)
+        for n in range(100):
+            state = ModelState(model_name=f"b{n}")
+            state.pose.position.x, state.pose.position.y = 2.0 * (n % 10), 2.0 * (n // 10)
+            state.pose.position.z, state.twist.linear.z = 1000.0, 100.0
+            state.twist.angular.x = 1.0
+            put(state)
+        _state_rows(rows, get, put, ModelState, "100 moving", (1.0, 3.0), 100)
+    return rows
+
+
+def _state_rows(rows: List[Row], get: Callable, put: Callable, kind: type, label: str,
+                bars: Tuple[float, float], count: int) -> None:
+    read = milliseconds(_timed(lambda n: get(f"b{n % count}", ""), 2000))
+
+    def moved(n: int) -> object:
+        state = kind(model_name=f"b{n % count}")
+        at = n % count
+        state.pose.position.x, state.pose.position.y = 2.0 * (at % 10), 2.0 * (at // 10)
+        state.pose.position.z = 1000.0
+        state.twist.linear.z = 100.0
+        return put(state)
+
+    written = milliseconds(_timed(moved, 1000))
+    rows.append((f"get_model_state, {label}, median", f"{read:.3f} ms", f"{bars[0]} ms",
+                 read <= bars[0]))
+    rows.append((f"set_model_state, {label}, median", f"{written:.3f} ms", f"{bars[1]} ms",
+                 written <= bars[1]))
+
+
+def bare(kind: str, count: int, sleeping: bool) -> float:
+    """Real-time factor of PyBullet alone."""
+    return 0.001 * float(subprocess.run(
+        [sys.executable, __file__.rsplit("/", 1)[0] + "/bare.py", kind, str(count),
+         str(int(sleeping)), "4"], stdout=subprocess.PIPE, check=True).stdout.split()[-1])
+
+
+def ours(kind: str, count: int, sleeping: bool) -> float:
+    """Real-time factor of the node at full speed, /clock subscribed."""
+    import rospy
+    clock = Clock()
+    with Server(scenes.world(kind, count, sleeping, 0.0)):
+        rospy.wait_for_service("/gazebo/get_world_properties", 60)
+        wait(lambda: clock.sim > (4.0 if sleeping else 0.3), 120, "settled world")
+        sim, since = clock.sim, time.perf_counter()
+        time.sleep(4.0)
+        factor = (clock.sim - sim) / (time.perf_counter() - since)
+    clock.close()
+    return factor
+
+
+GAZEBO = {("boxes", False): {1: 44.0, 10: 9.3, 100: 1.16, 300: 0.36, 1000: 0.087},
+          ("boxes", True): {1: 61.0, 10: 39.0, 100: 17.0, 300: 5.8, 1000: 1.15},
+          ("stacks", False): {200: 0.42}, ("stacks", True): {200: 1.0}}
+
+
+def _factor(kind: str, count: int, sleeping: bool, bar: float, absolute: float) -> Row:
+    before = bare(kind, count, sleeping)
+    mine = ours(kind, count, sleeping)
+    alone = statistics.mean([before, bare(kind, count, sleeping)])
+    gazebo = GAZEBO[kind, sleeping][count]
+    what = f"{count} boxes{' in stacks' if kind == 'stacks' else ''}, "
+    what += "asleep" if sleeping else "awake"
+    good = mine > gazebo and (not bar or mine / alone >= bar) and mine >= absolute
+    wanted = (f"{bar} of bare" if bar else "") + (f" {absolute:g}" if absolute else "")
+    return (f"full speed, {what}", f"{mine:.2f} = {mine / alone:.2f} of bare {alone:.2f}",
+            f"{wanted} (Gazebo {gazebo:g})".strip(), good)
+
+
+def full() -> List[Row]:
+    return [_factor("boxes", count, False, 0.85 if count >= 10 else 0.0, 100 * (count == 1))
+            for count in (1, 10, 100, 300, 1000)]
+
+
+def asleep() -> List[Row]:
+    return [_factor("boxes", count, True, 0.7 if count >= 100 else 0.0, 0.0)
+            for count in (1, 10, 100, 300, 1000)]
+
+
+def stacks() -> List[Row]:
+    return [_factor("stacks", 200, False, 0.9, 0.0), _factor("stacks", 200, True, 0.0, 10.0)]
+
+
+def resting() -> List[Row]:
+    import rospy
+    from gazebo_msgs.msg import ModelStates
+    heard = []
+    subscriber = rospy.Subscriber("/gazebo/model_states", ModelStates,
+                                  lambda message: heard.append(len(message.name)))
+    clock = Clock()
+    with Server(scenes.world("boxes", 1000, True, 1000.0), "_model_states_rate:=50"):
+        rospy.wait_for_service("/gazebo/get_world_properties", 60)
+        wait(lambda: clock.sim > 5.0, 120, "settled world")
+        sim, since, had = clock.sim, time.perf_counter(), len(heard)
+        time.sleep(8.0)
+        span = time.perf_counter() - since
+        factor, rate = (clock.sim - sim) / span, (len(heard) - had) / span
+    subscriber.unregister()
+    clock.close()
+    return [("1000 resting boxes, real time, one subscriber at 50 Hz",
+             f"{factor:.3f} ({rate:.0f} messages/s)", "0.99", factor >= 0.99)]
+
+
+ROWS: Dict[str, Callable[[], List[Row]]] = {
+    "start": start, "rest": rest, "services": services, "full": full, "asleep": asleep,
+    "stacks": stacks, "resting": resting}
+
+
+def main(names: List[str]) -> int:
+    unknown = [name for name in names if name not in ROWS]
+    if unknown:
+        print(__doc__, file=sys.stderr)
+        return 2
+    with master():
+        import rospy
+        rospy.init_node("bench", anonymous=True, disable_rostime=True, disable_signals=True)
+        print(f"{'what':<56} {'measured':<34} {'bar':<28} met")
+        for name in names or ROWS:
+            for what, figure, bar, good in ROWS[name]():
+                print(f"{what:<56} {figure:<34} {bar:<28} {'yes' if good else 'NO'}", flush=True)
+        rospy.signal_shutdown("done")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,118 @@
+"""A master and a simulator for one measurement, on ports of their own."""
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from typing import Dict, Iterator, List
+from xmlrpc.client import ServerProxy
+
+
+def free_port() -> int:
+    """A TCP port nobody listens on."""
+    with socket.socket() as sock:
+        sock.bind(("127.0.0.1", 0))
+        return int(sock.getsockname()[1])
+
+
+@contextlib.contextmanager
+def master() -> Iterator[str]:
+    """A roscore of our own; sets ROS_MASTER_URI for this process."""
+    port = free_port()
+    uri = f"http://127.0.0.1:{port}"
+    os.environ.update(ROS_MASTER_URI=uri, ROS_IP="127.0.0.1")
+    process = subprocess.Popen(["roscore", "-p", str(port)], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    try:
+        wait(lambda: _answers(uri), 30, "roscore")
+        yield uri
+    finally:
+        end(process)
+
+
+def _answers(uri: str) -> bool:
+    try:
+        return ServerProxy(uri).getUri("/bench")[0] == 1 and bool(
+            ServerProxy(uri).lookupNode("/bench", "/rosout")[0] == 1)
+    except OSError:
+        return False
+
+
+def wait(condition, seconds: float, what: str) -> None:
+    """Wait until `condition()` is true; raises TimeoutError."""
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            raise TimeoutError(f"no {what} within {seconds:.0f} s")
+        time.sleep(0.002)
+
+
+def end(process: subprocess.Popen) -> None:
+    """SIGINT, then SIGKILL."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(15)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+class Server:
+    """A running gzserver. Use as a context manager."""
+
+    def __init__(self, world: str, *arguments: str, environment: "Dict[str, str] | None" = None):
+        self.file = tempfile.NamedTemporaryFile("w", suffix=".world", delete=False)
+        self.file.write(world)
+        self.file.close()
+        program = subprocess.run(["catkin_find", "--first-only", "--libexec", "gazebo_ros",
+                                  "gzserver"], stdout=subprocess.PIPE, text=True, check=True)
+        self.started = time.perf_counter()
+        self.process = subprocess.Popen(
+            [program.stdout.strip(), self.file.name, "__name:=gazebo", *arguments],
+            stdout=subprocess.DEVNULL, env={**os.environ, **(environment or {})})
+
+    def __enter__(self) -> "Server":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        end(self.process)
+        os.unlink(self.file.name)
+
+    def pids(self) -> List[int]:
+        """The node's and its engine's process numbers."""
+        return [self.process.pid, *children(self.process.pid)]
+
+
+def children(pid: int) -> List[int]:
+    """All descendants of a process."""
+    found = []
+    with contextlib.suppress(FileNotFoundError):
+        for task in os.listdir(f"/proc/{pid}/task"):
+            with open(f"/proc/{pid}/task/{task}/children", encoding="ascii") as stream:
+                for child in map(int, stream.read().split()):
+                    found += [child, *children(child)]
+    return found
+
+
+def resident(pids: List[int]) -> float:
+    """Resident memory of some processes together, MiB."""
+    total = 0
+    for pid in pids:
+        with open(f"/proc/{pid}/status", encoding="ascii") as stream:
+            total += next(int(line.split()[1]) for line in stream if line.startswith("VmRSS"))
+    return total / 1024.0
+
+
+def processor(pids: List[int]) -> float:
+    """Processor time some processes have had, s."""
+    ticks = 0
+    for pid in pids:
+        with open(f"/proc/{pid}/stat", encoding="ascii") as stream:
+            fields = stream.read().rsplit(")", 1)[1].split()
+        ticks += int(fields[11]) + int(fields[12])
+    return ticks / os.sysconf("SC_CLK_TCK")
