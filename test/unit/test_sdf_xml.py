@@ -71,6 +71,13 @@ def test_hyphens_in_comments_and_text_behind_the_root_only_warn():
     assert errors(issues) == [] and set(warnings(issues)) == {"xml-malformed"}
 
 
+def test_words_before_the_first_element_and_an_unknown_encoding_only_warn():
+    text = "oops\n<?xml version='1.0' encoding='UT'?>\n" + sdf(MODEL.replace("/>", "><a/></link>"))
+    model, issues = read(text)
+    assert model.name == "m" and errors(issues) == []
+    assert [(i.code, i.line) for i in issues] == [("xml-malformed", 1), ("unknown-element", 3)]
+
+
 def test_an_undeclared_prefix_is_no_fault():
     model, issues = read(sdf('<model name="m"><ignition:thing>1</ignition:thing><link name="l"/>'
                              "</model>"))

@@ -42,12 +42,15 @@ class _Document:
         self._meshes: Dict[int, Optional[Tuple[Any, Any]]] = {}
 
     def parts(self) -> List[MeshPart]:
+        import numpy as np
+
         unit = self._unit()
         found: List[MeshPart] = []
         for names, geometry, matrix in self._instances():
             mesh = self._mesh(geometry)
             if mesh is not None:
-                vertices = (mesh[0] @ matrix[:3, :3].T + matrix[:3, 3]) * unit
+                with np.errstate(all="ignore"):  # what is not finite is reported later
+                    vertices = (mesh[0] @ matrix[:3, :3].T + matrix[:3, 3]) * unit
                 triangles = mesh[1]
                 if _determinant(matrix) < 0:
                     triangles = triangles[:, ::-1]  # a mirrored piece is inside out

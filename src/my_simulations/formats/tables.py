@@ -6,7 +6,6 @@ dataclass, so that it is written down once.
 """
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass, field, fields
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
 
@@ -234,6 +233,8 @@ class _Filler:
 
 def closest(name: str, known: List[str]) -> str:
     """A hint with the known name most like `name`, or empty."""
+    import difflib
+
     matches = difflib.get_close_matches(name, known, 1)
     return f"did you mean {matches[0]}?" if matches else ""
 

@@ -66,6 +66,10 @@ class _Balancer:
     def run(self) -> Balanced:
         text, result = self._text, self._result
         at = text.find("<")
+        if text[:max(at, 0)].strip():
+            self._parts.append("\n" * text.count("\n", 0, at))
+            self._kept = at
+            self._repair("what precedes the first element is ignored", 0, unclosed=False)
         while at >= 0 and not result.cut_off and not result.hopeless:
             after = self._one(at)
             if result.elements and not self._open:

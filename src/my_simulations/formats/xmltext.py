@@ -105,7 +105,7 @@ def _decoded(data: bytes, was_text: bool, file: str, log: Log) -> str:
         declared = _ENCODING.search(data[:2000])
         encoding = declared.group(1).decode("ascii") if declared else "utf-8"
     try:
-        return data.decode(encoding)
+        return data.decode(encoding).lstrip("\ufeff")
     except (UnicodeDecodeError, LookupError):
         from ..errors import warning
 
@@ -133,7 +133,13 @@ def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
             result.cut_off_line, hint="the end of the file is missing",
         )
     parser = _parser("utf-8", True)
-    root = etree.fromstring(_declaration_first(result.text.encode("utf-8", "replace")), parser)
+    # The declaration may name any encoding, or none that there is; the text is UTF-8 by now.
+    plain = _DECLARATION.sub(_only_lines, result.text.encode("utf-8", "replace"), 1)
+    try:
+        root = etree.fromstring(plain.lstrip(b" \t\r"), parser)
+    except etree.XMLSyntaxError:
+        raise _fault("xml-malformed", f"not well formed: {fault.msg}", file, line,
+                     column) from None
     faults = [
         entry for entry in parser.error_log
         if entry.domain_name != "NAMESPACE" and entry.level_name != "WARNING"
@@ -151,6 +157,10 @@ def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
         log.add(warning("xml-malformed", f"not well formed: {first.message}{more}", file=file,
                         line=first.line, column=first.column))
     return root
+
+
+def _only_lines(found: Any) -> bytes:
+    return b"\n" * int(found.group().count(b"\n"))
 
 
 def _count(root: Any) -> int:

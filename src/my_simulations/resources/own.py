@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
+from typing import List
 
 PACKAGE = "my_simulations"
 
@@ -13,14 +13,22 @@ def own_directory() -> str:
     Found without rospkg, which costs start-up time: the source tree holds this module, an install
     space has `share/my_simulations` beside its `lib`, and CMAKE_PREFIX_PATH names the others.
     """
-    here = Path(__file__).resolve()
-    source_root = here.parents[3]
-    if (source_root / "package.xml").is_file() and (source_root / "models").is_dir():
-        return str(source_root)
-    prefixes = [str(parent) for parent in here.parents]
-    prefixes += os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep)
+    above = _parents(os.path.realpath(__file__))
+    source_root = above[3]  # resources/, my_simulations/, src/, the root
+    has_models = os.path.isdir(os.path.join(source_root, "models"))
+    if has_models and os.path.isfile(os.path.join(source_root, "package.xml")):
+        return source_root
+    prefixes = above + os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep)
     for prefix in prefixes:
         share = os.path.join(prefix, "share", PACKAGE)
         if prefix and os.path.isfile(os.path.join(share, "package.xml")):
             return share
-    return str(source_root) if (source_root / "models").is_dir() else ""
+    return source_root if has_models else ""
+
+
+def _parents(path: str) -> List[str]:
+    folders: List[str] = []
+    while os.path.dirname(path) != path:
+        path = os.path.dirname(path)
+        folders.append(path)
+    return folders

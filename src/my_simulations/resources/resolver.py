@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 from typing import Callable, Iterator, List, Optional, Sequence, Tuple
-from urllib.parse import unquote
 
 from .model_config import description_in
 from .own import PACKAGE, own_directory
@@ -120,6 +119,8 @@ class Resolver:
         elif scheme == "file":
             yield from self._for_path(rest, base_dir)
             if "%" in rest:
+                from urllib.parse import unquote
+
                 yield from self._for_path(unquote(rest), base_dir)
         elif scheme == "model":
             yield from self._for_model(rest)
