@@ -12,6 +12,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rosgraph
 import rospy
 import support
+from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, SpawnModel
 from support import box, pose, twist
 
@@ -119,6 +120,18 @@ class BadRequests(unittest.TestCase):
         self.refused(self.gazebo.set_physics_properties(0.0, 1000.0, physics.gravity,
                                                         physics.ode_config), "time_step")
         self.assertEqual(self.gazebo.get_physics_properties().time_step, 0.001)
+
+    def test_bad_messages_on_the_topics_are_told_in_the_log(self):
+        self.assertTrue(self.gazebo.spawn("good", where=pose(1.0, 0.0, 0.1)).success)
+        topic = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=10)
+        support.wait_for(topic.get_num_connections, "a connection to the topic")
+        told = support.heard_on_rosout("SetModelState (topic): pose.position")
+        topic.publish(ModelState("good", pose(NAN), twist(), ""))
+        told()
+        self.assertAlmostEqual(self.gazebo.get_model_state("good", "").pose.position.x, 1.0, 2)
+        told = support.heard_on_rosout("no_such_model")
+        topic.publish(ModelState("no_such_model", pose(), twist(), ""))
+        told()
 
     def test_unknown_names_are_answered_with_similar_ones(self):
         self.assertTrue(self.gazebo.spawn("coffee_cup").success)

@@ -21,8 +21,9 @@ ROSOUT_SECONDS = 1.0
 class Node:
     """Owns the ROS side of a running simulator."""
 
-    def __init__(self, simulator: Simulator, resolver: Resolver) -> None:
+    def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher) -> None:
         self._simulator = simulator
+        self._clock = clock
         self._resolver = resolver
         self._services: List[Any] = []
         self._subscribers: List[Any] = []
@@ -31,13 +32,13 @@ class Node:
         self._engine_pid = 0
 
     def advertise(self) -> None:
-        """Offer topics, services and parameters; `/clock` first, since all else waits for it."""
+        """Offer topics, services and parameters."""
         from .connections import take_side_by_side
         from .publishers import Publishers
 
         network = _flag(self._parameters, "enable_ros_network", True)
         self._publishers = Publishers(
-            self._simulator, states=network,
+            self._simulator, self._clock, states=network,
             clock_hz=_number(self._parameters, "pub_clock_frequency", 0.0),
             states_hz=_number(self._parameters, "model_states_rate", 0.0))
         take_side_by_side()

@@ -27,7 +27,6 @@ FEW_STEPS = 2
 PAUSED_LOOK_SECONDS = 0.05
 """Between two looks at a world that does not step."""
 
-CLOCK_QUEUE = 1000
 STATES_QUEUE = 10
 
 
@@ -113,12 +112,13 @@ class Channel:
 class Publishers:
     """The thread behind the three topics."""
 
-    def __init__(self, simulator: Simulator, *, clock_hz: float = 0.0,
+    def __init__(self, simulator: Simulator, clock: rospy.Publisher, *, clock_hz: float = 0.0,
                  states_hz: float = 0.0, states: bool = True) -> None:
-        """Advertise the topics.
+        """Advertise the state topics.
 
         Args:
             simulator: what to publish; started later than this.
+            clock: the advertised `/clock`.
             clock_hz: at most this many `/clock` a second of sim time; 0 for one a step.
             states_hz: likewise for the state topics.
             states: False leaves the state topics out.
@@ -130,8 +130,8 @@ class Publishers:
         self._stop = threading.Event()
         self._demand = (-1.0, False)
         self._clock_message = _PackedClock()
-        self._clock = rospy.Publisher("/clock", Clock, queue_size=CLOCK_QUEUE, tcp_nodelay=True,
-                                      subscriber_listener=_Arrivals(self._wake.set))
+        self._clock = clock
+        self._clock.impl.add_subscriber_listener(_Arrivals(self._wake.set))
         self._models = self._links = None
         if states:
             self._models = Channel("~model_states", ModelStates, _PackedModelStates, states_hz,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from typing import Any, Callable, List, Optional, Sequence
 
@@ -22,6 +23,8 @@ END_SECONDS = 3.0
 """Longest orderly end; a thread that is stuck in a network call does not keep the process."""
 
 UPKEEP_SECONDS = 0.5
+CLOCK_QUEUE = 1000
+"""Messages a subscriber to `/clock` may be behind by: a second in real time."""
 
 OK, FAILED = 0, 1
 
@@ -125,6 +128,7 @@ class Server:
         self._engines, self._profile = engines, profile
         self._ended = threading.Event()
         self._settled = threading.Event()
+        self._clock: Any = None
         self._log = IssueLog()
         self._name = master.node_name(argv, NODE)
         self._master = master.uri(argv)
@@ -191,15 +195,21 @@ class Server:
 
     def _init_node(self) -> None:
         import rospy
+        from rosgraph_msgs.msg import Clock
 
         self._profile.mark("rospy imported")
         threading.Thread(target=self._break_off, daemon=True).start()
         faces = threading.Thread(target=_import_faces, daemon=True)
         faces.start()
         level = rospy.DEBUG if self._options.verbose else rospy.INFO
-        rospy.init_node(NODE, argv=self._argv, disable_rostime=True, disable_signals=True,
-                        log_level=level)
+        try:
+            rospy.init_node(NODE, argv=self._argv, disable_rostime=True, disable_signals=True,
+                            log_level=level)
+        except rospy.ROSInitException as fault:
+            raise OSError(str(fault)) from fault
         rospy.on_shutdown(self._ended.set)
+        # Already now: a subscriber takes as long to connect as the rest of the start.
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=CLOCK_QUEUE, tcp_nodelay=True)
         self._profile.mark("node registered")
         faces.join()
         self._profile.mark("interface imported")
@@ -221,7 +231,7 @@ class Server:
         self._log.open(log_issue)
         for notice in self._options.notices:
             rospy.loginfo("%s", notice)
-        node = Node(loader.simulator, loader.resolver)
+        node = Node(loader.simulator, loader.resolver, self._clock)
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
@@ -249,9 +259,8 @@ class Server:
         if loader.simulator is not None:
             loader.simulator.close()
         self._engines.close()
-        import rospy
-
-        if rospy.core.is_initialized():
+        rospy = sys.modules.get("rospy")
+        if rospy is not None and rospy.core.is_initialized():
             rospy.signal_shutdown("the server ends")
         watchdog.cancel()
 

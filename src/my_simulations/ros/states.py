@@ -117,10 +117,10 @@ class StateServices:
         try:
             self.move_model(state)
         except CommandError as fault:
-            rospy.logerr_throttle(1.0, f"SetModelState (topic): {fault}")
+            rospy.logerr_throttle_identical(1.0, f"SetModelState (topic): {fault}")
 
     def _on_link_state(self, state: Any) -> None:
         try:
             self.move_link(state)
         except CommandError as fault:
-            rospy.logerr_throttle(1.0, f"SetLinkState (topic): {fault}")
+            rospy.logerr_throttle_identical(1.0, f"SetLinkState (topic): {fault}")
