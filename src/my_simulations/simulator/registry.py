@@ -7,6 +7,7 @@ from typing import Dict, List, Optional, Tuple
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
+from ..engine.api import LinkState, ModelState
 from ..engine.ring import Snapshot
 from ..engine.rows import moving_joints
 from ..errors import CommandError
@@ -69,6 +70,14 @@ class Entity:
         if self.link_from_model is not IDENTITY and self.link_from_model != IDENTITY:
             pose = compose(pose, self.link_from_model)
         return pose, twist
+
+    def saved(self, snapshot: Snapshot) -> ModelState:
+        """Everything the engine needs to put the model back as it is in `snapshot`."""
+        links = tuple(LinkState(*snapshot.link(self.first_link_row + n))
+                      for n in range(len(self.link_names)))
+        joints = tuple(snapshot.joint(self.first_joint_row + n)
+                       for n in range(len(self.joint_names)))
+        return ModelState(links, joints)
 
 
 @dataclass(frozen=True)

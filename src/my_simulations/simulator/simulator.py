@@ -22,8 +22,6 @@ from ..engine.api import (
     ClearLoads,
     Command,
     Engine,
-    Frame,
-    LinkState,
     Load,
     LoadModel,
     ModelState,
@@ -48,14 +46,10 @@ from ..geometry import (
     Twist,
     Vec3,
     compose,
-    conjugate,
-    multiply,
     normalised,
-    pose_is_finite,
-    rotate,
-    subtract,
 )
-from .registry import Anchor, Entity, Registry, Rows
+from .frames import in_frame, relative, usable
+from .registry import Entity, Registry, Rows
 from .states import States, collect
 from .supervisor import Supervisor
 
@@ -188,7 +182,7 @@ class Simulator:
                     pose = compose(pose, entity.link_from_model)
                 return pose, twist
             snapshot = self._snapshot()
-        return _relative(entity.state(snapshot), anchor, snapshot)
+        return relative(entity.state(snapshot), anchor, snapshot)
 
     def link_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
         """Pose and twist of a link in `frame`. Raises UnknownEntity, UnknownFrame."""
@@ -199,7 +193,7 @@ class Simulator:
             if anchor is None:
                 return self.ring.link(row)
             snapshot = self._snapshot()
-        return _relative(snapshot.link(row), anchor, snapshot)
+        return relative(snapshot.link(row), anchor, snapshot)
 
     def joint_state(self, name: str) -> Tuple[float, float]:
         """Position and rate of a movable joint. Raises UnknownEntity."""
@@ -313,7 +307,7 @@ class Simulator:
 
     def set_model_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
         """Move a model; all its links get the rigid body's velocity. Raises CommandError."""
-        pose = _usable(pose, twist)
+        pose = usable(pose, twist)
         with self._lock:
             entity = self._registry.model(name)
             anchor = self._registry.frame(frame)
@@ -322,16 +316,16 @@ class Simulator:
                     pose = compose(anchor.state(self._snapshot())[0], pose)
                 entity.pose = pose
                 return
-        pose, twist, reference = _in_frame(pose, twist, anchor)
+        pose, twist, reference = in_frame(pose, twist, anchor)
         self._call(SetModelState(entity.model_id, pose, twist, reference))
 
     def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
         """Move a link (see `engine.api.SetLinkState`). Raises CommandError."""
-        pose = _usable(pose, twist)
+        pose = usable(pose, twist)
         with self._lock:
             entity, index = self._registry.link(name)
             anchor = self._registry.frame(frame)
-        pose, twist, reference = _in_frame(pose, twist, anchor)
+        pose, twist, reference = in_frame(pose, twist, anchor)
         self._call(SetLinkState(entity.first_link_row + index, pose, twist, reference))
 
     def set_joints(self, positions: Dict[str, float]) -> None:
@@ -426,7 +420,7 @@ class Simulator:
         entities = self._registry.entities()
         commands: List[Command] = [SetPhysics(self._settings()),
                                    SetClock(snapshot.step, clock.sim_ns(snapshot.step))]
-        commands += [self._loading(entity, _saved(entity, snapshot)) for entity in entities]
+        commands += [self._loading(entity, entity.saved(snapshot)) for entity in entities]
         pending = tuple(load for load in self._loads.values() if load.stop > snapshot.step)
         if pending:
             commands.append(AddLoads(pending))
@@ -435,45 +429,3 @@ class Simulator:
         reply = submit(Batch(tuple(commands)))
         if reply.error:
             raise CommandError(reply.error)
-
-
-def _saved(entity: Entity, snapshot: Snapshot) -> ModelState:
-    links = tuple(LinkState(*snapshot.link(entity.first_link_row + n))
-                  for n in range(len(entity.link_names)))
-    joints = tuple(snapshot.joint(entity.first_joint_row + n)
-                   for n in range(len(entity.joint_names)))
-    return ModelState(links, joints)
-
-
-def _usable(pose: Pose, twist: Twist) -> Pose:
-    """The pose with a unit quaternion. Raises CommandError when a number is not finite."""
-    if not pose_is_finite(pose):
-        raise CommandError("the pose holds a number that is not finite")
-    if not pose_is_finite(Pose(twist.linear, (*twist.angular, 0.0))):
-        raise CommandError("the twist holds a number that is not finite")
-    return Pose(pose.position, normalised(pose.orientation))
-
-
-def _in_frame(pose: Pose, twist: Twist,
-              anchor: Optional[Anchor]) -> Tuple[Pose, Twist, Optional[Frame]]:
-    """What the engine is to be told: a fixed frame is resolved here, a moving one there."""
-    if anchor is None:
-        return pose, twist, None
-    if anchor.row >= 0:
-        return pose, twist, Frame(anchor.row, anchor.offset)
-    turn = anchor.offset.orientation
-    return (compose(anchor.offset, pose),
-            Twist(rotate(turn, twist.linear), rotate(turn, twist.angular)), None)
-
-
-def _relative(state: Tuple[Pose, Twist], anchor: Optional[Anchor],
-              snapshot: Snapshot) -> Tuple[Pose, Twist]:
-    """Gazebo's relative state: pose in the frame, velocity differences turned, no w x r term."""
-    if anchor is None:
-        return state
-    (position, turn), (linear, angular) = state
-    (at, axes), (frame_linear, frame_angular) = anchor.state(snapshot)
-    back = conjugate(axes)
-    pose = Pose(rotate(back, subtract(position, at)), multiply(back, turn))
-    return pose, Twist(rotate(back, subtract(linear, frame_linear)),
-                       rotate(back, subtract(angular, frame_angular)))
