@@ -241,6 +241,14 @@ def test_counts_add_up_and_a_crash_counts_as_a_failure(clone, tmp_path, judged, 
     assert done.stdout.splitlines()[-1] == counts, done.stderr
 
 
+def test_summary_of_rostest_is_read_with_its_colours(clone, tmp_path):
+    log = ("SUMMARY\\n\\033[1;31m * RESULT: FAIL\\033[0m\\n * TESTS: 8\\n * ERRORS: 0\\n"
+           "\\033[1;31m * FAILURES: 3 [a, b, c]\\033[0m\\n")
+    script = (f"LOG=$HOME/log; printf '{log}' >$LOG\n"
+              "echo $(summary TESTS) $(summary ERRORS) $(summary FAILURES)")
+    assert shell(clone, script, tmp_path / "home").stdout.split() == ["8", "0", "3"]
+
+
 def test_check_that_takes_too_long_is_ended_with_all_it_started(clone, tmp_path):
     script = ("LOGS=$HOME; STEPS=1; begin slow; status=0\n"
               "attempt slow 1 bash -c 'setsid sleep 600 & sleep 600' || status=$?\n"

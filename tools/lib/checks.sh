@@ -110,6 +110,7 @@ rostest_file() {
 # summary WORD: the number behind WORD in the summary that rostest ends with, 0 without one.
 summary() {
   local number
-  number=$(sed -n "s/^ \* $1: \([0-9]*\).*/\1/p" "$LOG" | tail -n 1)
+  # rostest colours the lines of what failed.
+  number=$(sed 's/\x1b\[[0-9;]*m//g' "$LOG" | sed -n "s/^ \* $1: \([0-9]*\).*/\1/p" | tail -n 1)
   printf '%s' "${number:-0}"
 }

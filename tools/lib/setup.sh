@@ -39,8 +39,8 @@ find_workspace() {
     if [ "$OVERLAY" = 0 ] && [ ! -d "$OWN/overlay" ]; then
       stop "$FOREIGN is there already, and two packages my_simulations cannot be in one workspace. \
 Nothing was changed." \
-        "To use its launch, world and urdf files in place of ours of the same name: add --overlay \
-(it stays as it is; the choice is remembered)." \
+        "To use its launch, world and urdf files in place of ours of the same name: \
+$COMMAND --overlay (that package stays untouched; the choice is remembered)." \
         "To use another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
     fi
     BUILD_WORKSPACE="$OWN/overlay"
