@@ -41,6 +41,7 @@ def test_a_sound_model_has_no_fault():
     (model(Link("")), "name-empty"),
     (model(Link("a"), Link("a")), "name-repeated"),
     (model(Link("a", NOWHERE)), "pose-not-finite"),
+    (model(Link("world")), "name-reserved"),
     (model(Link("a", inertial=Inertial(mass=0.0))), "mass-not-positive"),
     (model(Link("a", inertial=Inertial(mass=NAN))), "inertia-not-finite"),
     (model(Link("a", inertial=Inertial(ixx=math.inf))), "inertia-not-finite"),

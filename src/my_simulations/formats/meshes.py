@@ -9,14 +9,10 @@ from typing import Any, Callable, Dict, Iterator, List, Tuple
 from ..description.model import Link, Model
 from ..description.shapes import Collision, Mesh, MeshData, MeshTable, mesh_key
 from ..errors import InputError, Issue, error
-from .mesh_collada import read_collada
 from .mesh_part import MeshFault, MeshPart
-from .mesh_plain import read_obj, read_stl
 from .tables import closest
 
-_READERS: Dict[str, Callable[[bytes], List[MeshPart]]] = {
-    ".dae": read_collada, ".stl": read_stl, ".stlb": read_stl, ".stla": read_stl, ".obj": read_obj,
-}
+Reader = Callable[[bytes], List[MeshPart]]
 
 
 def load_mesh(mesh: Mesh) -> MeshData:
@@ -94,9 +90,18 @@ def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float
     return _to_data(_chosen(_parts(path), submesh, path), path, scale, bool(submesh and center))
 
 
+def _readers() -> Dict[str, Reader]:
+    # Imported with the first mesh: start-up time counts.
+    from .mesh_collada import read_collada
+    from .mesh_plain import read_obj, read_stl
+
+    return {".dae": read_collada, ".stl": read_stl, ".stla": read_stl, ".stlb": read_stl,
+            ".obj": read_obj}
+
+
 def _parts(path: str) -> List[MeshPart]:
     extension = os.path.splitext(path)[1].lower()
-    reader = _READERS.get(extension)
+    reader = _readers().get(extension)
     if reader is None:
         raise _fault("mesh-unreadable", f"{extension or 'a file without extension'} is not a mesh"
                      " format that is read", path, hint="use .dae, .stl or .obj")

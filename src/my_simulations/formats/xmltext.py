@@ -12,7 +12,6 @@ from typing import Any, Union
 
 from ..errors import InputError, error
 from .source import Log
-from .xmlrepair import balanced
 
 _DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
 _ENCODING = re.compile(rb"""<\?xml[^>]*\bencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
@@ -118,6 +117,7 @@ def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
     from lxml import etree
 
     from ..errors import warning
+    from .xmlrepair import balanced  # rarely needed, and start-up time counts
 
     line, column = fault.position
     if "Excessive depth" in fault.msg:
