@@ -15,19 +15,60 @@ from my_simulations.geometry import Pose, Twist, quat_from_rpy
 G = 9.8
 
 
-@pytest.mark.parametrize("mu", [0.3, 0.5, 1.0])
-def test_a_sliding_box_stops_after_v2_over_2_mu_g(lab: Lab, mu: float):
-    lab.load(ground(100.0))
-    # Flat, so that it slides instead of tipping over.
-    flat = Model("flat", links=[Link("link", inertial=Inertial(1, Pose(), .1, 0, 0, .1, 0, .2),
-                                     collisions=[Collision("c", Box((1, 1, 0.1)),
-                                                           surface=Surface(mu=mu))])])
-    sliding = lab.load(flat, (0, 0, 0.05))
+def _flat(mu: float, name: str = "flat", mass: float = 1.0) -> Model:
+    """Flat, so that it slides instead of tipping over."""
+    return Model(name, links=[Link(
+        "link", inertial=Inertial(mass, Pose(), .1 * mass, 0, 0, .1 * mass, 0, .2 * mass),
+        collisions=[Collision("c", Box((1, 1, 0.1)), surface=Surface(mu=mu))])])
+
+
+def _floor(mu: float) -> Model:
+    floor = slab("floor", (30, 1.8, 0.2))
+    floor.links[0].collisions[0].surface = Surface(mu=mu)
+    return floor
+
+
+def test_pairs_have_the_smaller_friction_all_in_one_world(lab: Lab):
+    sliding = {}
+    for row, ground_mu in enumerate((100.0, 1.0, 0.5)):
+        for n, mu in enumerate((0.3, 0.5, 1.0, 1.5)):
+            y = 2.0 * (4 * row + n)
+            lab.load(_floor(ground_mu), (0, y, -0.1))
+            sliding[min(mu, ground_mu), ground_mu, mu] = lab.load(_flat(mu, f"b{y}"), (0, y, 0.05))
     lab.steps(300)
-    start = lab.pose(sliding).position[0]
-    lab.push(sliding, (2, 0, 0))
-    lab.seconds(2)
-    assert lab.pose(sliding).position[0] - start == pytest.approx(4 / (2 * mu * G), rel=0.03)
+    starts = {key: lab.pose(model).position[0] for key, model in sliding.items()}
+    for model in sliding.values():
+        lab.push(model, (2, 0, 0))
+    lab.seconds(1.5)
+    for key, model in sliding.items():
+        distance = lab.pose(model).position[0] - starts[key]
+        assert distance == pytest.approx(4 / (2 * key[0] * G), rel=0.03), key
+
+
+@pytest.mark.parametrize("below, above", [(0.5, 0.5), (0.3, 0.5), (0.5, 0.3), (1.0, 1.5)])
+def test_a_body_slides_on_another_with_the_smaller_friction(lab: Lab, below: float, above: float):
+    # The lower body is heavy and long, so that it stays; the upper one slides on it.
+    lab.load(ground(100.0))
+    plate = Model("plate", links=[Link(
+        "link", inertial=Inertial(1000, Pose(), 1e3, 0, 0, 1e4, 0, 1e4),
+        collisions=[Collision("c", Box((20, 3, 0.2)), surface=Surface(mu=below))])])
+    plate_id = lab.load(plate, (0, 0, 0.1))
+    upper = lab.load(_flat(above), (-2, 0, 0.25))
+    lab.steps(300)
+    start = lab.pose(upper).position[0]
+    lab.push(upper, (2, 0, 0))
+    lab.seconds(1.5)
+    assert lab.pose(upper).position[0] - start == pytest.approx(
+        4 / (2 * min(below, above) * G), rel=0.03)
+    assert abs(lab.pose(plate_id).position[0]) < 0.01
+
+
+def test_a_tower_of_slippery_boxes_still_stands(lab: Lab):
+    lab.load(ground())
+    tower = [lab.load(box(f"b{n}", surface=Surface(mu=0.4)), (0, 0, 0.5 + n)) for n in range(6)]
+    lab.seconds(5)
+    for n, model in enumerate(tower):
+        assert lab.pose(model).position == pytest.approx((0, 0, 0.5 + n), abs=0.02)
 
 
 @pytest.mark.parametrize("degrees, slides", [(24.0, False), (29.0, True)])
@@ -36,11 +77,8 @@ def test_a_box_slides_beyond_the_angle_of_friction(lab: Lab, degrees: float, sli
     slope = slab("slope", (20, 4, 0.2))
     slope.links[0].collisions[0].surface = Surface(mu=100.0)
     lab.load(slope, orientation=tilt)
-    flat = Model("flat", links=[Link("link", inertial=Inertial(1, Pose(), .1, 0, 0, .1, 0, .2),
-                                     collisions=[Collision("c", Box((1, 1, 0.1)),
-                                                           surface=Surface(mu=0.5))])])
     normal = (0.15 * math.sin(math.radians(degrees)), 0.0, 0.15 * math.cos(math.radians(degrees)))
-    on_it = lab.load(flat, normal, tilt)
+    on_it = lab.load(_flat(0.5), normal, tilt)
     lab.seconds(1)
     moved = math.dist(lab.pose(on_it).position, normal)
     assert (moved > 0.1) is slides

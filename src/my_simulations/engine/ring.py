@@ -206,6 +206,17 @@ class RingReader:
             if self._is_whole(slot, sequence):
                 return found
 
+    def raw_links(self) -> "tuple[int, bytes]":
+        """Sequence of the newest snapshot and its used link rows as they lie in memory."""
+        while True:
+            sequence = self.words[LATEST]
+            slot = self.memory.slot(sequence)
+            at = (slot + HEAD_WORDS) * 8
+            size = self.words[slot + USED_LINKS] * LINK_WIDTH * 8
+            links = bytes(self.memory.buffer[at:at + size])
+            if self._is_whole(slot, sequence):
+                return sequence, links
+
     def read(self, sequence: Optional[int] = None) -> Optional[Snapshot]:
         """A copy of snapshot `sequence` (default the newest); None once it is overwritten."""
         while True:

@@ -41,9 +41,10 @@ from ..api import (
 from ..plan import PlanError, plan_bodies
 from ..ring import JOINTS, LINKS
 from ..rows import moving_joints
-from . import bodies, joints
+from . import bodies, joints, surfaces
 from .bodies import Body, Builder, Part
 from .forces import Forces
+from .friction import EVERY, FrictionBalance
 from .readout import Readout
 from .shapes import ShapeError, ShapeFactory
 from .wake import Waker
@@ -72,6 +73,7 @@ class BulletBackend:
         self._readout = Readout(self._on_diverged)
         self._waker = Waker(self._bodies, self._readout.touch)
         self._forces = Forces(self._waker.around)
+        self._friction = FrictionBalance()
         self._events: List[Event] = []
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
@@ -101,12 +103,14 @@ class BulletBackend:
         """Make `count` steps."""
         self._readout.stepped()
         one = pybullet.stepSimulation
-        if self._forces.idle:
+        if self._forces.idle and self._friction.idle:
             for _ in range(count):
                 one()
             return
         dt, gravity = self._settings.step_size, self._settings.gravity
         for step in range(first, first + count):
+            if not self._friction.idle and step % EVERY == 0:
+                self._friction.balance()
             self._forces.apply(step, dt, gravity)
             one()
 
@@ -162,6 +166,9 @@ class BulletBackend:
         self._models[command.model_id] = entry
         for body in built:
             self._register(body)
+            self._friction.add(body, [
+                _surface(command.model, part.row - command.first_link_row, part.mass)
+                for part in body.parts])
             joints.set_up(body, command.model, self._forces, self._settings.step_size)
         if command.state is not None:
             self._restore(entry, command.state)
@@ -204,6 +211,7 @@ class BulletBackend:
         del self._models[command.model_id]
         for body in entry.bodies:
             self._forces.forget(body)
+            self._friction.forget(body)
             self._readout.forget(body)
             for uid in body.uids:
                 del self._bodies[uid]
@@ -220,6 +228,7 @@ class BulletBackend:
                 self._readout.forget(body)
                 self._forces.forget(body)
         self._forces.clear_all()
+        self._friction.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         pybullet.resetSimulation()
@@ -335,6 +344,12 @@ class BulletBackend:
         name = self._models[body.model_id].model.name
         self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "
                                   "was put back where it was, at rest", body.model_id))
+
+
+def _surface(model: Model, index: int, mass: float) -> Tuple[float, float]:
+    """mu of a link as in the file, and as stored."""
+    surface = surfaces.of_link(model.links[index])
+    return surface.mu, surfaces.friction(surface, mass == 0.0)
 
 
 def _carried(lead: LinkState, target: Pose, wanted: Pose, twist: Optional[Twist]) -> Twist:

@@ -1,9 +1,8 @@
 """What PyBullet stores for a surface so that pairs come out as Gazebo's.
 
-PyBullet multiplies the coefficients of the two surfaces; Gazebo takes the smaller one. Stored as
-below, a pair of a static and a moving surface is exact when the static one has mu >= 1 and the
-larger mu (Gazebo's ground has 100), or when the moving one has mu 1 (the default); a pair of moving
-surfaces when one has mu 1 and the other mu <= 1. Other pairs get the product.
+PyBullet multiplies the coefficients of the two surfaces; Gazebo takes the smaller one. As stored
+here, pairs of moving surfaces with mu 1 (the default) and static ones are exact; `friction` mends
+the others.
 """
 from __future__ import annotations
 
