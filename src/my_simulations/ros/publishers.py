@@ -13,7 +13,7 @@ import rospy
 from gazebo_msgs.msg import LinkStates, ModelStates
 from rosgraph_msgs.msg import Clock
 
-from ..geometry import Pose, Twist
+from ..simulator.layout import Layout, Place
 from ..simulator.simulator import Simulator
 from .buffers import StatesBuffer, packed_time
 from .pacing import StateGate, StepSelector
@@ -74,8 +74,10 @@ class _Arrivals(rospy.SubscribeListener):
 class Channel:
     """One state topic: its publisher, whether a message is owed, and when one is due."""
 
-    def __init__(self, topic: str, data_class: Any, packed_class: Any, rate: float,
+    def __init__(self, topic: str, data_class: Any, packed_class: Any,
+                 entities: Callable[[Layout], Tuple[List[str], List[Place]]], rate: float,
                  wake: threading.Event) -> None:
+        self._entities = entities
         self._gate = StateGate(rate)
         self._buffer = StatesBuffer()
         self._message = packed_class()
@@ -101,12 +103,12 @@ class Channel:
         self._owed.clear()
         return self._gate.due(step, sim_ns, owed, standing)
 
-    def send(self, revision: int, sequence: int, names: List[str], poses: List[Pose],
-             twists: List[Twist]) -> None:
-        """Publish a message; see `StatesBuffer.pack`."""
-        self._message.packed = self._buffer.pack(revision, sequence, names, poses, twists)
+    def send(self, layout: Layout, sequence: int, links: bytes) -> None:
+        """Publish what `Simulator.raw_states` gave."""
+        names, places = self._entities(layout)
+        self._message.packed = self._buffer.pack(layout.revision, sequence, names, places, links)
         self.publisher.publish(self._message)
-        self._gate.sent((revision, sequence))
+        self._gate.sent((layout.revision, sequence))
 
 
 class Publishers:
@@ -132,12 +134,16 @@ class Publishers:
         self._clock_message = _PackedClock()
         self._clock = clock
         self._clock.impl.add_subscriber_listener(_Arrivals(self._wake.set))
-        self._models = self._links = None
+        self._channels: List[Channel] = []
         if states:
-            self._models = Channel("~model_states", ModelStates, _PackedModelStates, states_hz,
-                                   self._wake)
-            self._links = Channel("~link_states", LinkStates, _PackedLinkStates, states_hz,
-                                  self._wake)
+            self._channels = [
+                Channel("~model_states", ModelStates, _PackedModelStates,
+                        lambda layout: (layout.model_names, layout.model_places), states_hz,
+                        self._wake),
+                Channel("~link_states", LinkStates, _PackedLinkStates,
+                        lambda layout: (layout.link_names, layout.link_places), states_hz,
+                        self._wake),
+            ]
         self._thread = threading.Thread(target=self._run, name="publishers", daemon=True)
 
     def start(self) -> None:
@@ -156,7 +162,7 @@ class Publishers:
         selector = StepSelector(step, clock.sim_ns(step), time.monotonic(), self._clock_period_ns)
         while not self._stop.is_set():
             clock_wanted = self._clock.get_num_connections() > 0
-            states_wanted = any(channel.wanted for channel in self._channels())
+            states_wanted = any(channel.wanted for channel in self._channels)
             self._set_demand(clock_wanted, states_wanted)
             if not (clock_wanted or states_wanted):
                 self._wake.wait()
@@ -173,9 +179,6 @@ class Publishers:
                     rospy.logerr("publishing failed: %s", fault)
                     self._stop.wait(1.0)
             self._pace(began, selector.step - before, selector.step)
-
-    def _channels(self) -> List[Channel]:
-        return [channel for channel in (self._models, self._links) if channel is not None]
 
     def _set_demand(self, clock_wanted: bool, states_wanted: bool) -> None:
         hz = 0.0
@@ -202,24 +205,16 @@ class Publishers:
             self._clock.publish(self._clock_message)
         if states_wanted:
             sim_ns = clock.sim_ns(step)
-            due = [channel for channel in self._channels()
+            due = [channel for channel in self._channels
                    if channel.wanted and channel.is_due(step, sim_ns, self._standing)]
             if due:
-                self._send_states(due)
+                states = self._simulator.raw_states()
+                for channel in due:
+                    channel.send(*states)
 
     def _standing(self) -> Optional[Tuple[int, int]]:
         """What a world that stands still looks like; None while it runs."""
         if self._simulator.ring.running:
             return None
-        states = self._simulator.states()
-        return states.revision, states.sequence
-
-    def _send_states(self, due: List[Channel]) -> None:
-        states = self._simulator.states()
-        for channel in due:
-            if channel is self._models:
-                channel.send(states.revision, states.sequence, states.model_names,
-                             states.model_poses, states.model_twists)
-            else:
-                channel.send(states.revision, states.sequence, states.link_names,
-                             states.link_poses, states.link_twists)
+        layout, sequence, _ = self._simulator.raw_states()
+        return layout.revision, sequence

@@ -49,6 +49,7 @@ from ..geometry import (
     normalised,
 )
 from .frames import in_frame, relative, usable
+from .layout import Layout, lay_out
 from .registry import Entity, Registry, Rows
 from .states import States, collect
 from .supervisor import Supervisor
@@ -83,6 +84,7 @@ class Simulator:
         self._paused = paused
         self._horizon = FOREVER
         self._cached: Optional[States] = None
+        self._layout: Optional[Layout] = None
         self._demand = (0, False)
         self._supervisor = Supervisor(engine_factory, self._restore, log)
 
@@ -212,6 +214,16 @@ class Simulator:
                                    self._registry.revision)
             return self._cached
 
+    def raw_states(self) -> Tuple[Layout, int, bytes]:
+        """What `states` is made of: who is where, the snapshot's sequence, its link rows.
+
+        The layout is the same object until a name changes; a row is `ring.LINK_WIDTH` doubles.
+        """
+        with self._lock:
+            if self._layout is None or self._layout.revision != self._registry.revision:
+                self._layout = lay_out(self._registry.entities(), self._registry.revision)
+            return (self._layout, *self.ring.raw_links())
+
     def set_demand(self, hz: float, bell: bool) -> None:
         """Say how often states are wanted (0: no one waits) and whether to ring at each step."""
         self._demand = (int(1e9 / hz) if hz > 0.0 else 0, bell)
@@ -315,6 +327,7 @@ class Simulator:
                 if anchor is not None:
                     pose = compose(anchor.state(self._snapshot())[0], pose)
                 entity.pose = pose
+                self._registry.revision += 1
                 return
         pose, twist, reference = in_frame(pose, twist, anchor)
         self._call(SetModelState(entity.model_id, pose, twist, reference))
@@ -387,6 +400,7 @@ class Simulator:
             entities = self._registry.entities()
             for entity in entities:
                 entity.pose = entity.initial_pose
+            self._registry.revision += 1
             self._call(Batch(tuple(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names)))
@@ -399,6 +413,7 @@ class Simulator:
                 entity.pose = entity.initial_pose
                 commands.append(self._loading(entity))
             self._loads.clear()
+            self._registry.revision += 1
             self._call(Batch(tuple(commands)))
 
     # -- engine ----------------------------------------------------------------------------------
