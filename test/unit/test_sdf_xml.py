@@ -52,6 +52,12 @@ def test_a_document_cut_anywhere_is_refused(cut):
     assert refusal(read, sdf(MODEL)[:cut]).first.severity is Severity.ERROR
 
 
+def test_a_line_beyond_what_the_parser_counts_is_unknown_not_wrong():
+    _, issues = read(sdf("\n" * 70000 + MODEL.replace("/>", "><mistake/></link>")))
+    assert [(i.code, i.line) for i in issues] == [("unknown-element", 0)]
+    assert issues[0].xpath == "/sdf/model/link/mistake"
+
+
 def test_a_stray_end_tag_is_dropped_with_a_warning():
     model, issues = read(sdf("</wrong>\n" + MODEL))
     assert model.links[0].name == "l"

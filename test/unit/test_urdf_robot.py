@@ -180,6 +180,41 @@ def test_a_static_robot_may_have_zero_inertia_and_flat_boxes():
     assert [(i.code, i.severity) for i in issues] == [("bad-shape", Severity.WARNING)]
 
 
+ZERO = ('<inertial><mass value="{}"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>'
+        "</inertial>")
+
+
+def test_a_placeholder_box_of_no_size_is_dropped_with_a_warning():
+    model, issues = robot_of(robot_link(
+        "a", URDF_INERTIAL + '<collision><geometry><box size="0 0 0"/></geometry></collision>'))
+    assert model.links[0].collisions == []
+    assert [(i.code, i.severity) for i in issues] == [("bad-shape", Severity.WARNING)]
+
+
+@pytest.mark.parametrize("shape, tensor", [
+    ('<box size="1 2 3"/>', (13.0, 10.0, 5.0)),
+    ('<sphere radius="0.5"/>', (1.2, 1.2, 1.2)),
+    ('<cylinder radius="1" length="2"/>', (7.0, 7.0, 6.0)),
+])
+def test_an_inertia_of_zeros_becomes_that_of_the_shapes_with_a_warning(shape, tensor):
+    model, issues = robot_of(robot_link(
+        "a", ZERO.format(12) + f"<collision><geometry>{shape}</geometry></collision>"))
+    inertial = model.links[0].inertial
+    assert inertial.mass == 12
+    assert (inertial.ixx, inertial.iyy, inertial.izz) == pytest.approx(tensor)
+    assert [(i.code, i.severity) for i in issues] == [("inertia-zero", Severity.WARNING)]
+
+
+def test_shapes_share_the_mass_by_their_volume():
+    collision = ('<collision><origin xyz="{} 0 0"/><geometry><box size="1 1 1"/></geometry>'
+                 "</collision>")
+    model, _ = robot_of(robot_link(
+        "a", ZERO.format(2) + collision.format(-1) + collision.format(1)))
+    inertial = model.links[0].inertial
+    assert inertial.ixx == pytest.approx(2 / 6)
+    assert inertial.iyy == pytest.approx(2 / 6 + 2)
+
+
 def test_a_root_called_world_is_the_world():
     model, issues = robot_of(
         '<link name="world"/>' + AB + robot_joint("wa", "world", "a", xyz="1 0 0")

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from typing import Any, List, Optional, Sequence, Tuple
 
-from ..description.shapes import Collision, Empty, Geometry, Material, Mesh, Visual
+from ..description.shapes import Box, Collision, Empty, Geometry, Material, Mesh, Visual
 from ..description.validate import geometry_fault, has_zero_size
 from ..resources.resolver import NotFound
 from .sdf_tables import COLLISION, GEOMETRIES, KNOWN_GEOMETRIES, MATERIAL, VISUAL
@@ -109,8 +109,9 @@ def checked(geometry: Geometry, shape: Any, owner: str, source: Source,
         return None
     problem = geometry_fault(geometry)
     if problem:
-        # Care-O-bot's static objects hold boxes of size zero; they are not there to be touched.
-        mild = not collides or (static and has_zero_size(geometry))
+        # Care-O-bot's objects hold boxes of size 0 0 0: place-holders, not meant to be touched.
+        placeholder = isinstance(geometry, Box) and not any(geometry.size)
+        mild = not collides or placeholder or (static and has_zero_size(geometry))
         source.report(Level.WARNING if mild else Level.ERROR, "bad-shape",
                       f"{problem}; this {owner} is left out", shape)
         return None

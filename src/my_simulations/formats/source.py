@@ -8,6 +8,9 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 from ..errors import Issue, Severity
 from ..resources.resolver import Resolver
 
+_LAST_LINE = 65535
+"""libxml2 counts no further; an element that seems to stand there may stand anywhere below."""
+
 
 class Level(enum.Enum):
     """What a broken value or element does to what it belongs to."""
@@ -63,9 +66,10 @@ class Source:
         """`file`, `line` and `xpath` of an element, as arguments of an `Issue`."""
         if element is None:
             return {"file": self.file}
+        line = element.sourceline or 0
         return {
             "file": self.file,
-            "line": element.sourceline or 0,
+            "line": line if line < _LAST_LINE else 0,
             "xpath": element.getroottree().getpath(element),
         }
 
