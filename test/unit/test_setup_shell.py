@@ -226,6 +226,23 @@ def test_failed_part_of_a_step_says_which_why_and_what_to_do(clone, tmp_path):
     assert "the disk is full" in (tmp_path / "home" / "logs" / "fetch.log").read_text()
 
 
+def test_missing_system_packages_without_root_are_named(clone, tmp_path):
+    programs = tmp_path / "home" / "bin"
+    programs.mkdir(parents=True)
+    for name, text in (("id", "echo 1000"), ("dpkg-query", "echo 'installed cmake'; exit 1")):
+        (programs / name).write_text(f"#!/bin/bash\n{text}\n")
+        (programs / name).chmod(0o755)
+    script = ("ROS_PREFIX=/nowhere; STEPS=9\n"
+              "command() { [ \"$2\" != sudo ] && builtin command \"$@\"; }\n"
+              "install_system_packages")
+    done = shell(clone, script, tmp_path / "home")
+    assert done.returncode == 1
+    assert "neither root nor sudo" in done.stderr
+    advice = done.stderr.split("apt-get install", 1)[1].split()
+    assert "catkin" in advice and "python3-venv" in advice
+    assert "cmake" not in advice
+
+
 COUNTED = "LOGS=$HOME; LOG=$HOME/log; : >$LOG; STEPS=9; begin part\n{}\necho; echo $PASSED $FAILED"
 
 

@@ -9,14 +9,12 @@ RESULTS=          # folder of the result files, set once the workspace is known
 
 # marked: the processes that a check started, told by a variable in their environment.
 marked() {
-  local file pid
-  for file in /proc/[0-9]*/environ; do
-    grep -qz "^MY_SIMULATIONS_TEST_RUN=$MARK\$" "$file" 2>/dev/null || continue
-    pid=${file#/proc/}
-    pid=${pid%/environ}
+  local file
+  while IFS= read -r file; do
     # A process that has ended and waits for its parent is none.
-    grep -q '^State:[[:space:]]*Z' "/proc/$pid/status" 2>/dev/null || printf '%s\n' "$pid"
-  done
+    grep -q '^State:[[:space:]]*Z' "${file%/environ}/status" 2>/dev/null ||
+      basename "${file%/environ}"
+  done < <(grep -lz "^MY_SIMULATIONS_TEST_RUN=$MARK\$" /proc/[0-9]*/environ 2>/dev/null)
 }
 
 # end_leftovers: end every process that a check started and did not end; says how many it had to.

@@ -146,7 +146,8 @@ prepare_python() {
 build_inputs() {
   local folder
   printf '%s\n' "$VENV" "$BUILD_WORKSPACE"
-  tr ':' '\n' <<<"${CMAKE_PREFIX_PATH:-}" | grep -v -F -- "$WORKSPACE/" || true
+  # The same from a shell that has sourced this workspace as from one that has not.
+  tr ':' '\n' <<<"${CMAKE_PREFIX_PATH:-}" | sed '/^$/d' | grep -v -F -- "$WORKSPACE/" || true
   while IFS= read -r folder; do
     printf '%s\n' "$folder"
     cat "$folder/package.xml" "$folder/CMakeLists.txt" 2>/dev/null || true
