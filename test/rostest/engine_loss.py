@@ -12,11 +12,19 @@ import rospy
 import support
 from support import pose, twist
 
+PENDULUM = """<robot name="arm"><link name="world"/>
+  <link name="base"><inertial><mass value="5"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="bob"><inertial><origin xyz="1 0 0"/><mass value="1"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+  <joint name="foot" type="fixed"><parent link="world"/><child link="base"/></joint>
+  <joint name="hinge" type="revolute"><parent link="base"/><child link="bob"/>
+    <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="10" velocity="100"/></joint></robot>"""
 PID = "/gazebo/my_simulations/engine_pid"
 
 
 def values(state):
-    """Pose and twist of a get_model_state answer, flat."""
+    """Pose and twist of a state, flat."""
     v, w = state.twist.linear, state.twist.angular
     return (*support.numbers(state.pose), v.x, v.y, v.z, w.x, w.y, w.z)
 
@@ -55,6 +63,21 @@ class EngineLoss(unittest.TestCase):
             after = self.gazebo.get_model_state(name, "")
             for one, other in zip(values(after), values(before)):
                 self.assertAlmostEqual(one, other, delta=1e-9, msg=name)
+
+    def test_a_swinging_joint_comes_back_where_it_was_and_as_fast(self):
+        answer = self.gazebo.spawn("arm", xml=PENDULUM, where=pose(0.0, 0.0, 3.0))
+        self.assertTrue(answer.success, answer.status_message)
+        support.wait_for(lambda: self.bob().twist.angular.y > 1.0, "a swing")
+        self.gazebo.pause_physics()
+        before = self.bob()
+        self.wait_for_another(self.kill_engine())
+        for one, other in zip(values(self.bob()), values(before)):
+            self.assertAlmostEqual(one, other, delta=1e-6)
+        self.gazebo.unpause_physics()
+        support.wait_for(lambda: self.bob().twist.angular.y < 0.0, "the swing back")
+
+    def bob(self):
+        return self.gazebo.get_link_state("arm::bob", "").link_state
 
     def test_a_running_world_goes_on_from_where_it_was(self):
         self.assertTrue(self.gazebo.spawn("box", where=pose(1.0, 2.0, 0.1)).success)

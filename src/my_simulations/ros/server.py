@@ -5,6 +5,7 @@ imported, the world is read and loaded in a thread, and meanwhile rospy is impor
 """
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -238,6 +239,8 @@ class Server:
         node.spawn_robot()
         if not self._options.paused:
             loader.simulator.unpause()
+        # What the start has made stays; without this every full collection walks through it again.
+        gc.freeze()
         self._profile.mark("running")
         for line in self._profile.lines():
             self._say(line)
