@@ -27,17 +27,25 @@ class Worlds(unittest.TestCase):
         master = f"http://127.0.0.1:{port}"
         launch = ["roslaunch", "-p", str(port), "my_simulations", f"{world}.launch", "gui:=false",
                   "robot:=true"]
-        with support.Program(launch, ROS_MASTER_URI=master) as server:
-            support.wait_for(lambda: "spawned" in server.text or server.process.poll() is not None,
-                             f"{world} with its robot", 60)
-            self.assertIn("robot_description: Successfully spawned", server.text)
-            with flow.tool("spawn_object.py", "all", ROS_MASTER_URI=master) as program:
-                self.assertEqual(program.ended(60), 0, program.text)
-            self.assertIn("MY_OBJECT spawned", program.text)
-            server.interrupt()
-            self.assertEqual(server.ended(60), 0, server.text)
+        # What nodes print waits in a buffer while it goes to a pipe.
+        with support.Program(launch, ROS_MASTER_URI=master, PYTHONUNBUFFERED="1") as server:
+            try:
+                self.check_running(server, world, master)
+            finally:
+                # Killed without this, roslaunch would leave its nodes behind.
+                server.interrupt()
+                status = server.ended(60)
+        self.assertEqual(status, 0, server.text)
         self.assertNotIn("error", server.text.lower())
         self.assertNotIn("[WARN]", server.text)
+
+    def check_running(self, server, world, master):
+        support.wait_for(lambda: "spawned" in server.text or server.process.poll() is not None,
+                         f"{world} with its robot", 30)
+        self.assertIn("robot_description: Successfully spawned", server.text)
+        with flow.tool("spawn_object.py", "all", ROS_MASTER_URI=master) as program:
+            self.assertEqual(program.ended(60), 0, program.text)
+        self.assertIn("MY_OBJECT spawned", program.text)
 
 
 WORLDS = [os.path.splitext(os.path.basename(path))[0] for path in
