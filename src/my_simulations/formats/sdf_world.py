@@ -1,7 +1,7 @@
 """SDF worlds: models, lights, physics, and what is kept."""
 from __future__ import annotations
 
-from typing import Any, Callable, List, Optional, Sequence, Set
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set
 
 from ..description.model import Model
 from ..description.world import Light, Physics, World
@@ -38,7 +38,7 @@ class _Entities:
         self._waiting: List[Any] = []  # (model or light, name of its frame, element)
 
     def read(self, element: Any) -> None:
-        readers: dict[str, Callable[[Any], Any]] = {
+        readers: Dict[str, Callable[[Any], Any]] = {
             "model": lambda child: read_model(child, self._source),
             "include": lambda child: read_include(child, self._source),
             "light": lambda child: read_light(child, self._source),
