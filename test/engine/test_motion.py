@@ -95,3 +95,16 @@ def test_gravity_can_change_while_bodies_sleep(lab: Lab):
     lab.steps(1000)
     assert lab.pose(resting).position[2] == pytest.approx(0.5 + 1.0, abs=0.02)
     assert math.isfinite(lab.twist(resting).linear[2])
+
+
+@pytest.mark.parametrize("dt", [0.001, 0.004])
+def test_velocity_decay_takes_its_share_off_in_every_step(lab: Lab, dt: float):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = box()
+    model.links[0].linear_decay, model.links[0].angular_decay = 0.01, 0.005
+    coasting = lab.load(model)
+    lab.configure(step_size=dt)
+    lab.push(coasting, (10, 0, 0), (0, 0, 2))
+    lab.steps(100)
+    assert lab.twist(coasting).linear[0] == pytest.approx(10 * 0.99 ** 100, rel=1e-6)
+    assert lab.twist(coasting).angular[2] == pytest.approx(2 * 0.995 ** 100, rel=1e-6)

@@ -98,6 +98,9 @@ class BulletBackend:
             for entry in self._models.values():
                 for body in entry.bodies:
                     joints.set_up(body, entry.model, self._forces, settings.step_size)
+                    if body.rigid and body.moves:
+                        link = entry.model.links[body.parts[0].row - entry.first_row]
+                        bodies.set_decay(body.uid, link, settings.step_size)
 
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
@@ -159,7 +162,8 @@ class BulletBackend:
         try:
             plans = plan_bodies(command.model)
             built = Builder(command.model_id, command.model, command.pose, command.meshes,
-                            self._shapes, command.first_link_row, joint_rows).build(plans)
+                            self._shapes, command.first_link_row, joint_rows,
+                            self._settings.step_size).build(plans)
         except (PlanError, ShapeError) as fault:
             raise Refused(str(fault)) from fault
         entry = Entry(command.model, built, command.first_link_row)

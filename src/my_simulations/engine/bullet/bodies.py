@@ -92,7 +92,9 @@ class Builder:
     """Builds the bodies of one model; on a fault it removes what it had built."""
 
     def __init__(self, model_id: int, model: Model, pose: Pose, meshes: MeshTable,
-                 shapes: ShapeFactory, link_rows: int, joint_rows: Dict[str, int]) -> None:
+                 shapes: ShapeFactory, link_rows: int, joint_rows: Dict[str, int],
+                 dt: float) -> None:
+        self.dt = dt
         self.model_id = model_id
         self.model = model
         self.pose = pose
@@ -131,6 +133,7 @@ class Builder:
                     may_sleep=self._may_sleep(link))
         for uid in uids:
             set_dynamics(uid, BASE, link, mass, moments, body.may_sleep and not static)
+            set_decay(uid, link, self.dt)
         body.radius = _radius(uids[0])
         return body
 
@@ -226,6 +229,17 @@ def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
                sleepThreshold=SLEEP_THRESHOLD)
     elif mass > 0.0:
         change(activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+
+
+def set_decay(uid: int, link: Link, dt: float) -> None:
+    """SDF's velocity_decay of a rigid body.
+
+    Gazebo's ODE takes the share off in every step; Bullet's damping d leaves (1 - d) ** dt of it.
+    """
+    if link.linear_decay or link.angular_decay:
+        damping = [1.0 - (1.0 - min(1.0, decay)) ** (1.0 / dt)
+                   for decay in (link.linear_decay, link.angular_decay)]
+        pybullet.changeDynamics(uid, BASE, linearDamping=damping[0], angularDamping=damping[1])
 
 
 def remove(body: Body) -> None:
