@@ -10,7 +10,7 @@ import time
 import pybullet
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
-from scenes import positions  # noqa: E402
+from scenes import positions
 
 
 def main(kind: str, count: int, sleeping: bool, seconds: float) -> None:

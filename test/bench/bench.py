@@ -15,8 +15,8 @@ import time
 from typing import Callable, Dict, List, Tuple
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
-import scenes  # noqa: E402
-from server import Server, master, processor, resident, wait  # noqa: E402
+import scenes
+from server import Server, master, processor, resident, wait
 
 Row = Tuple[str, str, str, bool]
 EMPTY = scenes.world("boxes", 0, True, 1000.0)

@@ -4,10 +4,17 @@ from __future__ import annotations
 from typing import Iterator, List, Optional, Tuple
 
 import pytest
+
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Geometry, Plane, Sphere, Surface
-from my_simulations.engine.api import (Command, LoadModel, ModelState, PhysicsSettings,
-                                       RemoveModel, SetModelState)
+from my_simulations.engine.api import (
+    Command,
+    LoadModel,
+    ModelState,
+    PhysicsSettings,
+    RemoveModel,
+    SetModelState,
+)
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.rows import moving_joints
 from my_simulations.geometry import STILL, Pose, Twist

@@ -6,9 +6,18 @@ import math
 import numpy as np
 import pytest
 from conftest import Lab, ball, box, ground, slab
+
 from my_simulations.description.model import Inertial, Link, Model
-from my_simulations.description.shapes import (Box, Collision, Cylinder, Mesh, MeshData, Sphere,
-                                               Surface, mesh_key)
+from my_simulations.description.shapes import (
+    Box,
+    Collision,
+    Cylinder,
+    Mesh,
+    MeshData,
+    Sphere,
+    Surface,
+    mesh_key,
+)
 from my_simulations.engine.api import FOREVER, AddLoads, Load, SetModelState
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 

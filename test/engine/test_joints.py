@@ -5,9 +5,19 @@ import math
 
 import pytest
 from conftest import Lab, arm, box, inertial_of_box
-from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.engine.api import (FOREVER, AddLoads, LinkState, Load, ModelState, Refused,
-                                       SetJoints, SetLinkState, SetModelState)
+
+from my_simulations.description.model import Joint, JointAxis, Link, Model
+from my_simulations.engine.api import (
+    FOREVER,
+    AddLoads,
+    LinkState,
+    Load,
+    ModelState,
+    Refused,
+    SetJoints,
+    SetLinkState,
+    SetModelState,
+)
 from my_simulations.geometry import IDENTITY, Pose, Twist, compose, quat_from_rpy, transform
 
 Y = (0.0, 1.0, 0.0)
@@ -110,7 +120,8 @@ def test_wrenches_add_up_and_act_exactly_in_their_steps(lab: Lab):
     lab.configure(gravity=(0.0, 0.0, 0.0))
     model = lab.load(box(mass=2.0))
     row = lab.rows[model, "link"]
-    lab.apply(AddLoads((Load(1, row, 10, 20, force=(4, 0, 0)), Load(2, row, 15, 20, force=(4, 0, 0)),
+    lab.apply(AddLoads((Load(1, row, 10, 20, force=(4, 0, 0)),
+                        Load(2, row, 15, 20, force=(4, 0, 0)),
                         Load(3, row, 10, 11, torque=(0, 0, 1)))))
     lab.steps(10)
     assert lab.twist(model) == Twist()

@@ -5,6 +5,7 @@ import math
 
 import pytest
 from conftest import Lab, box
+
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.engine.api import SetModelState
 from my_simulations.geometry import Pose, Twist, quat_from_rpy, rotate

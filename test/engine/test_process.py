@@ -9,7 +9,8 @@ import sys
 import time
 
 import pytest
-from conftest import arm, ball, box, ground, slab
+from conftest import arm, ball, box, ground
+
 from my_simulations.description.model import JointAxis
 from my_simulations.description.world import Physics, World
 from my_simulations.engine.api import FOREVER, Load

@@ -53,3 +53,9 @@ def test_the_namespace_goes_into_every_plugin_that_lacks_one():
 def test_an_empty_namespace_leaves_the_plugins_alone():
     before = plugin_model()
     assert named(plugin_model(), "given", "").plugins == before.plugins
+
+
+def test_a_plugin_with_an_undeclared_prefix_is_left_as_it_is():
+    odd = "<plugin name='p'><controller:x/></plugin>"
+    model = named(Model("own", plugins=[PluginSpec("p", "p.so", odd)]), "given", "/ns")
+    assert model.plugins[0].xml == odd

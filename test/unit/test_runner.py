@@ -5,10 +5,23 @@ import time
 from typing import List
 
 import pytest
+
 from my_simulations.description.model import Inertial, Link, Model
-from my_simulations.engine.api import (FOREVER, Advance, Batch, Event, LoadModel, Pause,
-                                       PhysicsSettings, Ping, RemoveModel, Run, SetClock,
-                                       SetModelState, SetPhysics)
+from my_simulations.engine.api import (
+    FOREVER,
+    Advance,
+    Batch,
+    Event,
+    LoadModel,
+    Pause,
+    PhysicsSettings,
+    Ping,
+    RemoveModel,
+    Run,
+    SetClock,
+    SetModelState,
+    SetPhysics,
+)
 from my_simulations.engine.inline import InlineEngine
 from my_simulations.engine.kinematic import KinematicBackend
 from my_simulations.geometry import Pose, Twist

@@ -6,6 +6,7 @@ import threading
 import time
 
 import pytest
+
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.world import World

@@ -116,10 +116,32 @@ def _move(options: argparse.Namespace, target: Union[Pose, Route],
         print(f"{options.name} is at its pose")
         return client.OK
     try:
-        _follow(simulator, options, target, stops, remappings)
+        _as_node(options.name, remappings,
+                 lambda: _follow(simulator, options, target, stops))
     except (Stopped, KeyboardInterrupt):
         print(f"{NAME}: ended")
     return client.OK
+
+
+def _as_node(model: str, remappings: Sequence[str], work: Callable[[], None]) -> None:
+    """Works as a ROS node, which hears the simulation's time.
+
+    Raises:
+        Stopped: the node was shut down from elsewhere.
+    """
+    import rospy
+
+    clean = re.sub(r"\W", "_", model)
+    # rospy's own handler of Ctrl-C would cut a service call off in the middle.
+    rospy.init_node(f"move_{clean}", argv=list(remappings), anonymous=True, disable_signals=True)
+    try:
+        work()
+    except client.ToolError:
+        if rospy.is_shutdown():
+            raise Stopped from None
+        raise
+    finally:
+        rospy.signal_shutdown("done")
 
 
 def _wait_for_models(simulator: client.Simulator, parameters: client.Parameters,
@@ -154,11 +176,7 @@ def _place(simulator: client.Simulator, parameters: client.Parameters,
 
 
 def _follow(simulator: client.Simulator, options: argparse.Namespace, route: Route,
-            stops: List[str], remappings: Sequence[str]) -> None:
-    import rospy
-
-    clean = re.sub(r"\W", "_", options.name)
-    rospy.init_node(f"move_{clean}", argv=list(remappings), anonymous=True)
+            stops: List[str]) -> None:
     clock = _Clock(options.timeout)
     distance, last = 0.0, clock.now()
     end = options.laps * route.length or math.inf

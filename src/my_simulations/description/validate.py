@@ -93,7 +93,8 @@ def _repeated(kind: str, items: Sequence[Any]) -> Iterator[Fault]:
 def link_faults(link: Link, static: bool) -> Iterator[Fault]:
     """Faults of one link; mass and inertia count for links that can move only."""
     if link.name == WORLD:
-        yield Fault("name-reserved", "a link is named 'world', which joints mean the world by", link)
+        yield Fault("name-reserved",
+                    "a link is named 'world', which joints mean the world by", link)
     if not pose_is_finite(link.pose):
         yield Fault("pose-not-finite", f"the pose of link {link.name!r} is not finite", link)
     if not static:

@@ -272,7 +272,10 @@ class Engine(Protocol):
         """Set who hears of the engine's death: a reason, and the commands without an answer."""
 
     def wait_bell(self, timeout: float) -> bool:
-        """Wait until the engine rings (a step or a change, when asked to); False after `timeout`."""
+        """Wait until the engine rings (when asked to, for steps and changes).
+
+        False when `timeout` s pass first.
+        """
 
     def restart(self) -> None:
         """After a death: start anew on the same ring, empty; call from a long-lived thread."""

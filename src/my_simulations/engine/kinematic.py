@@ -6,8 +6,21 @@ from typing import Dict, List, Tuple
 
 from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
-from .api import (AddLoads, Clear, ClearLoads, Command, Event, LinkState, LoadModel,
-                  PhysicsSettings, Refused, RemoveModel, SetJoints, SetLinkState, SetModelState)
+from .api import (
+    AddLoads,
+    Clear,
+    ClearLoads,
+    Command,
+    Event,
+    LinkState,
+    LoadModel,
+    PhysicsSettings,
+    Refused,
+    RemoveModel,
+    SetJoints,
+    SetLinkState,
+    SetModelState,
+)
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .rows import moving_joints
 

@@ -23,7 +23,7 @@ Buffer = Union[bytes, memoryview]
 SLOTS = 16
 LINKS = 16384
 JOINTS = 16384
-LINK_WIDTH = 13   # position 3, orientation 4 (x y z w), linear 3, angular 3; world axes, link origin
+LINK_WIDTH = 13   # position 3, orientation 4 (x y z w), linear 3, angular 3: world, link origin
 JOINT_WIDTH = 2   # position, rate
 HEAD_WORDS = 16
 
@@ -143,7 +143,10 @@ class RingWriter:
         self.words[STEP] = step
 
     def write(self, step: int, clock: Clock, links: Buffer, joints: Buffer) -> int:
-        """Write a snapshot. `links`, `joints`: the used rows as raw doubles. Returns its sequence."""
+        """Write a snapshot and return its sequence.
+
+        `links` and `joints` are the used rows as raw doubles.
+        """
         words = self.words
         sequence = words[LATEST] + 1
         slot = self.memory.slot(sequence)

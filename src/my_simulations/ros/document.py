@@ -89,10 +89,16 @@ def _extra(texts: List[str], namespace: str) -> List[str]:
 
 
 def _injected(xml: str, namespace: str) -> str:
-    """The element `xml` with the namespace in every `<plugin>` of it that has none."""
+    """The element `xml` with the namespace in every `<plugin>` of it that has none.
+
+    What cannot be parsed by itself (a prefix that is declared nowhere) stays as it is.
+    """
     import xml.etree.ElementTree as ElementTree
 
-    root = ElementTree.fromstring(xml)
+    try:
+        root = ElementTree.fromstring(xml)
+    except ElementTree.ParseError:
+        return xml
     changed = False
     for plugin in root.iter("plugin"):
         if plugin.find(NAMESPACE_ELEMENT) is None:

@@ -6,7 +6,7 @@ from typing import Callable, Dict, List, Tuple
 from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..description.world import World
-from ..errors import InputError, Issue, error, errors_of
+from ..errors import InputError, Issue, error
 from ..resources.resolver import NotFound, Resolver
 
 Log = Callable[[Issue], None]
@@ -15,7 +15,7 @@ Log = Callable[[Issue], None]
 def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str, MeshTable]]:
     """Read a world.
 
-    A model whose meshes cannot be used is left out, and the rest of the world loads.
+    A collision whose mesh cannot be used is left out, and the rest of the world loads.
 
     Args:
         name: a path, or a name in the resource paths.
@@ -44,15 +44,14 @@ def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str
 
 
 def _with_meshes(models: List[Model], log: Log) -> Tuple[List[Model], Dict[str, MeshTable]]:
-    from ..formats.meshes import collision_meshes
+    from ..formats.meshes import collision_meshes, without_missing_meshes
 
-    whole: List[Model] = []
+    usable: List[Model] = []
     tables: Dict[str, MeshTable] = {}
     for model in models:
         table, issues = collision_meshes(model)
         for issue in issues:
             log(issue)
-        if not errors_of(issues):
-            whole.append(model)
-            tables[model.name] = table
-    return whole, tables
+        usable.append(without_missing_meshes(model, table))
+        tables[model.name] = table
+    return usable, tables

@@ -253,7 +253,8 @@ class Server:
         return FAILED
 
     def _end(self, node: Any, loader: WorldLoader) -> None:
-        watchdog = threading.Timer(END_SECONDS, os._exit, (OK,))
+        status = OK if self._ended.is_set() else FAILED
+        watchdog = threading.Timer(END_SECONDS, os._exit, (status,))
         watchdog.daemon = True
         watchdog.start()
         self._ended.set()

@@ -1,11 +1,11 @@
 """The smaller coefficient of each pair, where PyBullet's product gives something else.
 
-PyBullet multiplies the stored coefficients of two surfaces; Gazebo takes the smaller mu (gazebo ODE,
-surface/friction). Surfaces with mu 1, and static ones, keep what `surfaces` stores, which is exact
-for pairs among them that move on each other. The others get values for what they touch just now: the
-logarithms x of the stored values must satisfy x_i + x_j = log min(mu_i, mu_j) for every touching
-pair, which a stack or any other tree of contacts satisfies exactly. Contacts in rings over-determine
-them; the least squares solution, weighted by nothing, is then used.
+PyBullet multiplies the stored coefficients of two surfaces; Gazebo takes the smaller mu (its ODE
+backend, surface/friction). Surfaces with mu 1, and static ones, keep what `surfaces` stores, which
+is exact for pairs among them. The others get values for what they touch just now: the logarithms x
+of the stored values must satisfy x_i + x_j = log min(mu_i, mu_j) for every touching pair, which a
+stack or any other tree of contacts satisfies exactly. Contacts in rings over-determine them; the
+least squares solution is then used.
 
 A world without such surfaces pays nothing.
 """
