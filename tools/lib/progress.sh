@@ -42,7 +42,7 @@ follow() {
 
 # logged NAME ADVICE COMMAND...: run a part of a step; its output goes to the log NAME.
 logged() {
-  local log="$LOGS/$1.log" advice="$2" status=0
+  local name="$1" log="$LOGS/$1.log" advice="$2" status=0
   shift 2
   mkdir -p "$LOGS"
   printf '+ %s\n' "$*" >"$log"
@@ -50,6 +50,6 @@ logged() {
   [ "$status" -eq 0 ] && return
   printf '\n\n--- the last lines of %s ---\n' "$log" >&2
   tail -n 25 "$log" >&2
-  stop "step $STEP, $STEP_TEXT: '$1' ended with status $status." "$advice" \
+  stop "step $STEP, $STEP_TEXT: '$name' ended with status $status." "$advice" \
     "The whole log is $log."
 }

@@ -23,7 +23,7 @@ set_up() {
   prepare_workspace
   prepare_python "$CLONE/requirements.txt"
   [ "$WITH_TEST_TOOLS" = 0 ] || prepare_python "$CLONE/requirements-test.txt"
-  finish
+  finish "$PYTHON_REMARK"
   build_workspace
 }
 
@@ -125,11 +125,12 @@ prepare_workspace() {
 prepare_python() {
   local name stamp stamped
   name=$(basename "$1" .txt)
-  if [ "$name" = requirements ]; then begin "Python packages"; fi
+  if [ "$name" = requirements ]; then begin "Python packages"; PYTHON_REMARK="all there"; fi
   stamp="$("$PYTHON" --version) $(sha256sum <"$1")"
   stamped="$VENV/.$name"
   [ "$(cat "$stamped" 2>/dev/null || true)" != "$stamp" ] || return 0
-  say "installing, a minute or two"
+  [ "$PYTHON_REMARK" = installed ] || say "installing, a minute or two"
+  PYTHON_REMARK=installed
   # An interrupted or foreign environment is cheaper to make anew than to mend.
   if ! "$VENV/bin/python3" -m pip --version >/dev/null 2>&1 ||
      [ "$("$VENV/bin/python3" --version)" != "$("$PYTHON" --version)" ]; then
