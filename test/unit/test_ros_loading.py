@@ -20,14 +20,17 @@ def test_a_world_that_is_nowhere_lists_the_places(tmp_path):
     assert "none.world" in str(fault.value) and str(tmp_path) in str(fault.value)
 
 
-def test_a_model_whose_mesh_is_broken_is_left_out_and_the_rest_loads(tmp_path):
+def test_a_collision_whose_mesh_is_broken_is_left_out_and_the_rest_loads(tmp_path):
     (tmp_path / "broken.stl").write_text("solid nothing\nendsolid nothing\n")
     (tmp_path / "room.world").write_text(WORLD)
     issues = []
     world, meshes = load_world("room.world", Resolver(resource_paths=[str(tmp_path)]),
                                issues.append)
-    assert [model.name for model in world.models] == ["good"]
-    assert list(meshes) == ["good"]
+    good, bad = world.models
+    assert (good.name, len(good.links[0].collisions)) == ("good", 1)
+    assert (bad.name, [link.name for link in bad.links], bad.links[0].collisions) == (
+        "bad", ["l"], [])
+    assert meshes["bad"] == {}
     assert any(issue.severity is Severity.ERROR and "broken.stl" in str(issue)
                for issue in issues)
 
