@@ -65,6 +65,16 @@ class JointAxis:
     friction: float = 0.0
     spring_reference: float = 0.0
     spring_stiffness: float = 0.0
+    mimic: Optional["Mimic"] = None
+
+
+@dataclass
+class Mimic:
+    """This axis follows another joint's: q = multiplier q_joint + offset (URDF, SDF 1.11)."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
 
 
 @dataclass
@@ -73,6 +83,8 @@ class Joint:
 
     `type` is SDF's word: revolute, prismatic, fixed, … `pose` is in the child link's frame.
     `axis` is None for a fixed joint. Position 0 is the configuration of the file.
+    `thread_pitch` rad/m of a screw, positive left-handed as in Gazebo Classic; `gearbox_ratio`:
+    theta2 = -ratio theta1, both about the link `gearbox_reference`.
     """
 
     name: str
@@ -82,6 +94,9 @@ class Joint:
     pose: Pose = IDENTITY
     axis: Optional[JointAxis] = None
     axis2: Optional[JointAxis] = None
+    thread_pitch: float = 1.0
+    gearbox_ratio: float = 1.0
+    gearbox_reference: str = ""
     extra: List[str] = field(default_factory=list)
 
 

@@ -59,11 +59,79 @@ class Mesh:
 
 
 @dataclass
+class Capsule:
+    """A cylinder along z with half-spheres on both ends; `length` without them (SDF 1.8)."""
+
+    radius: float = 0.5
+    length: float = 1.0
+
+
+@dataclass
+class Ellipsoid:
+    """`radii` along x, y, z (SDF 1.8)."""
+
+    radii: Vec3 = (1.0, 1.0, 1.0)
+
+
+@dataclass
+class Cone:
+    """Axis z, apex up, centred between base and apex (SDF 1.11)."""
+
+    radius: float = 0.5
+    length: float = 1.0
+
+
+@dataclass
+class Heightmap:
+    """A terrain from a grey image.
+
+    `size`: extent along x and y, and the height of white above black; `position`: of the centre in
+    the link frame; `sampling`: subdivisions of a pixel. `extra` keeps textures and blends.
+    """
+
+    uri: str = ""
+    path: str = ""
+    size: Vec3 = (1.0, 1.0, 1.0)
+    position: Vec3 = (0.0, 0.0, 0.0)
+    sampling: int = 2
+    extra: List[str] = field(default_factory=list)
+
+
+@dataclass
+class Polyline:
+    """Closed polygons in the x-y plane, the first outer and the others holes, extruded along z."""
+
+    loops: List[List[Tuple[float, float]]] = field(default_factory=list)
+    height: float = 1.0
+
+
+@dataclass
+class ImageMap:
+    """A map image: every pixel darker than `threshold` (0..255) stands as a box `height` high.
+
+    `scale` is metres a pixel; `granularity` pixels a box.
+    """
+
+    uri: str = ""
+    path: str = ""
+    scale: float = 1.0
+    threshold: int = 200
+    height: float = 1.0
+    granularity: int = 1
+
+
+@dataclass
 class Empty:
     """No geometry."""
 
 
-Geometry = Union[Box, Sphere, Cylinder, Plane, Mesh, Empty]
+Geometry = Union[Box, Sphere, Cylinder, Plane, Mesh, Capsule, Ellipsoid, Cone, Heightmap,
+                 Polyline, ImageMap, Empty]
+
+Solid = Union[Mesh, Heightmap, Polyline, ImageMap]
+"""Geometry that collides as a mesh made ready beforehand, found by `mesh_key`."""
+
+SOLIDS = (Mesh, Heightmap, Polyline, ImageMap)
 
 
 @dataclass
@@ -73,10 +141,12 @@ class MeshData:
     Attributes:
         vertices: float64 array (n, 3), scale already applied.
         triangles: int32 array (m, 3) of vertex indices.
+        parts: convex pieces that together are the solid, for a body that moves; None: its hull.
     """
 
     vertices: Any
     triangles: Any
+    parts: Optional[List["MeshData"]] = None
 
 
 @dataclass
@@ -146,7 +216,9 @@ MeshTable = Dict[str, MeshData]
 """Loaded collision meshes by `mesh_key`."""
 
 
-def mesh_key(mesh: Mesh) -> str:
-    """What identifies a loaded mesh: file, scale, part."""
-    part = f"#{mesh.submesh}{'@' if mesh.center else ''}" if mesh.submesh else ""
-    return f"{mesh.path}*{mesh.scale[0]!r},{mesh.scale[1]!r},{mesh.scale[2]!r}{part}"
+def mesh_key(solid: Solid) -> str:
+    """What identifies a loaded mesh: file, scale and part, or the numbers that make it."""
+    if not isinstance(solid, Mesh):
+        return repr(solid)
+    part = f"#{solid.submesh}{'@' if solid.center else ''}" if solid.submesh else ""
+    return f"{solid.path}*{solid.scale[0]!r},{solid.scale[1]!r},{solid.scale[2]!r}{part}"
