@@ -53,7 +53,8 @@ def test_xacro_fails_with_a_status_on_a_missing_file():
 
 
 @pytest.mark.parametrize("launch", sorted(
-    path.name for path in (REPOSITORY / "compat/gazebo_ros/launch").glob("*.launch")))
+    path.name.replace(".launch.in", ".launch")
+    for path in (REPOSITORY / "compat/gazebo_ros/launch").glob("*.launch*")))
 def test_world_launch_file_forwards_every_argument(launch):
     done = _run("roslaunch", "--args", "/gazebo", "gazebo_ros", launch, "paused:=true",
                 "recording:=true", "verbose:=true", "physics:=ode", "extra_gazebo_args:=--seed 7",

@@ -27,8 +27,7 @@ class Worlds(unittest.TestCase):
         master = f"http://127.0.0.1:{port}"
         launch = ["roslaunch", "-p", str(port), "my_simulations", f"{world}.launch", "gui:=false",
                   "robot:=true"]
-        # What nodes print waits in a buffer while it goes to a pipe.
-        with support.Program(launch, ROS_MASTER_URI=master, PYTHONUNBUFFERED="1") as server:
+        with support.Program(launch, ROS_MASTER_URI=master) as server:
             try:
                 self.check_running(server, world, master)
             finally:

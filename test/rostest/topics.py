@@ -103,14 +103,19 @@ class Topics(unittest.TestCase):
         self.assertEqual(found.twist[0].linear.x, 0.0)
 
     def test_states_come_at_every_step(self):
-        models = self.listen("/gazebo/model_states", ModelStates)
-        clock = self.listen("/clock", Clock)
-        support.wait_for(lambda: times(clock) and models.all(), "both topics")
-        models.clear()
-        first = times(clock)[-1]
-        support.wait_for(lambda: len(models.all()) >= 1000, "1000 states")
-        steps = (times(clock)[-1] - first) / STEP_NS
-        self.assertGreater(1000 / steps, 0.3)
+        # Slowly, so that a busy machine is no excuse.
+        self.set_rate(100.0)
+        try:
+            models = self.listen("/gazebo/model_states", ModelStates)
+            clock = self.listen("/clock", Clock)
+            support.wait_for(lambda: times(clock) and models.all(), "both topics")
+            models.clear()
+            first = times(clock)[-1]
+            support.wait_for(lambda: len(models.all()) >= 200, "200 states")
+            steps = (times(clock)[-1] - first) / STEP_NS
+        finally:
+            self.set_rate(1000.0)
+        self.assertGreater(200 / steps, 0.95)
 
     def test_a_listener_of_a_paused_world_hears_it_at_once_and_each_change_after(self):
         self.gazebo.pause_physics()

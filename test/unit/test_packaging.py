@@ -25,7 +25,7 @@ def _arguments(path):
 
 
 def test_empty_world_launch_has_gazebos_arguments_and_defaults():
-    arguments = _arguments(LAUNCH / "empty_world.launch")
+    arguments = _arguments(LAUNCH / "empty_world.launch.in")
     found = {arg.get("name"): arg.get("default") for arg in arguments}
     assert found == ARGUMENTS
 

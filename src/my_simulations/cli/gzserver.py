@@ -1,6 +1,7 @@
 """`gzserver`: the simulation server, as a ROS node named gazebo."""
 from __future__ import annotations
 
+import io
 import sys
 from typing import List, Optional
 
@@ -20,6 +21,9 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver") -> int:
     from ..ros.profile import StartProfile
 
     options = parse(words[1:], program)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # rospy writes its log lines there: behind a pipe they must not wait for a full buffer.
+        sys.stdout.reconfigure(line_buffering=True)
     profile = StartProfile()
     profile.mark("command line read")
     # The engine comes before every other import: its own imports take as long as all of ours.

@@ -70,7 +70,7 @@ class JointAxis:
 
 @dataclass
 class Mimic:
-    """This axis follows another joint's: q = multiplier q_joint + offset (URDF, SDF 1.11)."""
+    """An axis that follows another joint's: q = multiplier q_joint + offset (URDF, SDF 1.11)."""
 
     joint: str
     multiplier: float = 1.0

@@ -1,12 +1,13 @@
 """The engine process: `python -m my_simulations.engine COMMANDS RING BELL` (descriptors)."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import signal
 import socket
 import sys
-from typing import List, Tuple
+from typing import Iterator, List, Tuple
 
 from .api import Command, Event, Reply
 from .ring import RingWriter
@@ -45,6 +46,19 @@ class _Pipes:
             raise EOFError from fault
 
 
+@contextlib.contextmanager
+def _silent_stderr() -> Iterator[None]:
+    """PyBullet writes its build time there when it is imported; faults are raised all the same."""
+    kept, nothing = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nothing, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nothing)
+
+
 def main(argv: List[str]) -> int:
     """Work until the parent hangs up or dies."""
     # The parent decides when to end: a Ctrl-C reaches the whole group, and must not kill the
@@ -54,7 +68,8 @@ def main(argv: List[str]) -> int:
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     commands, ring, bell = (int(word) for word in argv[1:4])
     os.set_blocking(bell, False)
-    from .bullet.backend import BulletBackend
+    with _silent_stderr():
+        from .bullet.backend import BulletBackend
 
     backend = BulletBackend()
     wire = Wire(socket.socket(fileno=commands))

@@ -88,6 +88,8 @@ class Node:
         """
         if not _flag(self._parameters, "spawn_robot", False):
             return
+        # It was meant for this start: a master that lives on would hand it to the next one.
+        rospy.delete_param("~spawn_robot")
         where = [_number(self._parameters, f"robot_{axis}", 0.0) for axis in "xyz"]
         text = rospy.get_param("robot_description", None)
         if not isinstance(text, str) or not text.strip():
