@@ -220,8 +220,8 @@ def test_failed_part_of_a_step_says_which_why_and_what_to_do(clone, tmp_path):
     done = shell(clone, script, tmp_path / "home")
     assert done.returncode == 1
     assert "[1/1] Fetching things" in done.stdout
-    for text in ("Fetching things", "'fetch' ended with status 7", "the disk is full", "Try it by daylight.",
-                 "logs/fetch.log"):
+    for text in ("Fetching things", "'fetch' ended with status 7", "the disk is full",
+                 "Try it by daylight.", "logs/fetch.log"):
         assert text in done.stderr
     assert "the disk is full" in (tmp_path / "home" / "logs" / "fetch.log").read_text()
 
