@@ -10,11 +10,13 @@ class MeshFault(Exception):
 
     Attributes:
         line: 1-based, 0 where unknown.
+        code: of the issue it becomes.
     """
 
-    def __init__(self, message: str, line: int = 0) -> None:
+    def __init__(self, message: str, line: int = 0, code: str = "mesh-unreadable") -> None:
         super().__init__(message)
         self.line = line
+        self.code = code
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
-"""Mesh files: DAE, STL and OBJ as triangles in metres."""
+"""Mesh files: DAE, STL, OBJ and what else trimesh reads, as triangles in metres."""
 from __future__ import annotations
 
 import functools
 import os
 from dataclasses import replace
-from typing import Any, Callable, Dict, Iterator, List, Tuple
+from typing import Any, Callable, Iterator, List, Optional, Tuple
 
 from ..description.model import Link, Model
 from ..description.shapes import Collision, Mesh, MeshData, MeshTable, mesh_key
@@ -90,18 +90,26 @@ def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float
     return _to_data(_chosen(_parts(path), submesh, path), path, scale, bool(submesh and center))
 
 
-def _readers() -> Dict[str, Reader]:
+def _reader(path: str, extension: str) -> Optional[Reader]:
     # Imported with the first mesh: start-up time counts.
-    from .mesh_collada import read_collada
-    from .mesh_plain import read_obj, read_stl
+    if extension == ".dae":
+        from .mesh_collada import read_collada
 
-    return {".dae": read_collada, ".stl": read_stl, ".stla": read_stl, ".stlb": read_stl,
-            ".obj": read_obj}
+        return read_collada
+    from .mesh_trimesh import extensions, read_obj, read_other, read_stl
+
+    if extension in (".stl", ".stla", ".stlb"):
+        return read_stl
+    if extension == ".obj":
+        return read_obj
+    if extension in extensions():
+        return functools.partial(read_other, path=path)
+    return None
 
 
 def _parts(path: str) -> List[MeshPart]:
     extension = os.path.splitext(path)[1].lower()
-    reader = _readers().get(extension)
+    reader = _reader(path, extension)
     if reader is None:
         raise _fault("mesh-unreadable", f"{extension or 'a file without extension'} is not a mesh"
                      " format that is read", path, hint="use .dae, .stl or .obj")
@@ -111,8 +119,8 @@ def _parts(path: str) -> List[MeshPart]:
     except OSError as fault:
         raise _fault("mesh-unreadable", f"cannot be read: {fault.strerror}", path) from None
     except MeshFault as fault:
-        raise _fault("mesh-unreadable", f"the mesh cannot be read: {fault}", path,
-                     fault.line) from None
+        said = "" if fault.code == "mesh-not-finite" else "the mesh cannot be read: "
+        raise _fault(fault.code, f"{said}{fault}", path, fault.line) from None
     except (ValueError, OverflowError) as fault:  # an attribute that should be a number
         raise _fault("mesh-unreadable", f"the mesh cannot be read: {fault}", path) from None
 

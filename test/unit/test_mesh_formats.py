@@ -1,0 +1,254 @@
+"""Mesh files as exporters write them: what is not shape, and what the libraries pass over."""
+import os
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from reading import VALID
+
+from my_simulations.description.shapes import Mesh
+from my_simulations.errors import InputError
+from my_simulations.formats.meshes import load_mesh
+
+CORNERS = [(0.0, 0.0, 0.0), (0.0254, 0.0, 0.0), (0.0, 0.0508, 0.0)]
+VERTEX = '<input semantic="VERTEX" source="#v" offset="0"/>'
+
+
+def collada(*changes):
+    """The text of a file with one triangle in inches, changed."""
+    with open(os.path.join(VALID, "inch_y_up.dae")) as stream:
+        text = stream.read()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def written(tmp_path, name, content):
+    path = tmp_path / name
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return Mesh(name, str(path))
+
+
+def fault_of(mesh):
+    with pytest.raises(InputError) as caught:
+        load_mesh(mesh)
+    return caught.value.first
+
+
+def corners_of(data):
+    return [tuple(round(x, 6) for x in row) for row in data.vertices[data.triangles[0]].tolist()]
+
+
+NOT_SHAPE = {
+    "an image that is not there":
+        ("<library_geometries>", '<library_images><image id="i"><init_from>gone.png</init_from>'
+         "</image></library_images><library_geometries>"),
+    "an effect without a profile":
+        ("<library_geometries>", '<library_effects><effect id="e"/></library_effects>'
+         '<library_materials><material id="m"><instance_effect url="#e"/></material>'
+         "</library_materials><library_geometries>"),
+    "a material that is not there":
+        ('url="#tri-geometry"/>', 'url="#tri-geometry"><bind_material><technique_common>'
+         '<instance_material symbol="s" target="#gone"/></technique_common></bind_material>'
+         "</instance_geometry>"),
+    "a camera and a light that are not there":
+        ('<node id="n">', '<node id="n"><instance_camera url="#c"/><instance_light url="#l"/>'),
+    "a node of another file and one that is not there":
+        ('<node id="n">', '<node id="n"><instance_node url="other.dae#n"/>'
+         '<instance_node url="#gone"/><instance_geometry url="#gone"/>'),
+    "a geometry without triangles":
+        ('<node id="n">', '<node id="n"><instance_geometry url="#spline"/>'),
+    "a transform that is not placed": ('<node id="n">', '<node id="n"><lookat>1 2</lookat>'),
+    "lines": ("<triangles", f"<lines count=\"1\">{VERTEX}<p>0 1</p></lines><triangles"),
+    "normals that are not there":
+        ('offset="0"/><p>0 1 2', 'offset="0"/><input semantic="NORMAL" source="#gone" offset="1"/>'
+         "<p>0 9 1 9 2 9"),
+    "texture coordinates without numbers":
+        ('offset="0"/><p>0 1 2', 'offset="0"/><input semantic="TEXCOORD" source="#uv" offset="2"/>'
+         "<p>0 0 9 1 0 9 2 0 9"),
+    "comments and instructions": ('<node id="n">', '<node id="n"><!-- a --><?b c?>'),
+    "numbers of four": ('count="9">0 0 0  1 0 0  0 2 0', 'count="12">0 0 0 7 1 0 0 7 0 2 0 7'),
+    "no namespace": (' xmlns="http://www.collada.org/2005/11/COLLADASchema"', ""),
+    "a newer namespace": ("2005/11", "2008/03"),
+    "a scene that is not there": ('visual_scene url="#s"', 'visual_scene url="#gone"'),
+    "no extent of the vertices": ('offset="0"', ""),
+}
+
+
+@pytest.mark.parametrize("what", sorted(NOT_SHAPE))
+def test_what_is_not_shape_does_not_keep_a_collada_file_from_being_read(tmp_path, what):
+    changes = [NOT_SHAPE[what]]
+    if what == "numbers of four":
+        changes.append(('stride="3"', 'stride="4"'))
+    data = load_mesh(written(tmp_path, "a.dae", collada(*changes)))
+    assert data.triangles.shape == (1, 3)
+    assert corners_of(data) == CORNERS
+
+
+BROKEN = {
+    "a letter among the positions": ("1 0 0  0 2 0", "1 0 O  0 2 0"),
+    "a letter among the indices": ("<p>0 1 2", "<p>0 1 2 x"),
+    "a negative index": ("<p>0 1 2", "<p>0 1 -1"),
+    "two indices": ("<p>0 1 2", "<p>0 1"),
+    "two numbers too few": ("1 0 0  0 2 0", "1 0 0  0"),
+    "no positions": ('source="#p"', 'source="#q"'),
+    "a transform with a letter": ('<node id="n">', '<node id="n"><translate>1 2 z</translate>'),
+    "a transform that is too short": ('<node id="n">', '<node id="n"><rotate>1 2 3</rotate>'),
+    "counts that do not fit":
+        ("<triangles", f"<polylist>{VERTEX}<vcount>3 4</vcount><p>0 1 2</p></polylist><triangles"),
+    "a unit that is a word": ('meter="0.0254"', 'meter="inch"'),
+}
+
+
+@pytest.mark.parametrize("what", sorted(BROKEN))
+def test_numbers_of_collada_that_do_not_fit_are_refused(tmp_path, what):
+    issue = fault_of(written(tmp_path, "a.dae", collada(BROKEN[what])))
+    assert issue.code == "mesh-unreadable" and issue.file.endswith("a.dae")
+
+
+LINES = {
+    "a letter among the positions": 6, "a letter among the indices": 9, "two indices": 5,
+    "a transform with a letter": 12, "a unit that is a word": 3,
+}
+
+
+@pytest.mark.parametrize("what", sorted(LINES))
+def test_the_line_of_a_fault_in_collada_is_told(tmp_path, what):
+    assert fault_of(written(tmp_path, "a.dae", collada(BROKEN[what]))).line == LINES[what]
+
+
+def test_a_number_that_is_none_is_told_with_its_line_and_counts_only_in_positions(tmp_path):
+    issue = fault_of(written(tmp_path, "a.dae", collada(("1 0 0  0 2 0", "1 0 nan  0 2 0"))))
+    assert (issue.code, issue.line) == ("mesh-not-finite", 6)
+    normals = '<source id="n0"><float_array id="n1" count="3">nan nan nan</float_array></source>'
+    data = load_mesh(written(tmp_path, "b.dae", collada(("<vertices", normals + "<vertices"))))
+    assert corners_of(data) == CORNERS
+
+
+def test_a_mirrored_node_stays_outside_out(tmp_path):
+    mesh = written(tmp_path, "a.dae", collada(
+        ('<node id="n">', '<node id="n"><scale>-1 1 1</scale>')))
+    assert corners_of(load_mesh(mesh)) == [CORNERS[2], (-0.0254, 0.0, 0.0), CORNERS[0]]
+
+
+def test_a_node_deep_in_the_scene_may_be_used_again(tmp_path):
+    mesh = written(tmp_path, "a.dae", collada(
+        ('<node id="n">', '<node id="top"><instance_node url="#n"/><node id="n">'),
+        ("</node></visual", "</node></node></visual")))
+    assert len(load_mesh(mesh).triangles) == 2
+
+
+@pytest.mark.parametrize("depth", [300, 20000])
+def test_nodes_nested_too_deep_are_refused(tmp_path, depth):
+    text = collada(('<node id="n">', "<node>" * depth), ("</node>", "</node>" * depth))
+    assert fault_of(written(tmp_path, "a.dae", text)).code == "mesh-unreadable"
+
+
+def test_nodes_that_double_at_each_level_are_refused(tmp_path):
+    nodes = "".join(f'<node id="n{n}"><instance_node url="#n{n + 1}"/>'
+                    f'<instance_node url="#n{n + 1}"/></node>' for n in range(40))
+    text = collada(("<library_visual", f'<library_nodes>{nodes}<node id="n40"/></library_nodes>'
+                    "<library_visual"),
+                   ('<node id="n">', '<node id="n"><instance_node url="#n0"/>'))
+    issue = fault_of(written(tmp_path, "a.dae", text))
+    assert issue.code == "mesh-unreadable" and "without end" in issue.message
+
+
+def ascii_stl(head="solid", vertex="vertex 1 0 0", end="endsolid"):
+    return (f"{head}\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  {vertex}\n"
+            f"  VERTEX 0 2 0\n endloop\nendfacet\n{end}\n")
+
+
+@pytest.mark.parametrize("text", [
+    ascii_stl(), ascii_stl(head="solid a vertex of 7 8 9"), ascii_stl(end=""),
+    ascii_stl(head="SOLID x"), ascii_stl().replace("\n", "\r\n"), ascii_stl().replace("\n", "\r"),
+    ascii_stl(vertex="vertex 1e0 -0 +.0")])
+def test_ascii_stl_is_read_as_exporters_write_it(tmp_path, text):
+    data = load_mesh(written(tmp_path, "a.stl", text))
+    assert corners_of(data) == [(0, 0, 0), (1, 0, 0), (0, 2, 0)]
+
+
+def test_a_wrong_corner_of_ascii_stl_is_told_with_its_line(tmp_path):
+    for vertex in ("vertex 1 0", "vertex 1 0 x"):
+        issue = fault_of(written(tmp_path, "a.stl", ascii_stl(vertex=vertex)))
+        assert (issue.code, issue.line) == ("mesh-unreadable", 5)
+
+
+def test_bytes_after_the_last_triangle_of_binary_stl_are_passed_over(tmp_path):
+    one = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0)
+    content = b" " * 80 + struct.pack("<I", 1) + one + b"made by hand"
+    assert len(load_mesh(written(tmp_path, "a.stl", content)).triangles) == 1
+
+
+def test_negative_indices_of_obj_count_from_the_last_vertex_so_far(tmp_path):
+    mesh = written(tmp_path, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf -3 -2 -1\nv 9 9 9\n")
+    assert corners_of(load_mesh(mesh)) == [(0, 0, 0), (1, 0, 0), (0, 2, 0)]
+
+
+def test_polygons_texture_indices_and_long_lines_of_obj_are_read(tmp_path):
+    mesh = written(tmp_path, "a.obj", "mtllib gone.mtl\n  v 0 0 0 1 0 0\nv\t1 0 0\nv 2 1 0 # c\n"
+                   "v 1 2 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl m\nf 1/1/1 2//1 3/1 \\\n 4 5/9/9\n")
+    data = load_mesh(mesh)
+    assert data.triangles.shape == (3, 3)
+    normals = np.cross(*(data.vertices[data.triangles[:, k]] - data.vertices[data.triangles[:, 0]]
+                         for k in (1, 2)))
+    assert (normals[:, 2] > 0).all() and normals[:, 2].sum() / 2 == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize("row", ["f 0 1 2", "f 1 2 9", "f -9 1 2", "f 1 2 x", "v 1 2", "v 1 2 z"])
+def test_a_wrong_row_of_obj_is_told_with_its_line(tmp_path, row):
+    mesh = written(tmp_path, "a.obj", f"v 0 0 0\nv 1 0 0\nv 0 2 0\n{row}\nf 1 2 3\n")
+    assert (fault_of(mesh).code, fault_of(mesh).line) == ("mesh-unreadable", 4)
+
+
+def test_groups_of_obj_are_parts_also_where_they_are_taken_up_again(tmp_path):
+    mesh = written(tmp_path, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\no shape\ng left\nf 1 2 3\n"
+                   "g right\nf 3 2 1\ng left\nf 2 3 1\n")
+    counts = {part: len(load_mesh(Mesh("a", mesh.path, submesh=part)).triangles)
+              for part in ("left", "right", "shape")}
+    assert counts == {"left": 2, "right": 1, "shape": 3}
+
+
+@pytest.mark.parametrize("kind", ["ply", "off", "glb"])
+def test_other_formats_are_read_through_the_same_door(tmp_path, kind):
+    import trimesh
+
+    made = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]], process=False)
+    content = made.export(file_type=kind)
+    data = load_mesh(written(tmp_path, "a." + kind, content))
+    assert corners_of(data) == [(0, 0, 0), (1, 0, 0), (0, 2, 0)]
+    assert data.vertices.dtype == np.float64 and data.triangles.dtype == np.int32
+
+
+def test_nodes_of_gltf_are_placed_and_its_buffers_found_beside_it(tmp_path):
+    import trimesh
+
+    scene = trimesh.Scene()
+    made = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]], process=False)
+    scene.add_geometry(made, node_name="far", geom_name="tri",
+                       transform=trimesh.transformations.translation_matrix([0, 0, 5]))
+    for name, content in scene.export(file_type="gltf").items():
+        (tmp_path / name).write_bytes(content)
+    mesh = Mesh("a", str(tmp_path / "model.gltf"), submesh="tri")
+    assert corners_of(load_mesh(mesh)) == [(0, 0, 5), (1, 0, 5), (0, 2, 5)]
+
+
+@pytest.mark.parametrize("kind", ["ply", "off", "glb", "gltf"])
+def test_a_damaged_file_of_another_format_is_refused(tmp_path, kind):
+    issue = fault_of(written(tmp_path, "a." + kind, b"\x00 nothing of the kind"))
+    assert issue.code in ("mesh-unreadable", "mesh-empty")
+
+
+def test_archives_are_no_meshes(tmp_path):
+    assert fault_of(written(tmp_path, "a.zip", b"PK")).code == "mesh-unreadable"
+
+
+def test_readers_are_imported_with_the_first_mesh_only():
+    code = ("import sys, my_simulations.formats.meshes\n"
+            "print(*sorted({'numpy', 'lxml', 'trimesh', 'collada', 'scipy'} & set(sys.modules)))")
+    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True,
+                          env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
+    assert done.stdout.strip() == b""
