@@ -16,7 +16,7 @@ from my_simulations.engine.api import (
     SetModelState,
 )
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.rows import moving_joints
+from my_simulations.engine.rows import axis_rows
 from my_simulations.geometry import STILL, Pose, Twist
 
 
@@ -85,10 +85,10 @@ class Lab:
                                      self._links, self._joints, meshes or {}, state))
         for n, link in enumerate(model.links):
             self.rows[self._id, link.name] = self._links + n
-        for n, joint in enumerate(moving_joints(model)):
-            self.joint_rows[self._id, joint.name] = self._joints + n
+        for n, row in enumerate(axis_rows(model)):
+            self.joint_rows[self._id, row.name] = self._joints + n
         self._links += len(model.links)
-        self._joints += len(moving_joints(model))
+        self._joints += len(axis_rows(model))
         self.backend.read()
         return self._id
 

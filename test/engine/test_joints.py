@@ -6,7 +6,7 @@ import math
 import pytest
 from conftest import Lab, arm, box, inertial_of_box
 
-from my_simulations.description.model import Joint, JointAxis, Link, Model
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Mimic, Model
 from my_simulations.engine.api import (
     FOREVER,
     AddLoads,
@@ -272,3 +272,100 @@ def test_loads_end_with_their_model(lab: Lab):
     lab.remove(model)
     assert lab.backend._forces.idle
     lab.steps(5)
+
+
+def _pair(kind: str, second: Pose, **changes: object) -> Model:
+    """`base` joined to the world by nothing that moves, `tip` hanging on a joint of a kind."""
+    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
+    return Model("pair", links=[Link("base", inertial=inertial), Link("tip", second, inertial)],
+                 joints=[Joint("fix", "fixed", "world", "base"),
+                         Joint("hinge", kind, "base", "tip", **changes)])
+
+
+def test_a_ball_joint_swings_as_a_pendulum_in_any_direction(lab: Lab):
+    inertial = Inertial(1.0, Pose((1, 0, 0)), 1e-3, 0, 0, 1e-3, 0, 1e-3)
+    model = lab.load(Model("m", links=[Link("bob", inertial=inertial)],
+                           joints=[Joint("socket", "ball", "world", "bob")]),
+                     (0, 0, 0), quat_from_rpy(0, 0, 0.7))
+    lab.seconds(1)
+    angle = _reference_pendulum(0.0, 1.001, 9.8, 1.0)
+    x, y, z = transform(lab.pose(model, "bob"), (1, 0, 0))
+    flat = math.cos(angle)
+    assert (x, y, z) == pytest.approx(
+        (flat * math.cos(0.7), flat * math.sin(0.7), -math.sin(angle)), abs=5e-3)
+
+
+@pytest.mark.parametrize("kind", ["universal", "revolute2"])
+def test_two_axes_turn_about_the_parents_and_the_childs_axis(lab: Lab, kind: str):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    model = lab.load(_pair(kind, Pose((1, 0, 0)), axis=JointAxis((0, 0, 1)), axis2=JointAxis(Y)))
+    lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.4, 0.0),
+                         (lab.joint_rows[model, "hinge::1"], 0.3, 0.0))))
+    lab.steps(1)
+    turned = compose(Pose((1, 0, 0), quat_from_rpy(0, 0, 0.4)),
+                     Pose((0, 0, 0), quat_from_rpy(0, 0.3, 0)))
+    assert lab.pose(model, "tip").position == pytest.approx((1, 0, 0), abs=1e-6)
+    assert lab.pose(model, "tip").orientation == pytest.approx(turned.orientation, abs=1e-6)
+    assert lab.joint(model, "hinge::1")[0] == pytest.approx(0.3, abs=1e-6)
+
+
+def test_a_screw_turns_thread_pitch_radians_a_metre_left_handed(lab: Lab):
+    model = lab.load(_pair("screw", Pose((0, 0, 1)), axis=JointAxis((0, 0, 1)), thread_pitch=20.0))
+    lab.seconds(1)
+    z = lab.pose(model, "tip").position[2] - 1.0
+    assert z < -0.1
+    assert lab.joint(model)[0] == pytest.approx(-20.0 * z, rel=1e-2)
+    # All of the weight's work turns the nut: m g z = (m + I p^2) v^2 / 2.
+    inertia = 1.0 + (0.08 / 12) * 400
+    assert abs(z) == pytest.approx(0.5 * 9.8 / inertia, rel=0.03)
+
+
+def test_a_gearbox_turns_the_other_wheel_the_other_way_by_its_ratio(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
+    links = [Link(name, Pose((n, 0, 0)), inertial) for n, name in enumerate(("frame", "a", "b"))]
+    joints = [Joint("fix", "fixed", "world", "frame"),
+              Joint("ja", "revolute", "frame", "a", axis=JointAxis()),
+              Joint("jb", "revolute", "frame", "b", axis=JointAxis()),
+              Joint("box", "gearbox", "a", "b", gearbox_ratio=3.0, gearbox_reference="frame",
+                    axis=JointAxis(), axis2=JointAxis())]
+    model = lab.load(Model("gears", links=links, joints=joints))
+    lab.apply(AddLoads((Load(1, lab.joint_rows[model, "ja"], 0, 500, effort=0.05),)))
+    lab.seconds(1)
+    assert lab.joint(model, "ja")[0] > 0.1
+    assert lab.joint(model, "jb")[0] == pytest.approx(-3.0 * lab.joint(model, "ja")[0], rel=1e-2)
+
+
+def test_a_mimic_axis_follows_with_multiplier_and_offset(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
+    links = [Link(name, Pose((n, 0, 0)), inertial) for n, name in enumerate(("frame", "a", "b"))]
+    joints = [Joint("fix", "fixed", "world", "frame"),
+              Joint("ja", "prismatic", "frame", "a", axis=JointAxis()),
+              Joint("jb", "prismatic", "frame", "b",
+                    axis=JointAxis(mimic=Mimic("ja", -2.0, 0.1)))]
+    model = lab.load(Model("grip", links=links, joints=joints))
+    lab.apply(AddLoads((Load(1, lab.joint_rows[model, "ja"], 0, 500, effort=2.0),)))
+    lab.seconds(1)
+    leader = lab.joint(model, "ja")[0]
+    assert leader > 0.05
+    assert lab.joint(model, "jb")[0] == pytest.approx(-2.0 * leader + 0.1, abs=5e-3)
+
+
+def test_a_four_bar_loop_stays_closed(lab: Lab):
+    bar = inertial_of_box(1.0, 1.0, 0.1, 0.1, Pose((0.5, 0, 0)))
+    links = [Link("left", Pose((0, 0, 0), quat_from_rpy(0, -math.pi / 2, 0)), bar),
+             Link("top", Pose((0, 0, 1)), bar),
+             Link("right", Pose((1, 0, 0), quat_from_rpy(0, -math.pi / 2, 0)), bar)]
+    joints = [Joint("a", "revolute", "world", "left", axis=JointAxis(Y)),
+              Joint("b", "revolute", "left", "top", axis=JointAxis(Y)),
+              Joint("c", "revolute", "world", "right", axis=JointAxis(Y)),
+              Joint("d", "revolute", "right", "top", Pose((1, 0, 0)), axis=JointAxis(Y))]
+    model = lab.load(Model("bars", links=links, joints=joints), (0, 0, 2))
+    lab.apply(SetJoints(((lab.joint_rows[model, "a"], 0.0, 1.0),)))
+    for _ in range(60):
+        lab.steps(50)
+        end_of_top = transform(lab.pose(model, "top"), (1, 0, 0))
+        end_of_right = transform(lab.pose(model, "right"), (1, 0, 0))
+        assert end_of_top == pytest.approx(end_of_right, abs=5e-3)
+    assert lab.pose(model, "top").position[2] < 2.9   # it has fallen over

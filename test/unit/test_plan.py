@@ -72,5 +72,5 @@ def test_a_joint_to_a_missing_link_is_an_error_that_names_it(text):
 
 def test_unknown_joint_types_connect_nothing():
     made = model("ab", "a>b")
-    made.joints[0].type = "ball"
+    made.joints[0].type = "gearbox"
     assert shape(plan_bodies(made)) == [([0], False), ([1], False)]

@@ -22,7 +22,7 @@ from .api import (
     SetModelState,
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
-from .rows import moving_joints
+from .rows import axis_rows
 
 _LINK = struct.Struct(f"={LINK_WIDTH}d")
 
@@ -116,7 +116,7 @@ class KinematicBackend:
             state = LinkState(compose(command.pose, link.pose))
             self.links[command.first_link_row + n] = (
                 command.state.links[n] if command.state else state)
-        for n, _ in enumerate(moving_joints(model)):
+        for n, _ in enumerate(axis_rows(model)):
             self.joints[command.first_joint_row + n] = (
                 command.state.joints[n] if command.state else (0.0, 0.0))
 
@@ -126,7 +126,7 @@ class KinematicBackend:
         model, first_link, first_joint, _ = self.models.pop(model_id)
         for n in range(len(model.links)):
             del self.links[first_link + n]
-        for n in range(len(moving_joints(model))):
+        for n in range(len(axis_rows(model))):
             del self.joints[first_joint + n]
 
     def _set_model(self, command: SetModelState) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Deque, Dict, List, Optional, Set
+from typing import Deque, Dict, List, Optional, Set, Tuple
 
 from ..description.model import WORLD, Joint, Link, Model
 from ..geometry import IDENTITY, Pose, Vec3, compose, inverse, scale
@@ -16,6 +16,9 @@ from .rows import AXES
 
 BASE = -1
 """The link index of a base: the root link, or the fixed one of a body joined to the world."""
+
+NO_LINK = -1
+"""`TreeLink.index` of the massless piece between the two axes of a joint."""
 
 MAX_TREE_LINKS = 127
 """Links beside the base that Bullet's multibody takes; it drops the rest silently (measured)."""
@@ -26,11 +29,13 @@ class TreeLink:
     """One link of a body.
 
     Attributes:
-        index: position in `Model.links`.
+        index: position in `Model.links`, or NO_LINK.
         parent: position of the parent in `BodyPlan.links`, or BASE.
         joint: what it hangs on; None for the root.
+        kind: how it moves on its parent: revolute, prismatic, fixed or ball.
         axis: unit vector in the joint frame, such that the joint's position is positive in the
-            direction of the description; None for fixed joints.
+            direction of the description; None for fixed and ball joints.
+        number: which of the joint's axes it is, or None when that has no row.
         link_from_frame: the joint frame in the link's own frame (identity for the root).
         parent_from_frame: the joint frame in the parent's joint frame, at position 0.
     """
@@ -38,7 +43,9 @@ class TreeLink:
     index: int
     parent: int
     joint: Optional[Joint] = None
+    kind: str = "fixed"
     axis: Optional[Vec3] = None
+    number: Optional[int] = None
     link_from_frame: Pose = IDENTITY
     parent_from_frame: Pose = IDENTITY
 
@@ -121,8 +128,9 @@ class _Planner:
         roots = [link for link in self.model.links if link.name not in self.children]
         for link in roots + self.model.links:
             if link.name not in self.visited:
-                bodies.append(self._grow(BodyPlan([self._root(link)]), link.name))
-        bodies.sort(key=lambda body: body.links[0].index)
+                bodies.append(self._grow(BodyPlan([self._root(link)]), link.name, 0))
+        bodies.sort(key=lambda body: max(body.links[0].index, body.links[-1].index)
+                    if body.links[0].index == NO_LINK else body.links[0].index)
         return bodies
 
     def _root(self, link: Link) -> TreeLink:
@@ -134,11 +142,11 @@ class _Planner:
         joint = next(j for j in self.at_world if end in (j.parent, j.child))
         self.visited.add(end)
         self.used.add(joint.name)
-        body.links.append(self._hang(joint, end, None))
-        return self._grow(body, end)
+        self._hang(body, joint, end, BASE)
+        return self._grow(body, end, len(body.links) - 1)
 
-    def _grow(self, body: BodyPlan, start: str) -> BodyPlan:
-        position = {start: 0}
+    def _grow(self, body: BodyPlan, start: str, at: int) -> BodyPlan:
+        position = {start: at}
         queue: Deque[str] = deque([start])
         while queue:
             name = queue.popleft()
@@ -148,16 +156,13 @@ class _Planner:
                     continue
                 self.visited.add(other)
                 self.used.add(joint.name)
-                parent = body.links[position[name]]
-                hung = self._hang(joint, other, parent)
-                hung.parent = position[name]
-                position[other] = len(body.links)
-                body.links.append(hung)
+                self._hang(body, joint, other, position[name])
+                position[other] = len(body.links) - 1
                 queue.append(other)
         return body
 
-    def _hang(self, joint: Joint, name: str, parent: Optional[TreeLink]) -> TreeLink:
-        """`name` hangs on `joint`, on `parent` or on the fixed base at the model frame."""
+    def _hang(self, body: BodyPlan, joint: Joint, name: str, parent: int) -> None:
+        """`name` hangs on `joint`, on `body.links[parent]` or on the fixed base (BASE)."""
         link = self.model.links[self.by_name[name]]
         if joint.child == WORLD:
             model_from_joint = joint.pose
@@ -165,17 +170,40 @@ class _Planner:
             child = self.model.links[self.by_name[joint.child]]
             model_from_joint = compose(child.pose, joint.pose)
         model_from_parent = IDENTITY
-        if parent is not None:
-            above = self.model.links[parent.index]
-            model_from_parent = compose(above.pose, parent.link_from_frame)
-        axis = None
-        if AXES[joint.type] and joint.axis is not None:
-            axis = joint.axis.xyz if joint.child == name else scale(joint.axis.xyz, -1.0)
-        return TreeLink(
-            self.by_name[name], BASE, joint, axis,
-            link_from_frame=compose(inverse(link.pose), model_from_joint),
-            parent_from_frame=compose(inverse(model_from_parent), model_from_joint),
-        )
+        if parent != BASE:
+            above = body.links[parent]
+            model_from_parent = compose(self.model.links[above.index].pose, above.link_from_frame)
+        place = compose(inverse(model_from_parent), model_from_joint)
+        moves = _moves(joint, joint.child == name)
+        for n, (kind, axis, number) in enumerate(moves):
+            last = n == len(moves) - 1
+            body.links.append(TreeLink(
+                self.by_name[name] if last else NO_LINK, parent, joint, kind, axis, number,
+                link_from_frame=compose(inverse(link.pose), model_from_joint) if last
+                else IDENTITY, parent_from_frame=place))
+            parent, place = len(body.links) - 1, IDENTITY
+
+
+def _moves(joint: Joint, forward: bool) -> List[Tuple[str, Optional[Vec3], Optional[int]]]:
+    """The single motions a joint is made of, from the tree's parent on: (kind, axis, row).
+
+    `forward`: the joint's child hangs on its parent. The other way round the order and the axes
+    turn, and positions keep their sign.
+    """
+    if joint.type in ("fixed", "ball"):
+        return [(joint.type, None, None)]
+    first = joint.axis.xyz if joint.axis is not None else (0.0, 0.0, 1.0)
+    second = joint.axis2.xyz if joint.axis2 is not None else first
+    moves: List[Tuple[str, Vec3, Optional[int]]]
+    if joint.type in ("universal", "revolute2"):
+        moves = [("revolute", first, 0), ("revolute", second, 1)]
+    elif joint.type == "screw":
+        moves = [("revolute", first, 0), ("prismatic", first, None)]
+    else:
+        moves = [("prismatic" if joint.type == "prismatic" else "revolute", first, 0)]
+    if not forward:
+        moves = [(kind, scale(axis, -1.0), number) for kind, axis, number in reversed(moves)]
+    return list(moves)
 
 
 def open_joints(model: Model, bodies: List[BodyPlan]) -> List[Joint]:

@@ -1,14 +1,34 @@
 """How many rows of the ring a model takes, and which belongs to what."""
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import List
 
 from ..description.model import Joint, Model
 
-AXES = {"revolute": 1, "continuous": 1, "prismatic": 1, "fixed": 0}
-"""Degrees of freedom by joint type, of the types the engine moves."""
+AXES = {"revolute": 1, "continuous": 1, "prismatic": 1, "fixed": 0, "ball": 0, "universal": 2,
+        "revolute2": 2, "screw": 1}
+"""Axes with a row each, by type of the joints that connect links of a tree.
+
+A ball joint has no axis to speak of; a screw has its angle. Gearboxes connect joints, not links.
+"""
 
 
-def moving_joints(model: Model) -> List[Joint]:
-    """The joints that have a row each: one-axis joints, in the description's order."""
-    return [joint for joint in model.joints if AXES.get(joint.type, 0)]
+@dataclass(frozen=True)
+class AxisRow:
+    """One row of the joint table: `name` is the joint's, with `::1` for its second axis."""
+
+    name: str
+    joint: Joint
+    number: int
+
+
+def axis_rows(model: Model) -> List[AxisRow]:
+    """The rows of a model's joint axes, in the description's order."""
+    return [AxisRow(row_name(joint, number), joint, number)
+            for joint in model.joints for number in range(AXES.get(joint.type, 0))]
+
+
+def row_name(joint: Joint, number: int) -> str:
+    """What an axis is called."""
+    return f"{joint.name}::{number}" if number else joint.name

@@ -9,7 +9,7 @@ from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..engine.api import LinkState, ModelState
 from ..engine.ring import Snapshot
-from ..engine.rows import moving_joints
+from ..engine.rows import axis_rows
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
 
@@ -49,7 +49,7 @@ class Entity:
     def __post_init__(self) -> None:
         self.pose = self.initial_pose
         self.link_names = [link.name for link in self.model.links]
-        self.joint_names = [joint.name for joint in moving_joints(self.model)]
+        self.joint_names = [row.name for row in axis_rows(self.model)]
         self.canonical = 0
         if self.model.canonical_link in self.link_names:
             self.canonical = self.link_names.index(self.model.canonical_link)

@@ -37,7 +37,7 @@ from ..engine.api import (
     SetPhysics,
 )
 from ..engine.ring import BELL, DEMAND_NS, JOINTS, LINKS, RingReader, Snapshot
-from ..engine.rows import moving_joints
+from ..engine.rows import axis_rows
 from ..errors import CommandError, Issue, error
 from ..geometry import (
     IDENTITY,
@@ -295,7 +295,7 @@ class Simulator:
         return old
 
     def _make(self, model: Model, pose: Pose, meshes: MeshTable) -> Entity:
-        links, joints = len(model.links), len(moving_joints(model))
+        links, joints = len(model.links), len(axis_rows(model))
         first_link = self._link_rows.take(links)
         first_joint = self._joint_rows.take(joints)
         if first_link is None or first_joint is None:

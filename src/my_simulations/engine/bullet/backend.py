@@ -38,11 +38,12 @@ from ..api import (
     SetLinkState,
     SetModelState,
 )
-from ..plan import PlanError, plan_bodies
+from ..plan import PlanError, open_joints, plan_bodies
 from ..ring import JOINTS, LINKS
-from ..rows import moving_joints
+from ..rows import axis_rows
 from . import bodies, joints, surfaces
 from .bodies import Body, Builder, Part
+from .constraints import Constraints
 from .forces import Forces
 from .friction import EVERY, FrictionBalance
 from .readout import Readout
@@ -57,6 +58,7 @@ class Entry:
     model: Model
     bodies: List[Body]
     first_row: int
+    constraints: Constraints
 
 
 class BulletBackend:
@@ -157,8 +159,8 @@ class BulletBackend:
 
     def _load(self, command: LoadModel) -> None:
         self._check_load(command)
-        joint_rows = {joint.name: command.first_joint_row + n
-                      for n, joint in enumerate(moving_joints(command.model))}
+        joint_rows = {row.name: command.first_joint_row + n
+                      for n, row in enumerate(axis_rows(command.model))}
         try:
             plans = plan_bodies(command.model)
             built = Builder(command.model_id, command.model, command.pose, command.meshes,
@@ -166,7 +168,9 @@ class BulletBackend:
                             self._settings.step_size).build(plans)
         except (PlanError, ShapeError) as fault:
             raise Refused(str(fault)) from fault
-        entry = Entry(command.model, built, command.first_link_row)
+        constraints = Constraints(command.model, plans, built, command.pose,
+                                  open_joints(command.model, plans), command.first_link_row)
+        entry = Entry(command.model, built, command.first_link_row, constraints)
         self._models[command.model_id] = entry
         for body in built:
             self._register(body)
@@ -198,8 +202,8 @@ class BulletBackend:
         self._readout.add(body)
 
     def _restore(self, entry: Entry, state: ModelState) -> None:
-        rates = {joint.name: values
-                 for joint, values in zip(moving_joints(entry.model), state.joints)}
+        rates = {row.name: values
+                 for row, values in zip(axis_rows(entry.model), state.joints)}
         for body in entry.bodies:
             link = state.links[body.parts[0].row - entry.first_row]
             if body.rigid or body.base is not None:
@@ -213,6 +217,7 @@ class BulletBackend:
         entry = self._entry(command.model_id)
         self._waker.around(entry.bodies)
         del self._models[command.model_id]
+        entry.constraints.remove()
         for body in entry.bodies:
             self._forces.forget(body)
             self._friction.forget(body)

@@ -14,7 +14,8 @@ from ...description.model import Link, Model
 from ...description.shapes import MeshTable
 from ...geometry import IDENTITY, Pose, Twist, Vec3, compose, inverse, rotate, scale, twist_at
 from ..inertia import principal
-from ..plan import BASE, BodyPlan, TreeLink
+from ..plan import BASE, NO_LINK, BodyPlan, TreeLink
+from ..rows import AXES, row_name
 from . import surfaces
 from .shapes import ShapeFactory
 
@@ -22,8 +23,9 @@ SLEEP_THRESHOLD = 0.01
 """Bodies slower than about 0.1 m/s (measured) for 2 s of sim time may sleep, as Gazebo's."""
 
 _FREE_JOINT_VELOCITY = 1e6  # PyBullet clamps joint rates to 100 by default
-_JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "continuous": pybullet.JOINT_REVOLUTE,
-                "prismatic": pybullet.JOINT_PRISMATIC, "fixed": pybullet.JOINT_FIXED}
+_LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
+_JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
+                "fixed": pybullet.JOINT_FIXED, "ball": pybullet.JOINT_SPHERICAL}
 
 
 @dataclass
@@ -52,6 +54,7 @@ class Axis:
     row: int
     index: int
     name: str
+    number: int = 0
 
 
 @dataclass
@@ -60,6 +63,7 @@ class Body:
 
     Attributes:
         uid: PyBullet's number; `more` those of further static pieces with the same frame.
+        balls: PyBullet's indices of ball joints, which have no row.
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
@@ -71,6 +75,7 @@ class Body:
     parts: List[Part]
     axes: List[Axis] = field(default_factory=list)
     more: Tuple[int, ...] = ()
+    balls: Tuple[int, ...] = ()
     moves: bool = True
     rigid: bool = True
     may_sleep: bool = True
@@ -139,26 +144,26 @@ class Builder:
 
     def _may_sleep(self, link: Link) -> bool:
         return (self.model.allow_auto_disable and link.gravity
-                and not any(joint.type in _JOINT_TYPES for joint in self.model.joints))
+                and not any(joint.type in AXES for joint in self.model.joints))
 
     def _tree(self, plan: BodyPlan) -> Body:
-        hung = plan.links if plan.fixed_base else plan.links[1:]
         offset = 0 if plan.fixed_base else 1
-        frames = [principal(self.model.links[node.index].inertial) for node in plan.links]
+        hung = plan.links[offset:]
+        masses = self._masses(plan)
         shape = [self._tree_shape(node) for node in plan.links]
         base_mass, base_shape, base_at, base_com = 0.0, -1, self.pose, IDENTITY
         if not plan.fixed_base:
             root = self.model.links[plan.links[0].index]
-            base_mass, base_shape = root.inertial.mass, shape[0]
-            base_at, base_com = compose(self.pose, root.pose), frames[0][0]
-        coms = [compose(inverse(node.link_from_frame), frames[offset + n][0])
-                for n, node in enumerate(hung)]
+            base_mass, base_com, _ = masses[0]
+            base_shape, base_at = shape[0], compose(self.pose, root.pose)
+        coms = [compose(inverse(node.link_from_frame), com)
+                for node, (_, com, _) in zip(hung, masses[offset:])]
         uid = pybullet.createMultiBody(
             baseMass=base_mass, baseCollisionShapeIndex=base_shape,
             basePosition=base_at.position, baseOrientation=base_at.orientation,
             baseInertialFramePosition=base_com.position,
             baseInertialFrameOrientation=base_com.orientation,
-            linkMasses=[self.model.links[node.index].inertial.mass for node in hung],
+            linkMasses=[mass for mass, _, _ in masses[offset:]],
             linkCollisionShapeIndices=shape[offset:],
             linkVisualShapeIndices=[-1] * len(hung),
             linkPositions=[node.parent_from_frame.position for node in hung],
@@ -167,29 +172,48 @@ class Builder:
             linkInertialFrameOrientations=[com.orientation for com in coms],
             linkParentIndices=[node.parent + 1 - offset if node.parent >= 0 else 0
                                for node in hung],
-            linkJointTypes=[_JOINT_TYPES[node.joint.type] for node in hung
-                            if node.joint is not None],
+            linkJointTypes=[_JOINT_TYPES[node.kind] for node in hung],
             linkJointAxis=[node.axis or (0.0, 0.0, 1.0) for node in hung],
             flags=(pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
                    | pybullet.URDF_USE_SELF_COLLISION) if self.model.self_collide else 0,
         )
-        return self._finish_tree(uid, plan, frames, offset)
+        return self._finish_tree(uid, plan, masses, offset)
 
-    def _finish_tree(self, uid: int, plan: BodyPlan, frames: List[Tuple[Pose, Vec3]],
-                     offset: int) -> Body:
-        parts, axes = [], []
+    def _masses(self, plan: BodyPlan) -> List[Tuple[float, Pose, Vec3]]:
+        """Mass, pose of the principal axes in the link frame, and moments of every tree link."""
+        found: List[Tuple[float, Pose, Vec3]] = []
         for n, node in enumerate(plan.links):
-            link, index = self.model.links[node.index], n - offset
-            parts.append(Part(self.first_row + node.index, index, frames[n][0],
-                              link.inertial.mass, link.gravity))
-            set_dynamics(uid, index, link, link.inertial.mass, frames[n][1], False)
-            if node.joint is not None and node.axis is not None:
-                axes.append(Axis(self.joint_rows[node.joint.name], index, node.joint.name))
+            if node.index == NO_LINK:
+                beyond = next(link for link in plan.links[n:] if link.index != NO_LINK)
+                mass = _LIGHT * self.model.links[beyond.index].inertial.mass
+                found.append((mass, IDENTITY, (mass * 1e-3,) * 3))
+            else:
+                inertial = self.model.links[node.index].inertial
+                found.append((inertial.mass, *principal(inertial)))
+        return found
+
+    def _finish_tree(self, uid: int, plan: BodyPlan, masses: List[Tuple[float, Pose, Vec3]],
+                     offset: int) -> Body:
+        parts, axes, balls = [], [], []
+        for n, node in enumerate(plan.links):
+            index, (mass, com, moments) = n - offset, masses[n]
+            link = Link("") if node.index == NO_LINK else self.model.links[node.index]
+            set_dynamics(uid, index, link, mass, moments, False)
+            if node.index != NO_LINK:
+                parts.append(Part(self.first_row + node.index, index, com, mass, link.gravity))
+            if node.joint is not None and node.number is not None:
+                row = self.joint_rows[row_name(node.joint, node.number)]
+                axes.append(Axis(row, index, node.joint.name, node.number))
+            elif node.kind == "ball":
+                balls.append(index)
         if plan.fixed_base:
             pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
-        return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False)
+        return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
+                    balls=tuple(balls))
 
     def _tree_shape(self, node: TreeLink) -> int:
+        if node.index == NO_LINK:
+            return -1
         link = self.model.links[node.index]
         found = self.shapes.compounds(link.collisions, self.meshes,
                                       inverse(node.link_from_frame), False)

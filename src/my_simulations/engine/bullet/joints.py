@@ -16,11 +16,12 @@ _EXPLICIT_DAMPING = 0.05   # d dt / I up to which PyBullet's explicit damping is
 
 def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
     """Give every axis of a body the limits, friction, damping and spring of the description."""
-    specs = {joint.name: joint.axis for joint in model.joints}
+    specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
     mass = sum(part.mass for part in body.parts)
     inertias = effective_inertias(body) if body.axes else []
+    _free(body)
     for axis, inertia in zip(body.axes, inertias):
-        spec = specs[axis.name] or JointAxis()
+        spec = specs[axis.name][axis.number] or JointAxis()
         # createMultiBody leaves a velocity motor on every axis; as a brake it is the friction.
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
                                        targetVelocity=0.0, force=max(0.0, spec.friction))
@@ -29,6 +30,18 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
             forces.add_damper(axis.row, Damper(body.uid, axis.index, inertia, spec))
         else:
             pybullet.changeDynamics(body.uid, axis.index, jointDamping=spec.damping)
+
+
+def _free(body: Body) -> None:
+    """Switch the motors off that createMultiBody leaves on every axis, also those without a row."""
+    with_row = {axis.index for axis in body.axes}
+    for index in range(pybullet.getNumJoints(body.uid)):
+        if index in body.balls:
+            pybullet.setJointMotorControlMultiDof(
+                body.uid, index, pybullet.POSITION_CONTROL, targetPosition=(0.0, 0.0, 0.0, 1.0),
+                positionGain=0.0, velocityGain=0.0, force=(0.0, 0.0, 0.0))
+        elif index not in with_row:
+            pybullet.setJointMotorControl2(body.uid, index, pybullet.VELOCITY_CONTROL, force=0.0)
 
 
 def _limit(body: Body, axis: Axis, spec: JointAxis, mass: float) -> None:
