@@ -10,8 +10,11 @@ from conftest import Lab, ball, box, ground, slab
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import (
     Box,
+    Capsule,
     Collision,
+    Cone,
     Cylinder,
+    Ellipsoid,
     Mesh,
     MeshData,
     Sphere,
@@ -292,3 +295,31 @@ def test_links_of_one_model_do_not_collide(lab: Lab):
     lab.steps(500)
     assert lab.pose(model, "a").position == pytest.approx((0, 0, 0), abs=1e-9)
     assert lab.pose(model, "b").position == pytest.approx((0.6, 0, 0), abs=1e-9)
+
+
+@pytest.mark.parametrize("geometry, height", [
+    (Capsule(0.3, 1.0), 0.8), (Ellipsoid((0.6, 0.6, 0.2)), 0.2), (Cone(0.5, 1.0), 0.5)])
+def test_newer_shapes_rest_at_their_height(lab: Lab, geometry, height: float):
+    upright = Inertial(1, Pose(), 10, 0, 0, 10, 0, 10)   # it does not fall over in the time
+    lab.load(ground())
+    model = lab.load(Model("m", links=[Link("link", inertial=upright, collisions=[
+        Collision("c", geometry)])]), (0, 0, height))
+    lab.seconds(0.3)
+    assert lab.pose(model).position[2] == pytest.approx(height, abs=0.01)
+
+
+def test_a_moving_mesh_of_convex_parts_is_hollow_where_it_is_hollow(lab: Lab):
+    # A U of three boxes: a ball falls between its arms, where the hull would hold it up.
+    cube = _cube_mesh()
+    boxes = [((2, 1, 0.2), (0, 0, 0)), ((0.2, 1, 1), (-0.9, 0, 0.5)), ((0.2, 1, 1), (0.9, 0, 0.5))]
+    parts = [MeshData(cube.vertices * size + at, cube.triangles) for size, at in boxes]
+    whole = MeshData(np.concatenate([part.vertices for part in parts]),
+                     np.concatenate([cube.triangles + 8 * n for n in range(3)]), parts)
+    mesh = Mesh("u", "/u")
+    lab.load(ground())
+    lab.load(Model("u", links=[Link("link", inertial=Inertial(50, Pose(), 9, 0, 0, 9, 0, 9),
+                                    collisions=[Collision("c", mesh)])]), (0, 0, 0.1),
+             meshes={mesh_key(mesh): whole})
+    dropped = lab.load(ball(radius=0.3), (0, 0, 1.0))
+    lab.seconds(1.5)
+    assert lab.pose(dropped).position[2] == pytest.approx(0.5, abs=0.02)

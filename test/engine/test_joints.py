@@ -369,3 +369,26 @@ def test_a_four_bar_loop_stays_closed(lab: Lab):
         end_of_right = transform(lab.pose(model, "right"), (1, 0, 0))
         assert end_of_top == pytest.approx(end_of_right, abs=5e-3)
     assert lab.pose(model, "top").position[2] < 2.9   # it has fallen over
+
+
+def test_a_ball_joint_is_restored_with_its_turn_and_spin(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = inertial_of_box(1.0, 0.4, 0.3, 0.2, Pose((0.2, 0, 0), quat_from_rpy(0.2, 0.1, 0)))
+    model = Model("m", links=[Link("a", Pose((0, 0, 0), quat_from_rpy(0, 0, 0.6)), inertial),
+                              Link("b", Pose((1, 0, 0)), inertial)],
+                  joints=[Joint("socket", "ball", "a", "b",
+                                Pose((-0.3, 0, 0), quat_from_rpy(0.3, 0, 0)))])
+    first = lab.load(model, (0, 0, 3))
+    lab.apply(AddLoads((Load(1, lab.rows[first, "b"], 0, 100, torque=(0.3, 0.2, 0.5)),)))
+    lab.steps(300)
+    state = ModelState(tuple(LinkState(lab.pose(first, n), lab.twist(first, n)) for n in "ab"))
+    assert max(map(abs, state.links[1].twist.angular)) > 0.3
+    lab.remove(first)
+    second = lab.load(model, (0, 0, 3), state=state)
+    for n, link in enumerate("ab"):
+        for was, now in ((state.links[n].pose.position, lab.pose(second, link).position),
+                         (state.links[n].pose.orientation, lab.pose(second, link).orientation),
+                         (state.links[n].twist.linear, lab.twist(second, link).linear),
+                         (state.links[n].twist.angular, lab.twist(second, link).angular)):
+            sign = -1 if len(was) == 4 and was[3] * now[3] < 0 else 1   # q and -q turn alike
+            assert [sign * v for v in now] == pytest.approx(was, abs=1e-6)

@@ -25,10 +25,10 @@ class AxisRow:
 
 def axis_rows(model: Model) -> List[AxisRow]:
     """The rows of a model's joint axes, in the description's order."""
-    return [AxisRow(row_name(joint, number), joint, number)
+    return [AxisRow(row_name(joint.name, number), joint, number)
             for joint in model.joints for number in range(AXES.get(joint.type, 0))]
 
 
-def row_name(joint: Joint, number: int) -> str:
-    """What an axis is called."""
-    return f"{joint.name}::{number}" if number else joint.name
+def row_name(joint: str, number: int) -> str:
+    """What an axis of a joint is called."""
+    return f"{joint}::{number}" if number else joint

@@ -40,7 +40,7 @@ from ..api import (
 )
 from ..plan import PlanError, open_joints, plan_bodies
 from ..ring import JOINTS, LINKS
-from ..rows import axis_rows
+from ..rows import axis_rows, row_name
 from . import bodies, joints, surfaces
 from .bodies import Body, Builder, Part
 from .constraints import Constraints
@@ -58,6 +58,7 @@ class Entry:
     model: Model
     bodies: List[Body]
     first_row: int
+    pose: Pose
     constraints: Constraints
 
 
@@ -170,7 +171,8 @@ class BulletBackend:
             raise Refused(str(fault)) from fault
         constraints = Constraints(command.model, plans, built, command.pose,
                                   open_joints(command.model, plans), command.first_link_row)
-        entry = Entry(command.model, built, command.first_link_row, constraints)
+        entry = Entry(command.model, built, command.first_link_row, command.pose,
+                      constraints)
         self._models[command.model_id] = entry
         for body in built:
             self._register(body)
@@ -209,9 +211,25 @@ class BulletBackend:
             if body.rigid or body.base is not None:
                 bodies.place(body, link.pose)
             for axis in body.axes:
-                pybullet.resetJointState(body.uid, axis.index, *rates[axis.name])
+                pybullet.resetJointState(body.uid, axis.index,
+                                         *rates[row_name(axis.name, axis.number)])
+            for ball in body.balls:
+                self._restore_ball(body, ball, entry, state)
             if body.moves and (body.rigid or body.base is not None):
                 bodies.launch(body, link.pose, link.twist)
+
+    @staticmethod
+    def _restore_ball(body: Body, ball: bodies.Ball, entry: Entry, state: ModelState) -> None:
+        child = state.links[ball.child.row - entry.first_row]
+        mine, spin, theirs = ball.child.com_pose(child.pose), child.twist.angular, entry.pose
+        if ball.parent is not None:
+            parent = state.links[ball.parent.row - entry.first_row]
+            theirs = ball.parent.com_pose(parent.pose)
+            spin = subtract(spin, parent.twist.angular)
+        between = multiply(conjugate(theirs.orientation), mine.orientation)
+        pybullet.resetJointStateMultiDof(
+            body.uid, ball.index, targetValue=multiply(ball.zero, between),
+            targetVelocity=rotate(conjugate(mine.orientation), spin))
 
     def _remove(self, command: RemoveModel) -> None:
         entry = self._entry(command.model_id)

@@ -12,7 +12,20 @@ import pybullet
 
 from ...description.model import Link, Model
 from ...description.shapes import MeshTable
-from ...geometry import IDENTITY, Pose, Twist, Vec3, compose, inverse, rotate, scale, twist_at
+from ...geometry import (
+    IDENTITY,
+    Pose,
+    Quat,
+    Twist,
+    Vec3,
+    compose,
+    conjugate,
+    inverse,
+    multiply,
+    rotate,
+    scale,
+    twist_at,
+)
 from ..inertia import principal
 from ..plan import BASE, NO_LINK, BodyPlan, TreeLink
 from ..rows import AXES, row_name
@@ -58,12 +71,26 @@ class Axis:
 
 
 @dataclass
+class Ball:
+    """One ball joint: PyBullet's index and the links it connects (`parent` None: a fixed base).
+
+    Bullet's joint quaternion is zero * a: `a` turns the child's principal axes into the parent's
+    (the base's own for a fixed one), `zero` undoes it in the configuration of the file.
+    """
+
+    index: int
+    child: Part
+    parent: Optional[Part]
+    zero: Quat
+
+
+@dataclass
 class Body:
     """One PyBullet body, or several immovable ones that stand for one link.
 
     Attributes:
         uid: PyBullet's number; `more` those of further static pieces with the same frame.
-        balls: PyBullet's indices of ball joints, which have no row.
+        balls: its ball joints, which have no row.
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
@@ -75,7 +102,7 @@ class Body:
     parts: List[Part]
     axes: List[Axis] = field(default_factory=list)
     more: Tuple[int, ...] = ()
-    balls: Tuple[int, ...] = ()
+    balls: Tuple[Ball, ...] = ()
     moves: bool = True
     rigid: bool = True
     may_sleep: bool = True
@@ -194,7 +221,9 @@ class Builder:
 
     def _finish_tree(self, uid: int, plan: BodyPlan, masses: List[Tuple[float, Pose, Vec3]],
                      offset: int) -> Body:
-        parts, axes, balls = [], [], []
+        parts: List[Part] = []
+        axes: List[Axis] = []
+        balls: List[Ball] = []
         for n, node in enumerate(plan.links):
             index, (mass, com, moments) = n - offset, masses[n]
             link = Link("") if node.index == NO_LINK else self.model.links[node.index]
@@ -202,14 +231,24 @@ class Builder:
             if node.index != NO_LINK:
                 parts.append(Part(self.first_row + node.index, index, com, mass, link.gravity))
             if node.joint is not None and node.number is not None:
-                row = self.joint_rows[row_name(node.joint, node.number)]
+                row = self.joint_rows[row_name(node.joint.name, node.number)]
                 axes.append(Axis(row, index, node.joint.name, node.number))
             elif node.kind == "ball":
-                balls.append(index)
+                balls.append(self._ball(plan, node, index, parts))
         if plan.fixed_base:
             pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
         return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
                     balls=tuple(balls))
+
+    def _ball(self, plan: BodyPlan, node: TreeLink, index: int, parts: List[Part]) -> Ball:
+        child, parent, above = parts[-1], None, IDENTITY
+        if node.parent >= 0:
+            over = plan.links[node.parent].index
+            parent = next(part for part in parts if part.row == self.first_row + over)
+            above = parent.com_pose(self.model.links[over].pose)
+        mine = child.com_pose(self.model.links[node.index].pose)
+        return Ball(index, child, parent, multiply(conjugate(mine.orientation),
+                                                   above.orientation))
 
     def _tree_shape(self, node: TreeLink) -> int:
         if node.index == NO_LINK:

@@ -35,8 +35,9 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
 def _free(body: Body) -> None:
     """Switch the motors off that createMultiBody leaves on every axis, also those without a row."""
     with_row = {axis.index for axis in body.axes}
+    balls = {ball.index for ball in body.balls}
     for index in range(pybullet.getNumJoints(body.uid)):
-        if index in body.balls:
+        if index in balls:
             pybullet.setJointMotorControlMultiDof(
                 body.uid, index, pybullet.POSITION_CONTROL, targetPosition=(0.0, 0.0, 0.0, 1.0),
                 positionGain=0.0, velocityGain=0.0, force=(0.0, 0.0, 0.0))

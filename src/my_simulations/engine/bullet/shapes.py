@@ -1,7 +1,6 @@
 """Collision shapes of a link, in PyBullet's terms."""
 from __future__ import annotations
 
-import itertools
 import os
 import tempfile
 from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
@@ -10,9 +9,13 @@ import numpy as np
 import pybullet
 
 from ...description.shapes import (
+    SOLIDS,
     Box,
+    Capsule,
     Collision,
+    Cone,
     Cylinder,
+    Ellipsoid,
     Empty,
     Geometry,
     Mesh,
@@ -23,6 +26,7 @@ from ...description.shapes import (
     mesh_key,
 )
 from ...geometry import IDENTITY, Pose, compose, multiply, transform
+from ..hulls import hull_points, naming_triangles
 
 MAX_SHAPES = 16
 """Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
@@ -107,13 +111,18 @@ class ShapeFactory:
                     "length": geometry.length}
         if isinstance(geometry, Plane):
             return {"type": pybullet.GEOM_PLANE}
-        if isinstance(geometry, Mesh):
+        if isinstance(geometry, Capsule):
+            return {"type": pybullet.GEOM_CAPSULE, "radius": geometry.radius,
+                    "length": geometry.length}
+        if isinstance(geometry, (Ellipsoid, Cone)):
+            return {"type": pybullet.GEOM_MESH, "file": self._hull(geometry)}
+        if isinstance(geometry, SOLIDS):
             key = mesh_key(geometry)
             if key not in meshes:
-                raise ShapeError(f"the mesh {geometry.uri} was not loaded")
+                raise ShapeError(f"the shape {key} was not made ready")
             flags = pybullet.GEOM_FORCE_CONCAVE_TRIMESH if static else 0
-            return {"type": pybullet.GEOM_MESH, "file": self._file(key, meshes[key]),
-                    "flags": flags}
+            return {"type": pybullet.GEOM_MESH, "flags": flags,
+                    "file": self._file(key, meshes[key], static)}
         raise ShapeError(f"no collision shape for {type(geometry).__name__}")
 
     def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable,
@@ -124,26 +133,35 @@ class ShapeFactory:
         with open(path, "w", encoding="ascii") as stream:
             first = 1
             for collision in collisions:
-                points, triangles = _tessellated(collision, meshes)
                 pose = compose(frame, collision.pose)
-                moved = [transform(pose, (p[0], p[1], p[2])) for p in points.tolist()]
-                _write_part(stream, moved, triangles.tolist(), first)
-                first += len(moved)
+                for points, triangles in _pieces(collision, meshes):
+                    moved = [transform(pose, (p[0], p[1], p[2])) for p in points.tolist()]
+                    _write_part(stream, moved, triangles.tolist(), first)
+                    first += len(moved)
         return {"type": pybullet.GEOM_MESH, "file": path, "pose": IDENTITY}
 
-    def _file(self, key: str, mesh: MeshData) -> str:
-        """The mesh as a file: PyBullet takes compounds of meshes by file name only."""
+    def _hull(self, geometry: Geometry) -> str:
+        """A curved shape that Bullet does not have, as a hull of points."""
+        points = hull_points(geometry)
+        return self._file(repr(geometry), MeshData(points, naming_triangles(len(points))), True)
+
+    def _file(self, key: str, mesh: MeshData, static: bool) -> str:
+        """The mesh as a file: PyBullet takes compounds of meshes by file name only.
+
+        Static ones as their triangles, moving ones as their convex pieces.
+        """
+        key = f"{key} {'triangles' if static else 'pieces'}"
         if key not in self._files:
             self._count += 1
             path = os.path.join(self._scratch.name, f"{self._count}.obj")
-            _write_obj(path, np.asarray(mesh.vertices), np.asarray(mesh.triangles))
+            first = 1
+            with open(path, "w", encoding="ascii") as stream:
+                for piece in [mesh] if static or not mesh.parts else mesh.parts:
+                    vertices = np.asarray(piece.vertices).tolist()
+                    _write_part(stream, vertices, np.asarray(piece.triangles).tolist(), first)
+                    first += len(vertices)
             self._files[key] = path
         return self._files[key]
-
-
-def _write_obj(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    with open(path, "w", encoding="ascii") as stream:
-        _write_part(stream, vertices.tolist(), triangles.tolist(), 1)
 
 
 def _write_part(stream: TextIO, vertices: Sequence[Sequence[float]],
@@ -154,29 +172,15 @@ def _write_part(stream: TextIO, vertices: Sequence[Sequence[float]],
     stream.writelines(f"f {a + first} {b + first} {c + first}\n" for a, b, c in triangles)
 
 
-def _tessellated(collision: Collision, meshes: MeshTable) -> Tuple[np.ndarray, np.ndarray]:
-    """Points of a collision, and triangles that name them all (their hull is what counts)."""
+def _pieces(collision: Collision, meshes: MeshTable) -> List[Tuple[np.ndarray, np.ndarray]]:
+    """The convex pieces of a collision as points, and triangles that name them all."""
     geometry = collision.geometry
-    if isinstance(geometry, Mesh):
+    if isinstance(geometry, SOLIDS):
         mesh = meshes[mesh_key(geometry)]
-        return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
-    if isinstance(geometry, Box):
-        points = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * geometry.size
-    elif isinstance(geometry, Cylinder):
-        turns = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
-        ring = np.stack([np.cos(turns), np.sin(turns)], axis=1) * geometry.radius
-        points = np.concatenate([np.c_[ring, np.full(32, z)] for z in
-                                 (-geometry.length / 2.0, geometry.length / 2.0)])
-    elif isinstance(geometry, Sphere):
-        steps = np.arange(128) + 0.5
-        polar, turn = np.arccos(1.0 - 2.0 * steps / 128), np.pi * (1.0 + 5.0**0.5) * steps
-        points = geometry.radius * np.stack(
-            [np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
-    else:
-        raise ShapeError(f"a moving link cannot have a {type(geometry).__name__.lower()} among "
-                         f"more than {MAX_SHAPES} collisions")
-    return points, np.array([(i, (i + 1) % len(points), (i + 2) % len(points))
-                             for i in range(len(points))])
+        return [(np.asarray(piece.vertices), np.asarray(piece.triangles))
+                for piece in mesh.parts or [mesh]]
+    points = hull_points(geometry)
+    return [(points, naming_triangles(len(points)))]
 
 
 def _to_z(plane: Plane) -> "tuple[float, float, float, float]":
