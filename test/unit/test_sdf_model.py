@@ -7,7 +7,21 @@ from reading import INERTIAL, VALID, codes, errors, link_of, model_of, sdf, warn
 
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Inertial, Link, Model
-from my_simulations.description.shapes import Box, Cylinder, Empty, Mesh, Plane, Sphere, Surface
+from my_simulations.description.shapes import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Empty,
+    Heightmap,
+    ImageMap,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+    Surface,
+)
 from my_simulations.errors import Severity
 from my_simulations.formats.load import read_entity
 from my_simulations.geometry import quat_from_rpy
@@ -83,12 +97,61 @@ def test_a_missing_visual_mesh_is_a_warning_and_the_visual_stays_without_path():
     assert [(i.code, i.severity) for i in issues] == [("mesh-not-found", Severity.WARNING)]
 
 
-@pytest.mark.parametrize("shape", ["heightmap", "polyline", "capsule", "image", "ellipsoid"])
-def test_shapes_for_later_are_kept_with_a_warning(shape):
-    link, issues = link_of(f'<collision name="c"><geometry><{shape}/></geometry></collision>')
-    assert link.collisions == [] and codes(issues) == ["geometry-unsupported"]
-    assert shape in link.extra[0]
+@pytest.mark.parametrize("shape, expected", [
+    ("<capsule><radius>0.2</radius><length>0.6</length></capsule>", Capsule(0.2, 0.6)),
+    ("<capsule/>", Capsule(0.5, 1.0)),
+    ("<ellipsoid><radii>1 2 3</radii></ellipsoid>", Ellipsoid((1, 2, 3))),
+    ("<cone><radius>0.3</radius><length>2</length></cone>", Cone(0.3, 2.0)),
+    ("<polyline><height>2</height><point>0 0</point><point>1 0</point><point>1 1</point>"
+     "<point>0 0.00001</point></polyline>", Polyline([[(0, 0), (1, 0), (1, 1)]], 2.0)),
+])
+@pytest.mark.parametrize("owner", ["collision", "visual"])
+def test_shapes_are_read_at_any_version(owner, shape, expected):
+    for version in ("1.4", "1.7", "1.11"):
+        link, issues = link_of(f'<{owner} name="c"><geometry>{shape}</geometry></{owner}>', version)
+        items = link.collisions if owner == "collision" else link.visuals
+        assert [item.geometry for item in items] == [expected] and errors(issues) == []
+
+
+def test_further_polylines_are_holes():
+    def loop(a, b):
+        return "".join(f"<point>{x} {y}</point>" for x, y in ((a, a), (b, a), (b, b), (a, b)))
+
+    link, issues = link_of(f'<collision name="c"><geometry><polyline>{loop(0, 3)}</polyline>'
+                           f"<polyline>{loop(1, 2)}</polyline></geometry></collision>")
+    assert [len(one) for one in link.collisions[0].geometry.loops] == [4, 4] and issues == []
+
+
+def test_images_are_found_and_their_fields_read(tmp_path):
+    image = tmp_path / "grey.png"
+    image.write_bytes(b"")
+    link, issues = link_of(
+        f'<collision name="c"><geometry><heightmap><uri>{image}</uri><size>4 4 -1</size>'
+        "<pos>1 2 3</pos><sampling>4</sampling><texture><size>2</size></texture></heightmap>"
+        f'</geometry></collision><collision name="d"><geometry><image><uri>{image}</uri>'
+        "<scale>0.1</scale><threshold>100</threshold><height>2</height><granularity>3</granularity>"
+        "</image></geometry></collision>")
+    terrain, plan = (c.geometry for c in link.collisions)
+    assert terrain == Heightmap(str(image), str(image), (4, 4, -1), (1, 2, 3), 4,
+                                ["<texture><size>2</size></texture>"])
+    assert plan == ImageMap(str(image), str(image), 0.1, 100, 2.0, 3)
     assert errors(issues) == []
+
+
+@pytest.mark.parametrize("shape, code", [
+    ("<heightmap/>", "image-not-found"),
+    ("<image><uri>gone.png</uri></image>", "image-not-found"),
+    ("<polyline/>", "bad-shape"),
+    ("<polyline><point>0 0</point><point>1 1</point></polyline>", "bad-shape"),
+    ("<polyline><point>0 0</point><point>1 x</point></polyline>", "bad-value"),
+    ("<capsule><radius>0</radius></capsule>", "bad-shape"),
+    ("<ellipsoid><radii>1 -1 1</radii></ellipsoid>", "bad-shape"),
+    ("<cone><length>-1</length></cone>", "bad-shape"),
+])
+def test_a_shape_with_a_fault_is_left_out_and_kept(shape, code):
+    link, issues = link_of(f'<collision name="c"><geometry>{shape}</geometry></collision>')
+    assert link.collisions == [] and errors(issues) == [code]
+    assert link.extra[0].startswith('<collision name="c">')
 
 
 def test_the_surface_is_read():
@@ -128,7 +191,8 @@ def test_what_is_known_but_not_simulated_is_kept_with_its_place_and_without_a_wa
 def test_a_sensor_is_kept_whole():
     xml = '<sensor name="s" type="camera"><update_rate>30</update_rate></sensor>'
     link, issues = link_of(xml)
-    assert link.extra == [xml] and issues == []
+    assert link.extra == [xml] and errors(issues) == [] and warnings(issues) == []
+    assert codes(issues) == ["not-simulated"]
 
 
 def test_an_unknown_element_is_kept_with_a_warning_and_a_guess():

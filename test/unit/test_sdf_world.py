@@ -195,7 +195,8 @@ def test_what_is_not_simulated_is_kept_without_a_warning():
     kept = ["<scene><shadows>0</shadows></scene>", '<gui fullscreen="0"/>',
             '<state world_name="w"/>', '<actor name="man"/>']
     world, issues = world_of("".join(kept) + '<plugin name="p" filename="f"/>')
-    assert world.extra == kept and issues == []
+    assert world.extra == kept and errors(issues) == [] and warnings(issues) == []
+    assert codes(issues) == ["not-simulated"]  # the actor
     assert [plugin.name for plugin in world.plugins] == ["p"]
 
 

@@ -6,12 +6,25 @@ The rules need no file: readers add file and line through `locate`, requests mad
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Set
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Set, Union
 
 from ..errors import Issue, Severity
 from ..geometry import is_finite, norm, pose_is_finite
 from .model import WORLD, Inertial, Joint, JointAxis, Link, Model
-from .shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere
+from .shapes import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Heightmap,
+    ImageMap,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+)
 
 JOINT_TYPES = (
     "revolute", "prismatic", "fixed", "continuous", "revolute2", "universal", "ball", "screw",
@@ -166,9 +179,14 @@ def geometry_fault(geometry: Geometry) -> str:
         return _not_positive("size of the box", geometry.size)
     if isinstance(geometry, Sphere):
         return _not_positive("radius of the sphere", (geometry.radius,))
-    if isinstance(geometry, Cylinder):
-        return (_not_positive("radius of the cylinder", (geometry.radius,))
-                or _not_positive("length of the cylinder", (geometry.length,)))
+    if isinstance(geometry, (Cylinder, Capsule, Cone)):
+        shape = type(geometry).__name__.lower()
+        return (_not_positive(f"radius of the {shape}", (geometry.radius,))
+                or _not_positive(f"length of the {shape}", (geometry.length,)))
+    if isinstance(geometry, Ellipsoid):
+        return _not_positive("radii of the ellipsoid", geometry.radii)
+    if isinstance(geometry, (Heightmap, ImageMap, Polyline)):
+        return _solid_fault(geometry)
     if isinstance(geometry, Plane):
         if not is_finite(*geometry.normal) or norm(geometry.normal) < 1e-12:
             return "the normal of the plane has no direction"
@@ -177,6 +195,21 @@ def geometry_fault(geometry: Geometry) -> str:
             shown = " ".join(f"{value:g}" for value in geometry.scale)
             return f"the scale of the mesh must not be 0, found {shown}"
     return ""
+
+
+def _solid_fault(solid: Union[Heightmap, ImageMap, Polyline]) -> str:
+    if isinstance(solid, Heightmap):
+        if not is_finite(*solid.size, *solid.position) or 0.0 in solid.size:
+            return "the size of the heightmap must not be 0"
+        return (_not_positive("extent of the heightmap", solid.size[:2])
+                or _not_positive("sampling of the heightmap", (solid.sampling,)))
+    if isinstance(solid, ImageMap):
+        return (_not_positive("scale of the image", (solid.scale,))
+                or _not_positive("height of the image", (solid.height,))
+                or _not_positive("granularity of the image", (solid.granularity,)))
+    if not solid.loops or min(len(loop) for loop in solid.loops) < 3:
+        return "a polyline needs at least 3 points"
+    return _not_positive("height of the polyline", (solid.height,))
 
 
 def has_zero_size(geometry: Geometry) -> bool:

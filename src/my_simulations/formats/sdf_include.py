@@ -5,11 +5,12 @@ import os
 from dataclasses import replace
 from typing import Any, List, Optional, Union
 
-from ..description.world import Light
+from ..description.world import Actor, Light
 from ..errors import InputError
 from ..resources.resolver import NotFound
 from .sdf_light import LightPlacement, read_light
 from .sdf_model import Changes, Placement, read_model, read_plugin, relative_to
+from .sdf_scene import read_actor
 from .sdf_tables import INCLUDE
 from .sdf_versions import upgrade
 from .source import Level, Source
@@ -19,7 +20,7 @@ from .xmltext import parse
 _DEEPEST = 20
 _MOST = 20000
 
-Included = Union[Placement, LightPlacement]
+Included = Union[Placement, LightPlacement, Actor]
 
 
 def read_include(element: Any, source: Source, static: bool = False) -> Optional[Included]:
@@ -91,11 +92,18 @@ def _read_file(path: str, element: Any, source: Source, changes: Changes, static
             light = read_light(child, inner)
             return _changed_light(light, changes)
         if child.tag == "actor":
-            source.warn("actor-unsupported", f"{uri!r} is an actor, which is not simulated yet",
-                        element)
-            return None
+            source.warn("actor-unsupported", f"{uri!r} is an actor: it is kept, but does not walk"
+                        " here", element)
+            return _changed_actor(read_actor(child, inner), changes)
     source.report(Level.ERROR, "include-empty", f"{path} holds no model and no light", element)
     return None
+
+
+def _changed_actor(actor: Actor, changes: Changes) -> Actor:
+    actor.name = changes.name if changes.name is not None else actor.name
+    actor.pose = changes.pose if changes.pose is not None else actor.pose
+    actor.plugins += changes.plugins
+    return actor
 
 
 def _changed_light(placement: LightPlacement, changes: Changes) -> LightPlacement:

@@ -2,14 +2,26 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Sequence, Tuple, Union
 
-from ..description.shapes import Box, Collision, Empty, Geometry, Material, Mesh, Visual
+from ..description.shapes import (
+    Box,
+    Collision,
+    Empty,
+    Geometry,
+    Heightmap,
+    ImageMap,
+    Material,
+    Mesh,
+    Polyline,
+    Visual,
+)
 from ..description.validate import geometry_fault, has_zero_size
 from ..resources.resolver import NotFound
-from .sdf_tables import COLLISION, GEOMETRIES, KNOWN_GEOMETRIES, MATERIAL, VISUAL
+from .sdf_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
 from .source import Level, Source
 from .tables import BAD, Found, closest, fill, to_xml
+from .values import VECTOR2
 
 
 def read_collision(
@@ -21,7 +33,8 @@ def read_collision(
     """
     collision = Collision(element.get("name", ""), Empty())
     found = fill(collision, element, COLLISION, source, collision.extra)
-    geometry = _geometry(found.get("geometry", ()), element, source, True, static)
+    geometry = _geometry(found.get("geometry", ()), element, source, True, static,
+                         collision.extra)
     if geometry is None:
         kept.append(to_xml(element))
         return None
@@ -36,7 +49,7 @@ def read_visual(element: Any, source: Source, kept: List[str]) -> Optional[Tuple
     """
     visual = Visual(element.get("name", ""), Empty())
     found = fill(visual, element, VISUAL, source, visual.extra)
-    geometry = _geometry(found.get("geometry", ()), element, source, False, False)
+    geometry = _geometry(found.get("geometry", ()), element, source, False, False, visual.extra)
     if geometry is None:
         kept.append(to_xml(element))
         return None
@@ -65,7 +78,8 @@ def _anchored(uri: str, base_dir: str) -> str:
 
 
 def _geometry(
-    elements: Sequence[Any], owner: Any, source: Source, collides: bool, static: bool
+    elements: Sequence[Any], owner: Any, source: Source, collides: bool, static: bool,
+    kept: List[str],
 ) -> Optional[Geometry]:
     level = Level.ERROR if collides else Level.WARNING
     shapes = [child for element in elements for child in element if isinstance(child.tag, str)]
@@ -80,32 +94,56 @@ def _geometry(
                     shapes[1])
     table = GEOMETRIES.get(shape.tag)
     if table is None:
-        unknown_shape(shape, owner.tag, level, source, list(GEOMETRIES), KNOWN_GEOMETRIES)
+        unknown_shape(shape, owner.tag, level, source, list(GEOMETRIES))
         return None
     geometry: Geometry = table.of()
-    extra: List[str] = []
-    if BAD in fill(geometry, shape, table, source, extra, level):
+    extra: List[str] = geometry.extra if isinstance(geometry, Heightmap) else []
+    found = fill(geometry, shape, table, source, extra, level)
+    if BAD in found:
+        return None
+    if extra and not isinstance(geometry, Heightmap):
+        kept += [f"<geometry><{shape.tag}>{xml}</{shape.tag}></geometry>" for xml in extra]
+    if isinstance(geometry, Polyline) and not _loops(geometry, shapes, source, level):
         return None
     return checked(geometry, shape, owner.tag, source, static)
 
 
+def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: Level) -> bool:
+    """The points of all sibling polylines: the first is the outline, the others are holes."""
+    for shape in shapes:
+        loop: List[Tuple[float, float]] = []
+        for point in shape.iterfind("point") if shape.tag == "polyline" else ():
+            try:
+                loop.append(VECTOR2.parse(point.text or ""))
+            except ValueError as fault:
+                source.report(level, "bad-value", f"<point>: {fault}", point)
+                return False
+        if len(loop) > 1 and max(abs(loop[0][0] - loop[-1][0]), abs(loop[0][1] - loop[-1][1])
+                                 ) < _CLOSED:
+            loop.pop()
+        if shape.tag == "polyline":
+            polyline.loops.append(loop)
+    return True
+
+
+_CLOSED = 1e-4
+"""Metres between the first and the last point of a loop that was closed by hand (Gazebo)."""
+
+
 def unknown_shape(shape: Any, owner: str, level: Level, source: Source,
-                  known: Sequence[str], later: Sequence[str]) -> None:
-    """Report a shape that is left out: a warning for one of `later`, else of the given level."""
-    if shape.tag in later:
-        source.warn("geometry-unsupported",
-                    f"<{shape.tag}> is not simulated yet; this {owner} is left out", shape)
-    else:
-        source.report(level, "geometry-unknown",
-                      f"<{shape.tag}> is not a known shape; this {owner} is left out", shape,
-                      closest(shape.tag, [*known, *later]))
+                  known: Sequence[str]) -> None:
+    """Report a shape that is left out."""
+    source.report(level, "geometry-unknown",
+                  f"<{shape.tag}> is not a known shape; this {owner} is left out", shape,
+                  closest(shape.tag, list(known)))
 
 
 def checked(geometry: Geometry, shape: Any, owner: str, source: Source,
             static: bool) -> Optional[Geometry]:
     """The shape where it can be used, its mesh found; None, with an issue, where it cannot."""
     collides = owner == "collision"
-    if isinstance(geometry, Mesh) and not find_mesh(geometry, shape, source, collides):
+    if isinstance(geometry, (Mesh, Heightmap, ImageMap)) and not find_mesh(
+            geometry, shape, source, collides):
         return None
     problem = geometry_fault(geometry)
     if problem:
@@ -118,8 +156,9 @@ def checked(geometry: Geometry, shape: Any, owner: str, source: Source,
     return geometry
 
 
-def find_mesh(mesh: Mesh, element: Any, source: Source, collides: bool) -> bool:
-    """Set the mesh's path; False where its owner must be left out.
+def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Source,
+              collides: bool) -> bool:
+    """Set the path of the mesh or image; False where its owner must be left out.
 
     A visual whose file is missing stays, without a path, so that saving loses nothing.
     """
@@ -127,9 +166,10 @@ def find_mesh(mesh: Mesh, element: Any, source: Source, collides: bool) -> bool:
         mesh.path = source.resolver.resolve(mesh.uri, source.base_dir)
     except NotFound as missing:
         owner = "collision" if collides else "visual"
+        kind = "mesh" if isinstance(mesh, Mesh) else "image"
         source.report(
-            Level.ERROR if collides else Level.WARNING, "mesh-not-found",
-            f"the mesh of this {owner} {missing}", element,
+            Level.ERROR if collides else Level.WARNING, f"{kind}-not-found",
+            f"the {kind} of this {owner} {missing}", element,
             hint="check the path, GAZEBO_MODEL_PATH and ROS_PACKAGE_PATH",
         )
         return not collides

@@ -6,26 +6,51 @@ from typing import Dict, Mapping
 from ..description.model import Inertial, Joint, JointAxis, Link, Model
 from ..description.shapes import (
     Box,
+    Capsule,
     Collision,
+    Cone,
     Cylinder,
+    Ellipsoid,
     Empty,
+    Heightmap,
+    ImageMap,
     Material,
     Mesh,
     Plane,
+    Polyline,
     Sphere,
     Surface,
     Visual,
 )
 from ..description.world import Light, Physics, World
 from .source import Level
-from .tables import Entry, Group, Kept, Part, Table, Value
-from .values import BOOL, COLOR, FLOAT, INT, LIMIT, POSE, SCALE, TEXT, VECTOR2, VECTOR3
+from .tables import Entry, Group, Kept, Part, Table, Use, Value
+from .values import (
+    BOOL,
+    COLOR,
+    FLOAT,
+    INT,
+    LIMIT,
+    PLANE_SIZE,
+    POSE,
+    SCALE,
+    TEXT,
+    VECTOR3,
+)
 
 FATAL, ERROR, WARNING = Level.FATAL, Level.ERROR, Level.WARNING
 
 
+SHOWN = Use.SHOWN
+
+
 def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
     return {name: Kept(since) for name in names}
+
+
+def _told(*names: str, since: str = "") -> Dict[str, Entry]:
+    """Kept, and it is said: whoever wrote them expects something to happen."""
+    return {name: Kept(since, told=True) for name in names}
 
 
 GEOMETRIES: Mapping[str, Table] = {
@@ -35,7 +60,7 @@ GEOMETRIES: Mapping[str, Table] = {
         "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
     }),
     "plane": Table("plane", Plane, {
-        "normal": Value("normal", VECTOR3), "size": Value("size", VECTOR2),
+        "normal": Value("normal", VECTOR3), "size": Value("size", PLANE_SIZE),
     }),
     "mesh": Table("mesh", Mesh, {
         "uri": Value("uri", TEXT),
@@ -44,13 +69,35 @@ GEOMETRIES: Mapping[str, Table] = {
         "submesh": Group({"name": Value("submesh", TEXT), "center": Value("center", BOOL)}),
         "convex_decomposition": Kept("1.11"),
     }),
+    "capsule": Table("capsule", Capsule, {
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }),
+    "ellipsoid": Table("ellipsoid", Ellipsoid, {"radii": Value("radii", VECTOR3)}),
+    "cone": Table("cone", Cone, {
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }),
+    "heightmap": Table("heightmap", Heightmap, {
+        "uri": Value("uri", TEXT),
+        "filename": Value("uri", TEXT),  # SDF 1.0 to 1.2
+        "size": Value("size", VECTOR3),
+        "pos": Value("position", VECTOR3),
+        "offset": Value("position", VECTOR3),  # SDF 1.0 to 1.2
+        "sampling": Value("sampling", INT),
+        **_kept("texture", "blend", "use_terrain_paging"),
+    }),
+    "image": Table("image", ImageMap, {
+        "uri": Value("uri", TEXT),
+        "filename": Value("uri", TEXT),  # SDF 1.0 to 1.2
+        "scale": Value("scale", FLOAT),
+        "threshold": Value("threshold", INT),
+        "height": Value("height", FLOAT),
+        "granularity": Value("granularity", INT),
+    }),
+    "polyline": Table("polyline", Polyline, {
+        "point": Part(), "height": Value("height", FLOAT),
+    }),
     "empty": Table("empty", Empty),
 }
-
-KNOWN_GEOMETRIES = (
-    "heightmap", "image", "polyline", "capsule", "ellipsoid", "cone",
-)
-"""Shapes of the format that are kept as XML, not simulated."""
 
 _ODE_FRICTION = Group({
     "mu": Value("mu", FLOAT), "mu2": Value("mu2", FLOAT), "fdir1": Value("fdir1", VECTOR3),
@@ -93,8 +140,8 @@ VISUAL = Table("visual", Visual, {
     "cast_shadows": Value("cast_shadows", BOOL),
     "transparency": Value("transparency", FLOAT),
     "laser_retro": Value("laser_retro", FLOAT),
-    **_kept("frame", "visibility_flags", "meta", "plugin"),
-}, level=WARNING, known_attributes=("name",))
+    **_kept("frame", "visibility_flags", "meta"), **_told("plugin"),
+}, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 MATERIAL = Table("material", Material, {
     "ambient": Value("ambient", COLOR), "diffuse": Value("diffuse", COLOR),
@@ -103,7 +150,7 @@ MATERIAL = Table("material", Material, {
         "uri": Value("script_uris", TEXT, repeated=True), "name": Value("script_name", TEXT),
     }),
     **_kept("shader", "lighting", "shininess", "double_sided", "pbr", "render_order"),
-}, level=WARNING)
+}, level=WARNING, use=SHOWN)
 
 INERTIAL = Table("inertial", Inertial, {
     "mass": Value("mass", FLOAT),
@@ -125,8 +172,9 @@ LINK = Table("link", Link, {
     "velocity_decay": Group({
         "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
     }),
-    **_kept("frame", "sensor", "light", "projector", "audio_source", "audio_sink", "battery",
-            "enable_wind", "must_be_base_link", "particle_emitter", "plugin"),
+    **_kept("frame", "light", "must_be_base_link", "enable_wind"),
+    **_told("sensor", "projector", "audio_source", "audio_sink", "battery", "particle_emitter",
+            "plugin"),
 }, known_attributes=("name",))
 
 _AXIS_CHILDREN: Mapping[str, Entry] = {
@@ -141,7 +189,8 @@ _AXIS_CHILDREN: Mapping[str, Entry] = {
         "spring_reference": Value("spring_reference", FLOAT),
         "spring_stiffness": Value("spring_stiffness", FLOAT),
     }),
-    **_kept("initial_position", "mimic"),
+    "mimic": Part("1.11"),
+    **_kept("initial_position"),
 }
 AXIS = Table("axis", JointAxis, _AXIS_CHILDREN, level=FATAL)
 AXIS2 = Table("axis2", JointAxis, _AXIS_CHILDREN, level=FATAL)
@@ -151,8 +200,11 @@ JOINT = Table("joint", Joint, {
     "pose": Value("pose", POSE, FATAL),
     "axis": Part(),
     "axis2": Part(),
-    **_kept("frame", "thread_pitch", "screw_thread_pitch", "gearbox_ratio",
-            "gearbox_reference_body", "physics", "sensor"),
+    "thread_pitch": Value("thread_pitch", FLOAT),
+    "screw_thread_pitch": Part("1.10"),
+    "gearbox_ratio": Value("gearbox_ratio", FLOAT),
+    "gearbox_reference_body": Value("gearbox_reference", TEXT),
+    **_kept("frame", "physics"), **_told("sensor"),
 }, known_attributes=("name", "type"))
 
 FRAME = Table("frame", Link, {"pose": Value("pose", POSE, FATAL)},
@@ -164,8 +216,8 @@ MODEL = Table("model", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
-    "frame": Part("1.5"), "plugin": Part(),
-    **_kept("gripper", "enable_wind"),
+    "frame": Part("1.5", kept=True), "plugin": Part(),
+    **_kept("enable_wind"), **_told("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
 
@@ -175,7 +227,7 @@ INCLUDE = Table("include", Model, {
     "pose": Value("pose", POSE, FATAL),
     "static": Value("static", BOOL),
     "plugin": Part(),
-    **_kept("placement_frame"),
+    "placement_frame": Part("1.8"),
 }, known_attributes=("merge",))
 
 LIGHT = Table("light", Light, {
@@ -191,7 +243,7 @@ LIGHT = Table("light", Light, {
         "falloff": Value("falloff", FLOAT),
     }),
     **_kept("frame", "intensity", "light_on", "visualize", "plugin"),
-}, attributes={"type": Value("type", TEXT)}, level=WARNING, known_attributes=("name",))
+}, attributes={"type": Value("type", TEXT)}, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 PHYSICS = Table("physics", Physics, {
     "max_step_size": Value("max_step_size", FLOAT),
@@ -219,7 +271,15 @@ PHYSICS = Table("physics", Physics, {
 
 WORLD = Table("world", World, {
     "gravity": Value("gravity", VECTOR3, since="1.6"),
-    "physics": Part(), "light": Part(), "model": Part(), "include": Part(), "plugin": Part(),
-    **_kept("audio", "wind", "magnetic_field", "atmosphere", "spherical_coordinates", "gui",
-            "scene", "actor", "road", "population", "frame", "state", "joint"),
+    "physics": Part(), "light": Part(use=SHOWN), "model": Part(), "include": Part(),
+    "plugin": Part(),
+    "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
+    "state": Part(kept=True), "joint": Part("1.10", use=Use.KEPT, told=True, kept=True),
+    "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=Use.KEPT),
+    "gui": Part(use=SHOWN, kept=True), "scene": Part(use=SHOWN, kept=True),
+    "actor": Part(use=Use.KEPT, told=True, kept=True),
+    "road": Part(use=Use.KEPT, told=True, kept=True),
+    "wind": Part(use=Use.KEPT, told=True, kept=True), "atmosphere": Part(use=Use.KEPT, kept=True),
+    "spherical_coordinates": Part(use=Use.KEPT, kept=True),
+    **_told("audio"),
 }, known_attributes=("name",))

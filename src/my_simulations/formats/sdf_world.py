@@ -4,14 +4,18 @@ from __future__ import annotations
 from typing import Any, Callable, Dict, List, Optional, Sequence, Set
 
 from ..description.model import Model
-from ..description.world import Light, Physics, World
+from ..description.world import Actor, Light, Physics, World
 from ..geometry import is_finite
 from .sdf_frames import FrameFault, FrameTree
 from .sdf_include import read_include
 from .sdf_light import LightPlacement, read_light
 from .sdf_model import Placement, read_model, read_plugin
+from .sdf_population import read_population
+from .sdf_scene import read_surroundings
+from .sdf_state import read_state
 from .sdf_tables import PHYSICS, WORLD
 from .source import Level, Source
+from .state import state_issues
 from .tables import Found, fill, to_xml
 from .values import BOOL
 
@@ -22,7 +26,12 @@ def read_world_element(element: Any, source: Source) -> World:
     found = fill(world, element, WORLD, source, world.extra)
     world.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
     _read_physics(found.get("physics", ()), world, source)
+    read_surroundings(found, world, source)
     _Entities(world, source, found).read(element)
+    for state in found.get("state", ())[:1]:
+        world.state = read_state(state, source)
+        for issue in state_issues(world):
+            source.log.add(issue)
     return world
 
 
@@ -42,6 +51,7 @@ class _Entities:
             "model": lambda child: read_model(child, self._source),
             "include": lambda child: read_include(child, self._source),
             "light": lambda child: read_light(child, self._source),
+            "population": lambda child: read_population(child, self._source, self._world.seed),
         }
         for child in element:
             reader = readers.get(child.tag)
@@ -54,8 +64,14 @@ class _Entities:
         self._place()
 
     def _add(self, entity: Any, element: Any) -> None:
-        if isinstance(entity, Placement):
-            model: Model = entity.model
+        if isinstance(entity, list):  # of a population
+            for model in entity:
+                self._add(Placement(model), element)
+        elif isinstance(entity, Actor):
+            self._world.actors.append(entity)
+            self._world.extra.append(to_xml(element))
+        elif isinstance(entity, Placement):
+            model = entity.model
             if self._is_new(model.name, self._models, "model", element):
                 self._world.models.append(model)
                 self._frames.add(model.name, model.pose, entity.relative_to, element)

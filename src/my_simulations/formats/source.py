@@ -26,12 +26,14 @@ class Log:
     Attributes:
         fatal: how many of them make the entity they are in unusable.
         includes: how many includes were followed.
+        told: kinds of elements of which it was said that they do nothing here.
     """
 
     def __init__(self) -> None:
         self.issues: List[Issue] = []
         self.fatal = 0
         self.includes = 0
+        self.told: Set[str] = set()
         self._seen: Set[Issue] = set()
 
     def add(self, issue: Issue, fatal: bool = False) -> None:
@@ -84,3 +86,13 @@ class Source:
     def warn(self, code: str, message: str, element: Optional[Any] = None, hint: str = "") -> None:
         """Note a fault that Gazebo, too, would only mention."""
         self.report(Level.WARNING, code, message, element, hint)
+
+    def tell_unused(self, element: Any) -> None:
+        """Say, once for each kind, that elements of this kind are kept and do nothing here."""
+        kind = f"{element.tag} {element.get('type') or ''}".strip() if (
+            element.tag == "sensor") else str(element.tag)
+        if kind in self.log.told:
+            return
+        self.log.told.add(kind)
+        self.log.add(Issue(Severity.NOTE, "not-simulated", f"<{kind}> is kept, but does nothing"
+                           " here", **self.where(element)))

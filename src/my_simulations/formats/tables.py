@@ -6,11 +6,21 @@ dataclass, so that it is written down once.
 """
 from __future__ import annotations
 
+import enum
 from dataclasses import dataclass, field, fields
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
 
 from .source import Level, Source
 from .values import UNSET, Kind
+
+
+class Use(enum.Enum):
+    """What becomes of an element."""
+
+    SIMULATED = "simulated"  # it acts
+    SHOWN = "shown"          # seen in the editor, without effect on motion
+    KEPT = "kept"            # read and written back, nothing else
+    IGNORED = "ignored"      # neither acts nor is written back
 
 
 @dataclass(frozen=True)
@@ -24,6 +34,7 @@ class Value:
         since: the version of the format that introduced it.
         repeated: may stand more than once.
         part: a field with the dataclass that `field` belongs to, "" for the table's own.
+        use: what becomes of it; None for the table's own.
     """
 
     field: str
@@ -32,6 +43,7 @@ class Value:
     since: str = ""
     repeated: bool = False
     part: str = ""
+    use: Optional[Use] = None
 
 
 @dataclass(frozen=True)
@@ -49,16 +61,27 @@ class Group:
 
 @dataclass(frozen=True)
 class Part:
-    """A child element with a reader of its own."""
+    """A child element with a reader of its own.
+
+    `told`: that it does nothing here is said once for each kind. `kept`: its XML is kept besides.
+    """
 
     since: str = ""
+    use: Optional[Use] = None
+    told: bool = False
+    kept: bool = False
 
 
 @dataclass(frozen=True)
 class Kept:
-    """A child element that is known and kept as XML, not simulated."""
+    """A child element that is known and kept as XML, not simulated.
+
+    `told`: that it does nothing here is said once for each kind.
+    """
 
     since: str = ""
+    use: Use = Use.KEPT
+    told: bool = False
 
 
 Entry = Union[Value, Group, Part, Kept]
@@ -74,6 +97,7 @@ class Table:
         attributes, children: by name.
         level: what a value that cannot be read means, where the value itself does not say.
         known_attributes: names read elsewhere.
+        use: what becomes of what does not say itself.
     """
 
     name: str
@@ -82,6 +106,7 @@ class Table:
     attributes: Mapping[str, Value] = field(default_factory=dict)
     level: Level = Level.ERROR
     known_attributes: Tuple[str, ...] = ()
+    use: Use = Use.SIMULATED
 
     def values(self) -> Iterator[Tuple[str, Value, Any]]:
         """(path, value, default) of every value; attributes as `@name`; for writers and tests."""
@@ -203,18 +228,25 @@ class _Filler:
                 self._set(target, entry, child.text or "", child, tag)  # type: ignore[arg-type]
                 if tag == "pose" and child.attrib:
                     self._found.setdefault("pose", []).append(child)
-            elif entry.__class__ is Part:
-                self._found.setdefault(tag, []).append(child)
             elif entry.__class__ is Group:
                 assert isinstance(entry, Group)
                 inner = getattr(target, entry.part) if entry.part else target
                 self.fill(inner, child, entry.children, entry.attributes, (), (*wrap, tag))
             elif entry is not None:
-                self._extra.append(to_xml(child, wrap))
+                self._aside(child, entry, wrap)  # type: ignore[arg-type]
             elif isinstance(tag, str):
                 self._extra.append(to_xml(child, wrap))
                 if ":" not in tag and tag[0] != "{":
                     self._unknown(f"element <{tag}>", tag, child, list(children))
+
+    def _aside(self, child: Any, entry: Union[Part, Kept], wrap: Tuple[str, ...]) -> None:
+        """A child with a reader of its own, or one that is kept, or both."""
+        if isinstance(entry, Part):
+            self._found.setdefault(child.tag, []).append(child)
+        if isinstance(entry, Kept) or entry.kept:
+            self._extra.append(to_xml(child, wrap))
+        if entry.told:
+            self._source.tell_unused(child)
 
     def _set(self, target: Any, value: Value, text: str, element: Any, name: str) -> None:
         level = self._level or value.level or self._table.level

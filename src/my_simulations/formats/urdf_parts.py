@@ -14,7 +14,6 @@ from .urdf_tables import (
     COLLISION,
     GEOMETRIES,
     INERTIAL,
-    KNOWN_GEOMETRIES,
     LINK,
     MATERIAL,
     ORIGIN,
@@ -89,7 +88,7 @@ def _geometry(elements: Sequence[Any], owner: Any, source: Source, collides: boo
         return None
     shape = shapes[0]
     if shape.tag not in GEOMETRIES:
-        unknown_shape(shape, owner.tag, level, source, list(GEOMETRIES), KNOWN_GEOMETRIES)
+        unknown_shape(shape, owner.tag, level, source, list(GEOMETRIES))
         return None
     table, needed = GEOMETRIES[shape.tag]
     missing = [name for name in needed if not (shape.get(name) or "").strip()]

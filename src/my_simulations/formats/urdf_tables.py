@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Dict, Mapping, Optional, Tuple
 
 from ..description.model import Inertial, JointAxis, Link, Model
-from ..description.shapes import Box, Collision, Color, Cylinder, Mesh, Sphere, Visual
+from ..description.shapes import Box, Capsule, Collision, Color, Cylinder, Mesh, Sphere, Visual
 from ..geometry import IDENTITY_QUAT, ZERO3, Quat, Vec3
 from .source import Level
 from .tables import Entry, Group, Kept, Part, Table, Value
@@ -111,13 +111,14 @@ GEOMETRIES: Mapping[str, Tuple[Table, Tuple[str, ...]]] = {
     "cylinder": (Table("cylinder", Cylinder, attributes={
         "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
     }), ("radius", "length")),
+    "capsule": (Table("capsule", Capsule, attributes={
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }), ("radius", "length")),
     "mesh": (Table("mesh", Mesh, attributes={
         "filename": Value("uri", TEXT), "scale": Value("scale", SCALE),
     }), ("filename",)),
 }
 """Tables of the shapes, and the attributes each must have."""
-
-KNOWN_GEOMETRIES = ("capsule",)
 
 MATERIAL = Table("material", Paint, {
     "color": Group(attributes={"rgba": Value("color", COLOR)}),

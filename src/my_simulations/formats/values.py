@@ -152,6 +152,14 @@ class Vector2:
         return _formatted(*value)
 
 
+class PlaneSize(Vector2):
+    """Two numbers; a third, which some files give, is left out (Gazebo behaviour)."""
+
+    def parse(self, text: str) -> Tuple[float, float]:
+        parts = text.split()
+        return super().parse(" ".join(parts[:2]) if len(parts) == 3 else text)
+
+
 class Vector3:
     """Three numbers."""
 
@@ -225,4 +233,5 @@ class Seconds:
 
 BOOL, NEGATED, FLOAT, LIMIT, INT, TEXT = Bool(), Negated(), Float(), Limit(), Int(), Text()
 VECTOR2, VECTOR3, SCALE, COLOR = Vector2(), Vector3(), UniformScale(), Color()
+PLANE_SIZE = PlaneSize()
 RPY, POSE, SECONDS = Rpy(), PoseKind(), Seconds()
