@@ -4,11 +4,12 @@ from __future__ import annotations
 import math
 
 import pytest
-from conftest import Lab, box
+from conftest import Lab, ball, box, ground, slab
 
 from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.shapes import Surface
 from my_simulations.engine.api import SetModelState
-from my_simulations.geometry import Pose, Twist, quat_from_rpy, rotate
+from my_simulations.geometry import Pose, Twist, conjugate, quat_from_rpy, rotate
 
 
 def test_free_fall_is_the_integrators_own_formula(lab: Lab):
@@ -78,7 +79,6 @@ def test_weightless_links_hang_still(lab: Lab):
 
 
 def test_a_static_model_never_moves(lab: Lab):
-    from conftest import slab
     wall = lab.load(slab("wall", (0.1, 2, 2)), (1, 0, 1))
     thrown = lab.load(box(mass=50), (-1, 0, 1))
     lab.push(thrown, (8, 0, 0))
@@ -88,7 +88,6 @@ def test_a_static_model_never_moves(lab: Lab):
 
 
 def test_gravity_can_change_while_bodies_sleep(lab: Lab):
-    from conftest import ground
     lab.load(ground())
     resting = lab.load(box(), (0, 0, 0.5))
     lab.seconds(4)
@@ -109,3 +108,44 @@ def test_velocity_decay_takes_its_share_off_in_every_step(lab: Lab, dt: float):
     lab.steps(100)
     assert lab.twist(coasting).linear[0] == pytest.approx(10 * 0.99 ** 100, rel=1e-6)
     assert lab.twist(coasting).angular[2] == pytest.approx(2 * 0.995 ** 100, rel=1e-6)
+
+
+def test_a_free_asymmetric_body_keeps_its_momentum_and_flips(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    moments = (0.1, 0.2, 0.3)
+    brick = Model("brick", links=[Link("link", inertial=Inertial(
+        1.0, Pose(), moments[0], 0, 0, moments[1], 0, moments[2]))])
+    model = lab.load(brick)
+    lab.steps(1)
+    lab.push(model, angular=(0.1, 10.0, 0.1))   # about the middle axis: the tennis racket theorem
+
+    def momentum_and_energy():
+        turn = lab.pose(model).orientation
+        own = rotate(conjugate(turn), lab.twist(model).angular)
+        momentum = rotate(turn, tuple(i * w for i, w in zip(moments, own)))
+        return momentum, sum(i * w * w for i, w in zip(moments, own)) / 2
+
+    lab.backend.read()
+    before, energy = momentum_and_energy()
+    flips, side = 0, 1.0
+    for _ in range(2000):
+        lab.steps(10)
+        up = rotate(lab.pose(model).orientation, (0, 1, 0))[1]
+        if up * side < -0.8:
+            flips, side = flips + 1, -side
+    after, energy_after = momentum_and_energy()
+    assert math.dist(before, after) < 0.01 * math.dist(before, (0, 0, 0))
+    assert energy_after == pytest.approx(energy, rel=0.02)
+    assert flips >= 5
+
+
+def test_a_sphere_rolls_down_a_slope_with_five_sevenths_of_the_slide(lab: Lab):
+    tilt, angle = quat_from_rpy(0, math.radians(10), 0), math.radians(10)
+    slope = slab("slope", (40, 4, 0.2))
+    slope.links[0].collisions[0].surface = Surface(mu=100.0)
+    lab.load(slope, orientation=tilt)
+    start = (0.6 * math.sin(angle), 0.0, 0.6 * math.cos(angle))
+    rolling = lab.load(ball(), start, tilt)
+    lab.seconds(2)
+    expected = 0.5 * 5 / 7 * 9.8 * math.sin(angle) * 4
+    assert math.dist(start, lab.pose(rolling).position) == pytest.approx(expected, rel=0.02)

@@ -38,6 +38,7 @@ from ..api import (
     SetLinkState,
     SetModelState,
 )
+from ..inertia import principal
 from ..plan import PlanError, open_joints, plan_bodies
 from ..ring import JOINTS, LINKS
 from ..rows import axis_rows, row_name
@@ -48,6 +49,7 @@ from .forces import Forces
 from .friction import EVERY, FrictionBalance
 from .readout import Readout
 from .shapes import ShapeError, ShapeFactory
+from .spin import SpinKeeper
 from .wake import Waker
 
 
@@ -77,6 +79,7 @@ class BulletBackend:
         self._waker = Waker(self._bodies, self._readout.touch)
         self._forces = Forces(self._waker.around)
         self._friction = FrictionBalance()
+        self._spin = SpinKeeper()
         self._events: List[Event] = []
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
@@ -109,7 +112,7 @@ class BulletBackend:
         """Make `count` steps."""
         self._readout.stepped()
         one = pybullet.stepSimulation
-        if self._forces.idle and self._friction.idle:
+        if self._forces.idle and self._friction.idle and self._spin.idle:
             for _ in range(count):
                 one()
             return
@@ -118,7 +121,10 @@ class BulletBackend:
             if not self._friction.idle and step % EVERY == 0:
                 self._friction.balance()
             self._forces.apply(step, dt, gravity)
+            free = self._spin.before(step)
             one()
+            if free:
+                self._spin.after(free, self._forces.loaded_links, dt)
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -179,6 +185,9 @@ class BulletBackend:
             self._friction.add(body, [
                 _surface(command.model, part.row - command.first_link_row, part.mass)
                 for part in body.parts])
+            if body.rigid and body.moves:
+                link = command.model.links[body.parts[0].row - command.first_link_row]
+                self._spin.add(body, principal(link.inertial)[1])
             joints.set_up(body, command.model, self._forces, self._settings.step_size)
         if command.state is not None:
             self._restore(entry, command.state)
@@ -239,6 +248,7 @@ class BulletBackend:
         for body in entry.bodies:
             self._forces.forget(body)
             self._friction.forget(body)
+            self._spin.forget(body)
             self._readout.forget(body)
             for uid in body.uids:
                 del self._bodies[uid]
@@ -256,6 +266,7 @@ class BulletBackend:
                 self._forces.forget(body)
         self._forces.clear_all()
         self._friction.clear()
+        self._spin.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         pybullet.resetSimulation()

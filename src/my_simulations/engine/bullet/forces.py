@@ -5,7 +5,7 @@ PyBullet forgets external forces and joint torques after one step.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, Dict, List, Set, Tuple
 
 import pybullet
 
@@ -101,6 +101,11 @@ class Forces:
     def idle(self) -> bool:
         """True when a step needs nothing from here, now or later."""
         return not (self._loads or self._weightless or self._dampers)
+
+    @property
+    def loaded_links(self) -> Set[int]:
+        """Rows of the links that a load acts on in this step."""
+        return {load.row for load in self._acting.values() if load.effort is None}
 
     def apply(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
