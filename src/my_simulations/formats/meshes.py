@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import Any, Callable, Iterator, List, Optional, Tuple
 
 from ..description.model import Link, Model
-from ..description.shapes import Collision, Mesh, MeshData, MeshTable, mesh_key
+from ..description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, mesh_key
 from ..errors import InputError, Issue, error
 from .mesh_part import MeshFault, MeshPart
+from .solids import solid_mesh
 from .tables import closest
 
 Reader = Callable[[bytes], List[MeshPart]]
@@ -45,10 +46,10 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
     issues: List[Issue] = []
     for scope, link, collision in _collisions(model, ""):
         mesh = collision.geometry
-        if not isinstance(mesh, Mesh) or mesh_key(mesh) in table:
+        if not isinstance(mesh, SOLIDS) or mesh_key(mesh) in table:
             continue
         try:
-            table[mesh_key(mesh)] = load_mesh(mesh)
+            table[mesh_key(mesh)] = load_mesh(mesh) if isinstance(mesh, Mesh) else solid_mesh(mesh)
         except InputError as fault:
             where = f"collision {collision.name!r} of link {scope + link.name!r}"
             issues += [replace(issue, message=f"{where}: {issue.message}")
@@ -61,7 +62,7 @@ def without_missing_meshes(model: Model, table: MeshTable) -> Model:
 
     def usable(collision: Collision) -> bool:
         mesh = collision.geometry
-        return not isinstance(mesh, Mesh) or mesh_key(mesh) in table
+        return not isinstance(mesh, SOLIDS) or mesh_key(mesh) in table
 
     if all(usable(collision) for _, _, collision in _collisions(model, "")):
         return model

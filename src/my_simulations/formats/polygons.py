@@ -1,0 +1,155 @@
+"""Polygons with holes as triangles, and as convex pieces."""
+from __future__ import annotations
+
+from typing import Dict, Iterator, List, Sequence, Set, Tuple
+
+Point = Tuple[float, float]
+Triangle = Tuple[int, int, int]
+
+
+def signed_area(loop: Sequence[Point]) -> float:
+    """The area inside a loop, above zero where it runs counter-clockwise."""
+    return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(loop, [*loop[1:], *loop[:1]])) / 2
+
+
+def oriented(loops: Sequence[Sequence[Point]]) -> List[List[Point]]:
+    """The loops with the first counter-clockwise and the others clockwise."""
+    return [list(loop) if (signed_area(loop) > 0) == (number == 0) else list(reversed(loop))
+            for number, loop in enumerate(loops)]
+
+
+def triangulated(loops: Sequence[Sequence[Point]]) -> Tuple[List[Point], List[Triangle]]:
+    """Triangles that cover the first loop but not the others.
+
+    Args:
+        loops: as `oriented` gives them. Time grows with the square of the number of points.
+
+    Returns:
+        all points, loop after loop, and counter-clockwise triangles over them. A loop that crosses
+        itself gives triangles too, if not always the area that was meant.
+    """
+    points = [point for loop in loops for point in loop]
+    ends: List[List[int]] = []
+    for loop in loops:
+        first = len(ends[-1]) + ends[-1][0] if ends else 0
+        ends.append(list(range(first, first + len(loop))))
+    return points, _clipped(_bridged(ends, points), points)
+
+
+def _bridged(loops: List[List[int]], points: List[Point]) -> List[int]:
+    """One loop of indices, each hole tied to it by a bridge that is walked twice."""
+    ring = loops[0]
+    holes = sorted(loops[1:], key=lambda hole: -max(points[i][0] for i in hole))
+    for number, hole in enumerate(holes):
+        start = max(range(len(hole)), key=lambda k: points[hole[k]][0])
+        turned = hole[start:] + hole[:start]
+        walls = [ring, *holes[number:]]
+        at = _visible(turned[0], ring, walls, points)
+        ring = ring[:at + 1] + turned + turned[:1] + ring[at:]
+    return ring
+
+
+def _visible(start: int, ring: List[int], walls: List[List[int]], points: List[Point]) -> int:
+    """The place in the ring of the nearest corner that can be seen from a point."""
+    x, y = points[start]
+    order = sorted(range(len(ring)), key=lambda k: (points[ring[k]][0] - x) ** 2
+                   + (points[ring[k]][1] - y) ** 2)
+    for k in order:
+        if not _opens_to(ring, k, points[start], points):
+            continue
+        if not any(_crosses(points[start], points[ring[k]], points[a], points[b])
+                   for wall in walls for a, b in _edges(wall)):
+            return k
+    return order[0]
+
+
+def _opens_to(ring: List[int], k: int, target: Point, points: List[Point]) -> bool:
+    """True when the inside of the ring lies towards `target` at its corner `k`."""
+    before, here = points[ring[k - 1]], points[ring[k]]
+    after = points[ring[(k + 1) % len(ring)]]
+    if _turn(before, here, after) >= 0:
+        return _turn(before, here, target) >= 0 and _turn(here, after, target) >= 0
+    return _turn(before, here, target) >= 0 or _turn(here, after, target) >= 0
+
+
+def _edges(loop: List[int]) -> Iterator[Tuple[int, int]]:
+    return zip(loop, [*loop[1:], *loop[:1]])
+
+
+def _turn(a: Point, b: Point, c: Point) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _crosses(a: Point, b: Point, c: Point, d: Point) -> bool:
+    """True when two segments cross inside both."""
+    return (_turn(a, b, c) > 0) != (_turn(a, b, d) > 0) and (
+        (_turn(c, d, a) > 0) != (_turn(c, d, b) > 0)) and not ({a, b} & {c, d})
+
+
+def _clipped(ring: List[int], points: List[Point]) -> List[Triangle]:
+    """Ears cut off one by one."""
+    triangles: List[Triangle] = []
+    ring = list(ring)
+    at, waited = 0, 0
+    while len(ring) > 3:
+        at %= len(ring)
+        if _is_ear(ring, at, points) or waited > len(ring):
+            corner = (ring[at - 1], ring[at], ring[(at + 1) % len(ring)])
+            if _turn(*(points[i] for i in corner)) > 0:
+                triangles.append(corner)
+            del ring[at]
+            at, waited = max(at - 1, 0), 0
+        else:
+            at, waited = at + 1, waited + 1
+    if len(ring) == 3 and _turn(*(points[i] for i in ring)) > 0:
+        triangles.append((ring[0], ring[1], ring[2]))
+    return triangles
+
+
+def _is_ear(ring: List[int], at: int, points: List[Point]) -> bool:
+    a, b, c = points[ring[at - 1]], points[ring[at]], points[ring[(at + 1) % len(ring)]]
+    if _turn(a, b, c) <= 0:
+        return False
+    corners = (a, b, c)
+    return not any(
+        _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0
+        for p in (points[i] for i in ring) if p not in corners
+    )
+
+
+def convex_pieces(points: Sequence[Point], triangles: Sequence[Triangle]) -> List[List[int]]:
+    """The triangles, joined across their edges as long as the pieces stay convex.
+
+    Source: the method of Hertel and Mehlhorn: at most four times as many pieces as there must be.
+    """
+    pieces: Dict[int, List[int]] = {n: list(triangle) for n, triangle in enumerate(triangles)}
+    owner = {edge: n for n, piece in pieces.items() for edge in _edges(piece)}
+    for a, b in list(owner):
+        first, second = owner.get((a, b)), owner.get((b, a))
+        if first is None or second is None or first == second:
+            continue
+        joined = _joined(pieces[first], pieces[second], a, b)
+        if _is_convex(joined, points):
+            pieces[first] = joined
+            for edge in _edges(pieces.pop(second)):
+                owner[edge] = first
+            owner.pop((a, b))
+            owner.pop((b, a))
+    return list(pieces.values())
+
+
+def _joined(first: List[int], second: List[int], a: int, b: int) -> List[int]:
+    """Two counter-clockwise loops as one, without their common edge a-b."""
+    i, j = first.index(b), second.index(a)
+    return first[i:] + first[:i] + (second[j:] + second[:j])[1:-1]
+
+
+def _is_convex(loop: List[int], points: Sequence[Point]) -> bool:
+    if len(set(loop)) < len(loop):
+        return False
+    seen: Set[int] = set()
+    for k, index in enumerate(loop):
+        seen.add(index)
+        if _turn(points[loop[k - 1]], points[index], points[loop[(k + 1) % len(loop)]]) < 0:
+            return False
+    return True
