@@ -39,11 +39,11 @@ from .ring import (
     picoseconds,
 )
 
-_BURST_S = 0.0005        # bursts between two looks at the commands
+_BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 0.5            # heartbeat while paused
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
-_SHARE_LATE = 0.03       # the same while late or unthrottled
+_SHARE_LATE = 0.02       # the same while late or unthrottled
 _HEAVY_S = 0.0003        # a late world with steps like this lets clients that ask in a row go first
 _PATIENCE_S = 0.0015     # how long it waits for the next of a row of commands
 _PATIENT_SHARE = 0.5     # of the wall time at most
