@@ -1,9 +1,10 @@
 """`<include>`: the model or light of another file, with changes."""
 from __future__ import annotations
 
+import functools
 import os
 from dataclasses import replace
-from typing import Any, List, Optional, Union
+from typing import Any, Callable, List, Optional, Sequence, Union
 
 from ..description.world import Actor, Light
 from ..errors import InputError
@@ -23,7 +24,8 @@ _MOST = 20000
 Included = Union[Placement, LightPlacement, Actor]
 
 
-def read_include(element: Any, source: Source, static: bool = False) -> Optional[Included]:
+def read_include(element: Any, source: Source, static: bool = False,
+                 outer: Sequence[str] = (), alone: bool = True) -> Optional[Included]:
     """What an `<include>` brings; None, with an issue, where nothing usable comes.
 
     Name, pose and static replace those of the included model; plugins are added. Source: SDF spec
@@ -38,7 +40,9 @@ def read_include(element: Any, source: Source, static: bool = False) -> Optional
     changes = Changes(
         probe.name or None, probe.pose, relative_to(found), probe.static,
         [read_plugin(plugin) for plugin in found.get("plugin", ())],
+        next(((e.text or "").strip() for e in found.get("placement_frame", ())), ""),
     )
+    read = functools.partial(read_model, static=static, outer=outer, alone=alone and not outer)
     try:
         path = source.resolver.model_file(probe.uri, source.base_dir)
     except NotFound as missing:
@@ -48,7 +52,7 @@ def read_include(element: Any, source: Source, static: bool = False) -> Optional
                  " downloaded",
         )
         return None
-    return _read_file(path, element, source, changes, static, probe.uri)
+    return _read_file(path, element, source, changes, read, probe.uri)
 
 
 class _Include:
@@ -61,8 +65,8 @@ class _Include:
         self.static: Optional[bool] = None
 
 
-def _read_file(path: str, element: Any, source: Source, changes: Changes, static: bool,
-               uri: str) -> Optional[Included]:
+def _read_file(path: str, element: Any, source: Source, changes: Changes,
+               read: Callable[..., Placement], uri: str) -> Optional[Included]:
     if path in source.trail or len(source.trail) >= _DEEPEST:
         chain = " -> ".join(os.path.basename(os.path.dirname(p)) for p in (*source.trail, path))
         source.report(Level.ERROR, "include-cycle", f"models include each other: {chain}", element)
@@ -85,7 +89,7 @@ def _read_file(path: str, element: Any, source: Source, changes: Changes, static
         return Placement(model, changes.relative_to)
     for child in root:
         if child.tag == "model":
-            placement = read_model(child, inner, changes, static)
+            placement = read(child, inner, changes)
             placement.model.uri = uri
             return placement
         if child.tag == "light":

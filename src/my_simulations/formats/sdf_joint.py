@@ -1,20 +1,48 @@
 """SDF joints: their links, their axes, and the frames both are given in."""
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from typing import Any, Callable, List, Optional, Tuple
 
-from ..description.model import INFINITE, Joint, JointAxis
+from ..description.model import INFINITE, Joint, JointAxis, Mimic
 from ..description.validate import JOINT_TYPES
 from ..geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
 from .sdf_frames import FrameFault
 from .sdf_tables import AXIS, AXIS2, JOINT
 from .sdf_versions import WORLD_AXES
 from .source import Level, Source
-from .tables import Found, Table, closest, fill
-from .values import VECTOR3
+from .tables import Found, Table, Value, closest, fill, to_xml
+from .values import FLOAT, TEXT, VECTOR3
 
 MOVED = ("revolute", "prismatic", "fixed")
 """Types the engine moves; others are kept and stand still."""
+
+@dataclass
+class Pending:
+    """A joint on its way to the model that holds both its links.
+
+    Attributes:
+        joint: with its pose as written, and the names of its links as written or found.
+        found: what `read_joint` returned.
+        element: where it stands.
+        scope: what names of its own model begin with in the model that is asked now, "" there.
+    """
+
+    joint: Joint
+    found: Found
+    element: Any
+    scope: str = ""
+
+    def scoped(self, name: str) -> str:
+        """A name of its own model, as the model that is asked now knows it."""
+        return f"{self.scope}{name}" if name and self.scope else name
+
+    def moved_out(self, model: str) -> "Pending":
+        """The same joint, for the model around `model`."""
+        self.joint.name = f"{model}::{self.joint.name}"
+        return Pending(self.joint, self.found, self.element, f"{model}::{self.scope}")
+
 
 PoseOf = Callable[[str], Pose]
 """From the name of a frame to its pose in the model; raises `FrameFault`."""
@@ -29,6 +57,9 @@ def read_joint(element: Any, source: Source) -> Tuple[Joint, Found]:
     found = fill(joint, element, JOINT, source, joint.extra)
     joint.axis = _axis("axis", AXIS, found, source, joint)
     joint.axis2 = _axis("axis2", AXIS2, found, source, joint)
+    _default_axes(joint, element, source)
+    for child in found.get("screw_thread_pitch", ()):
+        _thread(joint, child, source)
     if joint.type == "continuous":
         joint.type = "revolute"
         if joint.axis is not None:
@@ -45,9 +76,65 @@ def _axis(tag: str, table: Table, found: Found, source: Source,
     axis = JointAxis()
     kept: List[str] = []
     inside = fill(axis, elements[0], table, source, kept)
+    for child in inside.get("mimic", ()):
+        axis.mimic = _mimic(child, source)
+        kept.append(to_xml(child))
     joint.extra += [f"<{tag}>{xml}</{tag}>" for xml in kept]
     found[f"{tag}/xyz"] = inside.get("xyz", [])
     return axis
+
+
+def _mimic(element: Any, source: Source) -> Mimic:
+    """q = multiplier (q_joint - reference) + offset. Source: SDF spec 1.11, axis/mimic."""
+    values = _Follow()
+    fill(values, element, MIMIC, source, [])
+    if not values.joint:
+        source.report(Level.FATAL, "mimic-joint-missing", "<mimic> names no joint", element)
+    if element.get("axis") not in (None, "", "axis"):
+        source.warn("mimic-axis", "<mimic> follows the second axis of a joint, which is not known"
+                    " here; its first is followed", element)
+    return Mimic(values.joint, values.multiplier,
+                 values.offset - values.multiplier * values.reference)
+
+
+@dataclass
+class _Follow:
+    joint: str = ""
+    multiplier: float = 1.0
+    offset: float = 0.0
+    reference: float = 0.0
+
+
+MIMIC = Table("mimic", _Follow, {
+    name: Value(name, FLOAT) for name in ("multiplier", "offset", "reference")
+}, attributes={"joint": Value("joint", TEXT)}, level=Level.FATAL, known_attributes=("axis",))
+
+
+def _thread(joint: Joint, element: Any, source: Source) -> None:
+    """Metres a turn, right-handed, as rad/m, left-handed. Source: SDF spec 1.10, joint."""
+    try:
+        pitch = FLOAT.parse(element.text or "")
+    except ValueError as fault:
+        source.report(Level.FATAL, "bad-value", f"<screw_thread_pitch>: {fault}", element)
+        return
+    if pitch == 0:
+        source.report(Level.FATAL, "bad-value", "<screw_thread_pitch> must not be 0", element)
+        return
+    joint.thread_pitch = -2.0 * math.pi / pitch
+
+
+_TWO_AXES = ("universal", "revolute2", "gearbox")
+
+
+def _default_axes(joint: Joint, element: Any, source: Source) -> None:
+    """Axes of a joint with two that the file leaves out; those of others must be given."""
+    if joint.type == "universal" and joint.axis is None:
+        source.warn("joint-axis-missing", f"universal joint {joint.name!r} has no axis; x and y are"
+                    " used", element)
+        joint.axis = JointAxis((1.0, 0.0, 0.0))
+        joint.axis2 = joint.axis2 or JointAxis((0.0, 1.0, 0.0))
+    elif joint.type in _TWO_AXES and joint.axis is not None and joint.axis2 is None:
+        joint.axis2 = JointAxis()
 
 
 def _type(element: Any, source: Source) -> str:

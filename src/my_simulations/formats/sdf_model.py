@@ -2,16 +2,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, List, Optional, Sequence, Set, Tuple
 
-from ..description.model import WORLD, Inertial, Link, Model, PluginSpec
+from ..description.model import WORLD, Link, Model, PluginSpec
 from ..description.validate import faults, link_names
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose, inverse
 from .sdf_frames import FrameFault, FrameTree
-from .sdf_joint import place_axes, read_joint, reverse_axes
-from .sdf_shapes import read_collision, read_visual
-from .sdf_tables import FRAME, INERTIAL, LINK, MODEL
+from .sdf_joint import Pending, place_axes, read_joint, reverse_axes
+from .sdf_links import LinkReader, must_stand, relative_to
+from .sdf_tables import FRAME, MODEL
 from .source import Level, Source
 from .tables import Found, fill, to_xml
 
@@ -27,18 +27,28 @@ class Changes:
     relative_to: str = ""
     static: Optional[bool] = None
     plugins: List[PluginSpec] = field(default_factory=list)
+    placement_frame: str = ""
 
 
 @dataclass
 class Placement:
-    """A model that was read, and the frame its pose is given in ("" for the parent's)."""
+    """A model that was read.
+
+    Attributes:
+        model: it.
+        relative_to: the frame its pose is given in, "" for the parent's.
+        frames: those inside it; None for one from a URDF file.
+        pending: joints with a link that is not its own, for the outer model to look for.
+    """
 
     model: Model
     relative_to: str = ""
+    frames: Optional[FrameTree] = None
+    pending: List[Pending] = field(default_factory=list)
 
 
 def read_model(element: Any, source: Source, changes: Optional[Changes] = None,
-               static: bool = False) -> Placement:
+               static: bool = False, outer: Sequence[str] = (), alone: bool = True) -> Placement:
     """A model; faults that make it unusable are counted as fatal in the source's log.
 
     Args:
@@ -46,8 +56,10 @@ def read_model(element: Any, source: Source, changes: Optional[Changes] = None,
         source: the file.
         changes: by an `<include>`.
         static: True when an outer model is static.
+        outer: names of the models around it, outermost first.
+        alone: False where links of other models may be named by joints.
     """
-    return _ModelReader(element, source, changes or Changes(), static).read()
+    return _ModelReader(element, source, changes or Changes(), static, tuple(outer), alone).read()
 
 
 def read_plugin(element: Any) -> PluginSpec:
@@ -55,47 +67,53 @@ def read_plugin(element: Any) -> PluginSpec:
     return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element))
 
 
-def relative_to(found: Found) -> str:
-    """The frame that the `<pose>` of an element names, "" for none."""
-    for pose in found.get("pose", ()):
-        return pose.get("relative_to") or ""
-    return ""
-
-
 class _ModelReader:
-    def __init__(self, element: Any, source: Source, changes: Changes, static: bool) -> None:
+    def __init__(self, element: Any, source: Source, changes: Changes, static: bool,
+                 outer: Tuple[str, ...], alone: bool) -> None:
         self._element = element
         self._source = source
         self._changes = changes
         self._outer_static = static
+        self._outer = outer
+        self._alone = alone
         self._frames = FrameTree(ROOT)
-        self._elements: Dict[int, Any] = {}  # by id of what was made of them
-        self._given_in: List[Tuple[Any, str, str]] = []  # (thing with a pose, frame, link)
+        self._links = LinkReader(source, self._frames)
+        self._elements = self._links.elements
+        self._declared: List[Tuple[str, Any]] = []  # <frame>s
 
     def read(self) -> Placement:
         element, source, changes = self._element, self._source, self._changes
         model = Model(element.get("name", ""))
         self._elements[id(model)] = element
         found = fill(model, element, MODEL, source, model.extra)
-        placement = Placement(model, relative_to(found))
+        placement = Placement(model, relative_to(found), self._frames)
         self._apply(changes, placement)
         static = model.static or self._outer_static
         model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
         model.plugins += changes.plugins
-        for child in found.get("link", ()):
-            self._link(child, model, static)
+        model.links = [self._links.read(child, static) for child in found.get("link", ())]
+        self._stand_still(model, static)
         for child in found.get("frame", ()):
             self._frame(child)
-        self._nested(found, model, static)
-        joints = [(read_joint(child, source), child) for child in found.get("joint", ())]
-        for (joint, inside), child in joints:
-            self._elements[id(joint)] = child
-            model.joints.append(joint)
-            self._frames.add(joint.name, joint.pose,
-                             relative_to(inside) or self._joint_base(joint), child)
+        waiting = self._nested(found, model, static)
+        joints = [Pending(*read_joint(child, source), child) for child in found.get("joint", ())]
+        for own in joints:
+            model.joints.append(own.joint)
+        model.joints += [one.joint for one in waiting]
+        self._frames.body = model.canonical_link or next(link_names(model), "")
+        names = set(link_names(model))
+        for one in (*joints, *waiting):
+            self._elements[id(one.joint)] = one.element
+            self._look_up(one, names)
+            self._frames.add(one.joint.name, one.joint.pose,
+                             one.scoped(relative_to(one.found)) or self._joint_base(one.joint),
+                             one.element, self._joint_base(one.joint))
         self._place(model)
-        for (joint, inside), child in joints:
-            self._place_joint(joint, inside, model, child)
+        placement.pending = [one for one in (*joints, *waiting)
+                             if not self._place_joint(one, model, names)]
+        model.joints = [joint for joint in model.joints
+                        if all(joint is not one.joint for one in placement.pending)]
+        self._put_by(element.get("placement_frame") or "", model)
         self._check(model)
         return placement
 
@@ -108,96 +126,116 @@ class _ModelReader:
         if changes.static is not None:
             model.static = changes.static
 
-    def _link(self, element: Any, model: Model, static: bool) -> None:
-        source = self._source
-        link = Link(element.get("name", ""))
-        self._elements[id(link)] = element
-        found = fill(link, element, LINK, source, link.extra)
-        self._frames.add(link.name, link.pose, relative_to(found), element)
-        if relative_to(found):
-            self._given_in.append((link, link.name, ""))
-        for child in found.get("inertial", ()):
-            link.inertial = Inertial()
-            # A static model ignores its inertia, whatever it says (SDF spec, model/static).
-            inside = fill(link.inertial, child, INERTIAL, source, link.extra,
-                          Level.WARNING if static else None)
-            self._elements[id(link.inertial)] = child
-            self._note_pose(link.inertial, inside, link)
-        self._elements.setdefault(id(link.inertial), element)
-        for child in found.get("collision", ()):
-            collision = read_collision(child, source, static, link.extra)
-            if collision is not None:
-                link.collisions.append(collision[0])
-                self._elements[id(collision[0])] = child
-                self._note_pose(*collision, link)
-        for child in found.get("visual", ()):
-            visual = read_visual(child, source, link.extra)
-            if visual is not None:
-                link.visuals.append(visual[0])
-                self._elements[id(visual[0])] = child
-                self._note_pose(*visual, link)
-        self._distinct("collision", link.collisions, link)
-        self._distinct("visual", link.visuals, link)
-        model.links.append(link)
-
-    def _note_pose(self, thing: Any, found: Found, link: Link) -> None:
-        frame = relative_to(found)
-        if frame:
-            self._given_in.append((thing, frame, link.name))
-
-    def _distinct(self, kind: str, items: List[Any], link: Link) -> None:
-        """Give a suffix to names that are repeated, and a name to what has none."""
-        used: Set[str] = set()
-        for item in items:
-            wanted = item.name or f"{link.name}_{kind}"
-            name, count = wanted, 0
-            while name in used:
-                count += 1
-                name = f"{wanted}_{count}"
-            if name != item.name:
-                self._source.warn(
-                    "name-changed", f"{kind} {item.name!r} of link {link.name!r} is called"
-                    f" {name!r}, since names are unique within a link", self._elements[id(item)],
-                )
-                item.name = name
-            used.add(name)
+    def _stand_still(self, model: Model, static: bool) -> None:
+        for link in model.links:
+            if not static and must_stand(link):
+                self._source.warn("static-forced", f"model {model.name!r} is made static: its link"
+                                  f" {link.name!r} collides as a terrain or a map",
+                                  self._elements[id(link)])
+                model.static = True
+                return
 
     def _frame(self, element: Any) -> None:
         probe = Link(element.get("name", ""))
         found = fill(probe, element, FRAME, self._source, [])
+        attached = element.get("attached_to") or ""
         # The frame of reference is what it is attached to, where the pose does not say.
-        base = relative_to(found) or element.get("attached_to") or ""
-        self._frames.add(probe.name, probe.pose, base, element)
+        self._frames.add(probe.name, probe.pose, relative_to(found) or attached, element, attached)
+        self._declared.append((probe.name, element))
 
-    def _nested(self, found: Found, model: Model, static: bool) -> None:
+    def _nested(self, found: Found, model: Model, static: bool) -> List[Pending]:
+        """Models in this one; returns their joints that want links of this one."""
         from .sdf_include import read_include
 
-        placements = [(read_model(child, self._source, static=static), child)
-                      for child in found.get("model", ())]
+        path = (*self._outer, model.name)
+        waiting: List[Pending] = []
+        for child in found.get("model", ()):
+            placement = read_model(child, self._source, static=static, outer=path, alone=False)
+            waiting += self._adopt(placement, child, model)
         for child in found.get("include", ()):
-            included = read_include(child, self._source, static=static)
-            if included is not None and isinstance(included, Placement):
-                placements.append((included, child))
-        for placement, child in placements:
-            inner = placement.model
-            self._elements[id(inner)] = child
-            model.models.append(inner)
-            self._frames.add(inner.name, inner.pose, placement.relative_to, child)
-            if placement.relative_to:
-                self._given_in.append((inner, inner.name, ""))
-            _add_inner_frames(self._frames, inner, inner.name, child)
+            included = read_include(child, self._source, static=static, outer=path)
+            if not isinstance(included, Placement):
+                continue
+            if (child.get("merge") or "").strip().lower() in ("true", "1"):
+                self._merge(included, child, model)
+            else:
+                waiting += self._adopt(included, child, model)
+        return waiting
+
+    def _adopt(self, placement: Placement, element: Any, model: Model) -> List[Pending]:
+        inner = placement.model
+        self._elements[id(inner)] = element
+        model.models.append(inner)
+        body = inner.canonical_link or next(link_names(inner), "")
+        self._frames.add(inner.name, inner.pose, placement.relative_to, element,
+                         f"{inner.name}::{body}" if body else "")
+        if placement.relative_to:
+            self._links.given_in.append((inner, inner.name, ""))
+        if placement.frames is not None:
+            self._frames.include(inner.name, placement.frames, element)
+        else:
+            _add_inner_frames(self._frames, inner, inner.name, element)
+        return [one.moved_out(inner.name) for one in placement.pending]
+
+    def _merge(self, placement: Placement, element: Any, model: Model) -> None:
+        """Put what a model holds into this one, where it stands. Source: SDF spec 1.9, include."""
+        inner = placement.model
+        proxy = f"_merged__{inner.name}__{ROOT}"
+        self._frames.add(proxy, inner.pose, placement.relative_to, element)
+        for item in (*inner.links, *inner.models):
+            self._elements[id(item)] = element
+            self._frames.add(item.name, item.pose, proxy, element,
+                             item.name if isinstance(item, Link) else "")
+            self._links.given_in.append((item, item.name, ""))
+        inner_frames = placement.frames
+        for name in inner_frames.names() if inner_frames is not None else ():
+            try:
+                pose, body = inner_frames.pose(name), inner_frames.body_of(name)
+            except FrameFault:
+                continue  # it has said so itself
+            self._frames.add(name, pose, proxy, element, body)
+        for joint in inner.joints:
+            self._elements[id(joint)] = element
+        model.links += inner.links
+        model.joints += inner.joints
+        model.models += inner.models
+        model.plugins += inner.plugins
+        model.extra += [xml for xml in inner.extra if not xml.startswith("<frame")]
 
     def _joint_base(self, joint: Any) -> str:
-        return joint.child if joint.child and joint.child != WORLD else ROOT
+        return joint.child if joint.child in self._frames and joint.child != WORLD else ROOT
+
+    def _look_up(self, one: Pending, names: Set[str]) -> None:
+        """Names with the model's own scope in front, and those of a nested model's joint."""
+        joint = one.joint
+        for role in ("parent", "child"):
+            name = getattr(joint, role)
+            for candidate in self._spellings(name, one.scope):
+                if candidate in names or candidate in self._frames:
+                    setattr(joint, role, candidate)
+                    break
+
+    def _spellings(self, name: str, scope: str) -> List[str]:
+        found = [f"{scope}{name}"] if scope and name != WORLD else []
+        found.append(name)
+        path = (*self._outer, self._element.get("name", ""))
+        for start in range(len(path)):
+            prefix = "::".join(path[start:]) + "::"
+            if name.startswith(prefix):
+                found.append(name[len(prefix):])
+        return found
 
     def _place(self, model: Model) -> None:
         """Bring every pose given in a named frame to the frame the description uses."""
-        for thing, frame, link in self._given_in:
+        for thing, frame, link in self._links.given_in:
             element = self._elements[id(thing)]
             pose = self._pose_of(frame, element)
             if link:
                 pose = compose(inverse(self._pose_of(link, element)), compose(pose, thing.pose))
             thing.pose = pose
+        for name, element in self._declared:
+            self._pose_of(name, element)
+            self._body_of(name, element)
 
     def _pose_of(self, frame: str, element: Any) -> Pose:
         try:
@@ -206,22 +244,54 @@ class _ModelReader:
             self._source.report(Level.FATAL, "frame-unknown", str(fault), element)
             return IDENTITY
 
-    def _place_joint(self, joint: Any, found: Found, model: Model, element: Any) -> None:
-        names = set(link_names(model))
-        if joint.child not in names and not (joint.child == WORLD and joint.parent in names):
-            return  # reported with the other faults of the model
-        if relative_to(found):
-            base = self._pose_of(self._joint_base(joint), element)
-            joint.pose = compose(inverse(base), self._pose_of(joint.name, element))
-        turned = joint.child == WORLD
-        if turned:
+    def _body_of(self, name: str, element: Any) -> str:
+        try:
+            return self._frames.body_of(name)
+        except FrameFault as fault:
+            self._source.report(Level.FATAL, "frame-unknown", str(fault), element)
+            return name
+
+    def _place_joint(self, one: Pending, model: Model, names: Set[str]) -> bool:
+        """Bring a joint to its child link's frame; False where an outer model must be asked."""
+        joint, element = one.joint, one.element
+        at = self._pose_of(joint.name, element) if joint.child in self._frames or (
+            joint.child == WORLD) else IDENTITY
+        moved = bool(relative_to(one.found))
+        for role in ("parent", "child"):
+            name = getattr(joint, role)
+            if name not in names and name != WORLD and name in self._frames:
+                setattr(joint, role, self._body_of(name, element))
+                moved = moved or role == "child"
+        ends = (joint.parent, joint.child)
+        strangers = [name for name in ends if name and name != WORLD and name not in names]
+        if strangers:
+            # Who is alone reports it with the other faults of the model.
+            return self._alone or not (self._outer or any("::" in name for name in strangers))
+        if joint.child == WORLD and joint.parent in names:
             # The description knows the world as a parent only.
             joint.parent, joint.child = WORLD, joint.parent
-            joint.pose = compose(inverse(self._pose_of(joint.child, element)),
-                                 self._pose_of(joint.name, element))
-        place_axes(joint, found, self._source, self._frames.pose, model.pose.orientation)
-        if turned:
+            joint.pose = compose(inverse(self._pose_of(joint.child, element)), at)
+            place_axes(joint, one.found, self._source, self._pose_in(one), model.pose.orientation)
             reverse_axes(joint)
+        elif joint.child in names:
+            if moved:
+                joint.pose = compose(inverse(self._pose_of(joint.child, element)), at)
+            place_axes(joint, one.found, self._source, self._pose_in(one), model.pose.orientation)
+        return True
+
+    def _pose_in(self, one: Pending) -> Any:
+        """Poses by the names used where the joint was written, and by full names."""
+        def pose(name: str) -> Pose:
+            scoped = one.scoped(name)
+            return self._frames.pose(scoped if scoped in self._frames else name)
+
+        return pose
+
+    def _put_by(self, frame: str, model: Model) -> None:
+        """The pose of the model is that of its placement frame. Source: SDF spec 1.8."""
+        frame = self._changes.placement_frame or frame
+        if frame:
+            model.pose = compose(model.pose, inverse(self._pose_of(frame, self._element)))
 
     def _check(self, model: Model) -> None:
         """The faults of the finished model, at the places they come from."""
@@ -238,8 +308,12 @@ class _ModelReader:
 
 def _add_inner_frames(frames: FrameTree, model: Model, scope: str, element: Any) -> None:
     for link in model.links:
-        frames.add(f"{scope}::{link.name}", link.pose, scope, element)
+        name = f"{scope}::{link.name}"
+        frames.add(name, link.pose, scope, element, name)
     for nested in model.models:
         inner = f"{scope}::{nested.name}"
         frames.add(inner, nested.pose, scope, element)
         _add_inner_frames(frames, nested, inner, element)
+
+
+__all__ = ["Changes", "Placement", "read_model", "read_plugin", "relative_to"]

@@ -1,19 +1,22 @@
 """SDF worlds: models, lights, physics, and what is kept."""
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Sequence, Set
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
-from ..description.model import Model
+from ..description.model import WORLD as WORLD_LINK
+from ..description.model import Link, Model
+from ..description.validate import link_names
 from ..description.world import Actor, Light, Physics, World
 from ..geometry import is_finite
 from .sdf_frames import FrameFault, FrameTree
 from .sdf_include import read_include
+from .sdf_joint import Pending
 from .sdf_light import LightPlacement, read_light
-from .sdf_model import Placement, read_model, read_plugin
+from .sdf_model import Placement, read_model, read_plugin, relative_to
 from .sdf_population import read_population
 from .sdf_scene import read_surroundings
 from .sdf_state import read_state
-from .sdf_tables import PHYSICS, WORLD
+from .sdf_tables import FRAME, PHYSICS, WORLD
 from .source import Level, Source
 from .state import state_issues
 from .tables import Found, fill, to_xml
@@ -44,12 +47,15 @@ class _Entities:
         self._models: Set[str] = set()
         self._lights: Set[str] = set()
         self._frames = FrameTree("world")
-        self._waiting: List[Any] = []  # (model or light, name of its frame, element)
+        self._waiting: List[Any] = []  # (model or light, element)
+        self._found = found
+        self._inner: List[Tuple[Placement, Any]] = []
+        self._pending: List[Tuple[Pending, Model]] = []
 
     def read(self, element: Any) -> None:
         readers: Dict[str, Callable[[Any], Any]] = {
-            "model": lambda child: read_model(child, self._source),
-            "include": lambda child: read_include(child, self._source),
+            "model": lambda child: read_model(child, self._source, alone=False),
+            "include": lambda child: read_include(child, self._source, alone=False),
             "light": lambda child: read_light(child, self._source),
             "population": lambda child: read_population(child, self._source, self._world.seed),
         }
@@ -61,7 +67,9 @@ class _Entities:
             entity = reader(child)
             if entity is not None and self._source.log.fatal == before:
                 self._add(entity, child)
+        self._declare_frames()
         self._place()
+        self._connect()
 
     def _add(self, entity: Any, element: Any) -> None:
         if isinstance(entity, list):  # of a population
@@ -75,6 +83,8 @@ class _Entities:
             if self._is_new(model.name, self._models, "model", element):
                 self._world.models.append(model)
                 self._frames.add(model.name, model.pose, entity.relative_to, element)
+                self._inner.append((entity, element))
+                self._pending += [(one.moved_out(model.name), model) for one in entity.pending]
                 if entity.relative_to:
                     self._waiting.append((model, element))
         elif isinstance(entity, LightPlacement):
@@ -93,6 +103,45 @@ class _Entities:
             return False
         names.add(name)
         return True
+
+    def _declare_frames(self) -> None:
+        """Frames of the world, and those inside models where anything may name them."""
+        for element in self._found.get("frame", ()):
+            probe = Link(element.get("name", ""))
+            inside = fill(probe, element, FRAME, self._source, [])
+            attached = element.get("attached_to") or ""
+            self._frames.add(probe.name, probe.pose, relative_to(inside) or attached, element,
+                             attached)
+        if self._waiting or self._found.get("frame"):
+            for placement, element in self._inner:
+                if placement.frames is not None:
+                    self._frames.include(placement.model.name, placement.frames, element)
+
+    def _connect(self) -> None:
+        """Joints between models: the world keeps those whose links there are."""
+        links = {f"{model.name}::{name}" for model in self._world.models
+                 for name in link_names(model)} if self._pending else set()
+        for one, model in self._pending:
+            joint = one.joint
+            ends = [self._link(name, one.scope, links) for name in (joint.parent, joint.child)]
+            if None in ends:
+                self._source.report(Level.ERROR, "joint-link-unknown", f"joint {joint.name!r}"
+                                    f" connects {joint.parent!r} with {joint.child!r}, which are"
+                                    " not both in the world; its model is left out", one.element)
+                if model in self._world.models:
+                    self._world.models.remove(model)
+                continue
+            joint.parent, joint.child = ends[0] or "", ends[1] or ""
+            self._world.joints.append(joint)
+            self._source.warn("joint-between-models", f"joint {joint.name!r} connects two models;"
+                              " it is kept, but holds nothing here", one.element)
+
+    @staticmethod
+    def _link(name: str, scope: str, links: Set[str]) -> Optional[str]:
+        for candidate in (f"{scope}{name}", name):
+            if candidate in links or candidate == WORLD_LINK:
+                return candidate
+        return None
 
     def _place(self) -> None:
         for entity, element in self._waiting:

@@ -1,0 +1,94 @@
+"""SDF links: inertia, shapes, and the frames their poses are given in."""
+from __future__ import annotations
+
+from typing import Any, Dict, List, Set, Tuple
+
+from ..description.model import Inertial, Link
+from ..description.shapes import Heightmap, ImageMap
+from .sdf_frames import FrameTree
+from .sdf_shapes import read_collision, read_visual
+from .sdf_tables import INERTIAL, LINK
+from .source import Level, Source
+from .tables import Found, fill
+
+
+def relative_to(found: Found) -> str:
+    """The frame that the `<pose>` of an element names, "" for none."""
+    for pose in found.get("pose", ()):
+        return pose.get("relative_to") or ""
+    return ""
+
+
+class LinkReader:
+    """Reads the links of one model.
+
+    Attributes:
+        elements: by id of what was made of them.
+        given_in: (thing with a pose, frame it is given in, link it belongs to, "" for none).
+    """
+
+    def __init__(self, source: Source, frames: FrameTree) -> None:
+        self._source = source
+        self._frames = frames
+        self.elements: Dict[int, Any] = {}
+        self.given_in: List[Tuple[Any, str, str]] = []
+
+    def read(self, element: Any, static: bool) -> Link:
+        """A link. Source: SDF spec 1.7, link."""
+        source = self._source
+        link = Link(element.get("name", ""))
+        self.elements[id(link)] = element
+        found = fill(link, element, LINK, source, link.extra)
+        self._frames.add(link.name, link.pose, relative_to(found), element, link.name)
+        if relative_to(found):
+            self.given_in.append((link, link.name, ""))
+        for child in found.get("inertial", ()):
+            link.inertial = Inertial()
+            # A static model ignores its inertia, whatever it says (SDF spec, model/static).
+            inside = fill(link.inertial, child, INERTIAL, source, link.extra,
+                          Level.WARNING if static else None)
+            self.elements[id(link.inertial)] = child
+            self._note_pose(link.inertial, inside, link)
+        self.elements.setdefault(id(link.inertial), element)
+        for child in found.get("collision", ()):
+            collision = read_collision(child, source, static, link.extra)
+            if collision is not None:
+                link.collisions.append(collision[0])
+                self.elements[id(collision[0])] = child
+                self._note_pose(*collision, link)
+        for child in found.get("visual", ()):
+            visual = read_visual(child, source, link.extra)
+            if visual is not None:
+                link.visuals.append(visual[0])
+                self.elements[id(visual[0])] = child
+                self._note_pose(*visual, link)
+        self._distinct("collision", link.collisions, link)
+        self._distinct("visual", link.visuals, link)
+        return link
+
+    def _note_pose(self, thing: Any, found: Found, link: Link) -> None:
+        frame = relative_to(found)
+        if frame:
+            self.given_in.append((thing, frame, link.name))
+
+    def _distinct(self, kind: str, items: List[Any], link: Link) -> None:
+        """Give a suffix to names that are repeated, and a name to what has none."""
+        used: Set[str] = set()
+        for item in items:
+            wanted = item.name or f"{link.name}_{kind}"
+            name, count = wanted, 0
+            while name in used:
+                count += 1
+                name = f"{wanted}_{count}"
+            if name != item.name:
+                self._source.warn(
+                    "name-changed", f"{kind} {item.name!r} of link {link.name!r} is called"
+                    f" {name!r}, since names are unique within a link", self.elements[id(item)],
+                )
+                item.name = name
+            used.add(name)
+
+
+def must_stand(link: Link) -> bool:
+    """True for a link that collides as a terrain or a map, which cannot move (Gazebo behaviour)."""
+    return any(isinstance(one.geometry, (Heightmap, ImageMap)) for one in link.collisions)
