@@ -152,17 +152,24 @@ def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Quat:
 
 
 def rpy_from_quat(q: Quat) -> Vec3:
-    """Fixed-axis roll, pitch, yaw of a unit quaternion; pitch in [-pi/2, pi/2]."""
+    """Fixed-axis roll, pitch, yaw of a unit quaternion; pitch in [-pi/2, pi/2].
+
+    By the sum and the difference of yaw and roll, which are exact near a pitch of +-90 degrees
+    too, where an arc sine would lose half the digits.
+    """
     x, y, z, w = q
-    sin_pitch = max(-1.0, min(1.0, 2.0 * (w * y - z * x)))
-    if abs(sin_pitch) > 1.0 - 1e-12:
+    up, down = math.hypot(w + y, z - x), math.hypot(w - y, z + x)
+    difference, total = 2.0 * math.atan2(z - x, w + y), 2.0 * math.atan2(z + x, w - y)
+    pitch = 2.0 * math.atan2(up - down, up + down)
+    if min(up, down) < 1e-12:
         # Gimbal lock: only yaw -/+ roll is defined; put it all into yaw.
-        return (0.0, math.copysign(math.pi / 2, sin_pitch), 2.0 * math.atan2(z, w))
-    return (
-        math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
-        math.asin(sin_pitch),
-        math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
-    )
+        return (0.0, pitch, _wrapped(difference if up > down else total))
+    return (_wrapped((total - difference) / 2), pitch, _wrapped((total + difference) / 2))
+
+
+def _wrapped(angle: float) -> float:
+    """The same angle in [-pi, pi]."""
+    return math.remainder(angle, 2.0 * math.pi) if abs(angle) > math.pi else angle
 
 
 def pose_from_xyzrpy(x: float, y: float, z: float, roll: float, pitch: float, yaw: float) -> Pose:

@@ -1,0 +1,93 @@
+"""Whether two descriptions mean the same, and where they do not."""
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import fields, is_dataclass
+from typing import Any, Iterator, List, Tuple
+
+from ..geometry import Pose
+
+
+def differences(a: Any, b: Any, tolerance: float = 0.0) -> List[str]:
+    """What differs between two objects of the description, as `path: this, that`.
+
+    Lists are compared in order; numbers to `tolerance`, orientations as rotations (q and -q are
+    one); XML by meaning, not by blanks, and kept XML in any order. The name of a file and how a
+    model arrived (`Model.uri`) do not count; a mesh counts by the file it resolved to, or by its
+    URI where it did not.
+
+    Args:
+        a: e.g. a `World`.
+        b: another.
+        tolerance: for every number, in its own unit.
+    """
+    return list(_compare(a, b, tolerance, ""))
+
+
+def _compare(a: Any, b: Any, tolerance: float, path: str) -> Iterator[str]:
+    if isinstance(a, Pose) and isinstance(b, Pose):
+        yield from _poses(a, b, tolerance, path)
+    elif is_dataclass(a) and type(a) is type(b):
+        for item in fields(a):
+            if not _counts(a, item.name):
+                continue
+            yield from _field(item.name, getattr(a, item.name), getattr(b, item.name), tolerance,
+                              f"{path}.{item.name}" if path else item.name)
+    elif isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        if len(a) != len(b):
+            yield f"{path}: {len(a)} entries, {len(b)} entries"
+        for n, (one, other) in enumerate(zip(a, b)):
+            yield from _compare(one, other, tolerance, f"{path}[{getattr(one, 'name', n)}]")
+    elif _is_number(a) and _is_number(b):
+        if not (a == b or math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)):
+            yield f"{path}: {a!r}, {b!r}"
+    elif a != b:
+        yield f"{path}: {a!r}, {b!r}"
+
+
+def _counts(owner: Any, name: str) -> bool:
+    if name == "file":
+        return False
+    if name == "uri":
+        return hasattr(owner, "path") and not owner.path
+    return True
+
+
+def _field(name: str, a: Any, b: Any, tolerance: float, path: str) -> Iterator[str]:
+    if name == "extra":
+        a, b = sorted(map(_canonical, a)), sorted(map(_canonical, b))
+    elif name == "xml":
+        a, b = _canonical(a), _canonical(b)
+    yield from _compare(a, b, tolerance, path)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _poses(a: Pose, b: Pose, tolerance: float, path: str) -> Iterator[str]:
+    yield from _compare(a.position, b.position, tolerance, f"{path}.position")
+    same = _furthest(a.orientation, b.orientation, 1.0)
+    opposite = _furthest(a.orientation, b.orientation, -1.0)
+    if not min(same, opposite) <= tolerance:
+        yield f"{path}.orientation: {a.orientation!r}, {b.orientation!r}"
+
+
+def _furthest(a: Tuple[float, ...], b: Tuple[float, ...], sign: float) -> float:
+    return max(abs(one - sign * other) for one, other in zip(a, b))
+
+
+def _canonical(xml: str) -> str:
+    """XML without the blanks between tags, attributes in order."""
+    from xml.etree import ElementTree
+
+    if not xml:
+        return ""
+    prefixes = sorted(set(re.findall(r"[<\s/]([A-Za-z_][\w.-]*):", xml))
+                      - set(re.findall(r"\bxmlns:([A-Za-z_][\w.-]*)\s*=", xml)))
+    declared = "".join(f' xmlns:{prefix}="urn:{prefix}"' for prefix in prefixes)
+    try:
+        return ElementTree.canonicalize(f"<all{declared}>{xml}</all>", strip_text=True)
+    except ElementTree.ParseError:
+        return xml
