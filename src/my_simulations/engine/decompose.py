@@ -1,0 +1,215 @@
+"""Convex parts of a mesh, for bodies that move: PyBullet lets only convex shapes do that.
+
+The work is done by `python -m my_simulations.engine.decompose FOLDER`, a process of its own: it
+takes seconds, and V-HACD may crash. The simulation goes on meanwhile.
+"""
+from __future__ import annotations
+
+import ctypes
+import logging
+import os
+import re
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from typing import Any, Callable, Dict, List, Optional
+
+from ..description.shapes import MeshData
+from ..errors import Issue, warning
+from .decompose_cache import Decomposition, PartsCache, content_key, default_folder, load, save
+
+_log = logging.getLogger(__name__)
+
+# Lengths are relative: V-HACD sees every mesh centred, its longest edge 1.
+_VHACD: Dict[str, Any] = {"concavity": 0.0025, "alpha": 0.04, "resolution": 100000,
+                          "planeDownsampling": 8, "convexhullDownsampling": 8,
+                          "maxNumVerticesPerCH": 64}
+_VERSION = 1  # to be raised when the same mesh gives other parts than before
+_PARAMETERS = f"{_VERSION} {sorted(_VHACD.items())!r}"
+_THICKNESS_M = (0.001, 0.01)  # of a mesh without volume: a hundredth of its extent within these
+_PR_SET_PDEATHSIG = 1
+_INPUT, _RESULT, _FALLBACK, _FAULTS = "mesh.npz", "result.parts", "hull.parts", "faults"
+_PROGRESS = re.compile(rb"^ *(\d+)% \[", re.MULTILINE)
+
+_FLAT, _NOT_DIVIDED = "mesh-flat", "mesh-not-decomposed"
+_NOTICES = {
+    _FLAT: ("the mesh has no volume; it collides as a thin solid",
+                  "avoid zero thickness: give it some, or use a box"),
+    _NOT_DIVIDED: ("the mesh could not be divided into convex parts; it collides as its convex "
+                   "hull", "close its openings, or give simpler collision shapes"),
+}
+
+_AS_HULL = "not divided: the mesh collides as its hull"
+
+Progress = Callable[[str], None]
+
+
+def _silent(_: str) -> None:
+    return None
+
+
+def convex_parts(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: Progress = _silent,
+                 issues: Optional[List[Issue]] = None, deadline: float = 120.0) -> List[MeshData]:
+    """Convex parts that together have the shape of a mesh, each of about 64 corners at most.
+
+    A convex mesh gives its hull; a flat one a thin solid; one that cannot be divided, in
+    `deadline` s or at all, its hull. The call blocks: seconds for a new mesh, milliseconds for one
+    in the cache.
+
+    Args:
+        mesh: finite vertices, metres; with or without openings.
+        cache_dir: where the parts are kept; None for the user's cache folder (XDG).
+        progress: told in words how far a long piece of work is.
+        issues: takes the warnings `mesh-flat` and `mesh-not-decomposed`, without a file.
+        deadline: seconds that the work may take.
+    """
+    cache = PartsCache(default_folder() if cache_dir is None else cache_dir)
+    key = content_key(mesh, _PARAMETERS)
+    made = cache.get(key)
+    if made is None:
+        try:
+            made, whole = _in_child(mesh, progress, time.monotonic() + deadline)
+        except OSError as fault:  # no room for files or for one more process
+            _log.warning("dividing a mesh was not possible: %s", fault)
+            made, whole = Decomposition([mesh], _NOT_DIVIDED), False
+        if whole:  # what only took too long may be done another time
+            cache.put(key, made)
+    if made.notice and issues is not None:
+        message, hint = _NOTICES.get(made.notice, _NOTICES[_NOT_DIVIDED])
+        issues.append(warning(made.notice, message, hint=hint))
+    return made.parts
+
+
+def _in_child(mesh: MeshData, progress: Progress, end: float) -> "tuple[Decomposition, bool]":
+    """The work of a child process, and whether it came to its end in time."""
+    import numpy as np
+
+    progress(f"dividing a mesh of {len(mesh.triangles)} triangles into convex parts")
+    started = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix="my_simulations_") as folder:
+        np.savez(os.path.join(folder, _INPUT), vertices=mesh.vertices, triangles=mesh.triangles)
+        in_time = _run(folder, progress, end)
+        for name in (_RESULT, _FALLBACK):
+            try:
+                made = load(os.path.join(folder, name))
+            except (OSError, ValueError) as fault:
+                _log.debug("no decomposition in %s: %s", name, fault)
+                continue
+            count, took = len(made.parts), time.monotonic() - started
+            progress(_AS_HULL if made.notice == _NOT_DIVIDED else
+                     f"{count} convex part{'s' if count > 1 else ''} found in {took:.1f} s")
+            return made, in_time
+    progress(_AS_HULL)
+    return Decomposition([mesh], _NOT_DIVIDED), False
+
+
+def _run(folder: str, progress: Progress, end: float) -> bool:
+    """Run the child; False when it had to be killed because its time was over."""
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
+    faults = os.path.join(folder, _FAULTS)
+    with open(faults, "wb") as stream, subprocess.Popen(
+            [sys.executable, "-m", "my_simulations.engine.decompose", folder],
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}) as child:
+        assert child.stdout is not None
+        try:
+            in_time = _follow(child.stdout.fileno(), progress, end)
+            if in_time:
+                child.wait()
+        finally:
+            child.kill()
+    if in_time and child.returncode:
+        with open(faults, "rb") as said:
+            _log.warning("dividing a mesh ended with code %s: %s", child.returncode,
+                         said.read()[-2000:].decode(errors="replace").strip())
+    return in_time
+
+
+def _follow(output: int, progress: Progress, end: float) -> bool:
+    """Pass on how far the child is until it closes its output; False when time is over."""
+    told, rest = 0, b""
+    while True:
+        left = end - time.monotonic()
+        if left <= 0 or not select.select([output], [], [], left)[0]:
+            return False
+        said = os.read(output, 65536)
+        if not said:
+            return True
+        lines = rest + said
+        rest = lines[lines.rfind(b"\n") + 1:]
+        for found in _PROGRESS.findall(lines):
+            if int(found) >= told + 10:
+                told = int(found)
+                progress(f"dividing into convex parts: {told} %")
+
+
+def main(argv: List[str]) -> int:
+    """Divide the mesh in a folder; the result is put beside it, and first the hull alone."""
+    import numpy as np
+
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
+    os.nice(5)  # the physics that runs meanwhile comes first
+    folder = argv[1]
+    with np.load(os.path.join(folder, _INPUT), allow_pickle=False) as held:
+        made = _decomposed(held["vertices"], held["triangles"], folder)
+    unfinished = os.path.join(folder, _RESULT + ".new")
+    save(unfinished, made)
+    os.replace(unfinished, os.path.join(folder, _RESULT))
+    return 0
+
+
+def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
+    import numpy as np
+
+    from . import decompose_hulls as hulls
+
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    centre, size = (low + high) / 2, max(float((high - low).max()), 1e-9)
+    points = (vertices - centre) / size
+
+    def result(solids: List[Any], notice: str = "") -> Decomposition:
+        return Decomposition([
+            MeshData(np.asarray(solid.vertices) * size + centre,
+                     np.asarray(solid.faces, dtype=np.int32)) for solid in solids], notice)
+
+    if hulls.is_flat(points):
+        least, most = _THICKNESS_M
+        thickness = min(max(size / 100, least), most) / size
+        return result([hulls.thickened(points, thickness)], _FLAT)
+    hull = hulls.hull_of(points)
+    save(os.path.join(folder, _FALLBACK), result([hull], _NOT_DIVIDED))
+    mesh = hulls.cleaned(points, triangles)
+    if not len(mesh.faces):
+        return result([hull], _NOT_DIVIDED)
+    if hulls.is_convex(mesh):
+        return result([hull])
+    pieces = hulls.convex_pieces(mesh) or _divided(mesh, folder)
+    return result(pieces) if pieces else result([hull], _NOT_DIVIDED)
+
+
+def _divided(mesh: Any, folder: str) -> List[Any]:
+    """The hulls that V-HACD finds, with their corners limited."""
+    import pybullet
+    import trimesh
+
+    from . import decompose_hulls as hulls
+
+    source, target = os.path.join(folder, "in.obj"), os.path.join(folder, "out.obj")
+    with open(source, "w", encoding="ascii") as stream:
+        stream.writelines(f"v {x:.9f} {y:.9f} {z:.9f}\n" for x, y, z in mesh.vertices.tolist())
+        stream.writelines(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in mesh.faces.tolist())
+    pybullet.vhacd(source, target, os.path.join(folder, "log"), **_VHACD)
+    found = trimesh.load_scene(target, file_type="obj", process=False, split_objects=True,
+                               group_material=False)
+    pieces = [hulls.drawn_in(piece.vertices, mesh.convex_hull)
+              for piece in found.geometry.values()]
+    return [hulls.hull_of(points) for points in pieces if not hulls.is_flat(points)]
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))

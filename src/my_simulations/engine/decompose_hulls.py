@@ -1,0 +1,124 @@
+"""Convex hulls of meshes: which meshes are convex, which have no volume, what to do then."""
+from __future__ import annotations
+
+from typing import Any, List, Optional
+
+MOST_VERTICES = 64
+"""Of one convex part; contacts cost time for each."""
+
+_SAME_VOLUME = 0.01  # a mesh that fills its hull up to this share is convex
+_FLAT = 1e-4         # thickness for each metre of extent, below which a mesh has no volume
+_PROJECTIONS = 50    # onto one face of a hull after the other
+_MOST_PIECES = 64    # more separate pieces than that are better merged than kept
+
+
+def cleaned(vertices: Any, triangles: Any) -> Any:
+    """A `trimesh.Trimesh` with equal vertices made one, without triangles of no area."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    mesh.merge_vertices()
+    mesh.update_faces(mesh.nondegenerate_faces(height=1e-9))
+    mesh.update_faces(mesh.unique_faces())
+    mesh.remove_unreferenced_vertices()
+    return mesh
+
+
+def hull_of(points: Any) -> Any:
+    """The convex hull of an array (n, 3), at most `MOST_VERTICES` corners of it.
+
+    A larger hull keeps its outermost points in evenly spread directions and along the axes, so
+    that it lies inside the true one and has the same bounding box.
+    """
+    import numpy as np
+    from trimesh.convex import convex_hull
+
+    hull = convex_hull(np.asarray(points, dtype=np.float64))
+    if len(hull.vertices) <= MOST_VERTICES:
+        return hull
+    axes = np.concatenate([np.eye(3), -np.eye(3)])
+    directions = np.concatenate([axes, _spread(MOST_VERTICES - len(axes))])
+    kept = np.unique((hull.vertices @ directions.T).argmax(axis=0))
+    return convex_hull(hull.vertices[kept])
+
+
+def _spread(count: int) -> Any:
+    """Directions spread evenly over the sphere, by the golden angle."""
+    import numpy as np
+
+    steps = np.arange(count) + 0.5
+    height = 1.0 - 2.0 * steps / count
+    turn = np.pi * (1.0 + 5.0**0.5) * steps
+    ring = np.sqrt(1.0 - height * height)
+    return np.stack([np.cos(turn) * ring, np.sin(turn) * ring, height], axis=1)
+
+
+def is_flat(points: Any) -> bool:
+    """Whether points lie in a plane, on a line or at one place."""
+    _, spans = _principal(points)
+    return bool(spans[-1] <= _FLAT * max(spans[0], 1e-12))
+
+
+def thickened(points: Any, thickness: float) -> Any:
+    """The hull of points that have no volume, made `thickness` m thick where they are thinner."""
+    import numpy as np
+
+    points = np.asarray(points, dtype=np.float64)
+    axes, spans = _principal(points)
+    for axis, span in zip(axes, spans):
+        if span < thickness:
+            shift = axis * ((thickness - span) / 2)
+            points = np.concatenate([points - shift, points + shift])
+    return hull_of(points)
+
+
+def _principal(points: Any) -> Any:
+    """(principal axes as rows, extents along them), the longest first."""
+    import numpy as np
+
+    points = np.asarray(points, dtype=np.float64)
+    centred = points - points.mean(axis=0)
+    axes = np.linalg.eigh(centred.T @ centred)[1].T
+    along = centred @ axes.T
+    spans = along.max(axis=0) - along.min(axis=0)
+    order = np.argsort(-spans)
+    return axes[order], spans[order]
+
+
+def is_convex(mesh: Any) -> bool:
+    """Whether a closed mesh fills its hull within 1 %; one with openings is never convex."""
+    if not mesh.is_watertight or is_flat(mesh.vertices):
+        return False
+    volume = float(mesh.convex_hull.volume)
+    return abs(volume - abs(float(mesh.volume))) <= _SAME_VOLUME * volume
+
+
+def convex_pieces(mesh: Any) -> Optional[List[Any]]:
+    """The hulls of a mesh's separate pieces when each is convex, such as a table of boxes."""
+    import numpy as np
+    from trimesh.graph import connected_components
+
+    if not mesh.is_watertight:
+        return None
+    groups = connected_components(mesh.face_adjacency, nodes=np.arange(len(mesh.faces)))
+    if not 0 < len(groups) <= _MOST_PIECES:
+        return None
+    pieces = [cleaned(mesh.vertices, mesh.faces[group]) for group in groups]
+    return [hull_of(piece.vertices) for piece in pieces] if all(map(is_convex, pieces)) else None
+
+
+def drawn_in(points: Any, hull: Any) -> Any:
+    """Points outside a hull moved onto it: V-HACD's parts stick out by half a voxel."""
+    import numpy as np
+
+    normals = np.asarray(hull.face_normals)
+    offsets = np.einsum("ij,ij->i", normals, np.asarray(hull.triangles)[:, 0])
+    moved = np.array(points, dtype=np.float64)
+    for _ in range(_PROJECTIONS):
+        outside = moved @ normals.T - offsets
+        worst = outside.argmax(axis=1)
+        excess = np.maximum(outside[np.arange(len(moved)), worst], 0.0)
+        moved -= normals[worst] * excess[:, None]
+        if excess.max() < 1e-9:
+            break
+    return moved

@@ -1,0 +1,284 @@
+"""Convex parts of meshes: which there are, what happens to meshes without volume, the cache."""
+from __future__ import annotations
+
+import os
+import sys
+
+import numpy as np
+import pytest
+import trimesh
+
+from my_simulations.description.shapes import MeshData
+from my_simulations.engine.decompose import convex_parts
+from my_simulations.engine.decompose_cache import (
+    Decomposition,
+    PartsCache,
+    content_key,
+    default_folder,
+    load,
+    save,
+)
+from my_simulations.engine.decompose_hulls import drawn_in, hull_of, is_convex, is_flat, thickened
+
+
+def mesh_of(solid):
+    return MeshData(np.array(solid.vertices, dtype=np.float64),
+                    np.array(solid.faces, dtype=np.int32))
+
+
+def box(size=(1.0, 1.0, 1.0), at=(0.0, 0.0, 0.0)):
+    made = trimesh.creation.box(size)
+    made.apply_translation(at)
+    return made
+
+
+def angle():
+    """An L, 2 m by 3 m, 1 m thick and deep, from the origin."""
+    outline = np.array([(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)], dtype=float)
+    vertices = np.concatenate([np.c_[outline, np.zeros(6)], np.c_[outline, np.ones(6)]])
+    fan = [(0, k, k + 1) for k in range(1, 5)]
+    faces = [(a, c, b) for a, b, c in fan] + [(a + 6, b + 6, c + 6) for a, b, c in fan]
+    for i in range(6):
+        j = (i + 1) % 6
+        faces += [(i, j, j + 6), (i, j + 6, i + 6)]
+    return MeshData(vertices, np.array(faces, dtype=np.int32))
+
+
+def bounds(parts):
+    points = np.concatenate([part.vertices for part in parts])
+    return points.min(axis=0).tolist(), points.max(axis=0).tolist()
+
+
+def volume(parts):
+    return sum(float(trimesh.Trimesh(p.vertices, p.triangles).volume) for p in parts)
+
+
+def holds(part, point):
+    solid = trimesh.Trimesh(part.vertices, part.triangles, process=False)
+    return bool((np.einsum("ij,ij->i", solid.face_normals,
+                           np.asarray(point) - solid.triangles[:, 0]) < 0).all())
+
+
+def divided(mesh, folder, **options):
+    issues, told = [], []
+    parts = convex_parts(mesh, cache_dir=str(folder), progress=told.append, issues=issues,
+                         **options)
+    return parts, [issue.code for issue in issues], told
+
+
+def test_a_convex_mesh_is_its_own_hull(tmp_path):
+    parts, codes, told = divided(mesh_of(box((1, 2, 3))), tmp_path)
+    assert [len(p.vertices) for p in parts] == [8] and codes == []
+    assert bounds(parts) == (pytest.approx([-0.5, -1, -1.5]), pytest.approx([0.5, 1, 1.5]))
+    assert parts[0].triangles.dtype == np.int32 and len(told) == 2
+
+
+def test_triangles_without_area_and_corners_of_their_own_do_not_make_a_mesh_concave(tmp_path):
+    soup = box()
+    vertices = np.concatenate([soup.triangles.reshape(-1, 3), [[0.5, 0.5, 0.5]] * 3])
+    faces = np.arange(len(vertices), dtype=np.int32).reshape(-1, 3)
+    assert [len(p.vertices) for p in divided(MeshData(vertices, faces), tmp_path)[0]] == [8]
+
+
+def test_a_mesh_that_is_inside_out_gives_parts_that_are_not(tmp_path):
+    mesh = mesh_of(box())
+    parts, _, _ = divided(MeshData(mesh.vertices, mesh.triangles[:, ::-1]), tmp_path)
+    assert volume(parts) == pytest.approx(1.0)
+
+
+def test_a_large_hull_keeps_its_bounding_box_with_few_corners(tmp_path):
+    ball = trimesh.creation.icosphere(subdivisions=4, radius=2.0)
+    parts, codes, _ = divided(mesh_of(ball), tmp_path)
+    assert len(parts) == 1 and len(parts[0].vertices) <= 64 and codes == []
+    assert bounds(parts) == (pytest.approx([-2] * 3), pytest.approx([2] * 3))
+    assert volume(parts) > 0.85 * ball.volume
+
+
+def test_separate_convex_pieces_are_kept_exactly(tmp_path):
+    table = trimesh.util.concatenate([box((2, 1, 0.1), (0, 0, 1)), box((0.1, 0.1, 0.9))])
+    parts, codes, _ = divided(mesh_of(table), tmp_path)
+    assert [len(p.vertices) for p in parts] == [8, 8] and codes == []
+    assert volume(parts) == pytest.approx(2 * 0.1 + 0.009)
+
+
+def test_a_concave_mesh_is_divided_and_its_notch_stays_free(tmp_path):
+    parts, codes, told = divided(angle(), tmp_path)
+    assert len(parts) > 1 and codes == []
+    assert bounds(parts) == (pytest.approx([0, 0, 0], abs=1e-6), pytest.approx([2, 3, 1], abs=1e-6))
+    assert all(is_convex(trimesh.Trimesh(p.vertices, p.triangles)) for p in parts)
+    assert volume(parts) == pytest.approx(4.0, rel=0.1)
+    assert not any(holds(part, (1.5, 2.0, 0.5)) for part in parts)
+    assert any(holds(part, (0.5, 2.0, 0.5)) for part in parts)
+    assert any("%" in words for words in told) and "parts found" in told[-1]
+
+
+def test_the_size_and_place_of_a_mesh_do_not_count(tmp_path):
+    small = angle()
+    small.vertices = small.vertices * 0.001 + (100.0, 0.0, 0.0)
+    parts, _, _ = divided(small, tmp_path)
+    assert len(parts) > 1 and volume(parts) == pytest.approx(4e-9, rel=0.1)
+    assert bounds(parts) == (pytest.approx([100, 0, 0], abs=1e-8),
+                             pytest.approx([100.002, 0.003, 0.001], abs=1e-8))
+
+
+def test_an_open_vessel_stays_hollow(tmp_path):
+    closed = box()
+    up = closed.face_normals[:, 2] > 0.5
+    parts, _, _ = divided(MeshData(np.array(closed.vertices),
+                                   np.array(closed.faces[~up], dtype=np.int32)), tmp_path)
+    assert len(parts) > 1
+    assert not any(holds(part, (0, 0, 0)) for part in parts)
+
+
+@pytest.mark.parametrize("points, expected", [
+    ([(0, 0, 0), (2, 0, 0), (0, 1, 0)], [2, 1, 0.01]),
+    ([(0, 0, 0), (1, 0, 0), (3, 0, 0)], [3, 0.01, 0.01]),
+    ([(7, 7, 7), (7, 7, 7), (7, 7, 7)], [0.001, 0.001, 0.001]),
+    ([(0, 0, 0), (0.02, 0, 0), (0, 0.01, 0)], [0.02, 0.01, 0.001])])
+def test_a_mesh_without_volume_is_made_thin_with_a_warning(tmp_path, points, expected):
+    parts, codes, _ = divided(MeshData(np.array(points, float), np.array([[0, 1, 2]])), tmp_path)
+    low, high = bounds(parts)
+    assert np.subtract(high, low) == pytest.approx(np.array(expected), abs=1e-6)
+    assert len(parts) == 1 and volume(parts) > 0 and codes == ["mesh-flat"]
+
+
+def test_a_second_call_finds_the_parts_in_the_cache(tmp_path):
+    first, _, _ = divided(angle(), tmp_path)
+    again, _, told = divided(angle(), tmp_path)
+    assert told == []
+    for one, other in zip(first, again):
+        assert np.array_equal(one.vertices, other.vertices)
+        assert np.array_equal(one.triangles, other.triangles)
+
+
+def test_a_warning_is_given_again_from_the_cache(tmp_path):
+    flat = MeshData(np.array([(0, 0, 0), (2, 0, 0), (0, 1, 0)], float), np.array([[0, 1, 2]]))
+    assert divided(flat, tmp_path)[1] == divided(flat, tmp_path)[1] == ["mesh-flat"]
+
+
+def entry(folder):
+    (name,) = os.listdir(folder)
+    return folder / name
+
+
+@pytest.mark.parametrize("damage", [
+    lambda content: b"", lambda content: b"no archive", lambda content: content[:len(content) // 2],
+    lambda content: content[:200] + bytes(100) + content[300:]])
+def test_a_damaged_entry_of_the_cache_is_made_anew(tmp_path, damage):
+    divided(mesh_of(box()), tmp_path)
+    path = entry(tmp_path)
+    path.write_bytes(damage(path.read_bytes()))
+    parts, _, told = divided(mesh_of(box()), tmp_path)
+    assert len(parts) == 1 and told != []
+    assert len(load(str(entry(tmp_path))).parts) == 1
+
+
+@pytest.mark.parametrize("change", ["triangle", "vertex", "nothing"])
+def test_parts_that_do_not_fit_each_other_are_not_taken_from_a_file(tmp_path, change):
+    part = mesh_of(box())
+    if change == "triangle":
+        part.triangles[0, 0] = 99
+    elif change == "vertex":
+        part.vertices[0, 0] = np.nan
+    else:
+        part.triangles = part.triangles[:0]
+    save(str(tmp_path / "a.parts"), Decomposition([part]))
+    with pytest.raises(ValueError):
+        load(str(tmp_path / "a.parts"))
+
+
+def test_the_cache_gives_up_what_was_longest_unused(tmp_path):
+    made = Decomposition([mesh_of(box())])
+    PartsCache(str(tmp_path)).put("a", made)
+    size = (tmp_path / "a.parts").stat().st_size
+    PartsCache(str(tmp_path)).put("b", made)
+    for age, name in ((30, "a"), (20, "b")):
+        os.utime(tmp_path / f"{name}.parts", (1e9 - age, 1e9 - age))
+    cache = PartsCache(str(tmp_path), limit=int(2.5 * size))
+    assert cache.get("a") is not None  # used now, so that b is the older one
+    cache.put("c", made)
+    assert sorted(os.listdir(tmp_path)) == ["a.parts", "c.parts"]
+    PartsCache(str(tmp_path), limit=1).put("d", made)
+    assert os.listdir(tmp_path) == ["d.parts"]
+
+
+def test_what_an_interrupted_writer_left_is_removed_in_time(tmp_path):
+    for name, at in (("old.new", 1e9), ("new.new", None)):
+        (tmp_path / name).write_bytes(b"")
+        os.utime(tmp_path / name, at and (at, at))
+    PartsCache(str(tmp_path)).put("a", Decomposition([mesh_of(box())]))
+    assert sorted(os.listdir(tmp_path)) == ["a.parts", "new.new"]
+
+
+def test_a_cache_that_cannot_be_written_costs_the_caching_only(tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_bytes(b"")
+    parts, codes, _ = divided(mesh_of(box()), blocked)
+    assert len(parts) == 1 and codes == []
+
+
+def test_the_key_tells_content_and_parameters_apart():
+    mesh = mesh_of(box())
+    moved = MeshData(mesh.vertices + 1.0, mesh.triangles)
+    turned = MeshData(mesh.vertices, mesh.triangles[:, ::-1])
+    keys = {content_key(mesh, "a"), content_key(moved, "a"), content_key(turned, "a"),
+            content_key(mesh, "b")}
+    assert len(keys) == 4
+    assert content_key(MeshData(mesh.vertices.copy(order="F"), mesh.triangles.astype(np.int64)),
+                       "a") in keys
+
+
+def test_the_cache_lies_where_the_user_keeps_caches(monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", "/somewhere")
+    assert default_folder() == "/somewhere/my_simulations/decompositions"
+    monkeypatch.setenv("HOME", "/home/someone")
+    for value in ("", "not/absolute"):
+        monkeypatch.setenv("XDG_CACHE_HOME", value)
+        assert default_folder() == "/home/someone/.cache/my_simulations/decompositions"
+
+
+def with_vhacd(monkeypatch, folder, body):
+    """Let the child find another `pybullet`, whose vhacd does what is told."""
+    folder.mkdir()
+    (folder / "pybullet.py").write_text(f"import os, time\n\n\ndef vhacd(*a, **k):\n    {body}\n")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder), *filter(None, sys.path)]))
+
+
+@pytest.mark.parametrize("body", ["os.abort()", "raise ValueError", "open(a[1], 'w').close()"])
+def test_a_crash_leaves_the_hull_and_a_warning(tmp_path, monkeypatch, body):
+    with_vhacd(monkeypatch, tmp_path / "fake", body)
+    parts, codes, told = divided(angle(), tmp_path / "cache")
+    assert codes == ["mesh-not-decomposed"] and volume(parts) == pytest.approx(5.0)
+    assert "hull" in told[-1]
+    assert divided(angle(), tmp_path / "cache")[2] == []  # it would crash again
+
+
+def test_work_without_end_is_ended_and_not_kept(tmp_path, monkeypatch):
+    with_vhacd(monkeypatch, tmp_path / "fake", "time.sleep(600)")
+    parts, codes, _ = divided(angle(), tmp_path / "cache", deadline=3.0)
+    assert len(parts) == 1 and codes == ["mesh-not-decomposed"]
+    assert not (tmp_path / "cache").exists()
+
+
+def test_a_child_that_cannot_be_started_leaves_the_mesh_as_it_is(tmp_path, monkeypatch):
+    for program in ("/bin/false", "/nowhere/python"):
+        monkeypatch.setattr(sys, "executable", program)
+        mesh = angle()
+        parts, codes, _ = divided(mesh, tmp_path)
+        assert parts == [mesh] and codes == ["mesh-not-decomposed"]
+
+
+def test_flat_is_what_has_next_to_no_thickness():
+    assert is_flat(np.array([(0, 0, 0), (1, 0, 1), (1, 1, 1), (0, 1, 0)], float))
+    assert not is_flat(np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 0.01)], float))
+
+
+def test_thickening_leaves_what_is_thick_enough():
+    made = thickened(box((2.0, 1.0, 0.001)).vertices, 0.1)
+    assert made.extents == pytest.approx([2.0, 1.0, 0.1])
+
+
+def test_points_are_drawn_in_to_a_hull_and_those_inside_stay():
+    points = np.array([(0.2, 0.1, 0.0), (0.6, 0.0, 0.0), (0.9, 0.9, -0.8)])
+    moved = drawn_in(points, hull_of(box().vertices))
+    assert moved == pytest.approx(np.array([(0.2, 0.1, 0.0), (0.5, 0.0, 0.0), (0.5, 0.5, -0.5)]))
