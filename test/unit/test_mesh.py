@@ -200,3 +200,41 @@ def test_the_collision_meshes_of_a_model_come_by_their_key_and_faults_name_the_c
 def test_a_model_whose_meshes_are_all_there_is_left_as_it_is():
     model = model_with(Mesh("a", os.path.join(VALID, "cube.stl")))
     assert without_missing_meshes(model, collision_meshes(model)[0]) is model
+
+
+def size_codes(path, static=False, scale=(1.0, 1.0, 1.0)):
+    model = model_with(Mesh("m", str(path), scale=scale))
+    model.static = static
+    table, issues = collision_meshes(model)
+    assert len(table) == 1 and all(issue.severity is Severity.WARNING for issue in issues)
+    return [issue.code for issue in issues]
+
+
+def big_collada(tool, unit):
+    with open(os.path.join(VALID, "inch_y_up.dae")) as stream:
+        text = stream.read()
+    return text.replace("0 2 0", "0 1200 0").replace(
+        '<asset><unit name="u" meter="0.0254"/>',
+        f"<asset><contributor><authoring_tool>{tool}</authoring_tool></contributor>{unit}")
+
+
+def test_a_mesh_of_a_moving_model_that_looks_like_a_lost_unit_gets_a_warning(tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text("v 0 0 0\nv 300 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert size_codes(path) == ["mesh-size-odd"]
+    assert size_codes(path, scale=(0.001, 0.001, 0.001)) == []
+    assert size_codes(path, static=True) == []
+    (issue,) = collision_meshes(model_with(Mesh("m", str(path))))[1]
+    assert "300 m" in issue.message and "7.62 m (inches)" in issue.hint
+
+
+@pytest.mark.parametrize("tool, unit, codes", [
+    ("SketchUp 16.1", '<unit name="meter" meter="1"/>', ["mesh-size-odd"]),
+    ("Google SketchUp 8", "", ["mesh-size-odd"]),
+    ("SketchUp 16.1", '<unit name="inch" meter="0.0254"/>', []),
+    ("Blender 2.7", '<unit name="meter" meter="1"/>', [])])
+def test_a_building_gets_that_warning_only_where_its_exporter_writes_inches(tmp_path, tool, unit,
+                                                                            codes):
+    path = tmp_path / "a.dae"
+    path.write_text(big_collada(tool, unit))
+    assert size_codes(path, static=True) == codes

@@ -10,6 +10,7 @@ from ..description.model import Link, Model
 from ..description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, mesh_key
 from ..errors import InputError, Issue, error
 from .mesh_part import MeshFault, MeshPart
+from .mesh_size import odd_size
 from .solids import solid_mesh
 from .tables import closest
 
@@ -40,7 +41,8 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
     """What the collisions of a model need, by `mesh_key`, and an error for each that cannot be had.
 
     A collision whose mesh is not in the table cannot be simulated; `without_missing_meshes` leaves
-    such ones out. Nested models are included.
+    such ones out. Nested models are included. A mesh whose size looks like a lost unit gets a
+    warning, `mesh-size-odd`.
     """
     table: MeshTable = {}
     issues: List[Issue] = []
@@ -48,12 +50,16 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
         mesh = collision.geometry
         if not isinstance(mesh, SOLIDS) or mesh_key(mesh) in table:
             continue
+        found: List[Issue] = []
         try:
-            table[mesh_key(mesh)] = load_mesh(mesh) if isinstance(mesh, Mesh) else solid_mesh(mesh)
+            data = load_mesh(mesh) if isinstance(mesh, Mesh) else solid_mesh(mesh)
+            table[mesh_key(mesh)] = data
+            if isinstance(mesh, Mesh):
+                found = odd_size(mesh, data, moves=not model.static)
         except InputError as fault:
-            where = f"collision {collision.name!r} of link {scope + link.name!r}"
-            issues += [replace(issue, message=f"{where}: {issue.message}")
-                       for issue in fault.issues]
+            found = fault.issues
+        where = f"collision {collision.name!r} of link {scope + link.name!r}"
+        issues += [replace(issue, message=f"{where}: {issue.message}") for issue in found]
     return table, issues
 
 
