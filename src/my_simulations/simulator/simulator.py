@@ -203,6 +203,11 @@ class Simulator:
             row = self._registry.joint_row(name)
             return self._snapshot().joint(row)
 
+    def moment(self) -> Tuple[List[Entity], Snapshot]:
+        """Everything there is, in load order, and where it is, of one moment."""
+        with self._lock:
+            return self._registry.entities(), self._snapshot()
+
     def states(self) -> States:
         """The states of everything, for the topics; the same object while nothing changes."""
         with self._lock:

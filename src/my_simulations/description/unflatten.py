@@ -1,0 +1,74 @@
+"""Scoped link names back into nested models: the way back from `flatten`."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, List, Optional, Sequence
+
+from ..geometry import IDENTITY, Pose, compose, inverse
+from .model import WORLD, Joint, Link, Model
+
+_SCOPE = "::"
+
+
+def unflattened(flat: Model, guide: Optional[Model] = None) -> Model:
+    """The model with a nested one for every scope in its links' names.
+
+    Args:
+        flat: as `flattened` makes it; what it says of its links and joints counts.
+        guide: the model before it was flattened, for the poses, plugins and kept XML of the nested
+            ones; without it they lie at the origin of the outer model.
+    """
+    if not any(_SCOPE in link.name for link in flat.links):
+        return flat
+    return _gathered(flat, flat.links, flat.joints, guide or Model(""), IDENTITY)
+
+
+def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guide: Model,
+              above: Pose) -> Model:
+    """Gives `model` these links and joints, named as seen from it.
+
+    `above`: pose of its frame in the outermost model, in whose frame the links are.
+    """
+    known = {link.name: link for link in guide.links}
+    own: List[Link] = []
+    inner: Dict[str, List[Link]] = {}
+    for link in links:
+        head, scope, rest = link.name.partition(_SCOPE)
+        if scope:
+            inner.setdefault(head, []).append(replace(link, name=rest))
+        else:
+            own.append(replace(link, pose=_pose(link, known.get(link.name), above)))
+    theirs: Dict[str, List[Joint]] = {}
+    ours: List[Joint] = []
+    for joint in joints:
+        head = joint.name.partition(_SCOPE)[0]
+        if head in inner and _lies_in(joint, head):
+            theirs.setdefault(head, []).append(_seen_from_inside(joint, head))
+        else:
+            ours.append(joint)
+    guides = {nested.name: nested for nested in guide.models}
+    models = []
+    for name, some in inner.items():
+        nested = guides.get(name, Model(name))
+        models.append(_gathered(nested, some, theirs.get(name, []), nested,
+                                compose(above, nested.pose)))
+    return replace(model, links=own, joints=ours, models=models)
+
+
+def _pose(link: Link, known: Optional[Link], above: Pose) -> Pose:
+    if above == IDENTITY:
+        return link.pose
+    if known is not None and compose(above, known.pose) == link.pose:
+        return known.pose  # to the last digit
+    return compose(inverse(above), link.pose)
+
+
+def _lies_in(joint: Joint, scope: str) -> bool:
+    return all(name.startswith(scope + _SCOPE) or name == WORLD
+               for name in (joint.parent, joint.child)) and _SCOPE in joint.name
+
+
+def _seen_from_inside(joint: Joint, scope: str) -> Joint:
+    parent = joint.parent if joint.parent == WORLD else joint.parent[len(scope) + 2:]
+    return replace(joint, name=joint.name[len(scope) + 2:], parent=parent,
+                   child=joint.child[len(scope) + 2:])

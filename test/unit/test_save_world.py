@@ -1,0 +1,220 @@
+"""Saving a running world, and loading it again."""
+from __future__ import annotations
+
+import errno
+import os
+import stat
+
+import pytest
+from lxml import etree
+
+from my_simulations.description.compare import differences
+from my_simulations.description.flatten import flattened
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.shapes import Box, Collision
+from my_simulations.description.unflatten import unflattened
+from my_simulations.description.world import Light, World
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.errors import CommandError, errors_of
+from my_simulations.formats.load import read_world
+from my_simulations.formats.state import apply_state
+from my_simulations.geometry import Pose, Twist, quat_from_rpy
+from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator import safe_file
+from my_simulations.simulator.saving import allowed_path, default_roots, present_world, save_world
+from my_simulations.simulator.simulator import Simulator
+
+AWAY = Pose((1.25, -2.5, 0.125), quat_from_rpy(0.1, 0.2, 0.3))
+
+
+def box(name, links=("link",), **changes):
+    return Model(name, links=[Link(link, Pose((float(n), 0, 0)), Inertial(),
+                                   [Collision("c", Box(), Pose((0, 0, 2.0)))])
+                              for n, link in enumerate(links)], **changes)
+
+
+def arm(name):
+    made = box(name, ("base", "tip"))
+    made.joints.append(Joint("hinge", "revolute", "base", "tip", axis=JointAxis()))
+    return made
+
+
+def cabinet(name):
+    made = box(name)
+    drawer = box("drawer", ("front", "back"), pose=Pose((0.3, 0, 0), quat_from_rpy(0, 0, 0.7)))
+    drawer.joints.append(Joint("rail", "prismatic", "front", "back", axis=JointAxis()))
+    made.models.append(drawer)
+    return made
+
+
+@pytest.fixture
+def running():
+    made = []
+
+    def run(*models, world=None):
+        world = world or World("lab", models=list(models), lights=[Light("sun")])
+        sim = Simulator(world, engine_factory=lambda: InlineEngine(KinematicBackend), paused=True,
+                        log=lambda issue: pytest.fail(str(issue)))
+        made.append(sim)
+        sim.start()
+        return sim
+
+    yield run
+    for sim in made:
+        sim.close()
+
+
+def load(path):
+    world, issues = read_world(path, Resolver())
+    assert not errors_of(issues), issues
+    return world
+
+
+def test_a_world_that_was_saved_loads_with_the_same_poses_and_description(running, tmp_path):
+    sim = running(box("crate"), arm("arm"), box("wall", static=True))
+    sim.set_model_state("crate", AWAY, Twist())
+    sim.set_model_state("wall", Pose((0, 0, 5.0)), Twist())
+    sim.advance(10)
+    path = save_world(sim, "saved.world", roots=[str(tmp_path)])
+    world = apply_state(load(path))
+    again = running(world=world)
+    for name in sim.model_names():
+        assert differences(sim.model_state(name)[0], again.model_state(name)[0], 1e-6) == []
+    assert differences(present_world(sim).models, world.models, 1e-9) == []
+    assert world.initial_ns == sim.sim_ns() == 10_000_000
+
+
+def test_saving_twice_gives_the_same_bytes(running, tmp_path):
+    sim = running(box("crate"), arm("arm"))
+    sim.set_model_state("crate", AWAY, Twist())
+    paths = [save_world(sim, name, roots=[str(tmp_path)]) for name in ("a.world", "b.world")]
+    first, second = (open(path, "rb").read() for path in paths)
+    assert first == second
+
+
+def test_the_final_pose_stands_in_the_model_and_in_the_state(running, tmp_path):
+    sim = running(box("crate"))
+    sim.set_model_state("crate", Pose((3.0, 2.0, 1.0)), Twist())
+    root = etree.parse(save_world(sim, "s.sdf", roots=[str(tmp_path)])).getroot()
+    assert root.findtext("world/model/pose") == "3 2 1 0 0 0"
+    assert root.findtext("world/state/model/pose") == "3 2 1 0 0 0"
+    assert root.find("world/state").get("world_name") == "lab"
+    assert root.findtext("world/state/light/pose") == "0 0 0 0 0 0"
+
+
+def test_joint_positions_are_saved(running, tmp_path):
+    sim = running(arm("arm"))
+    sim.set_joints({"hinge": 0.5})
+    root = etree.parse(save_world(sim, "s.sdf", roots=[str(tmp_path)])).getroot()
+    angle = root.find("world/state/model/joint/angle")
+    assert (angle.get("axis"), angle.text) == ("0", "0.5")
+
+
+def test_models_that_came_later_are_saved_and_those_that_went_are_not(running, tmp_path):
+    sim = running(box("early"))
+    sim.spawn(box("late"), Pose((0, 0, 9.0)))
+    sim.delete("early")
+    world = load(save_world(sim, "s.sdf", roots=[str(tmp_path)]))
+    assert [model.name for model in world.models] == ["late"]
+
+
+def test_nested_models_come_back_nested(running, tmp_path):
+    sim = running(cabinet("cabinet"))
+    sim.spawn(flattened(cabinet("spare")), Pose((4.0, 0, 0)))
+    world = load(save_world(sim, "s.sdf", roots=[str(tmp_path)]))
+    assert differences(world.models[0], cabinet("cabinet"), 1e-12) == []
+    assert [link.name for link in flattened(world.models[1]).links] == [
+        "link", "drawer::front", "drawer::back"]
+    assert differences(flattened(world.models[1]).joints,
+                       flattened(cabinet("spare")).joints) == []
+
+
+def test_unflattening_undoes_flattening():
+    model = cabinet("c")
+    model.models[0].models.append(box("inner", pose=Pose((0.1, 0.2, 0.3))))
+    assert differences(unflattened(flattened(model), model), model) == []
+    assert differences(flattened(unflattened(flattened(model))), flattened(model), 1e-15) == []
+
+
+def test_a_file_is_replaced_only_when_asked(running, tmp_path):
+    sim = running(box("crate"))
+    path = save_world(sim, "s.sdf", roots=[str(tmp_path)])
+    before = open(path, "rb").read()
+    sim.set_model_state("crate", AWAY, Twist())
+    with pytest.raises(CommandError, match="exists already"):
+        save_world(sim, "s.sdf", roots=[str(tmp_path)])
+    assert open(path, "rb").read() == before
+    save_world(sim, "s.sdf", roots=[str(tmp_path)], overwrite=True)
+    assert open(path, "rb").read() != before
+    assert os.listdir(tmp_path) == ["s.sdf"]
+
+
+@pytest.mark.parametrize("path", [
+    "../outside.world", "/etc/outside.world", "link/x.world", "file_link.world", "a.txt", "a", "",
+    ".world/..",
+])
+def test_a_path_outside_of_the_roots_is_refused(path, tmp_path):
+    root = tmp_path / "root"
+    (tmp_path / "elsewhere").mkdir()
+    root.mkdir()
+    (root / "link").symlink_to(tmp_path / "elsewhere")
+    (root / "file_link.world").symlink_to(tmp_path / "elsewhere" / "x.world")
+    with pytest.raises(CommandError):
+        allowed_path(path, [str(root)])
+
+
+def test_a_path_below_any_root_is_allowed(tmp_path):
+    roots = [str(tmp_path / "a"), str(tmp_path / "b")]
+    assert allowed_path("in/x.world", roots) == str(tmp_path / "a/in/x.world")
+    assert allowed_path(str(tmp_path / "b/x.SDF"), roots) == str(tmp_path / "b/x.SDF")
+    with pytest.raises(CommandError):
+        allowed_path(str(tmp_path / "bb/x.sdf"), roots)
+
+
+def test_the_root_of_the_file_system_is_no_place_for_worlds(monkeypatch):
+    monkeypatch.chdir("/")
+    assert "/" not in default_roots()
+
+
+@pytest.mark.parametrize("call", ["fsync", "replace", "fchmod"])
+def test_a_full_disk_leaves_the_old_file_and_nothing_else(call, tmp_path, monkeypatch):
+    path = tmp_path / "s.world"
+    path.write_bytes(b"old")
+
+    def full(*_args):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(safe_file.os, call, full)
+    with pytest.raises(CommandError, match="No space left"):
+        safe_file.write_whole(str(path), b"new", True)
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["s.world"]
+
+
+def test_a_folder_that_cannot_be_is_reported(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    with pytest.raises(CommandError, match="cannot be written"):
+        safe_file.write_whole(str(tmp_path / "file" / "s.world"), b"new", True)
+
+
+def test_a_replaced_file_keeps_its_mode(tmp_path):
+    path = tmp_path / "s.world"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    safe_file.write_whole(str(path), b"new", True)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+
+
+def test_an_unchanged_include_is_one_again(running, tmp_path):
+    text = ('<sdf version="1.7"><world name="w"><include><uri>model://box</uri><name>b</name>'
+            "</include></world></sdf>")
+    (tmp_path / "in.world").write_text(text)
+    resolver = Resolver.from_environment()
+    world, _ = read_world(str(tmp_path / "in.world"), resolver)
+    sim = running(world=world)
+    sim.set_model_state("b", Pose((7.0, 0, 0)), Twist())
+    path = save_world(sim, "out.world", roots=[str(tmp_path)], resolver=resolver, inline=False)
+    include = etree.parse(path).getroot().find("world/include")
+    assert include.findtext("uri") == "model://box"
+    assert include.findtext("pose") == "7 0 0 0 0 0"
