@@ -10,6 +10,7 @@ from .sdf_shapes import read_collision, read_visual
 from .sdf_tables import INERTIAL, LINK
 from .source import Level, Source
 from .tables import Found, fill
+from .urdf_inertia import is_zero, of_shapes
 
 
 def relative_to(found: Found) -> str:
@@ -62,9 +63,19 @@ class LinkReader:
                 link.visuals.append(visual[0])
                 self.elements[id(visual[0])] = child
                 self._note_pose(*visual, link)
+        if not static and is_zero(link.inertial):
+            self._replace_zero_inertia(link)
         self._distinct("collision", link.collisions, link)
         self._distinct("visual", link.visuals, link)
         return link
+
+    def _replace_zero_inertia(self, link: Link) -> None:
+        better = of_shapes(link.inertial, link.collisions)
+        if better is not None:
+            self.elements[id(better)] = self.elements[id(link.inertial)]
+            link.inertial = better
+            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} is zero; that of"
+                              " its shapes is used", self.elements[id(better)])
 
     def _note_pose(self, thing: Any, found: Found, link: Link) -> None:
         frame = relative_to(found)

@@ -53,8 +53,10 @@ def _clone(template: Model, number: int, place: Vec3, population: Population) ->
 
 def _problem(p: Population) -> str:
     count = p.rows * p.cols if p.distribution == "grid" else p.model_count
-    if not 0 <= count <= MOST or min(p.rows, p.cols) < 0:
-        return f"it asks for {count} models; 0 to {MOST} can be placed"
+    if p.model_count < 0 or min(p.rows, p.cols) < 0:
+        return ""  # none at all
+    if count > MOST:
+        return f"it asks for {count} models; {MOST} can be placed"
     if p.distribution not in _RULES:
         return f"its distribution {p.distribution!r} is none of {', '.join(_RULES)}"
     if p.distribution == "grid":
@@ -70,6 +72,8 @@ def _problem(p: Population) -> str:
 
 def positions(population: Population, draw: random.Random) -> List[Vec3]:
     """Where the models stand, in the frame of the population."""
+    if min(population.model_count, population.rows, population.cols) < 0:
+        return []
     return _RULES[population.distribution](population, draw)
 
 

@@ -41,7 +41,7 @@ from .values import (
 FATAL, ERROR, WARNING = Level.FATAL, Level.ERROR, Level.WARNING
 
 
-SHOWN = Use.SHOWN
+SHOWN, KEPT = Use.SHOWN, Use.KEPT
 
 
 def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
@@ -100,12 +100,13 @@ GEOMETRIES: Mapping[str, Table] = {
 }
 
 _ODE_FRICTION = Group({
-    "mu": Value("mu", FLOAT), "mu2": Value("mu2", FLOAT), "fdir1": Value("fdir1", VECTOR3),
-    "slip1": Value("slip1", FLOAT), "slip2": Value("slip2", FLOAT),
+    "mu": Value("mu", FLOAT), "mu2": Value("mu2", FLOAT, use=KEPT),
+    "fdir1": Value("fdir1", VECTOR3, use=KEPT),
+    "slip1": Value("slip1", FLOAT, use=KEPT), "slip2": Value("slip2", FLOAT, use=KEPT),
 })
 _ODE_CONTACT = Group({
-    "kp": Value("kp", FLOAT), "kd": Value("kd", FLOAT), "max_vel": Value("max_vel", FLOAT),
-    "min_depth": Value("min_depth", FLOAT), **_kept("soft_cfm", "soft_erp"),
+    **{name: Value(name, FLOAT, use=KEPT) for name in ("kp", "kd", "max_vel", "min_depth")},
+    **_kept("soft_cfm", "soft_erp"),
 })
 SURFACE_CHILDREN: Mapping[str, Entry] = {
     "bounce": Group({
@@ -115,8 +116,8 @@ SURFACE_CHILDREN: Mapping[str, Entry] = {
     "friction": Group({"ode": _ODE_FRICTION, **_kept("bullet", "torsional")}),
     "contact": Group({
         "ode": _ODE_CONTACT,
-        "collide_without_contact": Value("collide_without_contact", BOOL),
-        "collide_bitmask": Value("collide_bitmask", INT),
+        "collide_without_contact": Value("collide_without_contact", BOOL, use=KEPT),
+        "collide_bitmask": Value("collide_bitmask", INT, use=KEPT),
         **_kept("bullet", "collide_without_contact_bitmask", "category_bitmask", "poissons_ratio",
                 "elastic_modulus"),
     }),
@@ -128,8 +129,8 @@ COLLISION = Table("collision", Collision, {
     "pose": Value("pose", POSE, FATAL),
     "geometry": Part(),
     "surface": Group(SURFACE_CHILDREN, part="surface"),
-    "max_contacts": Value("max_contacts", INT),
-    "laser_retro": Value("laser_retro", FLOAT),
+    "max_contacts": Value("max_contacts", INT, use=KEPT),
+    "laser_retro": Value("laser_retro", FLOAT, use=KEPT),
     **_kept("frame", "density", "mass"),
 }, known_attributes=("name",))
 
@@ -139,7 +140,7 @@ VISUAL = Table("visual", Visual, {
     "material": Part(),
     "cast_shadows": Value("cast_shadows", BOOL),
     "transparency": Value("transparency", FLOAT),
-    "laser_retro": Value("laser_retro", FLOAT),
+    "laser_retro": Value("laser_retro", FLOAT, use=KEPT),
     **_kept("frame", "visibility_flags", "meta"), **_told("plugin"),
 }, level=WARNING, known_attributes=("name",), use=SHOWN)
 
@@ -189,7 +190,7 @@ _AXIS_CHILDREN: Mapping[str, Entry] = {
         "spring_reference": Value("spring_reference", FLOAT),
         "spring_stiffness": Value("spring_stiffness", FLOAT),
     }),
-    "mimic": Part("1.11"),
+    "mimic": Part("1.11", use=KEPT),
     **_kept("initial_position"),
 }
 AXIS = Table("axis", JointAxis, _AXIS_CHILDREN, level=FATAL)
@@ -199,11 +200,11 @@ JOINT = Table("joint", Joint, {
     "parent": Value("parent", TEXT), "child": Value("child", TEXT),
     "pose": Value("pose", POSE, FATAL),
     "axis": Part(),
-    "axis2": Part(),
-    "thread_pitch": Value("thread_pitch", FLOAT),
-    "screw_thread_pitch": Part("1.10"),
-    "gearbox_ratio": Value("gearbox_ratio", FLOAT),
-    "gearbox_reference_body": Value("gearbox_reference", TEXT),
+    "axis2": Part(use=KEPT),
+    "thread_pitch": Value("thread_pitch", FLOAT, use=KEPT),
+    "screw_thread_pitch": Part("1.10", use=KEPT),
+    "gearbox_ratio": Value("gearbox_ratio", FLOAT, use=KEPT),
+    "gearbox_reference_body": Value("gearbox_reference", TEXT, use=KEPT),
     **_kept("frame", "physics"), **_told("sensor"),
 }, known_attributes=("name", "type"))
 
@@ -216,7 +217,7 @@ MODEL = Table("model", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
-    "frame": Part("1.5", kept=True), "plugin": Part(),
+    "frame": Part("1.5", kept=True), "plugin": Part(use=KEPT),
     **_kept("enable_wind"), **_told("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
@@ -226,7 +227,7 @@ INCLUDE = Table("include", Model, {
     "name": Value("name", TEXT),
     "pose": Value("pose", POSE, FATAL),
     "static": Value("static", BOOL),
-    "plugin": Part(),
+    "plugin": Part(use=KEPT),
     "placement_frame": Part("1.8"),
 }, known_attributes=("merge",))
 
@@ -247,39 +248,39 @@ LIGHT = Table("light", Light, {
 
 PHYSICS = Table("physics", Physics, {
     "max_step_size": Value("max_step_size", FLOAT),
-    "real_time_factor": Value("real_time_factor", FLOAT),
+    "real_time_factor": Value("real_time_factor", FLOAT, use=KEPT),
     "real_time_update_rate": Value("real_time_update_rate", FLOAT),
-    "max_contacts": Value("max_contacts", INT, part="ode"),
+    "max_contacts": Value("max_contacts", INT, use=KEPT, part="ode"),
     "ode": Group({
         "solver": Group({
-            "iters": Value("iters", INT), "precon_iters": Value("precon_iters", INT),
-            "sor": Value("sor", FLOAT),
+            "iters": Value("iters", INT),
+            "precon_iters": Value("precon_iters", INT, use=KEPT),
+            "sor": Value("sor", FLOAT, use=KEPT),
             **_kept("type", "min_step_size", "island_threads", "thread_position_correction",
                     "use_dynamic_moi_rescaling", "friction_model"),
         }),
         "constraints": Group({
-            "cfm": Value("cfm", FLOAT), "erp": Value("erp", FLOAT),
-            "contact_max_correcting_vel": Value("contact_max_correcting_vel", FLOAT),
-            "contact_surface_layer": Value("contact_surface_layer", FLOAT),
+            **{name: Value(name, FLOAT, use=KEPT) for name in (
+                "cfm", "erp", "contact_max_correcting_vel", "contact_surface_layer")},
         }),
-        "max_contacts": Value("max_contacts", INT),
+        "max_contacts": Value("max_contacts", INT, use=KEPT),
         **_kept("provide_feedback"),
     }, part="ode"),
     **_kept("bullet", "simbody", "dart"),
-}, attributes={"name": Value("name", TEXT), "type": Value("type", TEXT)},
+}, attributes={"name": Value("name", TEXT, use=KEPT), "type": Value("type", TEXT, use=KEPT)},
    known_attributes=("default",))
 
 WORLD = Table("world", World, {
     "gravity": Value("gravity", VECTOR3, since="1.6"),
     "physics": Part(), "light": Part(use=SHOWN), "model": Part(), "include": Part(),
-    "plugin": Part(),
+    "plugin": Part(use=KEPT),
     "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
-    "state": Part(kept=True), "joint": Part("1.10", use=Use.KEPT, told=True, kept=True),
-    "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=Use.KEPT),
+    "state": Part(kept=True), "joint": Part("1.10", use=KEPT, told=True, kept=True),
+    "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),
     "gui": Part(use=SHOWN, kept=True), "scene": Part(use=SHOWN, kept=True),
-    "actor": Part(use=Use.KEPT, told=True, kept=True),
-    "road": Part(use=Use.KEPT, told=True, kept=True),
-    "wind": Part(use=Use.KEPT, told=True, kept=True), "atmosphere": Part(use=Use.KEPT, kept=True),
-    "spherical_coordinates": Part(use=Use.KEPT, kept=True),
+    "actor": Part(use=KEPT, told=True, kept=True),
+    "road": Part(use=KEPT, told=True, kept=True),
+    "wind": Part(use=KEPT, told=True, kept=True), "atmosphere": Part(use=KEPT, kept=True),
+    "spherical_coordinates": Part(use=KEPT, kept=True),
     **_told("audio"),
 }, known_attributes=("name",))

@@ -9,6 +9,7 @@ from typing import Any, Callable, List, Tuple
 
 from ..geometry import normalised, rpy_from_quat
 from ..resources.model_config import NEWEST, version_of
+from .sdf_old import includes_by_uri, values_to_elements
 from .source import Level, Source
 from .values import numbers
 
@@ -51,6 +52,7 @@ def _rename(parent: Any, old: str, new: str) -> None:
 def _to_1_4(root: Any) -> None:
     from lxml import etree
 
+    includes_by_uri(root)
     for physics in root.iter("physics"):
         _rename(physics, "update_rate", "real_time_update_rate")
         for path in ("ode/solver/dt", "bullet/dt"):
@@ -129,5 +131,5 @@ def _from_1_9(root: Any, source: Source) -> None:
 
 
 _STEPS: List[Tuple[Tuple[int, ...], Callable[[Any], None]]] = [
-    ((1, 4), _to_1_4), ((1, 5), _to_1_5), ((1, 6), _to_1_6), ((1, 7), _to_1_7),
+    ((1, 2), values_to_elements), ((1, 4), _to_1_4), ((1, 5), _to_1_5), ((1, 6), _to_1_6), ((1, 7), _to_1_7),
 ]

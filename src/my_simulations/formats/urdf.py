@@ -15,6 +15,8 @@ from .urdf_inertia import is_zero, of_shapes
 from .urdf_joint import read_connection
 from .urdf_lump import lump, standing
 from .urdf_parts import read_body, read_origin, read_palette
+from .urdf_rename import Renamed, rename
+from .urdf_sdf_joint import read_sdf_joint
 from .urdf_tables import ROBOT
 from .urdf_tree import LUMP, Body, Connection, parents_first
 
@@ -38,6 +40,7 @@ class _RobotReader:
         self._bodies: Dict[str, Body] = {}
         self._connections: List[Connection] = []
         self._elements: Dict[int, Any] = {}
+        self._renamed = Renamed()
 
     def read(self) -> Model:
         source, model, changes = self._source, self._model, self._changes
@@ -63,7 +66,13 @@ class _RobotReader:
         extensions.report_unused()
         root = self._root()
         if root is not None:
-            self._build(root)
+            poses = self._build(root)
+            rename(model, self._renamed)
+            for child in extensions.joints:
+                joint = read_sdf_joint(child, source, self._bodies, poses)
+                if joint is not None:
+                    self._elements[id(joint)] = child
+                    model.joints.append(joint)
         self._check()
         return model
 
@@ -119,7 +128,8 @@ class _RobotReader:
             return roots[0]
         return None
 
-    def _build(self, root: Body) -> None:
+    def _build(self, root: Body) -> Dict[str, Pose]:
+        """Put the links and joints together; returns where every link of the file is."""
         model = self._model
         frames = lump(root)
         dropped = self._dropped(root)
@@ -137,11 +147,13 @@ class _RobotReader:
                     self._joint(up)
             elif body.into is not None:
                 self._hand_over(body)
+                self._renamed.links[body.link.name] = body
         model.extra += frames
         if not model.links and root.link.name != WORLD:
             self._fatal("link-missing", f"no link of the robot has a mass: its root"
                         f" {root.link.name!r} is dropped with all below it", root.element,
                         "give it an <inertial>, or make the model static")
+        return poses
 
     def _dropped(self, root: Body) -> Dict[int, Body]:
         """Bodies that cannot be simulated: without mass, or below one that is.
@@ -193,6 +205,10 @@ class _RobotReader:
     def _named(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
         prefix = body.link.name if stem.startswith(LUMP) else ""
         item.name = f"{prefix}{stem}_{kind}" + (f"_{number}" if number else "")
+        if prefix and kind == "collision":
+            own = stem[len(LUMP):]
+            before = sum(1 for other, _ in body.collisions[:number] if other == stem)
+            self._renamed.collisions[f"{own}_{kind}" + (f"_{before}" if before else "")] = item.name
         return item
 
     def _joint(self, connection: Connection) -> None:

@@ -31,6 +31,7 @@ class Extensions:
         self._source = source
         self._by_reference: DefaultDict[str, List[Any]] = defaultdict(list)
         self._used: Set[str] = {""}
+        self.joints: List[Any] = []  # SDF's, of the model
         for element in elements:
             for child in element:
                 value = child.get("value")
@@ -43,6 +44,7 @@ class Extensions:
         """Static, plugins and what else belongs to the model; must come first."""
         for block in self._by_reference.get("", ()):
             found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
+            self.joints += found.get("joint", [])
             model.plugins += [
                 PluginSpec(child.get("name", ""), child.get("filename", ""), to_xml(child))
                 for child in found.get("plugin", ())
@@ -121,6 +123,8 @@ class Extensions:
             self._source.warn("unknown-element", f"element <{tag}> is not known in <gazebo>; it is"
                               " kept, without effect", child, closest(tag, known))
         body.link.extra.append(to_xml(child))
+        if tag in _TOLD:
+            self._source.tell_unused(child)
 
     def _to_joint(self, child: Any, connection: Connection) -> None:
         tag, joint = child.tag, connection.joint
@@ -143,6 +147,7 @@ class Extensions:
 
 BUILT_IN_MATERIALS = "file://media/materials/scripts/gazebo.material"
 _DECAY = {"linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT)}
+_TOLD = ("sensor", "projector", "audio_source", "audio_sink", "battery", "plugin")
 _PLACED = ("<sensor", "<light", "<projector")
 _KEEP = {"preserveFixedJoint": "fixed", "disableFixedJointLumping": "revolute"}
 _RANK = ["", "revolute", "fixed"]

@@ -2,14 +2,16 @@
 from __future__ import annotations
 
 from typing import Any, Dict, Optional
+from xml.sax.saxutils import quoteattr
 
-from ..description.model import INFINITE, Joint, JointAxis
+from ..description.model import INFINITE, Joint, JointAxis, Mimic
 from ..geometry import norm, scale
 from .source import Level, Source
 from .tables import Found, closest, fill
 from .urdf_parts import read_origin
-from .urdf_tables import AXIS, DYNAMICS, JOINT, LIMIT_TABLE, Axis, Ends, Limits
+from .urdf_tables import AXIS, DYNAMICS, JOINT, LIMIT_TABLE, MIMIC, Axis, Ends, Limits
 from .urdf_tree import Body, Connection
+from .values import FLOAT
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
@@ -39,10 +41,26 @@ def read_connection(element: Any, source: Source, bodies: Dict[str, Body]) -> Op
     if joint_type == "continuous":
         joint.type = "revolute"
     for mimic in found.get("mimic", ()):
-        source.warn("mimic-unsupported", f"joint {name!r} does not follow another one here: <mimic>"
-                    " is ignored, as Gazebo does", mimic)
+        _follow(joint, mimic, source)
     origin = read_origin(found.get("origin", ()), source)
     return Connection(joint, element, origin, bodies[ends.parent], bodies[ends.child])
+
+
+def _follow(joint: Joint, element: Any, source: Source) -> None:
+    """q = multiplier q_joint + offset. Source: URDF specification, joint/mimic."""
+    mimic = Mimic("")
+    fill(mimic, element, MIMIC, source, [])
+    if not mimic.joint or joint.axis is None:
+        source.warn("mimic-joint-missing", f"joint {joint.name!r}: <mimic> names no joint, or has"
+                    " no axis to turn; it is left out", element)
+        return
+    joint.axis.mimic = mimic
+    joint.extra.append(
+        f"<axis><mimic joint={quoteattr(mimic.joint)} axis=\"axis\"><multiplier>"
+        f"{FLOAT.format(mimic.multiplier)}</multiplier><offset>{FLOAT.format(mimic.offset)}"
+        "</offset><reference>0</reference></mimic></axis>")
+    source.warn("mimic-unsupported", f"joint {joint.name!r} does not follow {mimic.joint!r} here,"
+                " nor in Gazebo: <mimic> is kept only", element)
 
 
 def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[JointAxis]:

@@ -7,11 +7,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Mapping, Optional, Tuple
 
-from ..description.model import Inertial, JointAxis, Link, Model
+from ..description.model import Inertial, JointAxis, Link, Mimic, Model
 from ..description.shapes import Box, Capsule, Collision, Color, Cylinder, Mesh, Sphere, Visual
 from ..geometry import IDENTITY_QUAT, ZERO3, Quat, Vec3
 from .source import Level
-from .tables import Entry, Group, Kept, Part, Table, Value
+from .tables import Entry, Group, Kept, Part, Table, Use, Value
 from .values import (
     BOOL,
     COLOR,
@@ -30,6 +30,11 @@ FATAL, WARNING = Level.FATAL, Level.WARNING
 
 def _kept(*names: str) -> Dict[str, Entry]:
     return {name: Kept() for name in names}
+
+
+def _ignored(*names: str) -> Dict[str, Entry]:
+    """Known, but left out: a robot is written back as SDF, which has no place for them."""
+    return {name: Kept(use=Use.IGNORED) for name in names}
 
 
 @dataclass
@@ -80,12 +85,12 @@ ORIGIN = Table("origin", Origin, attributes={
 
 ROBOT = Table("robot", Model, {
     "link": Part(), "joint": Part(), "material": Part(), "gazebo": Part(), "origin": Part(),
-    **_kept("transmission", "sensor", "verbose", "group_state", "ros2_control"),
+    **_ignored("transmission", "sensor", "verbose", "group_state", "ros2_control"),
 }, known_attributes=("name", "version", "static", "type"))
 
 LINK = Table("link", Link, {
     "inertial": Part(), "visual": Part(), "collision": Part(),
-    **_kept("sensor", "self_collision_checking", "verbose", "origin", "gravity"),
+    **_ignored("sensor", "self_collision_checking", "verbose", "origin", "gravity"),
 }, known_attributes=("name", "type"))
 
 INERTIAL = Table("inertial", Inertial, {
@@ -97,12 +102,12 @@ INERTIAL = Table("inertial", Inertial, {
 }, level=FATAL)
 
 COLLISION = Table("collision", Collision, {
-    "origin": Part(), "geometry": Part(), **_kept("verbose", "contact_coefficients"),
+    "origin": Part(), "geometry": Part(), **_ignored("verbose", "contact_coefficients"),
 }, known_attributes=("name", "group"))
 
 VISUAL = Table("visual", Visual, {
-    "origin": Part(), "geometry": Part(), "material": Part(), **_kept("verbose"),
-}, known_attributes=("name", "group"))
+    "origin": Part(), "geometry": Part(), "material": Part(), **_ignored("verbose"),
+}, known_attributes=("name", "group"), use=Use.SHOWN)
 
 GEOMETRIES: Mapping[str, Tuple[Table, Tuple[str, ...]]] = {
     "box": (Table("box", Box, attributes={"size": Value("size", VECTOR3)}), ("size",)),
@@ -123,17 +128,21 @@ GEOMETRIES: Mapping[str, Tuple[Table, Tuple[str, ...]]] = {
 MATERIAL = Table("material", Paint, {
     "color": Group(attributes={"rgba": Value("color", COLOR)}),
     "texture": Group(attributes={"filename": Value("texture", TEXT)}),
-}, attributes={"name": Value("name", TEXT)}, level=WARNING)
+}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=Use.SHOWN)
 
 JOINT = Table("joint", Ends, {
-    "origin": Part(), "axis": Part(), "limit": Part(), "dynamics": Part(), "mimic": Part(),
+    "origin": Part(), "axis": Part(), "limit": Part(), "dynamics": Part(), "mimic": Part(use=Use.KEPT),
     "parent": Group(attributes={"link": Value("parent", TEXT)}),
     "child": Group(attributes={"link": Value("child", TEXT)}),
-    **_kept("safety_controller", "calibration"),
+    **_ignored("safety_controller", "calibration"),
 }, known_attributes=("name", "type"))
 AXIS = Table("axis", Axis, attributes={"xyz": Value("xyz", VECTOR3)}, level=FATAL)
 LIMIT_TABLE = Table("limit", Limits, attributes={
     name: Value(name, LIMIT) for name in ("lower", "upper", "effort", "velocity")
+}, level=FATAL)
+MIMIC = Table("mimic", Mimic, attributes={
+    "joint": Value("joint", TEXT), "multiplier": Value("multiplier", FLOAT),
+    "offset": Value("offset", FLOAT),
 }, level=FATAL)
 DYNAMICS = Table("dynamics", JointAxis, attributes={
     "damping": Value("damping", FLOAT), "friction": Value("friction", FLOAT),
@@ -143,9 +152,9 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "static": Value("static", BOOL),
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
-    "plugin": Part(),
-    **_kept("gripper", "enable_wind", "frame", "canonicalBody", "selfCollide", "turnGravityOff",
-            "joint"),
+    "plugin": Part(use=Use.KEPT), "joint": Part(),
+    "gripper": Kept(told=True),
+    **_kept("enable_wind", "frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
 """`<gazebo>` without a reference."""
 

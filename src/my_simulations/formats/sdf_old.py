@@ -1,0 +1,66 @@
+"""SDF 1.0 and 1.1, which kept values in attributes, as 1.2, which keeps them in elements.
+
+Source: the documents themselves, of 2011 and 2012; the format's own conversions begin later.
+"""
+from __future__ import annotations
+
+import os
+from typing import Any, Mapping
+
+_STAYS = ("name", "version", "type")
+_NOT_TYPED = ("solver", "fog")
+_TEXT = ("rgba", "angle", "link", "enabled")
+"""Attributes that are the text of their element."""
+
+_TEXT_OF: Mapping[str, str] = {"gravity": "xyz", "direction": "xyz", "linear_velocity": "xyz"}
+_RENAMED: Mapping[str, str] = {"color": "diffuse"}
+_BUILT_IN = "file://media/materials/scripts/gazebo.material"
+
+
+def values_to_elements(root: Any) -> None:
+    """Bring a document of version 1.0 or 1.1 to 1.2, in place."""
+    for element in list(root):
+        _convert(element)
+
+
+def includes_by_uri(root: Any) -> None:
+    """`<include filename="name.model"/>`, as it was before 1.3, names a model of the database."""
+    from lxml import etree
+
+    for include in root.iter("include"):
+        name = include.attrib.pop("filename", None)
+        if name and include.find("uri") is None:
+            stem = os.path.splitext(name)[0]
+            etree.SubElement(include, "uri").text = name if "://" in name else f"model://{stem}"
+
+
+def _convert(element: Any) -> None:
+    from lxml import etree
+
+    if not isinstance(element.tag, str) or element.tag == "plugin":
+        return
+    for child in list(element):
+        _convert(child)
+    for name, value in list(element.items()):
+        if element.tag == "include" or (name == "pose" and element.tag == "origin") or (
+                name in _STAYS and element.tag not in _NOT_TYPED):
+            continue
+        del element.attrib[name]
+        if element.tag == "shadows" and name != "enabled":
+            continue
+        if element.tag == "material" and name == "script":
+            script = etree.SubElement(element, "script")
+            etree.SubElement(script, "uri").text = _BUILT_IN
+            etree.SubElement(script, "name").text = value
+        elif element.tag == "material" and name == "normal_map":
+            etree.SubElement(etree.SubElement(element, "shader"), name).text = value
+        elif (name in _TEXT and not (element.tag == "fog")) or _TEXT_OF.get(element.tag) == name:
+            element.text = value
+        elif element.find(name) is None:
+            etree.SubElement(element, "color" if name == "rgba" else name).text = value
+    parent = element.getparent()
+    if parent is not None and parent.tag == "material":
+        element.tag = _RENAMED.get(element.tag, element.tag)
+    if element.tag == "damping" and parent is not None and parent.tag == "inertial":
+        element.tag = "velocity_decay"
+        parent.getparent().append(element)

@@ -1,0 +1,48 @@
+"""SDF's `<joint>` in a robot's `<gazebo>`: what URDF's tree cannot say, such as loops."""
+from __future__ import annotations
+
+from typing import Any, Dict, Optional
+
+from ..description.model import WORLD, Joint
+from ..geometry import IDENTITY, Pose, compose, inverse
+from .sdf_frames import FrameFault
+from .sdf_joint import place_axes, read_joint
+from .source import Level, Source
+from .tables import closest
+from .urdf_lump import standing
+from .urdf_tree import Body
+
+
+def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
+                   poses: Dict[str, Pose]) -> Optional[Joint]:
+    """The joint, between the links that stand for the ones it names; None, with an issue.
+
+    Args:
+        element: SDF `<joint>`, as of version 1.7.
+        source: the file.
+        bodies: links of the file by name.
+        poses: of all of them, in the model.
+    """
+    joint, found = read_joint(element, source)
+    for name in (joint.parent, joint.child):
+        if name not in bodies and name != WORLD:
+            source.report(Level.FATAL, "joint-link-unknown", f"joint {joint.name!r} names {name!r},"
+                          " which is not a link of the robot", element,
+                          closest(name, list(bodies)))
+            return None
+    at = compose(poses.get(joint.child, IDENTITY), joint.pose)
+    for role in ("parent", "child"):
+        name = getattr(joint, role)
+        if name in bodies:
+            setattr(joint, role, standing(bodies[name]).link.name)
+    joint.pose = compose(inverse(poses.get(joint.child, IDENTITY)), at)
+
+    def pose_of(name: str) -> Pose:
+        if name == "__model__":
+            return IDENTITY
+        if name not in poses:
+            raise FrameFault(f"there is no frame {name!r}")
+        return poses[name]
+
+    place_axes(joint, found, source, pose_of, None)
+    return joint
