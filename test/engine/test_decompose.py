@@ -18,7 +18,15 @@ from my_simulations.engine.decompose_cache import (
     load,
     save,
 )
-from my_simulations.engine.decompose_hulls import drawn_in, hull_of, is_convex, is_flat, thickened
+from my_simulations.engine.decompose_hulls import (
+    drawn_in,
+    full_hull,
+    hull_of,
+    is_convex,
+    is_flat,
+    stretched,
+    thickened,
+)
 
 
 def mesh_of(solid):
@@ -275,10 +283,27 @@ def test_flat_is_what_has_next_to_no_thickness():
 
 def test_thickening_leaves_what_is_thick_enough():
     made = thickened(box((2.0, 1.0, 0.001)).vertices, 0.1)
-    assert made.extents == pytest.approx([2.0, 1.0, 0.1])
+    assert np.ptp(made.vertices, axis=0) == pytest.approx([2.0, 1.0, 0.1])
 
 
 def test_points_are_drawn_in_to_a_hull_and_those_inside_stay():
     points = np.array([(0.2, 0.1, 0.0), (0.6, 0.0, 0.0), (0.9, 0.9, -0.8)])
     moved = drawn_in(points, hull_of(box().vertices))
     assert moved == pytest.approx(np.array([(0.2, 0.1, 0.0), (0.5, 0.0, 0.0), (0.5, 0.5, -0.5)]))
+
+
+def test_faces_of_a_hull_look_outward_and_it_knows_its_volume():
+    points = np.random.default_rng(1).normal(size=(200, 3))
+    hull = full_hull(np.concatenate([points, points]))
+    solid = trimesh.Trimesh(hull.vertices, hull.faces, process=False)
+    assert solid.is_watertight and solid.volume == pytest.approx(hull.volume)
+    assert solid.volume == pytest.approx(trimesh.convex.convex_hull(points).volume)
+
+
+def test_parts_are_stretched_to_the_reach_of_the_mesh_but_not_over_what_is_missing():
+    reach = np.array([(0.0, 0.0, 0.0), (1.0, 1.0, 1.0)])
+    parts = [np.array([(0.01, 0.0, 0.0), (0.5, 1.0, 0.5)]),
+             np.array([(0.5, 0.0, 0.4), (0.99, 1.0, 0.6)])]
+    one, other = stretched(parts, reach)
+    assert one[0] == pytest.approx([0.0, 0.0, 0.0]) and other[1] == pytest.approx([1.0, 1.0, 0.6])
+    assert one[1] == pytest.approx([0.5, 1.0, 0.5])

@@ -164,8 +164,6 @@ def main(argv: List[str]) -> int:
 
 
 def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
-    import numpy as np
-
     from . import decompose_hulls as hulls
 
     low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -174,8 +172,7 @@ def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
 
     def result(solids: List[Any], notice: str = "") -> Decomposition:
         return Decomposition([
-            MeshData(np.asarray(solid.vertices) * size + centre,
-                     np.asarray(solid.faces, dtype=np.int32)) for solid in solids], notice)
+            MeshData(solid.vertices * size + centre, solid.faces) for solid in solids], notice)
 
     if hulls.is_flat(points):
         least, most = _THICKNESS_M
@@ -206,9 +203,11 @@ def _divided(mesh: Any, folder: str) -> List[Any]:
     pybullet.vhacd(source, target, os.path.join(folder, "log"), **_VHACD)
     found = trimesh.load_scene(target, file_type="obj", process=False, split_objects=True,
                                group_material=False)
-    pieces = [hulls.drawn_in(piece.vertices, mesh.convex_hull)
-              for piece in found.geometry.values()]
-    return [hulls.hull_of(points) for points in pieces if not hulls.is_flat(points)]
+    hull = hulls.full_hull(mesh.vertices)
+    pieces = [hulls.drawn_in(piece.vertices, hull) for piece in found.geometry.values()]
+    pieces = [hulls.hull_of(points).vertices for points in pieces if not hulls.is_flat(points)]
+    return [hulls.full_hull(points) for points in hulls.stretched(pieces, mesh.vertices)] \
+        if pieces else []
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Convex hulls of meshes: which meshes are convex, which have no volume, what to do then."""
 from __future__ import annotations
 
-from typing import Any, List, Optional
+from typing import Any, List, NamedTuple, Optional
 
 MOST_VERTICES = 64
 """Of one convex part; contacts cost time for each."""
@@ -9,6 +9,7 @@ MOST_VERTICES = 64
 _SAME_VOLUME = 0.01  # a mesh that fills its hull up to this share is convex
 _FLAT = 1e-4         # thickness for each metre of extent, below which a mesh has no volume
 _PROJECTIONS = 50    # onto one face of a hull after the other
+_SHORT = 0.03        # of the extent
 _MOST_PIECES = 64    # more separate pieces than that are better merged than kept
 
 
@@ -24,22 +25,57 @@ def cleaned(vertices: Any, triangles: Any) -> Any:
     return mesh
 
 
-def hull_of(points: Any) -> Any:
+class Hull(NamedTuple):
+    """A convex solid.
+
+    Attributes:
+        vertices: float64 (n, 3).
+        faces: int32 (m, 3), outside out.
+        planes: float64 (m, 4): outward normal and offset of each face.
+        volume: cubic units of the vertices.
+    """
+
+    vertices: Any
+    faces: Any
+    planes: Any
+    volume: float
+
+
+def full_hull(points: Any) -> Hull:
+    """The convex hull of an array (n, 3) whose points do not lie in a plane."""
+    # Not trimesh's, which turns the faces with networkx; Qhull knows which way they look.
+    import numpy as np
+    from scipy.spatial import ConvexHull, QhullError
+
+    points = np.asarray(points, dtype=np.float64)
+    try:
+        found = ConvexHull(points, qhull_options="Pp Qt")
+    except QhullError:  # next to flat: Qhull may shake the points by its rounding error
+        found = ConvexHull(points, qhull_options="Pp QJ")
+    corners = found.points[found.simplices]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = np.einsum("ij,ij->i", normals, found.equations[:, :3]) < 0
+    simplices = np.where(inward[:, None], found.simplices[:, ::-1], found.simplices)
+    kept, faces = np.unique(simplices, return_inverse=True)
+    return Hull(found.points[kept], faces.reshape(-1, 3).astype(np.int32), found.equations,
+                float(found.volume))
+
+
+def hull_of(points: Any) -> Hull:
     """The convex hull of an array (n, 3), at most `MOST_VERTICES` corners of it.
 
     A larger hull keeps its outermost points in evenly spread directions and along the axes, so
     that it lies inside the true one and has the same bounding box.
     """
     import numpy as np
-    from trimesh.convex import convex_hull
 
-    hull = convex_hull(np.asarray(points, dtype=np.float64))
+    hull = full_hull(points)
     if len(hull.vertices) <= MOST_VERTICES:
         return hull
     axes = np.concatenate([np.eye(3), -np.eye(3)])
     directions = np.concatenate([axes, _spread(MOST_VERTICES - len(axes))])
     kept = np.unique((hull.vertices @ directions.T).argmax(axis=0))
-    return convex_hull(hull.vertices[kept])
+    return full_hull(hull.vertices[kept])
 
 
 def _spread(count: int) -> Any:
@@ -59,7 +95,7 @@ def is_flat(points: Any) -> bool:
     return bool(spans[-1] <= _FLAT * max(spans[0], 1e-12))
 
 
-def thickened(points: Any, thickness: float) -> Any:
+def thickened(points: Any, thickness: float) -> Hull:
     """The hull of points that have no volume, made `thickness` m thick where they are thinner."""
     import numpy as np
 
@@ -89,11 +125,11 @@ def is_convex(mesh: Any) -> bool:
     """Whether a closed mesh fills its hull within 1 %; one with openings is never convex."""
     if not mesh.is_watertight or is_flat(mesh.vertices):
         return False
-    volume = float(mesh.convex_hull.volume)
+    volume = full_hull(mesh.vertices).volume
     return abs(volume - abs(float(mesh.volume))) <= _SAME_VOLUME * volume
 
 
-def convex_pieces(mesh: Any) -> Optional[List[Any]]:
+def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
     """The hulls of a mesh's separate pieces when each is convex, such as a table of boxes."""
     import numpy as np
     from trimesh.graph import connected_components
@@ -107,18 +143,34 @@ def convex_pieces(mesh: Any) -> Optional[List[Any]]:
     return [hull_of(piece.vertices) for piece in pieces] if all(map(is_convex, pieces)) else None
 
 
-def drawn_in(points: Any, hull: Any) -> Any:
+def drawn_in(points: Any, hull: Hull) -> Any:
     """Points outside a hull moved onto it: V-HACD's parts stick out by half a voxel."""
     import numpy as np
 
-    normals = np.asarray(hull.face_normals)
-    offsets = np.einsum("ij,ij->i", normals, np.asarray(hull.triangles)[:, 0])
+    normals, offsets = hull.planes[:, :3], hull.planes[:, 3]
     moved = np.array(points, dtype=np.float64)
     for _ in range(_PROJECTIONS):
-        outside = moved @ normals.T - offsets
+        outside = moved @ normals.T + offsets
         worst = outside.argmax(axis=1)
         excess = np.maximum(outside[np.arange(len(moved)), worst], 0.0)
         moved -= normals[worst] * excess[:, None]
         if excess.max() < 1e-9:
             break
     return moved
+
+
+def stretched(parts: List[Any], points: Any) -> List[Any]:
+    """Points of parts moved so that all together they reach as far along the axes as `points`.
+
+    V-HACD's parts fall a little short of the mesh too, and what stands on them would sink in. Along
+    an axis where they fall far short, something is missing, and nothing is moved.
+    """
+    import numpy as np
+
+    together = np.concatenate(parts)
+    low, high = together.min(axis=0), together.max(axis=0)
+    true_low, true_high = points.min(axis=0), points.max(axis=0)
+    reach = true_high - true_low
+    short = np.maximum(abs(low - true_low), abs(high - true_high)) > _SHORT * reach
+    factor = np.where(short, 1.0, reach / np.where(high > low, high - low, 1.0))
+    return [np.where(short, part, true_low + (part - low) * factor) for part in parts]
