@@ -1,0 +1,254 @@
+"""What is legal but rarely meant: shapes without thickness, odd inertia, things inside each other.
+
+All findings are warnings, and on the careful side: a thing that only touches another, or whose
+exact shape is not known here, is never reported.
+"""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Iterator, List, Optional, Sequence, Tuple
+
+from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
+from .model import Inertial, Link, Model
+from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
+from .validate import Fault, Severity
+
+THINNEST_M = 1e-4
+DEEPEST_M = 0.005
+_TOO_LARGE = 10.0
+_TOO_SMALL = 0.01
+
+
+def advice(models: Sequence[Model]) -> Iterator[Fault]:
+    """Findings about models that stand in one world; each names its model and link."""
+    for model in models:
+        for name, link, _pose, static in links_of(model):
+            for collision in link.collisions:
+                yield from _thin(collision, name)
+            if not static:
+                yield from _odd_inertia(link, name)
+    yield from _overlaps(models)
+
+
+def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
+             static: bool = False) -> Iterator[Tuple[str, Link, Pose, bool]]:
+    """(scoped name, link, world pose, whether it stands still) of all links, nested ones too."""
+    name = f"{scope}{model.name}::"
+    base = compose(above, model.pose)
+    static = static or model.static
+    for link in model.links:
+        yield name + link.name, link, compose(base, link.pose), static or link.kinematic
+    for inner in model.models:
+        yield from links_of(inner, base, name, static)
+
+
+def half_extents(geometry: Geometry) -> Optional[Vec3]:
+    """Half the edges of the box around a shape in its own axes; None for meshes and planes."""
+    if isinstance(geometry, Box):
+        return scale(geometry.size, 0.5)
+    if isinstance(geometry, Sphere):
+        return (geometry.radius,) * 3
+    if isinstance(geometry, Ellipsoid):
+        return geometry.radii
+    if isinstance(geometry, Capsule):
+        return (geometry.radius, geometry.radius, geometry.length / 2 + geometry.radius)
+    if isinstance(geometry, Cylinder):
+        return (geometry.radius, geometry.radius, geometry.length / 2)
+    return None
+
+
+def _thin(collision: Collision, link: str) -> Iterator[Fault]:
+    half = half_extents(collision.geometry)
+    if half is not None and 2 * min(half) < THINNEST_M:
+        yield Fault("shape-thin", f"collision {collision.name!r} of {link!r} is"
+                    f" {2 * min(half):g} m thin; what moves passes through it", collision,
+                    Severity.WARNING, "give it a thickness of a millimetre or more")
+
+
+def thin_mesh(collision: Collision, link: str, extents: Sequence[float]) -> Iterator[Fault]:
+    """A collision mesh without thickness; `extents`: the edges of the box around it, metres."""
+    if min(extents) < THINNEST_M:
+        yield Fault("shape-thin", f"the mesh of collision {collision.name!r} of {link!r} is"
+                    f" {min(extents):g} m thin; what moves passes through it", collision,
+                    Severity.WARNING, "use a box of a millimetre or more, or a mesh with two sides")
+
+
+def _odd_inertia(link: Link, name: str) -> Iterator[Fault]:
+    """Moments that no filling of the collisions' bounding box could have."""
+    extents = _extents(link)
+    moments = _moments(link.inertial)
+    mass = link.inertial.mass
+    if extents is None or mass <= 0 or min(moments) <= 0:
+        return
+    x, y, z = (edge * edge for edge in extents)
+    for axis, moment, square in zip("xyz", moments, (y + z, x + z, x + y)):
+        # All of the mass in the box's edges gives a quarter, evenly spread it is a twelfth.
+        if moment > _TOO_LARGE * mass * square / 4:
+            yield Fault("inertia-odd", f"i{axis}{axis} of {name!r} is {moment:.3g} kg m^2; {mass:g}"
+                        f" kg within its collisions have {mass * square / 12:.3g} or so",
+                        link.inertial, Severity.WARNING,
+                        "compute the inertia from mass and size; without <inertial> SDF takes 1")
+            return
+        if moment < _TOO_SMALL * mass * square / 12:
+            yield Fault("inertia-odd", f"i{axis}{axis} of {name!r} is {moment:.3g} kg m^2, far too"
+                        f" little: {mass:g} kg of that size have {mass * square / 12:.3g} or so",
+                        link.inertial, Severity.WARNING,
+                        "compute the inertia from mass and size")
+            return
+
+
+def _moments(inertial: Inertial) -> Vec3:
+    """The diagonal in link axes, where the tensor is turned by quarters; else its mean thrice."""
+    diagonal = (inertial.ixx, inertial.iyy, inertial.izz)
+    if inertial.pose.orientation == IDENTITY.orientation:
+        return diagonal
+    mean = sum(diagonal) / 3
+    return (mean, mean, mean)
+
+
+def _extents(link: Link) -> Optional[Vec3]:
+    """Edges of the box around all collisions, in link axes; None unless all sizes are known."""
+    low, high = [math.inf] * 3, [-math.inf] * 3
+    for collision in link.collisions:
+        reach = _reach(collision.geometry, collision.pose)
+        if reach is None:
+            return None
+        for n in range(3):
+            low[n] = min(low[n], collision.pose.position[n] - reach[n])
+            high[n] = max(high[n], collision.pose.position[n] + reach[n])
+    if not link.collisions:
+        return None
+    return (high[0] - low[0], high[1] - low[1], high[2] - low[2])
+
+
+def _reach(geometry: Geometry, pose: Pose) -> Optional[Vec3]:
+    """How far the shape's box reaches from its centre along the axes of the frame of `pose`."""
+    half = half_extents(geometry)
+    if half is None:
+        return None
+    q = pose.orientation
+    x, y, z = (rotate(q, axis) for axis in ((half[0], 0.0, 0.0), (0.0, half[1], 0.0),
+                                            (0.0, 0.0, half[2])))
+    return (abs(x[0]) + abs(y[0]) + abs(z[0]), abs(x[1]) + abs(y[1]) + abs(z[1]),
+            abs(x[2]) + abs(y[2]) + abs(z[2]))
+
+
+@dataclass
+class _Core:
+    """A box with world axes that lies wholly inside a shape."""
+
+    model: str
+    link: str
+    low: Vec3
+    high: Vec3
+    static: bool
+    collision: Collision
+
+
+def _overlaps(models: Sequence[Model]) -> Iterator[Fault]:
+    """Pairs of different models, one of which moves, that start inside each other."""
+    cores: List[_Core] = []
+    planes: List[Tuple[str, Pose, Plane]] = []
+    movers: List[Tuple[str, Collision, Pose]] = []
+    for model in models:
+        for name, link, pose, static in links_of(model):
+            for collision in link.collisions:
+                if collision.surface.collide_without_contact:
+                    continue
+                at = compose(pose, collision.pose)
+                if isinstance(collision.geometry, Plane):
+                    planes.append((name, at, collision.geometry))
+                    continue
+                core = _core(collision.geometry, at)
+                if core is not None:
+                    cores.append(_Core(model.name, name, *core, static, collision))
+                if not static:
+                    movers.append((name, collision, at))
+    yield from _in_planes(planes, movers)
+    yield from _in_each_other(cores)
+
+
+def _core(geometry: Geometry, pose: Pose) -> Optional[Tuple[Vec3, Vec3]]:
+    half = half_extents(geometry)
+    if half is None:
+        return None
+    inner = _inscribed(geometry, half)
+    reach = _reach(Box(scale(inner, 2.0)), pose)
+    if reach is None or not _is_along_axes(pose):
+        # Whatever the rotation, the ball inside holds this cube.
+        reach = (min(half) / math.sqrt(3),) * 3
+    p = pose.position
+    return ((p[0] - reach[0], p[1] - reach[1], p[2] - reach[2]),
+            (p[0] + reach[0], p[1] + reach[1], p[2] + reach[2]))
+
+
+def _inscribed(geometry: Geometry, half: Vec3) -> Vec3:
+    if isinstance(geometry, Box):
+        return half
+    if isinstance(geometry, Cylinder):
+        side = half[0] / math.sqrt(2)
+        return (side, side, half[2])
+    if isinstance(geometry, Capsule):
+        side = half[0] / math.sqrt(2)
+        return (side, side, geometry.length / 2)
+    return scale(half, 1 / math.sqrt(3))
+
+
+def _is_along_axes(pose: Pose) -> bool:
+    axes = (rotate(pose.orientation, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
+    return all(max(map(abs, axis)) > 1 - 1e-9 for axis in axes)
+
+
+def _in_planes(planes: Sequence[Tuple[str, Pose, Plane]],
+               movers: Sequence[Tuple[str, Collision, Pose]]) -> Iterator[Fault]:
+    for ground, at, plane in planes:
+        normal = rotate(at.orientation, scale(plane.normal, 1 / norm(plane.normal)))
+        level = dot(normal, at.position)
+        for name, collision, pose in movers:
+            depth = level - dot(normal, pose.position) + _support(collision.geometry, pose, normal)
+            if name.split("::")[0] != ground.split("::")[0] and depth > DEEPEST_M:
+                yield _inside(name, ground, depth, collision)
+
+
+def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
+    """How far the shape reaches from its centre against `normal`, or less where not known."""
+    half = half_extents(geometry)
+    if half is None:
+        return -math.inf
+    n = rotate(conjugate(pose.orientation), normal)
+    if isinstance(geometry, Sphere):
+        return geometry.radius
+    if isinstance(geometry, Cylinder):
+        return math.hypot(n[0], n[1]) * geometry.radius + abs(n[2]) * geometry.length / 2
+    if isinstance(geometry, Capsule):
+        return geometry.radius + abs(n[2]) * geometry.length / 2
+    if isinstance(geometry, Ellipsoid):
+        return norm((n[0] * half[0], n[1] * half[1], n[2] * half[2]))
+    return abs(n[0]) * half[0] + abs(n[1]) * half[1] + abs(n[2]) * half[2]
+
+
+def _in_each_other(cores: List[_Core]) -> Iterator[Fault]:
+    """Sorted along x, each is compared with those that begin before it ends."""
+    cores = sorted(cores, key=lambda core: core.low[0])
+    for n, one in enumerate(cores):
+        for other in cores[n + 1:]:
+            if other.low[0] > one.high[0] - DEEPEST_M:
+                break
+            if one.model == other.model or (one.static and other.static):
+                continue
+            depth = min(min(one.high[i], other.high[i]) - max(one.low[i], other.low[i])
+                        for i in range(3))
+            if depth > DEEPEST_M and _may_touch(one.collision, other.collision):
+                mover, still = (other, one) if one.static else (one, other)
+                yield _inside(mover.link, still.link, depth, mover.collision)
+
+
+def _may_touch(one: Collision, other: Collision) -> bool:
+    return bool(one.surface.collide_bitmask & other.surface.collide_bitmask)
+
+
+def _inside(mover: str, still: str, depth: float, collision: Collision) -> Fault:
+    return Fault("starts-inside", f"{mover!r} starts {depth * 1000:.3g} mm or more inside"
+                 f" {still!r}", collision, Severity.WARNING,
+                 "move one of them; they will be pushed apart")

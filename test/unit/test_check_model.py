@@ -1,0 +1,145 @@
+"""`check_model`, and the advice it gives."""
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from reading import INVALID, VALID, sdf
+
+from my_simulations.cli.check_model import check, main
+from my_simulations.errors import Severity
+from my_simulations.resources.resolver import Resolver
+
+ROOT = Path(__file__).resolve().parents[2]
+SHIPPED = [*sorted(ROOT.glob("world/**/*.world")), *sorted((ROOT / "models").iterdir()),
+           *sorted(p for p in (ROOT / "objects").iterdir() if p.suffix != ".xacro"),
+           ROOT / "urdf" / "robo.urdf"]
+GROUND = ('<model name="ground"><static>1</static><link name="l"><collision name="c"><geometry>'
+          "<plane/></geometry></collision></link></model>")
+
+
+def solid(name, pose, shape="<box><size>1 1 1</size></box>", moment=0.166667, static=0, mass=1):
+    tensor = "".join(f"<{i}>{moment}</{i}>" for i in ("ixx", "iyy", "izz"))
+    return (f'<model name="{name}"><pose>{pose}</pose><static>{static}</static><link name="l">'
+            f"<inertial><mass>{mass}</mass><inertia>{tensor}</inertia></inertial>"
+            f'<collision name="c"><geometry>{shape}</geometry></collision></link></model>')
+
+
+@pytest.fixture
+def found(tmp_path):
+    def run(*models):
+        path = tmp_path / "w.world"
+        path.write_text(sdf('<world name="w">\n' + "\n".join(models) + "</world>", "1.7"))
+        return check(str(path), Resolver())[1]
+
+    return run
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=[path.name for path in SHIPPED])
+def test_what_the_package_ships_is_clean(path):
+    loaded, issues = check(str(path), Resolver.from_environment())
+    assert loaded is not None
+    assert issues == []
+
+
+@pytest.mark.parametrize("pose", ["0 0 0.5 0 0 0", "0 0 0.496 0 0 0.7", "0 0 2 1 1 1"])
+def test_a_box_that_touches_the_ground_or_floats_is_fine(found, pose):
+    assert found(GROUND, solid("b", pose)) == []
+
+
+@pytest.mark.parametrize("pose, depth", [("0 0 0.4 0 0 0", "100"), ("0 0 0.5 0.785398 0 0", "207"),
+                                         ("0 0 -3 0 0 0", "3.5e+03")])
+def test_a_box_in_the_ground_is_reported(found, pose, depth):
+    (issue,) = found(GROUND, solid("b", pose))
+    assert issue.code == "starts-inside" and f"{depth} mm" in issue.message
+    assert issue.severity is Severity.WARNING and issue.line == 3
+    assert issue.xpath == "/sdf/world/model[2]/link/collision"
+
+
+@pytest.mark.parametrize("pose, inside", [
+    ("1 0 0.5 0 0 0", False), ("0.996 0 0.5 0 0 0", False), ("0.9 0 0.5 0 0 0", True),
+    ("1.1 0 0.5 0 0 0.785398", False), ("0.4 0 0.5 0 0 0.3", True), ("0 0 1.5 0 0 0", False),
+])
+def test_boxes_in_each_other_are_reported_and_neighbours_are_not(found, pose, inside):
+    issues = found(solid("a", "0 0 0.5 0 0 0"), solid("b", pose))
+    assert [issue.code for issue in issues] == ["starts-inside"] * inside
+
+
+def test_spheres_whose_boxes_overlap_may_still_be_apart(found):
+    ball = "<sphere><radius>0.5</radius></sphere>"
+    assert found(solid("a", "0 0 0.5 0 0 0", ball), solid("b", "0.8 0.8 0.5 0 0 0", ball)) == []
+
+
+def test_what_stands_still_may_overlap(found):
+    assert found(solid("a", "0 0 0 0 0 0", static=1), solid("b", "0.1 0 0 0 0 0", static=1)) == []
+
+
+@pytest.mark.parametrize("moment, odd", [
+    (0.166667, False), (0.5, False), (0.02, False), (60, True), (0.0001, True),
+])
+def test_inertia_far_from_what_the_shapes_could_have_is_reported(found, moment, odd):
+    issues = found(solid("a", "0 0 5 0 0 0", moment=moment))
+    assert [issue.code for issue in issues] == ["inertia-odd"] * odd
+
+
+def test_inertia_that_no_body_has_is_reported(tmp_path):
+    path = tmp_path / "m.sdf"
+    path.write_text(sdf('<model name="m"><link name="l"><inertial><inertia><ixx>1</ixx><iyy>1</iyy>'
+                        "<izz>3</izz></inertia></inertial></link></model>", "1.7"))
+    assert [i.code for i in check(str(path), Resolver())[1]] == ["inertia-impossible"]
+
+
+@pytest.mark.parametrize("shape", ["<box><size>1 1 0.00001</size></box>",
+                                   "<cylinder><radius>1</radius><length>1e-5</length></cylinder>"])
+def test_a_shape_without_thickness_is_reported(found, shape):
+    assert "shape-thin" in [i.code for i in found(solid("a", "0 0 5 0 0 0", shape, static=1))]
+
+
+def test_a_flat_mesh_is_reported(found, tmp_path):
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
+    issues = found(solid("a", "0 0 5 0 0 0", "<mesh><uri>flat.obj</uri></mesh>", static=1))
+    assert [issue.code for issue in issues] == ["shape-thin"]
+
+
+def test_a_mesh_in_inches_is_reported(found, tmp_path):
+    shutil.copy(Path(VALID) / "cube.stl", tmp_path / "cube.stl")
+    shape = "<mesh><uri>cube.stl</uri><scale>40 40 40</scale></mesh>"
+    assert "mesh-size-odd" in [i.code for i in found(solid("a", "0 0 99 0 0 0", shape))]
+
+
+def test_errors_give_1_and_warnings_0(tmp_path, capsys):
+    warned = tmp_path / "w.sdf"
+    warned.write_text(sdf('<model name="m"><static>1</static><oops/></model>', "1.7"))
+    assert main(["check_model", str(warned)]) == 0
+    assert f"{warned}:1: warning: element <oops>" in capsys.readouterr().out
+    assert main(["check_model", str(Path(INVALID) / "mass_zero.sdf"), str(warned)]) == 1
+    out = capsys.readouterr().out
+    assert "mass_zero.sdf:" in out and "error:" in out and "[/sdf/model/" in out
+
+
+@pytest.mark.parametrize("argv", [[], ["--what", "x.sdf"]])
+def test_a_wrong_command_line_gives_2(argv, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["check_model", *argv])
+    assert end.value.code == 2
+    assert "usage: check_model" in capsys.readouterr().err
+
+
+def test_a_file_that_is_not_there_and_a_folder_without_model_are_errors(tmp_path, capsys):
+    assert main(["check_model", str(tmp_path / "none.sdf"), str(tmp_path)]) == 1
+    out = capsys.readouterr().out
+    assert "none.sdf: error: cannot be read" in out and "holds no model.config" in out
+
+
+def test_json_counts_what_a_file_holds(capsys):
+    assert main(["check_model", "--json", str(ROOT / "world" / "test.world"),
+                 str(ROOT / "models" / "sun"), str(Path(INVALID) / "not_xml.sdf")]) == 1
+    world, sun, broken = (json.loads(line) for line in capsys.readouterr().out.splitlines())
+    assert world["models"] == world["links"] == 6 and world["lights"] == 1
+    assert world["collisions"]["plane"] == 1 and world["collisions"]["sphere"] == 1
+    assert sum(world["collisions"].values()) == world["visuals"] == 15
+    assert world["joints"] == world["plugins"] == 0 and world["issues"] == []
+    assert (sun["models"], sun["lights"]) == (0, 1)
+    assert broken["issues"][0]["severity"] == "error" and broken["models"] == 0
