@@ -8,11 +8,13 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 from conftest import arm, ball, box, ground
 
-from my_simulations.description.model import JointAxis
-from my_simulations.description.world import Physics, World
+from my_simulations.description.model import Inertial, JointAxis, Link, Model
+from my_simulations.description.shapes import Collision, Mesh, MeshData, mesh_key
+from my_simulations.description.world import InitialState, Physics, World
 from my_simulations.engine.api import FOREVER, Load
 from my_simulations.engine.process import ProcessEngine
 from my_simulations.errors import CommandError, EngineLost
@@ -170,3 +172,39 @@ def test_the_same_world_and_commands_give_the_same_bits_in_another_process_and_a
     first.reset_simulation()
     first.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
     assert _run(first) == expected
+
+
+def test_a_world_starts_at_its_saved_time_with_its_velocities_and_joint_positions():
+    pendulum = arm("revolute", JointAxis((0, 1, 0)))
+    world = World(models=[ball(), pendulum], initial_ns=2_500_000_000, initial={
+        "ball": InitialState({"link": Twist((1, 0, 0), (0, 0, 2))}),
+        "arm": InitialState(joints={"hinge": 0.4})})
+    sim = Simulator(world, engine_factory=ProcessEngine, paused=True, log=print)
+    try:
+        sim.start()
+        for _ in range(2):   # again after a reset, which goes back to time 0
+            assert sim.model_state("ball")[1] == Twist((1, 0, 0), (0, 0, 2))
+            assert sim.joint_state("hinge") == (0.4, 0.0)
+            assert sim.sim_ns() == world.initial_ns
+            sim.advance(10)
+            sim.reset_simulation()
+            world.initial_ns = 0
+    finally:
+        sim.close()
+
+
+def test_a_moving_concave_mesh_is_divided_before_it_is_spawned(start, tmp_path, monkeypatch):
+    from test_contact import _cube_mesh
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    cube = _cube_mesh()
+    boxes = [((2, 1, 0.2), (0, 0, 0)), ((0.2, 1, 1), (-0.9, 0, 0.6)), ((0.2, 1, 1), (0.9, 0, 0.6))]
+    u = MeshData(np.concatenate([cube.vertices * size + at for size, at in boxes]),
+                 np.concatenate([cube.triangles + 8 * n for n in range(3)]))
+    mesh = Mesh("u", "/u")
+    sim = start()
+    sim.spawn(Model("u", links=[Link("link", inertial=Inertial(50, Pose(), 9, 0, 0, 9, 0, 9),
+                                     collisions=[Collision("c", mesh)])]),
+              Pose((0, 0, 0.1)), meshes={mesh_key(mesh): u})
+    sim.spawn(ball(radius=0.3), Pose((0, 0, 1.2)))
+    sim.advance(2000)
+    assert sim.model_state("ball")[0].position[2] == pytest.approx(0.5, abs=0.05)

@@ -38,7 +38,7 @@ from ..engine.api import (
 )
 from ..engine.ring import BELL, DEMAND_NS, JOINTS, LINKS, RingReader, Snapshot
 from ..engine.rows import axis_rows
-from ..errors import CommandError, Issue, error
+from ..errors import CommandError, Issue, Severity, error
 from ..geometry import (
     IDENTITY,
     STILL,
@@ -49,8 +49,10 @@ from ..geometry import (
     normalised,
 )
 from .frames import in_frame, relative, usable
+from .initial import initial_commands
 from .layout import Layout, lay_out
 from .registry import Entity, Registry, Rows
+from .solids import ConvexParts
 from .states import States, collect
 from .supervisor import Supervisor
 
@@ -79,6 +81,7 @@ class Simulator:
         self._joint_rows = Rows(JOINTS)
         self._next_id = 0
         self._loads: Dict[int, Load] = {}
+        self._starts = dict(world.initial)
         self._physics = world.physics
         self._gravity = world.gravity
         self._paused = paused
@@ -86,6 +89,7 @@ class Simulator:
         self._cached: Optional[States] = None
         self._layout: Optional[Layout] = None
         self._demand = (0, False)
+        self._solids = ConvexParts(log, lambda text: log(Issue(Severity.NOTE, "meshes", text)))
         self._supervisor = Supervisor(engine_factory, self._restore, log)
 
     # -- life ------------------------------------------------------------------------------------
@@ -97,6 +101,8 @@ class Simulator:
         is no engine.
         """
         self._call(SetPhysics(self._settings()))
+        started = self.world.initial_ns
+        self._call(SetClock(round(started * 1e-9 / self._physics.max_step_size), started))
         for model in self.world.models:
             try:
                 self.spawn(model, meshes=self._world_meshes.get(model.name))
@@ -260,6 +266,7 @@ class Simulator:
         if not model.name:
             raise CommandError("a model needs a name")
         model = flattened(model)
+        meshes = self._solids.of(model, meshes or {})
         with self._order:
             with self._lock:
                 old = self._old(model.name, replace)
@@ -268,12 +275,12 @@ class Simulator:
                 at = Pose(at.position, normalised(at.orientation))
                 if anchor is not None:
                     at = compose(anchor.state(self._snapshot())[0], at)
-                entity = self._make(model, at, meshes or {})
+                entity = self._make(model, at, meshes)
             try:
-                loading: Command = self._loading(entity)
-                if old is not None:
-                    loading = Batch((loading, RemoveModel(old.model_id)))
-                self._call(loading)
+                self._call(Batch(tuple([
+                    self._loading(entity),
+                    *initial_commands(entity, self._starts.pop(model.name, None)),
+                    *([] if old is None else [RemoveModel(old.model_id)])])))
             except CommandError:
                 with self._lock:
                     self._free(entity)
@@ -417,6 +424,7 @@ class Simulator:
             for entity in self._registry.entities():
                 entity.pose = entity.initial_pose
                 commands.append(self._loading(entity))
+                commands += initial_commands(entity, self.world.initial.get(entity.model.name))
             self._loads.clear()
             self._registry.revision += 1
             self._call(Batch(tuple(commands)))

@@ -1,0 +1,34 @@
+"""What a model starts with besides its pose: joint positions and velocities of a saved state."""
+from __future__ import annotations
+
+from typing import List, Optional
+
+from ..description.world import InitialState
+from ..engine.api import Command, SetJoints, SetLinkState, SetModelState
+from ..geometry import compose
+from .registry import Entity
+
+
+def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Command]:
+    """The commands that give a model just loaded what the saved state says.
+
+    A model without joints gets the velocity of each link, an articulated one that of its canonical
+    link as a rigid body's; its joints are at rest.
+    """
+    if start is None or entity.model.static:
+        return []
+    commands: List[Command] = []
+    positions = tuple((entity.first_joint_row + n, start.joints[name], 0.0)
+                      for n, name in enumerate(entity.joint_names) if name in start.joints)
+    if positions:
+        commands.append(SetJoints(positions))
+    for n, link in enumerate(entity.model.links):
+        twist = start.twists.get(link.name)
+        if twist is None:
+            continue
+        pose = compose(entity.initial_pose, link.pose)
+        if not entity.model.joints:
+            commands.append(SetLinkState(entity.first_link_row + n, pose, twist))
+        elif n == entity.canonical:
+            commands.append(SetModelState(entity.model_id, entity.initial_pose, twist))
+    return commands
