@@ -143,3 +143,10 @@ def test_json_counts_what_a_file_holds(capsys):
     assert world["joints"] == world["plugins"] == 0 and world["issues"] == []
     assert (sun["models"], sun["lights"]) == (0, 1)
     assert broken["issues"][0]["severity"] == "error" and broken["models"] == 0
+
+
+def test_a_room_can_be_furnished():
+    there = {path.name for path in (ROOT / "models").iterdir()}
+    assert there >= {"sun", "ground_plane", "unit_box", "unit_sphere", "unit_cylinder", "table",
+                     "chair", "shelf", "cabinet", "door", "wall", "bin", "cone", "crate", "ramp",
+                     "stairs"}
