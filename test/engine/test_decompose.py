@@ -307,3 +307,8 @@ def test_parts_are_stretched_to_the_reach_of_the_mesh_but_not_over_what_is_missi
     one, other = stretched(parts, reach)
     assert one[0] == pytest.approx([0.0, 0.0, 0.0]) and other[1] == pytest.approx([1.0, 1.0, 0.6])
     assert one[1] == pytest.approx([0.5, 1.0, 0.5])
+
+
+def test_a_hull_of_points_next_to_flat_is_made_all_the_same():
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 1e-17)])
+    assert full_hull(points).volume < 1e-6

@@ -45,12 +45,12 @@ def full_hull(points: Any) -> Hull:
     """The convex hull of an array (n, 3) whose points do not lie in a plane."""
     # Not trimesh's, which turns the faces with networkx; Qhull knows which way they look.
     import numpy as np
-    from scipy.spatial import ConvexHull, QhullError
+    from scipy.spatial import ConvexHull
 
     points = np.asarray(points, dtype=np.float64)
     try:
         found = ConvexHull(points, qhull_options="Pp Qt")
-    except QhullError:  # next to flat: Qhull may shake the points by its rounding error
+    except RuntimeError:  # next to flat: Qhull may shake the points by its rounding error
         found = ConvexHull(points, qhull_options="Pp QJ")
     corners = found.points[found.simplices]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
