@@ -82,6 +82,7 @@ install_system_packages() {
   else
     lists+=("$CLONE/tools/apt-packages-ros.txt")
   fi
+  [ "$WITH_TEST_TOOLS" = 0 ] || lists+=("$CLONE/tools/apt-packages-test.txt")
   mapfile -t wanted < <(for list in "${lists[@]}"; do packages_of "$list"; done)
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   if [ "${#missing[@]}" -gt 0 ]; then
