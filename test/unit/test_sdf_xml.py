@@ -5,7 +5,7 @@ import pytest
 from reading import DATA, codes, errors, refusal, sdf, warnings
 
 from my_simulations.errors import InputError, Severity
-from my_simulations.formats.load import read_entity
+from my_simulations.formats.load import read_entity, read_world, read_world_text
 from my_simulations.formats.source import Log
 from my_simulations.formats.xmlrepair import balanced
 from my_simulations.formats.xmltext import parse
@@ -154,3 +154,31 @@ def test_balancing_leaves_a_sound_text_as_it_is():
     text = '<a b="x > y"><!-- <c> --><![CDATA[<d>]]><e/>text</a>\n'
     result = balanced(text)
     assert (result.text, result.elements, result.repairs) == (text.rstrip(), 2, [])
+
+
+@pytest.mark.parametrize("inside, code", [
+    ("<a " + " ".join(f"b{i}='1'" for i in range(5000)) + "/>", "xml-too-large"),
+    ("<a " + " ".join(f"b{i}=1" for i in range(5000)) + "/>", "xml-too-large"),
+    ("<a b='" * 5000, "xml-malformed"),
+    ("<a>" * 200000, "xml-too-deep"),
+    ("<a/>" * 2000001, "xml-too-large"),
+])
+def test_masses_are_refused(inside, code):
+    fault = refusal(read_world_text, f"<sdf version='1.6'><world name='w'>{inside}</world></sdf>",
+                    Resolver())
+    assert fault.first.code == code
+
+
+def test_a_file_larger_than_is_read_is_refused_without_reading_it_whole(tmp_path):
+    path = tmp_path / "big.world"
+    with open(path, "wb") as stream:
+        stream.write(b"<sdf version='1.6'><world name='")
+        stream.seek(1 << 30)
+        stream.write(b"'/></sdf>")
+    assert refusal(read_world, str(path), Resolver()).first.code == "xml-too-large"
+
+
+def test_unknown_names_without_end_are_not_all_told():
+    _, issues = read_world_text("<sdf version='1.6'><world name='w'>" + "".join(
+        f"<x{i}/>" for i in range(3000)) + "</world></sdf>", Resolver())
+    assert len(issues) < 1000 and issues[-1].code == "unknown-many"

@@ -14,7 +14,7 @@ from .sdf_model import Changes, Placement, read_model
 from .sdf_versions import upgrade
 from .sdf_world import read_world_element
 from .source import Level, Log, Source
-from .xmltext import parse
+from .xmltext import LARGEST, parse
 
 Text = Union[str, bytes]
 Entity = Union[Model, Light]
@@ -130,7 +130,7 @@ def _refuse_xacro(root: Any, source: Source) -> None:
 def _content(path: str) -> bytes:
     try:
         with open(path, "rb") as stream:
-            return stream.read()
+            return stream.read(LARGEST + 1)  # the parser refuses what is larger
     except OSError as fault:
         code = "file-not-found" if isinstance(fault, FileNotFoundError) else "file-unreadable"
         raise InputError(

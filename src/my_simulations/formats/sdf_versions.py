@@ -131,5 +131,6 @@ def _from_1_9(root: Any, source: Source) -> None:
 
 
 _STEPS: List[Tuple[Tuple[int, ...], Callable[[Any], None]]] = [
-    ((1, 2), values_to_elements), ((1, 4), _to_1_4), ((1, 5), _to_1_5), ((1, 6), _to_1_6), ((1, 7), _to_1_7),
+    ((1, 2), values_to_elements), ((1, 4), _to_1_4), ((1, 5), _to_1_5), ((1, 6), _to_1_6),
+    ((1, 7), _to_1_7),
 ]

@@ -8,6 +8,9 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 from ..errors import Issue, Severity
 from ..resources.resolver import Resolver
 
+_MOST_PATHS = 1000
+"""Issues with an XPath; finding one takes as long as the element has siblings."""
+
 _LAST_LINE = 65535
 """libxml2 counts no further; an element that seems to stand there may stand anywhere below."""
 
@@ -27,6 +30,7 @@ class Log:
         fatal: how many of them make the entity they are in unusable.
         includes: how many includes were followed.
         told: kinds of elements of which it was said that they do nothing here.
+        unknown: how many unknown elements and attributes were met.
     """
 
     def __init__(self) -> None:
@@ -34,6 +38,7 @@ class Log:
         self.fatal = 0
         self.includes = 0
         self.told: Set[str] = set()
+        self.unknown = 0
         self._seen: Set[Issue] = set()
 
     def add(self, issue: Issue, fatal: bool = False) -> None:
@@ -72,7 +77,8 @@ class Source:
         return {
             "file": self.file,
             "line": line if line < _LAST_LINE else 0,
-            "xpath": element.getroottree().getpath(element),
+            "xpath": element.getroottree().getpath(element)
+            if len(self.log.issues) < _MOST_PATHS else "",
         }
 
     def report(

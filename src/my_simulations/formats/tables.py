@@ -201,6 +201,10 @@ def set_value(target: Any, value: Value, text: str, element: Any, name: str, sou
     return True
 
 
+_MOST_UNKNOWN = 500
+"""Unknown names told one by one; a document with more is of another kind."""
+
+
 class _Filler:
     __slots__ = ("_table", "_source", "_extra", "_found", "_level")
 
@@ -254,6 +258,13 @@ class _Filler:
             self._found.setdefault(BAD, []).append(element)
 
     def _unknown(self, what: str, name: str, element: Any, known: List[str]) -> None:
+        log = self._source.log
+        log.unknown += 1
+        if log.unknown > _MOST_UNKNOWN:
+            if log.unknown == _MOST_UNKNOWN + 1:
+                self._source.warn("unknown-many", "more unknown elements and attributes follow;"
+                                  " they are not listed", element)
+            return
         parent = element.getparent() if what.startswith("element") else element
         inside = parent.tag if parent is not None else self._table.name
         self._source.warn(

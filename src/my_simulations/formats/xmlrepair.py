@@ -14,6 +14,9 @@ _STOP = re.compile(r"""["'>]""")
 _NAME = re.compile(r"[A-Za-z_:À-￿][^\s/>\"'<=]*")
 _ATTRIBUTE = re.compile(r"""([A-Za-z_:][\w:.-]*)\s*=\s*("[^"]*"|'[^']*'|[^\s"'=]+)""")
 MAX_DEPTH = 200
+MOST_ATTRIBUTES = 1000
+"""The time the parser takes grows with their square."""
+
 _MAX_REPAIRS = 200
 _SKIP = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">"))
 
@@ -134,6 +137,9 @@ class _Balancer:
         """Quotes and blanks that attributes lack."""
         inside = self._text[position:end]
         found = list(_ATTRIBUTE.finditer(inside))
+        if len(found) > MOST_ATTRIBUTES:
+            self._result.hopeless = f"an element has more than {MOST_ATTRIBUTES} attributes"
+            return
         bare = [a for a in found if a.group(2)[0] not in "\"'"]
         tight = [a for a in found if a.start() and not inside[a.start() - 1].isspace()]
         if not bare and not tight:

@@ -19,7 +19,11 @@ _BOMS = (
     (b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe\x00\x00", "utf-32"),
     (b"\x00\x00\xfe\xff", "utf-32"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"),
 )
-_LARGEST = 64 << 20
+LARGEST = 64 << 20
+"""Bytes of a document."""
+
+_MOST_TAGS = 2000000
+_LONG_TAG = re.compile(rb"<[^<]{8000,}")
 
 
 def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
@@ -36,11 +40,12 @@ def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
     from lxml import etree
 
     data = text.encode("utf-8", "replace") if isinstance(text, str) else text
-    if len(data) > _LARGEST:
-        raise _fault("xml-too-large", f"the document is larger than {_LARGEST >> 20} MB", file)
+    if len(data) > LARGEST:
+        raise _fault("xml-too-large", f"the document is larger than {LARGEST >> 20} MB", file)
     if not data.strip(b" \t\r\n\0"):
         raise _fault("xml-empty", "the document is empty", file)
     _refuse_entities(data, file)
+    _refuse_masses(data, file)
     try:
         root = etree.fromstring(
             _declaration_first(data), _strict_parser("utf-8" if isinstance(text, str) else None)
@@ -65,6 +70,20 @@ def _refuse_entities(data: bytes, file: str) -> None:
             "xml-entities", "the document declares entities, which are not read", file, line,
             hint="write the text out instead",
         )
+
+
+def _refuse_masses(data: bytes, file: str) -> None:
+    """Documents that would fill the memory, or on which the parser would spend minutes."""
+    from .xmlrepair import MOST_ATTRIBUTES
+
+    if data.count(b"<") > _MOST_TAGS:
+        raise _fault("xml-too-large", f"the document holds more than {_MOST_TAGS} tags", file)
+    for found in _LONG_TAG.finditer(data):
+        tag = found.group().split(b">", 1)[0]
+        if tag.count(b"=") > MOST_ATTRIBUTES:
+            line = data.count(b"\n", 0, found.start()) + 1
+            raise _fault("xml-too-large", f"an element has more than {MOST_ATTRIBUTES} attributes",
+                         file, line)
 
 
 def _declaration_first(data: bytes) -> bytes:
