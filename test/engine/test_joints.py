@@ -18,7 +18,17 @@ from my_simulations.engine.api import (
     SetLinkState,
     SetModelState,
 )
-from my_simulations.geometry import IDENTITY, Pose, Twist, compose, quat_from_rpy, transform
+from my_simulations.geometry import (
+    IDENTITY,
+    Pose,
+    Twist,
+    compose,
+    dot,
+    quat_from_rpy,
+    rotate,
+    transform,
+    twist_at,
+)
 
 Y = (0.0, 1.0, 0.0)
 
@@ -392,3 +402,59 @@ def test_a_ball_joint_is_restored_with_its_turn_and_spin(lab: Lab):
                          (state.links[n].twist.angular, lab.twist(second, link).angular)):
             sign = -1 if len(was) == 4 and was[3] * now[3] < 0 else 1   # q and -q turn alike
             assert [sign * v for v in now] == pytest.approx(was, abs=1e-6)
+
+
+def test_efforts_stay_within_the_limits_of_their_axis(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    weak = lab.load(arm("revolute", JointAxis((0, 0, 1), effort=1.0)))
+    slow = lab.load(arm("revolute", JointAxis((0, 0, 1), velocity=0.5)), (5, 0, 0))
+    lab.apply(AddLoads(tuple(Load(n, lab.joint_rows[model, "hinge"], 0, FOREVER, effort=10.0)
+                             for n, model in enumerate((weak, slow)))))
+    lab.steps(200)
+    assert lab.joint(weak)[1] == pytest.approx(0.2 / 1.001, rel=1e-3)
+    assert 0.5 < lab.joint(slow)[1] < 0.52
+
+
+@pytest.mark.parametrize("mass", [0.001, 1.0, 1000.0])
+@pytest.mark.parametrize("share", [0.1, 1.0, 10.0])
+def test_a_damper_up_to_ten_masses_a_step_is_stable_at_any_mass(lab: Lab, mass: float,
+                                                               share: float):
+    damping = share * mass / 1e-3
+    model = lab.load(arm("prismatic", JointAxis((0, 0, 1), damping=damping), mass=mass))
+    lab.seconds(1)
+    # It falls at the speed at which the damper carries the weight.
+    assert lab.joint(model)[1] == pytest.approx(-9.8 * mass / damping, rel=0.02)
+
+
+@pytest.mark.parametrize("mass", [0.001, 1.0, 1000.0])
+def test_a_spring_carries_the_weight_at_its_closed_form_at_any_mass(lab: Lab, mass: float):
+    stiffness = 400.0 * mass   # 20 rad/s
+    model = lab.load(arm("prismatic", JointAxis((0, 0, 1), spring_stiffness=stiffness,
+                                                damping=20.0 * mass), mass=mass))
+    lab.seconds(2)
+    assert lab.joint(model)[0] == pytest.approx(-9.8 * mass / stiffness, rel=0.02)
+
+
+def test_a_double_pendulum_keeps_its_energy(lab: Lab):
+    def bob(name: str, x: float) -> Link:
+        return Link(name, Pose((x, 0, 0)), Inertial(1, Pose((1, 0, 0)), 1e-3, 0, 0, 1e-3, 0, 1e-3))
+
+    model = lab.load(Model("double", links=[bob("a", 0.0), bob("b", 1.0)], joints=[
+        Joint("upper", "revolute", "world", "a", axis=JointAxis(Y)),
+        Joint("lower", "revolute", "a", "b", axis=JointAxis(Y))]))
+
+    def energy() -> float:
+        total = 0.0
+        for name in "ab":
+            pose, twist = lab.pose(model, name), lab.twist(model, name)
+            bob_at = transform(pose, (1, 0, 0))
+            speed = twist_at(twist, rotate(pose.orientation, (1, 0, 0))).linear
+            total += (dot(speed, speed) + 1e-3 * dot(twist.angular, twist.angular)) / 2
+            total += 9.8 * bob_at[2]
+        return total
+
+    start = energy()
+    # The whole swing moves 2 * 9.8 * 3 J about; a first-order integrator at 1 ms keeps 1 % of it.
+    for _ in range(100):
+        lab.steps(100)
+        assert energy() == pytest.approx(start, abs=0.01 * 58.8)

@@ -7,10 +7,10 @@ from ..errors import Issue, Severity
 
 
 def log_issue(issue: Issue) -> None:
-    """Log an issue at the level of its severity; a note is for those who debug."""
+    """Log an issue at the level of its severity."""
     if issue.severity is Severity.ERROR:
         rospy.logerr("%s", issue)
     elif issue.severity is Severity.WARNING:
         rospy.logwarn("%s", issue)
     else:
-        rospy.logdebug("%s", issue)
+        rospy.loginfo("%s", issue)

@@ -343,6 +343,7 @@ class BulletBackend:
             position_rate = pybullet.getJointState(body.uid, axis.index)[:2]
             rate = position_rate[1] if twist is None else 0.0
             pybullet.resetJointState(body.uid, axis.index, position_rate[0], rate)
+        self._forces.disturbed(body)
         if body.moves and (body.rigid or body.base is not None):
             bodies.launch(body, target, _carried(lead, target, wanted, twist))
         self._readout.touch(body)
@@ -357,6 +358,7 @@ class BulletBackend:
             body, axis = self._axes[row]
             self._waker.around([body])
             pybullet.resetJointState(body.uid, axis.index, position, rate)
+            self._forces.disturbed(body)
             self._readout.touch(body)
 
     # -- loads and events ------------------------------------------------------------------------

@@ -4,8 +4,7 @@ PyBullet forgets external forces and joint torques after one step.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Callable, Dict, List, Set, Tuple
+from typing import Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -16,28 +15,41 @@ from ..plan import BASE
 from .bodies import Axis, Body, Part
 
 _NOTHING = (0.0, 0.0, 0.0)
+_TRUST = 0.5  # share of the newest look at what else accelerates an axis
 
 
-@dataclass
 class Damper:
     """Spring and damper of one axis, integrated implicitly so that no stiffness diverges.
 
-    With the effective inertia I of the axis, implicit Euler gives
-    w' = (w - dt k (q - r) / I) / (1 + dt d / I + dt^2 k / I); the torque is I (w' - w) / dt.
+    With the effective inertia I of the axis and the acceleration a that everything else gives it,
+    implicit Euler is w' = (w + dt (a - k (q - r) / I)) / (1 + dt d / I + dt^2 k / I); the torque
+    is I ((w' - w) / dt - a). What a was is seen in the steps before.
     """
 
-    uid: int
-    index: int
-    inertia: float
-    spec: JointAxis
+    def __init__(self, uid: int, index: int, inertia: float, spec: JointAxis) -> None:
+        self._joint = uid, index
+        self._inertia = inertia
+        self._spec = spec
+        self._other = 0.0
+        self._before: Optional[Tuple[float, float]] = None  # rate, own acceleration
+
+    def disturbed(self) -> None:
+        """The joint was set: its last change of rate says nothing."""
+        self._before = None
 
     def torque(self, dt: float) -> float:
         """The torque of this step, N m or N."""
-        position, rate = pybullet.getJointState(self.uid, self.index)[:2]
-        stiffness, damping = self.spec.spring_stiffness, self.spec.damping
-        pull = stiffness * (position - self.spec.spring_reference)
-        divisor = 1.0 + dt * (damping + dt * stiffness) / self.inertia
-        return (self.inertia * (rate / divisor - rate) / dt) - pull / divisor
+        position, rate = pybullet.getJointState(*self._joint)[:2]
+        if self._before is not None:
+            seen = (rate - self._before[0]) / dt - self._before[1]
+            self._other += _TRUST * (seen - self._other)
+        stiffness, damping = self._spec.spring_stiffness, self._spec.damping
+        pull = stiffness * (position - self._spec.spring_reference) / self._inertia
+        divisor = 1.0 + dt * (damping + dt * stiffness) / self._inertia
+        wanted = (rate + dt * (self._other - pull)) / divisor
+        own = (wanted - rate) / dt - self._other
+        self._before = rate, own
+        return self._inertia * own
 
 
 class Forces:
@@ -51,6 +63,7 @@ class Forces:
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
         self._dampers: Dict[int, Damper] = {}
+        self._limits: Dict[int, Tuple[float, float]] = {}
 
     def add_body(self, body: Body) -> None:
         """Know the rows of a new body."""
@@ -61,9 +74,20 @@ class Forces:
         for axis in body.axes:
             self._axes[axis.row] = (body, axis)
 
+    def set_limits(self, row: int, effort: float, rate: float) -> None:
+        """Limit what loads may do on the axis of `row`; negative: not (SDF, axis/limit)."""
+        if effort >= 0.0 or rate >= 0.0:
+            self._limits[row] = (effort, rate)
+
     def add_damper(self, row: int, damper: Damper) -> None:
         """Let a spring or damper act on the axis of `row`."""
         self._dampers[row] = damper
+
+    def disturbed(self, body: Body) -> None:
+        """The joints of a body were set."""
+        for axis in body.axes:
+            if axis.row in self._dampers:
+                self._dampers[axis.row].disturbed()
 
     def forget(self, body: Body) -> None:
         """Drop a body and every load on it."""
@@ -73,6 +97,7 @@ class Forces:
         for axis in body.axes:
             self._axes.pop(axis.row, None)
             self._dampers.pop(axis.row, None)
+            self._limits.pop(axis.row, None)
         rows = {part.row for part in body.parts}
         axes = {axis.row for axis in body.axes}
         self.clear([load.load_id for load in self._loads.values()
@@ -116,7 +141,7 @@ class Forces:
                 if load.effort is None:
                     self._push(load)
                 else:
-                    efforts[load.row] = efforts.get(load.row, 0.0) + load.effort
+                    efforts[load.row] = efforts.get(load.row, 0.0) + self._allowed(load)
         for row, damper in self._dampers.items():
             efforts[row] = efforts.get(row, 0.0) + damper.torque(dt)
         for row, effort in efforts.items():
@@ -127,6 +152,22 @@ class Forces:
             at = self._com(body, part)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
+
+    def _allowed(self, load: Load) -> float:
+        """An effort within the limits of its axis, each load by itself as in Gazebo.
+
+        Nothing in the direction in which the axis moves faster than its velocity limit.
+        """
+        effort = load.effort or 0.0
+        effort_limit, rate_limit = self._limits.get(load.row, (-1.0, -1.0))
+        if effort_limit >= 0.0:
+            effort = max(-effort_limit, min(effort_limit, effort))
+        if rate_limit >= 0.0:
+            body, axis = self._axes[load.row]
+            rate = pybullet.getJointState(body.uid, axis.index)[1]
+            if abs(rate) > rate_limit and rate * effort > 0.0:
+                return 0.0
+        return effort
 
     def _turn_over(self, step: int) -> None:
         starting = []

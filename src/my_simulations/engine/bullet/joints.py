@@ -26,6 +26,7 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
                                        targetVelocity=0.0, force=max(0.0, spec.friction))
         _limit(body, axis, spec, mass)
+        forces.set_limits(axis.row, spec.effort, spec.velocity)
         if spec.spring_stiffness or spec.damping * dt > _EXPLICIT_DAMPING * inertia:
             forces.add_damper(axis.row, Damper(body.uid, axis.index, inertia, spec))
         else:
