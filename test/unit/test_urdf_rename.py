@@ -66,9 +66,10 @@ def test_a_joint_of_sdf_to_no_link_is_an_error():
     assert "joint-link-unknown" in errors(issues)
 
 
-def test_mimic_is_kept_with_its_numbers():
+def test_mimic_is_read_and_kept_with_its_numbers():
     model, issues = robot_of(
-        robot_link("a") + robot_link("b") + robot_joint(
-            "j", "a", "b", "continuous", '<mimic joint="k" multiplier="-2" offset="0.5"/>'))
+        robot_link("a") + robot_link("b") + robot_link("c") + robot_joint(
+            "j", "a", "b", "continuous", '<mimic joint="k" multiplier="-2" offset="0.5"/>')
+        + robot_joint("k", "a", "c", "continuous"))
     assert model.joints[0].axis.mimic == Mimic("k", -2.0, 0.5)
-    assert "multiplier" in model.joints[0].extra[0] and codes(issues) == ["mimic-unsupported"]
+    assert "multiplier" in model.joints[0].extra[0] and codes(issues) == []

@@ -116,9 +116,9 @@ def test_a_continuous_joint_has_no_bounds():
     assert (joint.axis.effort, joint.axis.velocity) == (3, 4) and issues == []
 
 
-def test_mimic_is_ignored_with_a_warning():
-    _, issues = joint_of("continuous", '<mimic joint="other"/>')
-    assert codes(issues) == ["mimic-unsupported"]
+def test_a_mimic_of_no_joint_is_a_warning():
+    joint, issues = joint_of("continuous", '<mimic joint="other"/>')
+    assert joint.axis.mimic.joint == "other" and codes(issues) == ["mimic-joint-unknown"]
 
 
 @pytest.mark.parametrize("kind", ["floating", "planar"])

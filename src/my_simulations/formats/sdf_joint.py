@@ -15,8 +15,6 @@ from .source import Level, Source
 from .tables import Found, Table, Value, closest, fill, to_xml
 from .values import FLOAT, TEXT, VECTOR3
 
-MOVED = ("revolute", "prismatic", "fixed")
-"""Types the engine moves; others are kept and stand still."""
 
 @dataclass
 class Pending:
@@ -142,13 +140,13 @@ def _type(element: Any, source: Source) -> str:
     joint_type: str = (element.get("type") or "").strip()
     if not joint_type:
         source.report(Level.FATAL, "joint-type-missing", f"joint {name!r} has no type", element)
-    elif joint_type not in JOINT_TYPES and joint_type != "piston":
+    elif joint_type == "piston":
+        source.warn("joint-unsupported", f"joint {name!r}: the type piston is not moved", element,
+                    "it was dropped from the format; use prismatic")
+    elif joint_type not in JOINT_TYPES:
         source.report(Level.FATAL, "joint-type-unknown",
                       f"joint {name!r} has the unknown type {joint_type!r}", element,
                       closest(joint_type, list(JOINT_TYPES)))
-    elif joint_type not in (*MOVED, "continuous"):
-        source.warn("joint-unsupported", f"joint {name!r}: the type {joint_type} is not moved yet",
-                    element)
     return joint_type
 
 

@@ -190,7 +190,7 @@ _AXIS_CHILDREN: Mapping[str, Entry] = {
         "spring_reference": Value("spring_reference", FLOAT),
         "spring_stiffness": Value("spring_stiffness", FLOAT),
     }),
-    "mimic": Part("1.11", use=KEPT),
+    "mimic": Part("1.11"),
     **_kept("initial_position"),
 }
 AXIS = Table("axis", JointAxis, _AXIS_CHILDREN, level=FATAL)
@@ -200,11 +200,11 @@ JOINT = Table("joint", Joint, {
     "parent": Value("parent", TEXT), "child": Value("child", TEXT),
     "pose": Value("pose", POSE, FATAL),
     "axis": Part(),
-    "axis2": Part(use=KEPT),
-    "thread_pitch": Value("thread_pitch", FLOAT, use=KEPT),
-    "screw_thread_pitch": Part("1.10", use=KEPT),
-    "gearbox_ratio": Value("gearbox_ratio", FLOAT, use=KEPT),
-    "gearbox_reference_body": Value("gearbox_reference", TEXT, use=KEPT),
+    "axis2": Part(),
+    "thread_pitch": Value("thread_pitch", FLOAT),
+    "screw_thread_pitch": Part("1.10"),
+    "gearbox_ratio": Value("gearbox_ratio", FLOAT),
+    "gearbox_reference_body": Value("gearbox_reference", TEXT),
     **_kept("frame", "physics"), **_told("sensor"),
 }, known_attributes=("name", "type"))
 

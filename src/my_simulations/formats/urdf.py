@@ -9,7 +9,7 @@ from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose
 from .sdf_model import Changes
 from .source import Level, Source
-from .tables import fill
+from .tables import closest, fill
 from .urdf_gazebo import Extensions, moved
 from .urdf_inertia import is_zero, of_shapes
 from .urdf_joint import read_connection
@@ -240,6 +240,13 @@ class _RobotReader:
                               " shapes are left out", body.element)
 
     def _check(self) -> None:
+        known = [joint.name for joint in self._model.joints]
+        for joint in self._model.joints:
+            mimic = joint.axis.mimic if joint.axis is not None else None
+            if mimic is not None and mimic.joint not in known:
+                self._source.warn("mimic-joint-unknown", f"joint {joint.name!r} follows"
+                                  f" {mimic.joint!r}, which is not a joint of the model",
+                                  self._elements[id(joint)], closest(mimic.joint, known))
         for fault in faults(self._model):
             element = self._elements.get(id(fault.subject), self._element)
             self._source.log.add(

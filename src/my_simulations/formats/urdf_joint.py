@@ -59,8 +59,6 @@ def _follow(joint: Joint, element: Any, source: Source) -> None:
         f"<axis><mimic joint={quoteattr(mimic.joint)} axis=\"axis\"><multiplier>"
         f"{FLOAT.format(mimic.multiplier)}</multiplier><offset>{FLOAT.format(mimic.offset)}"
         "</offset><reference>0</reference></mimic></axis>")
-    source.warn("mimic-unsupported", f"joint {joint.name!r} does not follow {mimic.joint!r} here,"
-                " nor in Gazebo: <mimic> is kept only", element)
 
 
 def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[JointAxis]:

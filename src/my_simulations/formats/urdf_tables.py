@@ -131,8 +131,7 @@ MATERIAL = Table("material", Paint, {
 }, attributes={"name": Value("name", TEXT)}, level=WARNING, use=Use.SHOWN)
 
 JOINT = Table("joint", Ends, {
-    "origin": Part(), "axis": Part(), "limit": Part(), "dynamics": Part(),
-    "mimic": Part(use=Use.KEPT),
+    "origin": Part(), "axis": Part(), "limit": Part(), "dynamics": Part(), "mimic": Part(),
     "parent": Group(attributes={"link": Value("parent", TEXT)}),
     "child": Group(attributes={"link": Value("child", TEXT)}),
     **_ignored("safety_controller", "calibration"),

@@ -29,7 +29,7 @@ def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str
         InputError: there is no usable world.
     """
     from ..formats.load import read_world
-    from ..formats.state import apply_state, state_issues
+    from ..formats.state import apply_state
 
     try:
         path = resolver.resolve(name)
@@ -38,7 +38,7 @@ def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str
                                 hint="give its full path, or a folder of GAZEBO_RESOURCE_PATH "
                                      "that holds it")]) from missing
     world, issues = read_world(path, resolver)
-    for issue in [*issues, *state_issues(world)]:
+    for issue in issues:
         log(issue)
     world = apply_state(world)
     world.models, meshes = _with_meshes(world.models, log)
