@@ -312,3 +312,9 @@ def test_parts_are_stretched_to_the_reach_of_the_mesh_but_not_over_what_is_missi
 def test_a_hull_of_points_next_to_flat_is_made_all_the_same():
     points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 1e-17)])
     assert full_hull(points).volume < 1e-6
+
+
+def test_a_thin_wall_is_stretched_by_as_much_as_a_voxel():
+    reach = np.array([(0.0, 0.0, 0.0), (1.0, 1.0, 0.02)])
+    (part,) = stretched([np.array([(0.0, 0.0, 0.005), (1.0, 1.0, 0.01)])], reach)
+    assert part[:, 2] == pytest.approx([0.0, 0.02])

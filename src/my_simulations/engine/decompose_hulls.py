@@ -10,6 +10,7 @@ _SAME_VOLUME = 0.01  # a mesh that fills its hull up to this share is convex
 _FLAT = 1e-4         # thickness for each metre of extent, below which a mesh has no volume
 _PROJECTIONS = 50    # onto one face of a hull after the other
 _SHORT = 0.03        # of the extent
+_VOXEL = 0.02        # of the longest extent, about V-HACD's at this resolution
 _MOST_PIECES = 64    # more separate pieces than that are better merged than kept
 
 
@@ -171,6 +172,7 @@ def stretched(parts: List[Any], points: Any) -> List[Any]:
     low, high = together.min(axis=0), together.max(axis=0)
     true_low, true_high = points.min(axis=0), points.max(axis=0)
     reach = true_high - true_low
-    short = np.maximum(abs(low - true_low), abs(high - true_high)) > _SHORT * reach
+    allowed = np.maximum(_SHORT * reach, _VOXEL * reach.max())
+    short = np.maximum(abs(low - true_low), abs(high - true_high)) > allowed
     factor = np.where(short, 1.0, reach / np.where(high > low, high - low, 1.0))
     return [np.where(short, part, true_low + (part - low) * factor) for part in parts]
