@@ -139,6 +139,7 @@ def _content(path: str) -> bytes:
 
 
 def _open(text: Text, resolver: Resolver, file: str) -> Tuple[Source, Any]:
+    resolver.begin()
     log = Log()
     base_dir = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""
     trail = (os.path.abspath(file),) if base_dir else ()

@@ -1,16 +1,22 @@
 """From `model://`, `package://`, `file://` and plain paths to a file on this machine.
 
-The order of search is Gazebo's; nothing is ever fetched from a network. Look-up is lazy: an answer
-found in the first places never makes the package path be crawled.
+The order of search is Gazebo's. Look-up is lazy: an answer found in the first places never makes
+the package path be crawled. Nothing is fetched from a network unless GAZEBO_MODEL_DATABASE_URI
+names a model database, and then only models that no place on this machine holds.
 """
 from __future__ import annotations
 
 import os
-from typing import Callable, Iterator, List, Optional, Sequence, Tuple
+from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
 from .model_config import description_in
 from .own import PACKAGE, own_directory
 from .packages import ExportedPaths, FindPackage, PackageIndex
+
+DATABASE = "GAZEBO_MODEL_DATABASE_URI"
+
+Progress = Callable[[str, int, int], None]
+"""Called with a model's name, the bytes that have come, and those expected (0: not known)."""
 
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
 
@@ -33,6 +39,20 @@ class NotFound(Exception):
         super().__init__(f"{uri!r} was not found: {why}")
 
 
+class NotProvided(Exception):
+    """A model that a source of missing models cannot give; the text says why."""
+
+
+class MissingModels(Protocol):
+    """Where models come from that no place on this machine holds."""
+
+    def begin(self) -> None:
+        """A new document is being read."""
+
+    def provide(self, name: str) -> str:
+        """The folder of a model; raises NotProvided."""
+
+
 class Resolver:
     """Finds files by URI.
 
@@ -41,6 +61,7 @@ class Resolver:
         resource_paths: folders that plain relative paths and `file://` start from.
         find_package: from a ROS package's name to its folder; never called for other URIs.
         exported: more of both lists, asked for once, when the first ones hold no answer.
+        missing: asked for models that are nowhere here, None for nobody.
     """
 
     def __init__(
@@ -49,16 +70,21 @@ class Resolver:
         resource_paths: Sequence[str] = (),
         find_package: FindPackage = lambda name: None,
         exported: Callable[[], ExportedPaths] = ExportedPaths,
+        missing: Optional[MissingModels] = None,
     ) -> None:
         self._model_paths = list(model_paths)
         self._resource_paths = list(resource_paths)
         self._find_package = find_package
         self._exported = exported
+        self._missing = missing
         self._late: Optional[ExportedPaths] = None
 
     @classmethod
-    def from_environment(cls) -> "Resolver":
-        """A resolver with Gazebo's variables, ~/.gazebo/models, our own models and ROS packages."""
+    def from_environment(cls, progress: Optional[Progress] = None) -> "Resolver":
+        """A resolver with Gazebo's variables, ~/.gazebo/models, our own models and ROS packages.
+
+        `progress` hears of downloads (see `resources.database`).
+        """
         own = own_directory()
         models = [os.path.expanduser("~/.gazebo/models"), *_listed("GAZEBO_MODEL_PATH")]
         resources = _listed("GAZEBO_RESOURCE_PATH")
@@ -71,7 +97,17 @@ class Resolver:
         def find(name: str) -> Optional[str]:
             return own if name == PACKAGE and own else packages.find(name)
 
-        return cls(models, resources, find, packages.exported)
+        missing: Optional[MissingModels] = None
+        if os.environ.get(DATABASE, "").strip():
+            from .database import ModelDatabase
+
+            missing = ModelDatabase.from_environment(progress)
+        return cls(models, resources, find, packages.exported, missing)
+
+    def begin(self) -> None:
+        """A new document is being read: what could not be downloaded may be tried again."""
+        if self._missing is not None:
+            self._missing.begin()
 
     def resolve(self, uri: str, base_dir: str = "") -> str:
         """The absolute path of what `uri` names, a file or a folder.
@@ -92,6 +128,19 @@ class Resolver:
                 return os.path.abspath(candidate)
             if candidate not in tried:
                 tried.append(candidate)
+        return self._provided(uri, tried)
+
+    def _provided(self, uri: str, tried: List[str]) -> str:
+        """The path from the source of missing models, else NotFound."""
+        name, inside = _split_package(uri.partition("://")[2])
+        if self._missing is not None and uri.startswith("model://") and name:
+            try:
+                path = os.path.join(self._missing.provide(name), inside)
+            except NotProvided as fault:
+                raise NotFound(uri, [*tried, str(fault)]) from None
+            if os.path.exists(path):
+                return os.path.abspath(path)
+            tried.append(path)
         raise NotFound(uri, tried)
 
     def model_file(self, uri: str, base_dir: str = "") -> str:
