@@ -114,3 +114,35 @@ def test_degrees_and_quaternions_of_1_9_are_read():
 def test_a_missing_version_warns_and_counts_as_1_7():
     model, issues = read_entity('<sdf><model name="m"><link name="l"/></model></sdf>', Resolver())
     assert warnings(issues) == ["sdf-version"] and model.name == "m"
+
+
+def test_a_bitmask_of_1_4_is_1_where_another_one_is_given():
+    def masks(version, given):
+        body = '<collision name="{}"><geometry><box/></geometry>{}</collision>'
+        mask = "<surface><contact><collide_bitmask>2</collide_bitmask></contact></surface>"
+        link, issues = link_of(body.format("a", mask if given else "") + body.format("b", ""),
+                               version)
+        assert errors(issues) == []
+        return [collision.surface.collide_bitmask for collision in link.collisions]
+
+    assert masks("1.4", True) == [2, 1] and masks("1.5", True) == [2, 65535]
+    assert masks("1.4", False) == [65535, 65535]
+
+
+def test_the_noise_of_an_imu_becomes_one_for_each_axis():
+    link, _ = link_of(
+        '<sensor name="s" type="imu"><imu><noise><type>gaussian</type><rate><mean>1</mean><stddev>2'
+        "</stddev></rate><accel><bias_mean>3</bias_mean></accel></noise></imu></sensor>", "1.5")
+    noise = '<{0}><noise type="gaussian">{1}</noise></{0}>'
+    rate = "".join(noise.format(a, "<mean>1</mean><stddev>2</stddev>") for a in "xyz")
+    accel = "".join(noise.format(a, "<bias_mean>3</bias_mean>") for a in "xyz")
+    assert link.extra == [
+        f'<sensor name="s" type="imu"><imu><angular_velocity>{rate}</angular_velocity>'
+        f"<linear_acceleration>{accel}</linear_acceleration></imu></sensor>"]
+
+
+def test_a_force_torque_sensor_of_1_4_measures_in_the_parent():
+    xml = '<sensor name="s" type="force_torque"><force_torque>{}</force_torque></sensor>'
+    assert link_of(xml.format(""), "1.4")[0].extra == [xml.format("<frame>parent</frame>")]
+    assert link_of(xml.format("<frame>child</frame>"), "1.4")[0].extra == [
+        xml.format("<frame>child</frame>")]

@@ -6,7 +6,7 @@ A frame travels with the link it is attached to, directly or through other frame
 """
 from __future__ import annotations
 
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..geometry import IDENTITY, Pose, compose
 
@@ -51,16 +51,21 @@ class FrameTree:
     def include(self, scope: str, inner: "FrameTree", element: Any) -> None:
         """Declare the frames of a nested model, whose own frame is declared as `scope`."""
         self.add(f"{scope}::{inner.root}", IDENTITY, scope, element, scope)
-        for name in inner._placed:
-            try:
-                pose, body = inner.pose(name), inner.body_of(name)
-            except FrameFault:
-                continue  # the nested model has said so itself
+        for name, pose, body in inner._settled():
             self.add(f"{scope}::{name}", pose, scope, element, f"{scope}::{body}")
 
-    def names(self) -> Iterator[str]:
-        """All declared names."""
-        return iter(self._placed)
+    def merge(self, base: str, inner: "FrameTree", element: Any) -> None:
+        """Declare the frames of a model under their own names; its own frame is called `base`."""
+        for name, pose, body in inner._settled():
+            self.add(name, pose, base, element, body)
+
+    def _settled(self) -> Iterator[Tuple[str, Pose, str]]:
+        """(name, pose in the root frame, link) of the frames without a fault."""
+        for name in self._placed:
+            try:
+                yield name, self.pose(name), self.body_of(name)
+            except FrameFault:
+                continue  # the model it belongs to has said so itself
 
     def pose(self, name: str) -> Pose:
         """The pose of a frame in the root frame.

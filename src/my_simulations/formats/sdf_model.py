@@ -182,18 +182,14 @@ class _ModelReader:
         inner = placement.model
         proxy = f"_merged__{inner.name}__{ROOT}"
         self._frames.add(proxy, inner.pose, placement.relative_to, element)
-        for item in (*inner.links, *inner.models):
+        items: List[Any] = [*inner.links, *inner.models]
+        for item in items:
             self._elements[id(item)] = element
             self._frames.add(item.name, item.pose, proxy, element,
                              item.name if isinstance(item, Link) else "")
             self._links.given_in.append((item, item.name, ""))
-        inner_frames = placement.frames
-        for name in inner_frames.names() if inner_frames is not None else ():
-            try:
-                pose, body = inner_frames.pose(name), inner_frames.body_of(name)
-            except FrameFault:
-                continue  # it has said so itself
-            self._frames.add(name, pose, proxy, element, body)
+        if placement.frames is not None:
+            self._frames.merge(proxy, placement.frames, element)
         for joint in inner.joints:
             self._elements[id(joint)] = element
         model.links += inner.links

@@ -73,6 +73,28 @@ def _to_1_5(root: Any) -> None:
     for axis in root.iter("axis", "axis2"):
         if axis.getparent().tag == "joint" and axis.find("use_parent_model_frame") is None:
             etree.SubElement(axis, "use_parent_model_frame").text = "true"
+    # Defaults that were others before 1.5.
+    if next(root.iter("collide_bitmask"), None) is not None:
+        for collision in root.iter("collision"):
+            if collision.find("geometry") is not None:
+                _default(collision, "surface/contact/collide_bitmask", "1")
+    for sensor in root.iter("force_torque"):
+        _default(sensor, "frame", "parent")
+    for actor in root.iter("actor"):
+        if actor.get("static") is not None:
+            _default(actor, "static", actor.attrib.pop("static"))
+
+
+def _default(element: Any, path: str, text: str) -> None:
+    """Write a value out where the document leaves it open."""
+    from lxml import etree
+
+    for tag in path.split("/"):
+        child = element.find(tag)
+        if child is None:
+            child = etree.SubElement(element, tag)
+            child.text = text if path.endswith(tag) else None
+        element = child
 
 
 def _to_1_6(root: Any) -> None:
@@ -85,6 +107,31 @@ def _to_1_6(root: Any) -> None:
                 physics.remove(element)
                 if world.find(name) is None:
                     world.append(element)
+    for imu in root.iter("imu"):
+        for noise in imu.findall("noise"):
+            imu.remove(noise)
+            _imu_noise(imu, noise)
+
+
+_IMU = (("rate", "angular_velocity"), ("accel", "linear_acceleration"))
+_NOISE = ("mean", "stddev", "bias_mean", "bias_stddev")
+
+
+def _imu_noise(imu: Any, noise: Any) -> None:
+    """One noise for all axes, as 1.6 has it: one for each."""
+    from lxml import etree
+
+    for old, new in _IMU:
+        given = noise.find(old)
+        if given is None or imu.find(new) is not None:
+            continue
+        parent = etree.SubElement(imu, new)
+        for axis in "xyz":
+            one = etree.SubElement(etree.SubElement(parent, axis), "noise")
+            one.set("type", (noise.findtext("type") or noise.get("type") or "none").strip())
+            for name in _NOISE:
+                if given.find(name) is not None:
+                    etree.SubElement(one, name).text = given.findtext(name)
 
 
 def _to_1_7(root: Any) -> None:
