@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import os
 import signal
 import socket
@@ -10,11 +9,10 @@ import sys
 from typing import Iterator, List, Tuple
 
 from .api import Command, Event, Reply
+from .child import die_with_parent
 from .ring import RingWriter
 from .runner import Runner
 from .wire import Wire
-
-_PR_SET_PDEATHSIG = 1
 
 
 class _Pipes:
@@ -65,7 +63,7 @@ def main(argv: List[str]) -> int:
     # physics while the parent still saves or answers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    die_with_parent()
     commands, ring, bell = (int(word) for word in argv[1:4])
     os.set_blocking(bell, False)
     with _silent_stderr():

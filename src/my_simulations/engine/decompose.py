@@ -5,7 +5,6 @@ takes seconds, and V-HACD may crash. The simulation goes on meanwhile.
 """
 from __future__ import annotations
 
-import ctypes
 import logging
 import os
 import re
@@ -19,6 +18,7 @@ from typing import Any, Callable, Dict, List, Optional
 
 from ..description.shapes import MeshData
 from ..errors import Issue, warning
+from . import child as child_process
 from .decompose_cache import Decomposition, PartsCache, content_key, default_folder, load, save
 
 _log = logging.getLogger(__name__)
@@ -30,7 +30,6 @@ _VHACD: Dict[str, Any] = {"concavity": 0.0025, "alpha": 0.04, "resolution": 1000
 _VERSION = 1  # to be raised when the same mesh gives other parts than before
 _PARAMETERS = f"{_VERSION} {sorted(_VHACD.items())!r}"
 _THICKNESS_M = (0.001, 0.01)  # of a mesh without volume: a hundredth of its extent within these
-_PR_SET_PDEATHSIG = 1
 _INPUT, _RESULT, _FALLBACK, _FAULTS = "mesh.npz", "result.parts", "hull.parts", "faults"
 _PROGRESS = re.compile(rb"^ *(\d+)% \[", re.MULTILINE)
 
@@ -108,13 +107,11 @@ def _in_child(mesh: MeshData, progress: Progress, end: float) -> "tuple[Decompos
 
 def _run(folder: str, progress: Progress, end: float) -> bool:
     """Run the child; False when it had to be killed because its time was over."""
-    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
     faults = os.path.join(folder, _FAULTS)
     with open(faults, "wb") as stream, subprocess.Popen(
-            [sys.executable, "-m", "my_simulations.engine.decompose", folder],
+            child_process.command("engine.decompose", folder),
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}) as child:
+            env=child_process.environment()) as child:
         assert child.stdout is not None
         try:
             in_time = _follow(child.stdout.fileno(), progress, end)
@@ -151,7 +148,7 @@ def main(argv: List[str]) -> int:
     """Divide the mesh in a folder; the result is put beside it, and first the hull alone."""
     import numpy as np
 
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    child_process.die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
     os.nice(5)  # the physics that runs meanwhile comes first
     folder = argv[1]

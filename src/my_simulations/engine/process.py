@@ -8,12 +8,12 @@ import select
 import signal
 import socket
 import subprocess
-import sys
 import threading
 from collections import OrderedDict
 from concurrent.futures import Future
 from typing import Callable, List, Optional, Tuple
 
+from . import child
 from . import ring as ring_module
 from .api import Command, EngineGone, Event, Reply
 from .ring import RingReader
@@ -71,13 +71,11 @@ class ProcessEngine:
         """
         ours, theirs = socket.socketpair()
         descriptors = (theirs.fileno(), self._ring_fd, self._bell_in)
-        root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-        paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
         with self._lock:
             self._child = subprocess.Popen(
-                [sys.executable, "-m", "my_simulations.engine", *map(str, descriptors)],
+                child.command("engine", *map(str, descriptors)),
                 pass_fds=descriptors, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
+                env=child.environment(),
             )
             self._wire = Wire(ours)
         theirs.close()
@@ -133,7 +131,7 @@ class ProcessEngine:
         if self._reader is not None and self._reader is not threading.current_thread():
             self._reader.join(_END_S)
 
-    def _read(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+    def _read(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
         while True:
             try:
                 messages = wire.receive(60.0)
@@ -147,19 +145,19 @@ class ProcessEngine:
                     waiting = self._waiting.pop(number, None)
                 if waiting is not None:
                     waiting[1].set_result(message)
-        child.wait()
-        self._bury(child, wire)
+        process.wait()
+        self._bury(process, wire)
 
-    def _bury(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+    def _bury(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
         with self._lock:
             if self._wire is wire:
                 self._wire = None
             waiting, self._waiting = self._waiting, OrderedDict()
             wire.sock.close()
         if not self._closing:
-            self._death_listener(_reason(child.returncode), [c for c, _ in waiting.values()])
+            self._death_listener(_reason(process.returncode), [c for c, _ in waiting.values()])
         for _, future in waiting.values():
-            future.set_exception(EngineGone(_reason(child.returncode)))
+            future.set_exception(EngineGone(_reason(process.returncode)))
 
 
 def _reason(code: int) -> str:

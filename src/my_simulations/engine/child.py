@@ -1,0 +1,27 @@
+"""Processes of our own: the interpreter and the package that run here, and the end of both."""
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import sys
+from typing import Dict, List
+
+_PR_SET_PDEATHSIG = 1
+
+
+def command(module: str, *arguments: str) -> List[str]:
+    """The command line of `module` of this package; run it with `environment`."""
+    return [sys.executable, "-m", f"my_simulations.{module}", *arguments]
+
+
+def environment() -> Dict[str, str]:
+    """The environment in which another interpreter finds this package first."""
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+
+
+def die_with_parent() -> None:
+    """In the child: have the kernel end it with the thread that started it (Linux)."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
