@@ -22,7 +22,7 @@ def upgrade(root: Any, source: Source) -> Any:
     version = _version(root, source)
     if version > NEWEST:
         source.warn(
-            "sdf-newer", f"SDF {root.get('version')} is newer than 1.7; what 1.7 does not know is"
+            "sdf-newer", f"SDF {root.get('version')} is newer than 1.7; what is not known is"
             " kept, without effect", root,
         )
         _from_1_9(root, source)

@@ -1,6 +1,7 @@
 """SDF worlds: models, lights, physics, and what is kept."""
 from __future__ import annotations
 
+import copy
 from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 from ..description.model import WORLD as WORLD_LINK
@@ -162,7 +163,8 @@ def _read_physics(elements: Sequence[Any], world: World, source: Source) -> None
     chosen = next((e for e in elements if _is_default(e)), elements[0] if elements else None)
     for element in elements:
         if element is not chosen:
-            world.extra.append(to_xml(element))
+            # Only one is the default, so that writing and reading again chooses the same.
+            world.extra.append(to_xml(_without_default(element)))
     if chosen is None:
         return
     kept: List[str] = []
@@ -171,6 +173,12 @@ def _read_physics(elements: Sequence[Any], world: World, source: Source) -> None
     world.extra += [f"<physics>{xml}</physics>" for xml in kept]
     _check_physics(physics, chosen, source)
     world.physics = physics
+
+
+def _without_default(element: Any) -> Any:
+    spare = copy.deepcopy(element)
+    spare.attrib.pop("default", None)
+    return spare
 
 
 def _is_default(element: Any) -> bool:
