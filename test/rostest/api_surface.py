@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The node offers exactly Gazebo's names, with Gazebo's types."""
+"""The node offers exactly Gazebo's names, with Gazebo's types, and save_world."""
 import os
 import sys
 import unittest
@@ -10,6 +10,7 @@ import rosgraph
 import rospy
 import rosservice
 import support
+from my_simulations_msgs.srv import SaveWorld
 
 PUBLISHED = {
     "/clock": "rosgraph_msgs/Clock",
@@ -20,6 +21,7 @@ SUBSCRIBED = {
     "/gazebo/set_model_state": "gazebo_msgs/ModelState",
     "/gazebo/set_link_state": "gazebo_msgs/LinkState",
 }
+OURS = {"save_world": SaveWorld}
 LOGGERS = {"/gazebo/get_loggers", "/gazebo/set_logger_level"}
 
 
@@ -39,7 +41,7 @@ class ApiSurface(unittest.TestCase):
         self.assertEqual(self.of_gazebo(1), set(SUBSCRIBED))
 
     def test_it_offers_exactly_these_services(self):
-        offered = {f"/gazebo/{name}" for name in support.TYPES}
+        offered = {f"/gazebo/{name}" for name in (*support.TYPES, *OURS)}
         self.assertEqual(self.of_gazebo(2), offered | LOGGERS)
 
     def test_topic_types_are_gazebos(self):
@@ -48,7 +50,7 @@ class ApiSurface(unittest.TestCase):
             self.assertEqual(types[topic], wanted, topic)
 
     def test_service_types_are_gazebos(self):
-        for name, service_class in support.TYPES.items():
+        for name, service_class in {**support.TYPES, **OURS}.items():
             self.assertEqual(rosservice.get_service_type(f"/gazebo/{name}"), service_class._type)
 
     def test_use_sim_time_is_set(self):

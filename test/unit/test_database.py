@@ -15,10 +15,11 @@ import time
 import pytest
 from reading import sdf
 
-from my_simulations.errors import errors_of
+from my_simulations.errors import Severity, errors_of
 from my_simulations.formats.load import read_world_text
 from my_simulations.resources.database import ModelDatabase
 from my_simulations.resources.database_http import Limits
+from my_simulations.resources.downloads import DownloadNotes
 from my_simulations.resources.resolver import NotFound, NotProvided, Resolver
 
 LIST = "<database><name>d</name><models>{}</models></database>"
@@ -155,6 +156,14 @@ def test_progress_is_told(server, database):
     database(progress=lambda *told: heard.append(told)).provide("lamp")
     size = len(server.files["lamp/model.tar.gz"])
     assert heard[-1] == ("lamp", size, size)
+
+
+def test_notes_say_how_far_a_download_is(server, database):
+    server.add("lamp")
+    notes = []
+    database(progress=DownloadNotes(notes.append)).provide("lamp")
+    assert notes and all(note.severity is Severity.NOTE for note in notes)
+    assert "'lamp' is being downloaded: 0.0 of 0.0 MB" in notes[-1].message
 
 
 def test_a_world_gets_its_models_and_goes_on_without_those_that_are_nowhere(

@@ -25,7 +25,7 @@ def make_clone(folder):
         (folder / name).mkdir()
         (folder / name / "ours").write_text("ours")
         (folder / name / "both").write_text("ours")
-    for name in ("gazebo_msgs", "gazebo_ros", "xacro"):
+    for name in ("gazebo_msgs", "gazebo_ros", "my_simulations_msgs", "xacro"):
         make_package(folder / "compat" / name, name)
     make_package(folder, "my_simulations")
     return folder
@@ -175,7 +175,7 @@ def linked(clone, home, script="", **variables):
 
 def test_companions_are_linked_where_nothing_is_installed(clone, tmp_path):
     assert linked(clone, tmp_path / "home") == ["gazebo_msgs", "gazebo_ros", "my_simulations",
-                                                "xacro"]
+                                                "my_simulations_msgs", "xacro"]
 
 
 def test_real_packages_are_preferred_to_the_companions(clone, tmp_path):
@@ -183,13 +183,14 @@ def test_real_packages_are_preferred_to_the_companions(clone, tmp_path):
     for name in ("gazebo_msgs", "gazebo_ros"):
         make_package(share / name, name)
     found = linked(clone, tmp_path / "home", ROS_PACKAGE_PATH=str(share))
-    assert found == ["my_simulations", "xacro"]
+    assert found == ["my_simulations", "my_simulations_msgs", "xacro"]
 
 
 def test_real_package_in_the_workspace_is_preferred_too(clone, tmp_path):
     home = tmp_path / "home"
     make_package(home / "simulation_ws" / "src" / "gazebo" / "gazebo_msgs", "gazebo_msgs")
-    assert linked(clone, home) == ["gazebo", "gazebo_ros", "my_simulations", "xacro"]
+    assert linked(clone, home) == ["gazebo", "gazebo_ros", "my_simulations",
+                                    "my_simulations_msgs", "xacro"]
 
 
 @pytest.mark.parametrize("how", ["option", "variable"])
@@ -200,7 +201,7 @@ def test_real_gazebo_ros_can_be_overridden(clone, tmp_path, how):
     script = "common_option --use-companions" if how == "option" else ""
     more = {"MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS": "1"} if how == "variable" else {}
     found = linked(clone, tmp_path / "home", script, ROS_PACKAGE_PATH=str(share), **more)
-    assert found == ["gazebo_ros", "my_simulations", "xacro"]
+    assert found == ["gazebo_ros", "my_simulations", "my_simulations_msgs", "xacro"]
 
 
 def test_companion_goes_with_its_build_once_a_real_one_is_installed(clone, tmp_path):
@@ -210,7 +211,7 @@ def test_companion_goes_with_its_build_once_a_real_one_is_installed(clone, tmp_p
     built.mkdir(parents=True)
     make_package(tmp_path / "share" / "gazebo_msgs", "gazebo_msgs")
     found = linked(clone, home, ROS_PACKAGE_PATH=str(tmp_path / "share"))
-    assert found == ["gazebo_ros", "my_simulations", "xacro"]
+    assert found == ["gazebo_ros", "my_simulations", "my_simulations_msgs", "xacro"]
     assert not built.exists()
 
 

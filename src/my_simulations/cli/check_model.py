@@ -19,6 +19,7 @@ from ..formats.load import read_entity, read_world_text
 from ..formats.meshes import collision_meshes
 from ..formats.source import Log
 from ..formats.xmltext import parse
+from ..resources.downloads import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
 from .object_documents import run_xacro
@@ -53,7 +54,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         0 clean or warnings only, 1 errors, 2 wrong usage.
     """
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
-    resolver = Resolver.from_environment()
+    resolver = Resolver.from_environment(DownloadNotes(lambda note: print(note, file=sys.stderr)))
     failed = False
     for file in options.files:
         loaded, issues = check(file, resolver)

@@ -53,12 +53,14 @@ class Node:
     def _advertise_api(self) -> None:
         from .endpoints import advertise
         from .models import ModelServices
+        from .saving import SaveService
         from .states import StateServices
         from .world import WorldServices
 
         states = StateServices(self._simulator)
         faces = (WorldServices(self._simulator), states,
-                 ModelServices(self._simulator, self._resolver, log_issue))
+                 ModelServices(self._simulator, self._resolver, log_issue),
+                 SaveService(self._simulator, self._resolver))
         self._services = advertise(row for face in faces for row in face.endpoints())
         self._subscribers = states.subscribe()
 

@@ -91,12 +91,13 @@ class WorldLoader:
 
     def _load(self) -> None:
         world_file, engines, log = self._given
+        from ..resources.downloads import DownloadNotes
         from ..resources.resolver import Resolver
         from ..simulator.simulator import Simulator
         from .loading import load_world
 
         self._profile.mark("readers imported")
-        self.resolver = Resolver.from_environment()
+        self.resolver = Resolver.from_environment(DownloadNotes(log))
         world, meshes = load_world(world_file, self.resolver, log)
         self._profile.mark("world read")
         simulator = Simulator(world, engine_factory=engines, paused=True, log=log, meshes=meshes)

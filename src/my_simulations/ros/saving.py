@@ -1,0 +1,53 @@
+"""The service that saves the running world."""
+from __future__ import annotations
+
+from typing import Any, List, Optional
+
+import rospy
+
+from ..errors import CommandError
+from ..resources.resolver import Resolver
+from ..simulator.simulator import Simulator
+from .endpoints import Endpoint
+
+ROOTS = "~save_roots"
+"""Parameter: a list of the folders below which worlds may be saved, instead of the usual ones."""
+
+
+class SaveService:
+    """save_world."""
+
+    def __init__(self, simulator: Simulator, resolver: Resolver) -> None:
+        self._simulator = simulator
+        self._resolver = resolver
+
+    def endpoints(self) -> List[Endpoint]:
+        """Its rows of the table; none in a workspace whose set-up was not run since it came."""
+        try:
+            from my_simulations_msgs.srv import SaveWorld
+        except ImportError:
+            rospy.logwarn("save_world is not offered: the package my_simulations_msgs is not "
+                          "built in this workspace; tools/run builds it")
+            return []
+        return [Endpoint("save_world", "SaveWorld", SaveWorld, self.save)]
+
+    def save(self, request: Any, response: Any) -> str:
+        """The world as it is now, to a file."""
+        # Imported with the first request: start-up time counts.
+        from ..simulator.saving import default_roots, save_world
+
+        roots = _roots()
+        response.path = save_world(
+            self._simulator, request.path, roots=default_roots() if roots is None else roots,
+            resolver=self._resolver, overwrite=request.overwrite, inline=request.inline)
+        return f"saved to {response.path}"
+
+
+def _roots() -> Optional[List[str]]:
+    roots = rospy.get_param(ROOTS, None)
+    if roots is None:
+        return None
+    if not isinstance(roots, list) or not all(isinstance(root, str) and root for root in roots):
+        raise CommandError(f"the parameter {rospy.resolve_name(ROOTS)} must be a list of folders,"
+                           f" it is {roots!r}")
+    return roots
