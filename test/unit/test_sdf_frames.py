@@ -108,7 +108,19 @@ def test_a_joint_between_models_of_a_world_is_kept_by_the_world():
     assert [model.joints for model in world.models] == [[], []]
     assert [(one.name, one.parent, one.child) for one in world.joints] == [
         ("b::j", "a::l", "b::l")]
+    assert world.models[1].extra[0].startswith('<joint name="j"')  # to be written back
     assert errors(issues) == [] and warnings(issues) == ["joint-between-models"]
+
+
+def test_a_joint_of_the_world_is_kept_by_it():
+    world, issues = world_of(
+        f'<model name="a">{link("l")}</model><model name="b">{link("l")}</model>'
+        + joint("j", "a::l", "b::l"), "1.10")
+    assert [(one.name, one.parent, one.child) for one in world.joints] == [("j", "a::l", "b::l")]
+    assert errors(issues) == [] and world.extra[0].startswith('<joint name="j"')
+    _, issues = world_of(f'<model name="a">{link("l")}</model>' + joint("j", "a::l", "c::l"),
+                         "1.10")
+    assert errors(issues) == ["joint-link-unknown"]
 
 
 def test_a_joint_to_no_link_of_the_world_leaves_its_model_out():

@@ -11,7 +11,7 @@ from ..description.world import Actor, Light, Physics, World
 from ..geometry import is_finite
 from .sdf_frames import FrameFault, FrameTree
 from .sdf_include import read_include
-from .sdf_joint import Pending
+from .sdf_joint import Pending, read_joint
 from .sdf_light import LightPlacement, read_light
 from .sdf_model import Placement, read_model, read_plugin, relative_to
 from .sdf_population import read_population
@@ -121,7 +121,16 @@ class _Entities:
     def _connect(self) -> None:
         """Joints between models: the world keeps those whose links there are."""
         links = {f"{model.name}::{name}" for model in self._world.models
-                 for name in link_names(model)} if self._pending else set()
+                 for name in link_names(model)} if self._pending or (
+                     self._found.get("joint")) else set()
+        for element in self._found.get("joint", ()):  # of SDF 1.10
+            joint, _ = read_joint(element, self._source)
+            if {joint.parent, joint.child} <= links | {WORLD_LINK}:
+                self._world.joints.append(joint)
+            else:
+                self._source.report(Level.ERROR, "joint-link-unknown", f"joint {joint.name!r}"
+                                    f" connects {joint.parent!r} with {joint.child!r}, which are"
+                                    " not both in the world", element)
         for one, model in self._pending:
             joint = one.joint
             ends = [self._link(name, one.scope, links) for name in (joint.parent, joint.child)]
@@ -134,6 +143,8 @@ class _Entities:
                 continue
             joint.parent, joint.child = ends[0] or "", ends[1] or ""
             self._world.joints.append(joint)
+            if one.scope == f"{model.name}::":
+                model.extra.append(to_xml(one.element))
             self._source.warn("joint-between-models", f"joint {joint.name!r} connects two models;"
                               " it is kept, but holds nothing here", one.element)
 
