@@ -8,6 +8,9 @@ from typing import Any, Iterator, List, Tuple
 
 from ..geometry import Pose
 
+BUILT_IN = "file://media/materials/scripts/gazebo.material"
+"""The script of Gazebo's own materials, which are known without it."""
+
 
 def differences(a: Any, b: Any, tolerance: float = 0.0) -> List[str]:
     """What differs between two objects of the description, as `path: this, that`.
@@ -47,7 +50,7 @@ def _compare(a: Any, b: Any, tolerance: float, path: str) -> Iterator[str]:
 
 
 def _counts(owner: Any, name: str) -> bool:
-    if name == "file":
+    if name in ("file", "base_dir"):
         return False
     if name == "uri":
         return hasattr(owner, "path") and not owner.path
@@ -59,6 +62,8 @@ def _field(name: str, a: Any, b: Any, tolerance: float, path: str) -> Iterator[s
         a, b = sorted(map(_canonical, a)), sorted(map(_canonical, b))
     elif name == "xml":
         a, b = _canonical(a), _canonical(b)
+    elif name == "script_uris":
+        a, b = ([uri for uri in uris if uri != BUILT_IN] for uris in (a, b))
     yield from _compare(a, b, tolerance, path)
 
 
@@ -79,13 +84,13 @@ def _furthest(a: Tuple[float, ...], b: Tuple[float, ...], sign: float) -> float:
 
 
 def _canonical(xml: str) -> str:
-    """XML without the blanks between tags, attributes in order."""
+    """XML without the blanks between tags, attributes in order; a prefix counts by its name."""
     from xml.etree import ElementTree
 
     if not xml:
         return ""
-    prefixes = sorted(set(re.findall(r"[<\s/]([A-Za-z_][\w.-]*):", xml))
-                      - set(re.findall(r"\bxmlns:([A-Za-z_][\w.-]*)\s*=", xml)))
+    xml = re.sub(r"""\sxmlns:[A-Za-z_][\w.-]*\s*=\s*("[^"]*"|'[^']*')""", "", xml)
+    prefixes = sorted(set(re.findall(r"[<\s/]([A-Za-z_][\w.-]*):", xml)))
     declared = "".join(f' xmlns:{prefix}="urn:{prefix}"' for prefix in prefixes)
     try:
         return ElementTree.canonicalize(f"<all{declared}>{xml}</all>", strip_text=True)

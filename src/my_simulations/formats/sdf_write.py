@@ -9,9 +9,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Callable, Iterable, List, Optional, Union
 
+from ..description.compare import BUILT_IN, differences
 from ..description.model import Joint, JointAxis, Link, Mimic, Model, PluginSpec
 from ..description.shapes import Collision, Visual
 from ..description.world import Light, SavedState, World
+from ..geometry import Vec3
 from .sdf_tables import (
     AXIS,
     COLLISION,
@@ -31,7 +33,7 @@ from .sdf_write_geometry import write_geometry
 from .sdf_write_state import write_state
 from .sdf_write_xml import append_fragment, document, write_value
 from .tables import Table
-from .values import FLOAT, VECTOR3
+from .values import FLOAT, TEXT, VECTOR3
 
 VERSION = "1.7"
 
@@ -160,6 +162,10 @@ class _Writer:
         if visual.material is not None:
             element = _element(parent, "material", None)
             fill_element(element, visual.material, MATERIAL, {}, [])
+            script = element.find("script")
+            if script is not None and script.find("uri") is None:
+                write_value(script, "uri", TEXT, BUILT_IN)  # the format wants one
+                script.insert(0, script[-1])
 
     def joint(self, parent: Any, joint: Joint) -> None:
         """`<joint>`."""
@@ -175,7 +181,7 @@ class _Writer:
         if axis is not None:
             element = _element(parent, tag, None)
             fill_element(element, axis, AXIS, {
-                "xyz": lambda at: write_value(at, "xyz", VECTOR3, axis.xyz),
+                "xyz": lambda at: write_value(at, "xyz", VECTOR3, _direction(axis.xyz)),
                 "mimic": lambda at: self.mimic(at, axis.mimic),
             }, [])
 
@@ -198,6 +204,11 @@ def _element(parent: Any, tag: str, named: Any) -> Any:
     return element
 
 
+def _direction(xyz: Vec3) -> Vec3:
+    """A unit vector that stays the same text when it is read and made a unit vector again."""
+    return (round(xyz[0], 14), round(xyz[1], 14), round(xyz[2], 14))
+
+
 def _each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[Any]) -> None:
     for item in items:
         write(parent, item)
@@ -210,8 +221,6 @@ def _plugins(parent: Any, plugins: Iterable[PluginSpec], table: Table) -> None:
 
 def _added_plugins(model: Model, bare: Model) -> Optional[List[PluginSpec]]:
     """The plugins an include adds to what it brings; None where more than that was changed."""
-    from ..description.compare import differences
-
     kept = model.plugins[:len(bare.plugins)]
     as_bare = replace(model, name=bare.name, pose=bare.pose, static=bare.static, uri=bare.uri,
                       plugins=kept)

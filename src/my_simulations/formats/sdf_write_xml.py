@@ -1,6 +1,7 @@
 """XML of written SDF: values, kept fragments put back where they stood, and the whole document."""
 from __future__ import annotations
 
+import math
 import re
 from typing import Any, Callable, Dict, List, Mapping, Optional
 
@@ -43,7 +44,10 @@ def settled_pose(pose: Pose) -> str:
 
 
 def _rounded(angles: Vec3) -> Vec3:
-    return (round(angles[0], 14), round(angles[1], 14), round(angles[2], 14))
+    """To 1e-14 rad; roll and yaw to less near a pitch of 90 degrees, where they share the noise."""
+    lost = -math.log10(max(math.cos(angles[1]), 1e-5))
+    digits = 14 - math.floor(lost)
+    return (round(angles[0], digits), round(angles[1], 14), round(angles[2], digits))
 
 
 def _plain(value: float) -> str:
