@@ -8,7 +8,7 @@ import time
 import pytest
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.description.shapes import Box, Collision
+from my_simulations.description.shapes import Box, Collision, Mesh
 from my_simulations.description.world import World
 from my_simulations.engine.api import FOREVER, Load
 from my_simulations.engine.inline import InlineEngine
@@ -322,3 +322,13 @@ def test_rows_are_handed_out_first_fit_and_merge_when_freed():
     rows.give(0, 4)
     rows.give(4, 4)
     assert rows.take(10) == 0
+
+
+def test_a_collision_without_its_mesh_stays_in_the_description_and_out_of_the_engine(case):
+    made = case()
+    model = box("a")
+    model.links[0].collisions.append(Collision("lost", Mesh("model://gone/lost.dae")))
+    made.sim.spawn(model)
+    assert [c.name for c in made.sim.model("a").links[0].collisions] == ["c", "lost"]
+    [loaded] = made.engine.backend.models.values()
+    assert [c.name for c in loaded[0].links[0].collisions] == ["c"]

@@ -15,7 +15,8 @@ Log = Callable[[Issue], None]
 def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str, MeshTable]]:
     """Read a world.
 
-    A collision whose mesh cannot be used is left out, and the rest of the world loads.
+    A collision whose mesh cannot be used collides with nothing, and the rest of the world loads;
+    it stays in the description, so that saving the world does not lose it.
 
     Args:
         name: a path, or a name in the resource paths.
@@ -41,19 +42,15 @@ def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str
     for issue in issues:
         log(issue)
     world = apply_state(world)
-    world.models, meshes = _with_meshes(world.models, log)
-    return world, meshes
+    return world, _meshes(world.models, log)
 
 
-def _with_meshes(models: List[Model], log: Log) -> Tuple[List[Model], Dict[str, MeshTable]]:
-    from ..formats.meshes import collision_meshes, without_missing_meshes
+def _meshes(models: List[Model], log: Log) -> Dict[str, MeshTable]:
+    from ..formats.meshes import collision_meshes
 
-    usable: List[Model] = []
     tables: Dict[str, MeshTable] = {}
     for model in models:
-        table, issues = collision_meshes(model)
+        tables[model.name], issues = collision_meshes(model)
         for issue in issues:
             log(issue)
-        usable.append(without_missing_meshes(model, table))
-        tables[model.name] = table
-    return usable, tables
+    return tables

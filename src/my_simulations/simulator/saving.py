@@ -119,12 +119,14 @@ class _Includes:
 def default_roots() -> List[str]:
     """Where worlds may be saved: ours, workspaces' sources, the home folder's, and here.
 
-    The first one, `~/my_simulations/worlds`, is where relative paths start.
+    The first one is where relative paths start: the package's `world` folder, as on the lab sheet,
+    or `~/my_simulations/worlds` where that cannot be written to.
     """
     roots = [os.path.expanduser("~/my_simulations/worlds")]
     own = own_directory()
     if own:
-        roots.append(os.path.join(own, "world"))
+        world = os.path.join(own, "world")
+        roots.insert(0 if os.access(world, os.W_OK) else 1, world)
     entries = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
     roots += [entry for entry in entries if os.path.basename(entry.rstrip("/")) == "src"]
     here = os.getcwd()

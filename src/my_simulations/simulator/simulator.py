@@ -39,6 +39,7 @@ from ..engine.api import (
 from ..engine.ring import BELL, DEMAND_NS, JOINTS, LINKS, RingReader, Snapshot
 from ..engine.rows import axis_rows
 from ..errors import CommandError, Issue, Severity, error
+from ..formats.meshes import without_missing_meshes
 from ..geometry import (
     IDENTITY,
     STILL,
@@ -324,7 +325,8 @@ class Simulator:
 
     @staticmethod
     def _loading(entity: Entity, state: Optional[ModelState] = None) -> LoadModel:
-        return LoadModel(entity.model_id, entity.model, entity.initial_pose,
+        model = without_missing_meshes(entity.model, entity.meshes)
+        return LoadModel(entity.model_id, model, entity.initial_pose,
                          entity.first_link_row, entity.first_joint_row, entity.meshes, state)
 
     # -- states ----------------------------------------------------------------------------------
