@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints a table of speeds. Run it in a shell that has sourced the workspace, on a quiet machine.
 
-usage: bench.py [ROW …]     rows: start, rest, services, full, asleep, stacks, resting; default all
+usage: bench.py [ROW …]     rows: start rest services full asleep stacks resting files (default: all)
 
 Figures are compared within one run: "bare" is PyBullet's stepSimulation alone with the same bodies,
 measured just before and after. Nothing here fails on a slow machine.
@@ -228,9 +228,59 @@ def resting() -> List[Row]:
              f"{factor:.3f} ({rate:.0f} messages/s)", "0.99", factor >= 0.99)]
 
 
+def files() -> List[Row]:
+    import tempfile
+
+    import numpy as np
+    import trimesh
+
+    from my_simulations.description.shapes import Mesh
+    from my_simulations.errors import InputError
+    from my_simulations.formats.load import read_world_text
+    from my_simulations.formats.meshes import load_mesh
+    from my_simulations.resources.resolver import Resolver
+    resolver = Resolver.from_environment()
+    rows: List[Row] = []
+
+    def took(label: str, bar: float, call: Callable[[], object]) -> None:
+        began = time.perf_counter()
+        call()
+        span = time.perf_counter() - began
+        rows.append((label, f"{span:.3f} s", f"{bar} s", span <= bar))
+
+    def refused(text: str) -> None:
+        try:
+            read_world_text(text, resolver, file="hostile.world")
+        except InputError:
+            return
+        raise RuntimeError("it was not refused")
+
+    large = scenes.world("boxes", 1000, True, 1000.0)
+    took("reading a world of 1000 models", 1.0, lambda: read_world_text(large, resolver,
+                                                                        file="large.world"))
+    with tempfile.NamedTemporaryFile(suffix=".stl") as stream:
+        side = np.arange(225.0)
+        x, y = np.meshgrid(side, side)
+        corners = np.stack([x.ravel(), y.ravel(), np.sin(x).ravel()], axis=1)
+        at = (np.arange(224)[:, None] * 225 + np.arange(224)).ravel()
+        faces = np.concatenate([np.stack([at, at + 1, at + 225], 1),
+                                np.stack([at + 1, at + 226, at + 225], 1)])
+        trimesh.Trimesh(corners, faces, process=False).export(stream.name)
+        took("first load of a mesh of 100 000 triangles", 3.0,
+             lambda: load_mesh(Mesh("m", stream.name)))
+        took("the same again", 0.1, lambda: load_mesh(Mesh("m", stream.name)))
+    bomb = "".join(f"<!ENTITY e{n} '{f'&e{n - 1};' * 10 if n else 'ha'}'>" for n in range(10))
+    took("refusing an entity bomb", 1.0, lambda: refused(
+        f"<!DOCTYPE sdf [{bomb}]><sdf version='1.6'><world name='w'>&e9;</world></sdf>"))
+    took("refusing 200 000 nested elements", 1.0, lambda: refused(
+        "<sdf version='1.6'><world name='w'>" + "<a>" * 200000 + "</a>" * 200000
+        + "</world></sdf>"))
+    return rows
+
+
 ROWS: Dict[str, Callable[[], List[Row]]] = {
     "start": start, "rest": rest, "services": services, "full": full, "asleep": asleep,
-    "stacks": stacks, "resting": resting}
+    "stacks": stacks, "resting": resting, "files": files}
 
 
 def main(names: List[str]) -> int:
