@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints a table of speeds. Run it in a shell that has sourced the workspace, on a quiet machine.
 
-usage: bench.py [ROW …]     rows: start rest services full asleep stacks resting files (default: all)
+usage: bench.py [ROW …]   rows: start rest services full asleep stacks resting files (default: all)
 
 Figures are compared within one run: "bare" is PyBullet's stepSimulation alone with the same bodies,
 measured just before and after. Nothing here fails on a slow machine.
