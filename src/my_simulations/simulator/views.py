@@ -1,0 +1,136 @@
+"""What can be read of a running world: from the ring and the registry, never from the engine."""
+from __future__ import annotations
+
+import threading
+from typing import List, Optional, Tuple
+
+from ..description.model import Model
+from ..engine.ring import BELL, DEMAND_NS, RingReader, Snapshot
+from ..errors import CommandError
+from ..geometry import IDENTITY, Pose, Twist, compose
+from .frames import relative
+from .layout import Layout, lay_out
+from .registry import Entity, Registry
+from .states import States, collect
+from .supervisor import Supervisor
+
+
+class WorldViews:
+    """The reading half of the simulator. Safe from any thread."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
+        self._lock = threading.RLock()    # the registry and rows; never held while the engine works
+        self._registry = Registry()
+        self._cached: Optional[States] = None
+        self._layout: Optional[Layout] = None
+
+    @property
+    def engine_pid(self) -> int:
+        """Process number of the engine."""
+        return self._supervisor.engine.pid
+
+    @property
+    def ring(self) -> RingReader:
+        """Where the states are."""
+        return self._supervisor.engine.ring
+
+    def step(self) -> int:
+        """Steps since the start or the last reset."""
+        return self.ring.step
+
+    def sim_ns(self) -> int:
+        """Sim time, nanoseconds."""
+        step, clock = self.ring.clock()
+        return clock.sim_ns(step)
+
+    def model_names(self) -> List[str]:
+        """All top-level models in load order."""
+        with self._lock:
+            return self._registry.names()
+
+    def has_model(self, name: str) -> bool:
+        """Whether there is a model of that name."""
+        with self._lock:
+            return name in self._registry
+
+    def model(self, name: str) -> Model:
+        """The flattened description. Raises UnknownEntity."""
+        with self._lock:
+            return self._registry.model(name).model
+
+    def model_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
+        """Pose and twist of a model frame in `frame` (see `Registry.frame`).
+
+        Raises UnknownEntity, UnknownFrame.
+        """
+        with self._lock:
+            entity = self._registry.model(name)
+            anchor = self._registry.frame(frame)
+            if anchor is None and entity.link_names:
+                pose, twist = self.ring.link(entity.canonical_row)
+                if entity.link_from_model != IDENTITY:
+                    pose = compose(pose, entity.link_from_model)
+                return pose, twist
+            snapshot = self._snapshot()
+        return relative(entity.state(snapshot), anchor, snapshot)
+
+    def link_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
+        """Pose and twist of a link in `frame`. Raises UnknownEntity, UnknownFrame."""
+        with self._lock:
+            entity, index = self._registry.link(name)
+            anchor = self._registry.frame(frame)
+            row = entity.first_link_row + index
+            if anchor is None:
+                return self.ring.link(row)
+            snapshot = self._snapshot()
+        return relative(snapshot.link(row), anchor, snapshot)
+
+    def joint_state(self, name: str) -> Tuple[float, float]:
+        """Position and rate of a movable joint. Raises UnknownEntity."""
+        with self._lock:
+            row = self._registry.joint_row(name)
+            return self._snapshot().joint(row)
+
+    def moment(self) -> Tuple[List[Entity], Snapshot]:
+        """Everything there is, in load order, and where it is, of one moment."""
+        with self._lock:
+            return self._registry.entities(), self._snapshot()
+
+    def states(self) -> States:
+        """The states of everything, for the topics; the same object while nothing changes."""
+        with self._lock:
+            cached = self._cached
+            if (cached is not None and cached.revision == self._registry.revision
+                    and cached.sequence == self.ring.latest):
+                return cached
+            self._cached = collect(self._registry.entities(), self._snapshot(),
+                                   self._registry.revision)
+            return self._cached
+
+    def raw_states(self) -> Tuple[Layout, int, bytes]:
+        """What `states` is made of: who is where, the snapshot's sequence, its link rows.
+
+        The layout is the same object until a name changes; a row is `ring.LINK_WIDTH` doubles.
+        """
+        with self._lock:
+            if self._layout is None or self._layout.revision != self._registry.revision:
+                self._layout = lay_out(self._registry.entities(), self._registry.revision)
+            return (self._layout, *self.ring.raw_links())
+
+    def set_demand(self, hz: float, bell: bool) -> None:
+        """Say how often states are wanted (0: no one waits) and whether to ring at each step."""
+        words = self.ring.words
+        words[DEMAND_NS], words[BELL] = int(1e9 / hz) if hz > 0.0 else 0, int(bell)
+
+    def wait_step(self, after_step: int, timeout: float) -> bool:
+        """Wait until the step count is not `after_step` any more, or something has changed."""
+        if self.ring.step != after_step:
+            return True
+        return self._supervisor.engine.wait_bell(timeout)
+
+    def _snapshot(self) -> Snapshot:
+        found = self.ring.read()
+        if found is None:
+            raise CommandError("the physics engine has not started")
+        return found
