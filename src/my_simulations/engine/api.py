@@ -317,10 +317,6 @@ class Backend(Protocol):
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used link and joint rows as raw doubles, for the ring."""
 
-    @property
-    def read_cost(self) -> int:
-        """How many bodies a read-out looks at."""
-
     def events(self) -> List[Event]:
         """What has happened since the last call."""
 

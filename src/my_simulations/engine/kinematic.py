@@ -96,11 +96,6 @@ class KinematicBackend:
             struct.pack_into("=2d", joints, row * 8 * JOINT_WIDTH, *values)
         return memoryview(links), memoryview(joints)
 
-    @property
-    def read_cost(self) -> int:
-        """How many links there are."""
-        return len(self.links)
-
     def events(self) -> List[Event]:
         """Nothing ever happens by itself."""
         return []

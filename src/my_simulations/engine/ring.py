@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import mmap
 import os
-import time
 from dataclasses import dataclass
 from typing import NamedTuple, Optional, Sequence, Union
 
@@ -248,11 +247,3 @@ class RingReader:
 
     def _is_whole(self, slot: int, sequence: int) -> bool:
         return self.words[slot + SEQ_BEGIN] == sequence == self.words[slot + SEQ_END]
-
-    def wait_for(self, sequence: int, deadline: float) -> bool:
-        """Wait until snapshot `sequence` exists or `time.monotonic()` passes `deadline`."""
-        while self.words[LATEST] < sequence:
-            if time.monotonic() > deadline:
-                return False
-            time.sleep(0.0002)
-        return True

@@ -33,7 +33,6 @@ from .ring import (
     STATUS,
     STATUS_PAUSED,
     STATUS_RUNNING,
-    STEP,
     Clock,
     RingWriter,
     picoseconds,
@@ -251,7 +250,7 @@ class Runner:
 
     def _after_steps(self, share: float) -> None:
         """Publish the step; read states out when demanded or when the share of time allows it."""
-        self._words[STEP] = self._step
+        self._writer.set_step(self._step)
         now = time.perf_counter()
         self._allowance = min(self._allowance + (now - self._allowed_at) * share, 0.01)
         self._allowed_at = now

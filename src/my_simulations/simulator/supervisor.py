@@ -71,8 +71,8 @@ class Supervisor:
                 raise CommandError(self._failure)
             try:
                 reply = engine.submit(command).result(_COMMAND_S)
-            except EngineGone as gone:
-                self._await_restart(command, str(gone))
+            except EngineGone:
+                self._await_restart(command)
                 continue
             if reply.error:
                 raise CommandError(reply.error)
@@ -86,7 +86,7 @@ class Supervisor:
         if self._thread is not threading.current_thread():
             self._thread.join(10.0)
 
-    def _await_restart(self, command: Command, reason: str) -> None:
+    def _await_restart(self, command: Command) -> None:
         if self._closing:
             raise CommandError("the simulator is ending")
         for killer, why in list(self._killers):

@@ -38,11 +38,10 @@ from ..api import (
     SetLinkState,
     SetModelState,
 )
-from ..inertia import principal
 from ..plan import PlanError, open_joints, plan_bodies
 from ..ring import JOINTS, LINKS
 from ..rows import axis_rows, row_name
-from . import bodies, joints, surfaces
+from . import bodies, joints
 from .bodies import Body, Builder, Part
 from .constraints import Constraints
 from .forces import Forces
@@ -134,11 +133,6 @@ class BulletBackend:
         """The used rows."""
         return self._readout.tables()
 
-    @property
-    def read_cost(self) -> int:
-        """How many bodies a read-out looks at."""
-        return self._readout.load
-
     def events(self) -> List[Event]:
         """What has happened since the last call."""
         found, self._events = self._events, []
@@ -182,12 +176,6 @@ class BulletBackend:
         self._models[command.model_id] = entry
         for body in built:
             self._register(body)
-            self._friction.add(body, [
-                _surface(command.model, part.row - command.first_link_row, part.mass)
-                for part in body.parts])
-            if body.rigid and body.moves:
-                link = command.model.links[body.parts[0].row - command.first_link_row]
-                self._spin.add(body, principal(link.inertial)[1])
             joints.set_up(body, command.model, self._forces, self._settings.step_size)
         if command.state is not None:
             self._restore(entry, command.state)
@@ -210,6 +198,8 @@ class BulletBackend:
         for axis in body.axes:
             self._axes[axis.row] = (body, axis)
         self._forces.add_body(body)
+        self._friction.add(body)
+        self._spin.add(body)
         self._readout.add(body)
 
     def _restore(self, entry: Entry, state: ModelState) -> None:
@@ -384,12 +374,6 @@ class BulletBackend:
         name = self._models[body.model_id].model.name
         self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "
                                   "was put back where it was, at rest", body.model_id))
-
-
-def _surface(model: Model, index: int, mass: float) -> Tuple[float, float]:
-    """mu of a link as in the file, and as stored."""
-    surface = surfaces.of_link(model.links[index])
-    return surface.mu, surfaces.friction(surface, mass == 0.0)
 
 
 def _carried(lead: LinkState, target: Pose, wanted: Pose, twist: Optional[Twist]) -> Twist:

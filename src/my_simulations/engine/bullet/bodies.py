@@ -23,7 +23,6 @@ from ...geometry import (
     inverse,
     multiply,
     rotate,
-    scale,
     twist_at,
 )
 from ..inertia import principal
@@ -43,13 +42,22 @@ _JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT
 
 @dataclass
 class Part:
-    """One link of a body: its row in the ring, PyBullet's index, and where its mass is."""
+    """One link of a body: its row in the ring, PyBullet's index, its mass and its surface.
+
+    Attributes:
+        link_from_com: the centre of mass and the principal axes.
+        moments: about those axes, kg m^2.
+        mu, friction: the coefficient of the file, and what PyBullet was given to store.
+    """
 
     row: int
     index: int
     link_from_com: Pose
     mass: float
-    gravity: bool = True
+    moments: Vec3
+    mu: float
+    friction: float
+    gravity: bool
 
     def com_pose(self, link_pose: Pose) -> Pose:
         """World pose of the centre of mass from that of the link frame."""
@@ -160,7 +168,7 @@ class Builder:
                                      useMaximalCoordinates=1)
             for piece in (pieces or [-1])
         ]
-        part = Part(self.first_row + plan.links[0].index, BASE, com, mass, link.gravity)
+        part = self._part(plan.links[0].index, BASE, com, mass, moments)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]), moves=not static,
                     may_sleep=self._may_sleep(link))
         for uid in uids:
@@ -168,6 +176,12 @@ class Builder:
             set_decay(uid, link, self.dt)
         body.radius = _radius(uids[0])
         return body
+
+    def _part(self, number: int, index: int, com: Pose, mass: float, moments: Vec3) -> Part:
+        link = self.model.links[number]
+        surface = surfaces.of_link(link)
+        return Part(self.first_row + number, index, com, mass, moments, surface.mu,
+                    surfaces.friction(surface, mass == 0.0), link.gravity)
 
     def _may_sleep(self, link: Link) -> bool:
         return (self.model.allow_auto_disable and link.gravity
@@ -229,7 +243,7 @@ class Builder:
             link = Link("") if node.index == NO_LINK else self.model.links[node.index]
             set_dynamics(uid, index, link, mass, moments, False)
             if node.index != NO_LINK:
-                parts.append(Part(self.first_row + node.index, index, com, mass, link.gravity))
+                parts.append(self._part(node.index, index, com, mass, moments))
             if node.joint is not None and node.number is not None:
                 row = self.joint_rows[row_name(node.joint.name, node.number)]
                 axes.append(Axis(row, index, node.joint.name, node.number))
@@ -331,8 +345,3 @@ def _radius(uid: int) -> float:
     centre = pybullet.getBasePositionAndOrientation(uid)[0]
     corner = [max(abs(low[i] - centre[i]), abs(high[i] - centre[i])) for i in range(3)]
     return (corner[0] ** 2 + corner[1] ** 2 + corner[2] ** 2) ** 0.5
-
-
-def weight(part: Part, gravity: Vec3) -> Vec3:
-    """The force of gravity on a part, N, world axes."""
-    return scale(gravity, part.mass)

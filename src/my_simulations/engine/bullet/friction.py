@@ -12,7 +12,7 @@ A world without such surfaces pays nothing.
 from __future__ import annotations
 
 import math
-from typing import Dict, FrozenSet, List, Set, Tuple
+from typing import Dict, FrozenSet, Set, Tuple
 
 import numpy as np
 import pybullet
@@ -38,21 +38,16 @@ class FrictionBalance:
         self._free: Dict[Node, float] = {}
         self._pairs: Set[Pair] = set()
 
-    def add(self, body: Body, surfaces: List[Tuple[float, float]]) -> None:
-        """Know a new body.
-
-        Args:
-            body: the body.
-            surfaces: (mu of the file, stored value) of each of its parts.
-        """
-        for part, (mu, stored) in zip(body.parts, surfaces):
+    def add(self, body: Body) -> None:
+        """Know a new body."""
+        for part in body.parts:
             for uid in body.uids:
                 node = (uid, part.index)
-                self._mu[node] = max(mu, _SMALLEST)
-                if body.moves and mu != 1.0:
-                    self._free[node] = stored
+                self._mu[node] = max(part.mu, _SMALLEST)
+                if body.moves and part.mu != 1.0:
+                    self._free[node] = part.friction
                 else:
-                    self._fixed[node] = max(stored, _SMALLEST)
+                    self._fixed[node] = max(part.friction, _SMALLEST)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""

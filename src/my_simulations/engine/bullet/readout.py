@@ -84,15 +84,6 @@ class Readout:
         else:
             self._trees[body.uid] = body
 
-    def is_resting(self, body: Body) -> bool:
-        """Found at zero velocity twice running."""
-        return body.uid in self._resting
-
-    @property
-    def load(self) -> int:
-        """How many bodies a read-out looks at."""
-        return len(self._awake) + len(self._trees)
-
     def stepped(self) -> None:
         """The world has moved on: everything awake may be elsewhere."""
         self._stepped = True

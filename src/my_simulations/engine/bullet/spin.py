@@ -32,8 +32,9 @@ class SpinKeeper:
         self._bodies: Dict[int, Body] = {}
         self._fast: List[int] = []
 
-    def add(self, body: Body, moments: Vec3) -> None:
+    def add(self, body: Body) -> None:
         """Know a body; only rigid, moving ones with different moments matter."""
+        moments = body.parts[0].moments
         if body.rigid and body.moves and max(moments) - min(moments) > _ROUND * max(moments):
             self._moments[body.uid] = moments
             self._bodies[body.uid] = body
