@@ -1,0 +1,48 @@
+/** The fields of each kind of geometry, with paths below `geometry`. Pure. */
+
+const positive = { above: 0 };
+const number = (name, label, unit = 'm', more = positive) =>
+  ({ path: `geometry.${name}`, label, type: 'number', unit, ...more });
+const vector = (name, label, parts, unit = 'm', more = {}) =>
+  ({ path: `geometry.${name}`, label, type: 'vector', parts, unit, ...more });
+const fixed = (name, label, type = 'text', more = {}) =>
+  ({ path: `geometry.${name}`, label, type, fixed: true, ...more });
+
+const XYZ = ['x', 'y', 'z'];
+const RADIUS_LENGTH = [number('radius', 'radius'), number('length', 'length')];
+
+const TABLE = {
+  box: [vector('size', 'size', XYZ, 'm', positive)],
+  sphere: [number('radius', 'radius')],
+  cylinder: RADIUS_LENGTH,
+  capsule: RADIUS_LENGTH,
+  cone: RADIUS_LENGTH,
+  ellipsoid: [vector('radii', 'radii', XYZ, 'm', positive)],
+  plane: [vector('normal', 'normal', XYZ, ''), vector('size', 'size', ['x', 'y'], 'm', positive)],
+  mesh: [fixed('uri', 'file'), vector('scale', 'scale', XYZ, ''), fixed('submesh', 'submesh'),
+    fixed('center', 'centred', 'flag')],
+  heightmap: [fixed('uri', 'file'), vector('size', 'size', XYZ, 'm', positive),
+    vector('position', 'position', XYZ)],
+  polyline: [number('height', 'height')],
+  image: [fixed('uri', 'file'), number('scale', 'scale', 'm/pixel'),
+    { path: 'geometry.threshold', label: 'threshold', type: 'integer', min: 0, max: 255 },
+    number('height', 'height'),
+    { path: 'geometry.granularity', label: 'granularity', type: 'integer', min: 1 }],
+  empty: [],
+};
+
+/** What a shape may be turned into by choosing another type: those that need no file. */
+const SIMPLE = ['box', 'sphere', 'cylinder', 'capsule', 'cone', 'ellipsoid'];
+
+/**
+ * @param {{type: string}} geometry
+ * @returns {import('./properties_table.js').Field[]}
+ */
+export function geometryFields(geometry) {
+  const simple = SIMPLE.includes(geometry.type);
+  const type = {
+    path: 'geometry.type', label: 'geometry', type: simple ? 'choice' : 'text', choices: SIMPLE,
+    fixed: !simple,
+  };
+  return [type, ...(TABLE[geometry.type] ?? [])];
+}

@@ -1,0 +1,120 @@
+/**
+ * Which sections the property panel shows for a row of the World tab. Pure.
+ */
+import * as table from './properties_table.js';
+import { geometryFields } from './geometry_fields.js';
+
+/**
+ * @param {any} document
+ * @param {import('./world_rows.js').Row|null} row
+ * @returns {{title: string, sections: import('./properties_table.js').Section[]}|null} null where
+ *   the row has no properties, or what it stood for has gone
+ */
+export function sectionsOf(document, row) {
+  const make = row && document && KINDS[row.kind];
+  const made = make ? make(document, row) : null;
+  if (!made) return null;
+  const sections = made.filter((section) => section.entity)
+    .map((section) => ({ ...section, fields: present(section) }))
+    .filter((section) => section.fields.length);
+  return { title: titleOf(row), sections };
+}
+
+function titleOf(row) {
+  if (row.kind === 'model' || row.kind === 'light') return row.name;
+  return row.model && row.name ? `${row.model}::${row.name}` : row.label;
+}
+
+const section = (title, target, entity, fields, prefix = '') =>
+  ({ key: `${target}|${title}`, title, target, entity, fields, prefix });
+
+/** A field of an entity that has no such member is not for this version of the server. */
+function present({ entity, fields, prefix }) {
+  return fields
+    .filter((field) => valueAt(entity, field.path) !== undefined)
+    .map((field) => ({ ...field, local: field.path, path: prefix + field.path }));
+}
+
+/** The value at a dotted path, undefined where there is none. */
+export function valueAt(entity, path) {
+  let value = entity;
+  for (const key of path.split('.')) {
+    if (value === null || value === undefined) return undefined;
+    value = value[key];
+  }
+  return value;
+}
+
+const named = (list, name) => (list ?? []).find((entity) => entity.name === name);
+
+const KINDS = {
+  gui: (world) => [
+    section('Camera', '', world.gui_camera, table.GUI_CAMERA, 'gui_camera.'),
+  ],
+  scene: (world) => [
+    section('', '', world.scene, table.SCENE, 'scene.'),
+    section('Sky', '', world.scene.sky, table.SKY, 'scene.sky.'),
+    section('Fog', '', world.scene.fog, table.FOG, 'scene.fog.'),
+  ],
+  spherical: (world) => [
+    section('', '', world.spherical_coordinates, table.SPHERICAL, 'spherical_coordinates.'),
+  ],
+  physics: (world) => [
+    section('', '', world.physics, table.PHYSICS, 'physics.'),
+    section('World', '', world, table.WORLD_PHYSICS),
+    section('Solver', '', world.physics.ode, table.ODE, 'physics.ode.'),
+  ],
+  atmosphere: (world) => [section('', '', world.atmosphere, table.ATMOSPHERE, 'atmosphere.')],
+  wind: (world) => [section('', '', world.wind, table.WIND, 'wind.')],
+  model: (world, row) => {
+    const model = named(world.models, row.model);
+    return model && [section('', model.name, model, table.MODEL)];
+  },
+  link: linkSections,
+  joint: (world, row) => {
+    const model = named(world.models, row.model);
+    const joint = model && named(model.joints, row.name);
+    if (!joint) return null;
+    const target = `${model.name}::${joint.name}`;
+    const axes = table.axisFields(joint);
+    return [
+      section('', target, joint, table.JOINT),
+      section('Axis', target, joint.axis, axes, 'axis.'),
+      section('Second axis', target, joint.axis2, axes, 'axis2.'),
+    ];
+  },
+  plugin: (world, row) => {
+    const owner = row.model ? named(world.models, row.model) : world;
+    return owner && [section('', '', owner.plugins[row.index], table.PLUGIN)];
+  },
+  light: (world, row) => {
+    const light = named(world.lights, row.name);
+    return light && [section('', light.name, light, table.lightFields(light))];
+  },
+};
+
+function linkSections(world, row) {
+  const model = named(world.models, row.model);
+  const link = model && named(model.links, row.name);
+  if (!link) return null;
+  const target = `${model.name}::${link.name}`;
+  const canonical = model.links[0] === link;
+  const sections = [
+    section('', target, link, table.LINK.map((field) => (
+      field.path === 'pose' && canonical ? { ...field, hint: 'in the model' } : field))),
+    section('Inertial', target, link.inertial, table.INERTIAL, 'inertial.'),
+  ];
+  for (const collision of link.collisions ?? []) {
+    sections.push(section(`Collision ${collision.name}`, `${target}::${collision.name}`, collision,
+      [...table.COLLISION, ...geometryFields(collision.geometry)]));
+    sections.push(section(`Surface of ${collision.name}`, `${target}::${collision.name}`,
+      collision.surface, table.SURFACE, 'surface.'));
+  }
+  for (const visual of link.visuals ?? []) {
+    sections.push(section(`Visual ${visual.name}`, `${target}::${visual.name}`, visual,
+      [...table.VISUAL, ...geometryFields(visual.geometry)]));
+    sections.push(section(`Material of ${visual.name}`, `${target}::${visual.name}`,
+      visual.material, table.MATERIAL, 'material.'));
+  }
+  return sections;
+}
