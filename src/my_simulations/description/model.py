@@ -53,7 +53,9 @@ class JointAxis:
     """One degree of freedom; `xyz` a unit vector in the joint frame.
 
     Limits in rad or m; `effort` N m or N and `velocity` rad/s or m/s, -1 for unlimited;
-    `damping`, `friction`, `spring_stiffness` per rad or m.
+    `damping`, `friction`, `spring_stiffness` per rad or m. Friction is a brake that drives the rate
+    to `motor_rate`: with another rate than 0 it is ODE's joint motor (`vel` and `fmax`), which no
+    file can say.
     """
 
     xyz: Vec3 = (0.0, 0.0, 1.0)
@@ -66,6 +68,7 @@ class JointAxis:
     spring_reference: float = 0.0
     spring_stiffness: float = 0.0
     mimic: Optional["Mimic"] = None
+    motor_rate: float = 0.0
 
 
 @dataclass

@@ -13,7 +13,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import Callable, Dict, List, Optional, Protocol, Tuple
 
-from ..description.model import Model
+from ..description.model import Joint, Model
 from ..description.shapes import MeshData
 from ..geometry import STILL, Pose, Twist, Vec3
 from .ring import RingReader
@@ -99,6 +99,8 @@ class LoadModel(Command):
             axes (in order, `joint_rows` in `engine.rows` says how many).
         meshes: what its collisions need, by `mesh_key`.
         state: where its links and joints are, instead of the pose of the file.
+        inherit: number of a model in the world whose present states its links and joints of the
+            same names take on; a link's pose in the model may differ. 0 for none.
     """
 
     model_id: int
@@ -108,6 +110,7 @@ class LoadModel(Command):
     first_joint_row: int
     meshes: Dict[str, MeshData] = field(default_factory=dict)
     state: Optional[ModelState] = None
+    inherit: int = 0
 
 
 @dataclass(frozen=True)
@@ -150,6 +153,55 @@ class SetJoints(Command):
     """Set positions (and rates) of joint axes by row; the subtree moves along."""
 
     joints: Tuple[Tuple[int, float, float], ...]
+
+
+@dataclass(frozen=True)
+class SetAxes(Command):
+    """Give the joints of a model other axes: limits, friction, damping, spring, motor.
+
+    `joints` are the model's joints, in order, of unchanged names, types, ends, poses and axis
+    directions.
+    """
+
+    model_id: int
+    joints: Tuple[Joint, ...]
+
+
+@dataclass(frozen=True)
+class Hold(Command):
+    """Hold models where they are, at rest, whatever acts on them; `SetModelState` moves them.
+
+    Replaces those held so far; the others fall, wakened, from where they are.
+    """
+
+    model_ids: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class ReadContacts(Command):
+    """The contacts of the last step. Reply value: a tuple of at most `limit` `Contact`s."""
+
+    limit: int = 2000
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One point of contact of the links at two rows.
+
+    Attributes:
+        row_a, row_b: link rows.
+        position: m, world axes, on b.
+        normal: unit vector from b to a, world axes.
+        depth: m, how far they overlap; negative while apart.
+        force: N, along the normal, on a.
+    """
+
+    row_a: int
+    row_b: int
+    position: Vec3
+    normal: Vec3
+    depth: float
+    force: float
 
 
 @dataclass(frozen=True)

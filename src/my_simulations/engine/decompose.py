@@ -12,7 +12,6 @@ import select
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from typing import Any, Callable, Dict, List, Optional
 
@@ -20,6 +19,7 @@ from ..description.shapes import MeshData
 from ..errors import Issue, warning
 from . import child as child_process
 from .decompose_cache import Decomposition, PartsCache, content_key, default_folder, load, save
+from .scratch import Scratch
 
 _log = logging.getLogger(__name__)
 
@@ -88,7 +88,8 @@ def _in_child(mesh: MeshData, progress: Progress, end: float) -> "tuple[Decompos
 
     progress(f"dividing a mesh of {len(mesh.triangles)} triangles into convex parts")
     started = time.monotonic()
-    with tempfile.TemporaryDirectory(prefix="my_simulations_") as folder:
+    with Scratch() as scratch:
+        folder = scratch.path
         np.savez(os.path.join(folder, _INPUT), vertices=mesh.vertices, triangles=mesh.triangles)
         in_time = _run(folder, progress, end)
         for name in (_RESULT, _FALLBACK):

@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import struct
-from typing import Dict, List, Tuple
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Tuple
 
 from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
@@ -12,11 +13,14 @@ from .api import (
     ClearLoads,
     Command,
     Event,
+    Hold,
     LinkState,
     LoadModel,
     PhysicsSettings,
+    ReadContacts,
     Refused,
     RemoveModel,
+    SetAxes,
     SetJoints,
     SetLinkState,
     SetModelState,
@@ -36,34 +40,25 @@ class KinematicBackend:
         self.joints: Dict[int, Tuple[float, float]] = {}
         self.models: Dict[int, Tuple[Model, int, int, bool]] = {}
         self.loads: Dict[int, object] = {}
+        self.held: Tuple[int, ...] = ()
         self._dirty = True
+        self._appliers: Dict[type, Callable[[Any], object]] = {
+            LoadModel: self._load, RemoveModel: lambda c: self._remove(c.model_id),
+            Clear: self._clear, SetModelState: self._set_model, SetLinkState: self._set_link,
+            SetJoints: lambda c: self.joints.update({row: (at, rate)
+                                                     for row, at, rate in c.joints}),
+            SetAxes: self._set_axes, Hold: self._hold, ReadContacts: lambda _: (),
+            AddLoads: lambda c: self.loads.update({load.load_id: load for load in c.loads}),
+            ClearLoads: lambda c: [self.loads.pop(number, None) for number in c.load_ids],
+        }
 
     def apply(self, command: Command) -> object:
         """Carry out a command; raises `Refused`."""
         self._dirty = True
-        if isinstance(command, LoadModel):
-            self._load(command)
-        elif isinstance(command, RemoveModel):
-            self._remove(command.model_id)
-        elif isinstance(command, Clear):
-            for model_id in list(self.models):
-                self._remove(model_id)
-            self.loads.clear()
-        elif isinstance(command, SetModelState):
-            self._set_model(command)
-        elif isinstance(command, SetLinkState):
-            self.links[command.row] = LinkState(command.pose, command.twist or self.links[
-                command.row].twist)
-        elif isinstance(command, SetJoints):
-            self.joints.update({row: (position, rate) for row, position, rate in command.joints})
-        elif isinstance(command, AddLoads):
-            self.loads.update({load.load_id: load for load in command.loads})
-        elif isinstance(command, ClearLoads):
-            for load_id in command.load_ids:
-                self.loads.pop(load_id, None)
-        else:
+        handler = self._appliers.get(type(command))
+        if handler is None:
             raise Refused(f"a kinematic world knows no {type(command).__name__}")
-        return None
+        return handler(command)
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Only the step size matters."""
@@ -103,12 +98,33 @@ class KinematicBackend:
     def close(self) -> None:
         """Nothing to give back."""
 
+    def _clear(self, _: Clear) -> None:
+        for model_id in list(self.models):
+            self._remove(model_id)
+        self.loads.clear()
+
+    def _set_link(self, command: SetLinkState) -> None:
+        self.links[command.row] = LinkState(
+            command.pose, command.twist or self.links[command.row].twist)
+
+    def _set_axes(self, command: SetAxes) -> None:
+        model, *rows = self.models[command.model_id]
+        self.models[command.model_id] = (replace(model, joints=list(command.joints)),
+                                         rows[0], rows[1], bool(rows[2]))
+
+    def _hold(self, command: Hold) -> None:
+        self.held = command.model_ids
+
     def _load(self, command: LoadModel) -> None:
-        model = command.model
+        model, inherited = command.model, {}
+        if command.inherit:
+            before, first, _, _ = self.models[command.inherit]
+            inherited = {link.name: compose(self.links[first + n].pose, inverse(link.pose))
+                         for n, link in enumerate(before.links)}
         self.models[command.model_id] = (model, command.first_link_row, command.first_joint_row,
                                          model.static)
         for n, link in enumerate(model.links):
-            state = LinkState(compose(command.pose, link.pose))
+            state = LinkState(compose(inherited.get(link.name, command.pose), link.pose))
             self.links[command.first_link_row + n] = (
                 command.state.links[n] if command.state else state)
         for n, _ in enumerate(axis_rows(model)):

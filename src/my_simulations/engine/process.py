@@ -17,6 +17,7 @@ from . import child
 from . import ring as ring_module
 from .api import Command, EngineGone, Event, Reply
 from .ring import RingReader
+from .scratch import sweep
 from .wire import Wire
 
 _log = logging.getLogger(__name__)
@@ -44,6 +45,7 @@ class ProcessEngine:
         self._child: Optional[subprocess.Popen[bytes]] = None
         self._wire: Optional[Wire] = None
         self._reader: Optional[threading.Thread] = None
+        sweep()  # what was left behind when a whole node was killed
         self.restart()
 
     @property
@@ -146,6 +148,7 @@ class ProcessEngine:
                 if waiting is not None:
                     waiting[1].set_result(message)
         process.wait()
+        sweep()  # what a killed child could not take along
         self._bury(process, wire)
 
     def _bury(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:

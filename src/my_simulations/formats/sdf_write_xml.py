@@ -60,7 +60,7 @@ def append_fragment(element: Any, xml: str, table: Table) -> None:
     A fragment that stood deeper is wrapped in the tags of its parents: each is found again, or
     made, as long as the table reads it in parts.
     """
-    _merge(element, _parsed(xml), table.children)
+    _merge(element, parsed_fragment(xml), table.children)
 
 
 def _merge(parent: Any, fragment: Any, children: Mapping[str, Entry]) -> None:
@@ -95,7 +95,7 @@ def _is_kept(fragment: Any, children: Mapping[str, Entry]) -> bool:
     return entry is None or isinstance(entry, Kept)
 
 
-def _parsed(xml: str) -> Any:
+def parsed_fragment(xml: str) -> Any:
     """A fragment as an element, without the blanks between tags; undeclared prefixes declared."""
     from lxml import etree
 

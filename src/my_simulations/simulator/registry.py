@@ -155,6 +155,19 @@ class Registry:
             self._plain_links.setdefault(link, []).append((entity, index))
         self.revision += 1
 
+    def swap(self, old: Entity, new: Entity) -> None:
+        """A model has become another, in the same place of the order."""
+        self._entities = {(new if entity is old else entity).model.name:
+                          new if entity is old else entity
+                          for entity in self._entities.values()}
+        for link in old.link_names:
+            self._plain_links[link] = [pair for pair in self._plain_links[link]
+                                       if pair[0] is not old]
+        for index, link in enumerate(new.link_names):
+            self._plain_links.setdefault(link, []).append((new, index))
+        self._plain_links = {link: found for link, found in self._plain_links.items() if found}
+        self.revision += 1
+
     def remove(self, name: str) -> Entity:
         """A model has gone."""
         entity = self._entities.pop(name)

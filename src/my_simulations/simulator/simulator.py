@@ -5,12 +5,9 @@ snapshot shows their effect. Safe from any thread.
 """
 from __future__ import annotations
 
-import threading
 from dataclasses import replace
-from typing import Callable, Dict, List, Optional
+from typing import Dict, List, Optional
 
-from ..description.flatten import flattened
-from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..description.world import Physics, World
 from ..engine.api import (
@@ -21,14 +18,8 @@ from ..engine.api import (
     Clear,
     ClearLoads,
     Command,
-    Engine,
     Load,
-    LoadModel,
-    ModelState,
     Pause,
-    PhysicsSettings,
-    RemoveModel,
-    Reply,
     Run,
     SetClock,
     SetJoints,
@@ -36,27 +27,13 @@ from ..engine.api import (
     SetModelState,
     SetPhysics,
 )
-from ..engine.ring import JOINTS, LINKS
-from ..engine.rows import axis_rows
-from ..errors import CommandError, Issue, Severity, error
-from ..formats.meshes import without_missing_meshes
-from ..geometry import (
-    STILL,
-    Pose,
-    Twist,
-    Vec3,
-    compose,
-    normalised,
-)
+from ..geometry import STILL, Pose, Twist, Vec3, compose
 from .frames import in_frame, usable
 from .initial import initial_commands
-from .registry import Entity, Rows
-from .solids import ConvexParts
-from .supervisor import Supervisor
-from .views import WorldViews
+from .surroundings import Surroundings
 
 
-class Simulator(WorldViews):
+class Simulator(Surroundings):
     """Owns the description, the clock and the engine.
 
     Args:
@@ -67,49 +44,7 @@ class Simulator(WorldViews):
         meshes: the collision meshes of the world's models, by model name.
     """
 
-    def __init__(self, world: World, *, engine_factory: Callable[[], Engine],
-                 log: Callable[[Issue], None], paused: bool = False,
-                 meshes: Optional[Dict[str, MeshTable]] = None) -> None:
-        super().__init__(Supervisor(engine_factory, self._restore, log))
-        self.world = world
-        self._world_meshes = meshes or {}
-        self._log = log
-        self._order = threading.RLock()   # one change of structure or clock at a time
-        self._link_rows = Rows(LINKS)
-        self._joint_rows = Rows(JOINTS)
-        self._next_id = 0
-        self._loads: Dict[int, Load] = {}
-        self._starts = dict(world.initial)
-        self._physics = world.physics
-        self._gravity = world.gravity
-        self._paused = paused
-        self._horizon = FOREVER
-        self._solids = ConvexParts(log, lambda text: log(Issue(Severity.NOTE, "meshes", text)))
-
-    # -- life ------------------------------------------------------------------------------------
-
-    def start(self) -> None:
-        """Set the physics, load every model, and run unless paused.
-
-        Faults of single models go to the log; the rest is loaded. Raises CommandError when there
-        is no engine.
-        """
-        self._call(SetPhysics(self._settings()))
-        started = self.world.initial_ns
-        self._call(SetClock(round(started * 1e-9 / self._physics.max_step_size), started))
-        for model in self.world.models:
-            try:
-                self.spawn(model, meshes=self._world_meshes.get(model.name))
-            except CommandError as fault:
-                self._log(error("model-refused", str(fault), file=self.world.file))
-        self._supervisor.engine.on_event(lambda event: self._log(
-            error("state-diverged", event.message)) if event.kind == "diverged" else None)
-        if not self._paused:
-            self._call(Run(self._horizon))
-
-    def close(self) -> None:
-        """End the engine."""
-        self._supervisor.close()
+    # -- time ------------------------------------------------------------------------------------
 
     @property
     def paused(self) -> bool:
@@ -131,87 +66,6 @@ class Simulator(WorldViews):
     def advance(self, steps: int) -> int:
         """Make exactly `steps` steps as fast as possible; returns the step count after them."""
         return self._call(Advance(steps)).step
-
-    # -- models ----------------------------------------------------------------------------------
-
-    def spawn(self, model: Model, pose: Optional[Pose] = None, frame: str = "",
-              meshes: Optional[MeshTable] = None, replace: bool = False) -> None:
-        """Put a model into the world; returns when it is there.
-
-        Args:
-            model: with its name; nested models are flattened.
-            pose: of the model frame in `frame`; None for the model's own.
-            frame: reference frame of `pose`.
-            meshes: its loaded collision meshes by `mesh_key`.
-            replace: take the place of a model of that name, in one step.
-
-        Raises:
-            CommandError: empty or taken name, unknown frame, or the engine refused it.
-        """
-        if not model.name:
-            raise CommandError("a model needs a name")
-        model = flattened(model)
-        meshes = self._solids.of(model, meshes or {})
-        with self._order:
-            with self._lock:
-                old = self._old(model.name, replace)
-                anchor = self._registry.frame(frame)
-                at = model.pose if pose is None else pose
-                at = Pose(at.position, normalised(at.orientation))
-                if anchor is not None:
-                    at = compose(anchor.state(self._snapshot())[0], at)
-                entity = self._make(model, at, meshes)
-            try:
-                self._call(Batch(tuple([
-                    self._loading(entity),
-                    *initial_commands(entity, self._starts.pop(model.name, None)),
-                    *([] if old is None else [RemoveModel(old.model_id)])])))
-            except CommandError:
-                with self._lock:
-                    self._free(entity)
-                raise
-            with self._lock:
-                self._registry.add(entity)
-                if old is not None:
-                    self._free(old)
-
-    def delete(self, name: str) -> None:
-        """Take a model out; returns when it is gone. Raises UnknownEntity."""
-        with self._order:
-            with self._lock:
-                entity = self._registry.model(name)
-            self._call(RemoveModel(entity.model_id))
-            with self._lock:
-                self._registry.remove(name)
-                self._free(entity)
-
-    def _old(self, name: str, may_replace: bool) -> Optional[Entity]:
-        old = self._registry.model(name) if name in self._registry else None
-        if old is not None and not may_replace:
-            raise CommandError(f"there is a model '{name}' already")
-        return old
-
-    def _make(self, model: Model, pose: Pose, meshes: MeshTable) -> Entity:
-        links, joints = len(model.links), len(axis_rows(model))
-        first_link = self._link_rows.take(links)
-        first_joint = self._joint_rows.take(joints)
-        if first_link is None or first_joint is None:
-            if first_link is not None:
-                self._link_rows.give(first_link, links)
-            raise CommandError(f"the world is full: {LINKS} links and {JOINTS} movable joints "
-                               "are its limit")
-        self._next_id += 1
-        return Entity(self._next_id, model, pose, first_link, first_joint, meshes)
-
-    def _free(self, entity: Entity) -> None:
-        self._link_rows.give(entity.first_link_row, len(entity.link_names))
-        self._joint_rows.give(entity.first_joint_row, len(entity.joint_names))
-
-    @staticmethod
-    def _loading(entity: Entity, state: Optional[ModelState] = None) -> LoadModel:
-        model = without_missing_meshes(entity.model, entity.meshes)
-        return LoadModel(entity.model_id, model, entity.initial_pose,
-                         entity.first_link_row, entity.first_joint_row, entity.meshes, state)
 
     # -- states ----------------------------------------------------------------------------------
 
@@ -256,6 +110,8 @@ class Simulator(WorldViews):
                 self._next_id += 1
                 numbered.append(replace(load, load_id=self._next_id))
             self._call(AddLoads(tuple(numbered)))
+            now = self.step()
+            self._loads = {key: load for key, load in self._loads.items() if load.stop > now}
             self._loads.update({load.load_id: load for load in numbered})
             return [load.load_id for load in numbered]
 
@@ -268,29 +124,27 @@ class Simulator(WorldViews):
 
     # -- physics ---------------------------------------------------------------------------------
 
-    @property
-    def physics(self) -> Physics:
-        """The settings as last set."""
-        return self._physics
-
-    @property
-    def gravity(self) -> Vec3:
-        """m/s^2, world axes."""
-        return self._gravity
-
     def set_physics(self, physics: Physics, gravity: Vec3) -> None:
         """Replace the settings. Raises CommandError, then the old ones stay."""
         with self._order:
             self._call(SetPhysics(self._settings(physics, gravity)))
             self._physics, self._gravity = physics, gravity
 
-    def _settings(self, physics: Optional[Physics] = None,
-                  gravity: Optional[Vec3] = None) -> PhysicsSettings:
-        physics = physics or self._physics
-        return PhysicsSettings(physics.max_step_size, gravity or self._gravity,
-                               max(0.0, physics.real_time_update_rate), max(1, physics.ode.iters))
-
     # -- reset -----------------------------------------------------------------------------------
+
+    def reset_time(self) -> None:
+        """Sim time 0; everything stays where it is, and timed loads go on as long as they had."""
+        with self._order:
+            was_paused = self._paused
+            now = self._call(Pause()).step
+            pending = [replace(load, start=max(0, load.start - now),
+                               stop=load.stop if load.stop == FOREVER else load.stop - now)
+                       for load in self._loads.values() if load.stop > now]
+            self._loads = {load.load_id: load for load in pending}
+            commands: List[Command] = [SetClock(0, 0), AddLoads(tuple(pending))]
+            if not was_paused:
+                commands.append(Run(self._horizon))
+            self._call(Batch(tuple(commands)))
 
     def reset_world(self) -> None:
         """Every model back to where it was loaded, at rest; joint positions and time stay."""
@@ -312,28 +166,29 @@ class Simulator(WorldViews):
                 commands.append(self._loading(entity))
                 commands += initial_commands(entity, self.world.initial.get(entity.model.name))
             self._loads.clear()
+            if self._held:
+                commands.append(self._holding())
             self._registry.revision += 1
             self._call(Batch(tuple(commands)))
 
-    # -- engine ----------------------------------------------------------------------------------
+    def load_world(self, world: World, meshes: Optional[Dict[str, MeshTable]] = None) -> None:
+        """Replace everything by another world, as at a start; paused stays what it is.
 
-    def _call(self, command: Command) -> Reply:
-        return self._supervisor.call(command)
-
-    def _restore(self, submit: Callable[[Command], Reply], paused: bool) -> None:
-        """After a death: the world as in the last whole snapshot."""
-        snapshot = self._snapshot()
-        step, clock = self.ring.clock()
-        self._paused = self._paused or paused
-        entities = self._registry.entities()
-        commands: List[Command] = [SetPhysics(self._settings()),
-                                   SetClock(snapshot.step, clock.sim_ns(snapshot.step))]
-        commands += [self._loading(entity, entity.saved(snapshot)) for entity in entities]
-        pending = tuple(load for load in self._loads.values() if load.stop > snapshot.step)
-        if pending:
-            commands.append(AddLoads(pending))
-        if not self._paused:
-            commands.append(Run(self._horizon))
-        reply = submit(Batch(tuple(commands)))
-        if reply.error:
-            raise CommandError(reply.error)
+        Faults of single models go to the log; the rest is loaded. Raises CommandError when there
+        is no engine.
+        """
+        with self._order:
+            running = not self._paused
+            self._call(Batch((Pause(), Clear(), ClearLoads(tuple(self._loads)))))
+            with self._lock:
+                for entity in self._registry.entities():
+                    self._registry.remove(entity.model.name)
+                    self._free(entity)
+            self._loads.clear()
+            self._held = []
+            self.world, self._world_meshes = world, meshes or {}
+            self._starts = dict(world.initial)
+            self._physics, self._gravity = world.physics, world.gravity
+            self._fill()
+            if running:
+                self._call(Run(self._horizon))

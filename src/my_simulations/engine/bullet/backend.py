@@ -1,12 +1,11 @@
 """PyBullet as a backend: models by number, commands, steps."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, Callable, Dict, List, Optional, Tuple, Type
 
 import pybullet
 
-from ...description.model import Model
 from ...geometry import (
     STILL,
     Pose,
@@ -28,39 +27,34 @@ from ..api import (
     Command,
     Event,
     Frame,
+    Hold,
     LinkState,
     LoadModel,
     ModelState,
     PhysicsSettings,
+    ReadContacts,
     Refused,
     RemoveModel,
+    SetAxes,
     SetJoints,
     SetLinkState,
     SetModelState,
 )
 from ..plan import PlanError, open_joints, plan_bodies
 from ..ring import JOINTS, LINKS
-from ..rows import axis_rows, row_name
+from ..rows import axis_rows
 from . import bodies, joints
 from .bodies import Body, Builder, Part
 from .constraints import Constraints
+from .contacts import read_contacts
 from .forces import Forces
 from .friction import EVERY, FrictionBalance
+from .holds import Holds
 from .readout import Readout
+from .restore import Entry, inherited, restore
 from .shapes import ShapeError, ShapeFactory
 from .spin import SpinKeeper
 from .wake import Waker
-
-
-@dataclass
-class Entry:
-    """A model in the engine."""
-
-    model: Model
-    bodies: List[Body]
-    first_row: int
-    pose: Pose
-    constraints: Constraints
 
 
 class BulletBackend:
@@ -79,11 +73,14 @@ class BulletBackend:
         self._forces = Forces(self._waker.around)
         self._friction = FrictionBalance()
         self._spin = SpinKeeper()
+        self._holds = Holds(self._waker.around)
         self._events: List[Event] = []
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             SetModelState: self._set_model, SetLinkState: self._set_link,
-            SetJoints: self._set_joints, AddLoads: self._add_loads, ClearLoads: self._clear_loads,
+            SetJoints: self._set_joints, SetAxes: self._set_axes, Hold: self._hold,
+            ReadContacts: lambda command: read_contacts(self._bodies, command.limit),
+            AddLoads: self._add_loads, ClearLoads: self._clear_loads,
         }
         self._configure_bullet()
 
@@ -111,7 +108,7 @@ class BulletBackend:
         """Make `count` steps."""
         self._readout.stepped()
         one = pybullet.stepSimulation
-        if self._forces.idle and self._friction.idle and self._spin.idle:
+        if self._forces.idle and self._friction.idle and self._spin.idle and self._holds.idle:
             for _ in range(count):
                 one()
             return
@@ -120,6 +117,7 @@ class BulletBackend:
             if not self._friction.idle and step % EVERY == 0:
                 self._friction.balance()
             self._forces.apply(step, dt, gravity)
+            self._holds.apply()
             free = self._spin.before(step)
             one()
             if free:
@@ -151,9 +149,9 @@ class BulletBackend:
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=settings.step_size, numSolverIterations=settings.iterations,
             numSubSteps=0, deterministicOverlappingPairs=1, enableFileCaching=0,
-            # Overlaps are pushed out at 10 / s whatever the step: Bullet's default throws a body
+            # Overlaps are pushed out at 5 / s whatever the step: Bullet's default throws a body
             # that starts 0.2 m deep to 3 m, and makes bounces erratic (measured).
-            contactERP=min(0.2, 10.0 * settings.step_size),
+            contactERP=min(0.2, 5.0 * settings.step_size),
         )
 
     # -- models ----------------------------------------------------------------------------------
@@ -177,9 +175,24 @@ class BulletBackend:
         for body in built:
             self._register(body)
             joints.set_up(body, command.model, self._forces, self._settings.step_size)
-        if command.state is not None:
-            self._restore(entry, command.state)
+        state = self._inherited(command) if command.inherit else command.state
+        if state is not None:
+            restore(entry, state)
         self._waker.around(built)
+
+    def _inherited(self, command: LoadModel) -> ModelState:
+        self._readout.read()
+        before = self._entry(command.inherit)
+        return inherited(before, command.model, self._model_pose(before), self._link_state,
+                         self._readout.joints)
+
+    def _model_pose(self, entry: Entry) -> Pose:
+        names = [link.name for link in entry.model.links]
+        if not names:
+            return entry.pose
+        lead = names.index(entry.model.canonical_link) if entry.model.canonical_link else 0
+        return compose(self._link_state(entry.first_row + lead).pose,
+                       inverse(entry.model.links[lead].pose))
 
     def _check_load(self, command: LoadModel) -> None:
         if command.model_id in self._models:
@@ -202,34 +215,6 @@ class BulletBackend:
         self._spin.add(body)
         self._readout.add(body)
 
-    def _restore(self, entry: Entry, state: ModelState) -> None:
-        rates = {row.name: values
-                 for row, values in zip(axis_rows(entry.model), state.joints)}
-        for body in entry.bodies:
-            link = state.links[body.parts[0].row - entry.first_row]
-            if body.rigid or body.base is not None:
-                bodies.place(body, link.pose)
-            for axis in body.axes:
-                pybullet.resetJointState(body.uid, axis.index,
-                                         *rates[row_name(axis.name, axis.number)])
-            for ball in body.balls:
-                self._restore_ball(body, ball, entry, state)
-            if body.moves and (body.rigid or body.base is not None):
-                bodies.launch(body, link.pose, link.twist)
-
-    @staticmethod
-    def _restore_ball(body: Body, ball: bodies.Ball, entry: Entry, state: ModelState) -> None:
-        child = state.links[ball.child.row - entry.first_row]
-        mine, spin, theirs = ball.child.com_pose(child.pose), child.twist.angular, entry.pose
-        if ball.parent is not None:
-            parent = state.links[ball.parent.row - entry.first_row]
-            theirs = ball.parent.com_pose(parent.pose)
-            spin = subtract(spin, parent.twist.angular)
-        between = multiply(conjugate(theirs.orientation), mine.orientation)
-        pybullet.resetJointStateMultiDof(
-            body.uid, ball.index, targetValue=multiply(ball.zero, between),
-            targetVelocity=rotate(conjugate(mine.orientation), spin))
-
     def _remove(self, command: RemoveModel) -> None:
         entry = self._entry(command.model_id)
         self._waker.around(entry.bodies)
@@ -239,6 +224,7 @@ class BulletBackend:
             self._forces.forget(body)
             self._friction.forget(body)
             self._spin.forget(body)
+            self._holds.forget(body)
             self._readout.forget(body)
             for uid in body.uids:
                 del self._bodies[uid]
@@ -257,6 +243,7 @@ class BulletBackend:
         self._forces.clear_all()
         self._friction.clear()
         self._spin.clear()
+        self._holds.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         pybullet.resetSimulation()
@@ -294,12 +281,9 @@ class BulletBackend:
         entry = self._entry(command.model_id)
         self._readout.read()
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
-        names = [link.name for link in entry.model.links]
-        canonical = names.index(entry.model.canonical_link) if entry.model.canonical_link else 0
-        if not names:
+        if not entry.model.links:
             return
-        current = compose(self._link_state(entry.first_row + canonical).pose,
-                          inverse(entry.model.links[canonical].pose))
+        current = self._model_pose(entry)
         self._waker.around(entry.bodies)
         for body in entry.bodies:
             self._move(body, current, pose, twist)
@@ -336,6 +320,7 @@ class BulletBackend:
         self._forces.disturbed(body)
         if body.moves and (body.rigid or body.base is not None):
             bodies.launch(body, target, _carried(lead, target, wanted, twist))
+        self._holds.moved(body)
         self._readout.touch(body)
 
     def _set_joints(self, command: SetJoints) -> None:
@@ -350,6 +335,17 @@ class BulletBackend:
             pybullet.resetJointState(body.uid, axis.index, position, rate)
             self._forces.disturbed(body)
             self._readout.touch(body)
+
+    def _set_axes(self, command: SetAxes) -> None:
+        entry = self._entry(command.model_id)
+        entry.model = replace(entry.model, joints=list(command.joints))
+        self._waker.around(entry.bodies)
+        for body in entry.bodies:
+            joints.set_up(body, entry.model, self._forces, self._settings.step_size)
+
+    def _hold(self, command: Hold) -> None:
+        self._holds.set(body for number in command.model_ids
+                        for body in self._entry(number).bodies)
 
     # -- loads and events ------------------------------------------------------------------------
 

@@ -76,12 +76,15 @@ class Forces:
 
     def set_limits(self, row: int, effort: float, rate: float) -> None:
         """Limit what loads may do on the axis of `row`; negative: not (SDF, axis/limit)."""
+        self._limits.pop(row, None)
         if effort >= 0.0 or rate >= 0.0:
             self._limits[row] = (effort, rate)
 
-    def add_damper(self, row: int, damper: Damper) -> None:
-        """Let a spring or damper act on the axis of `row`."""
-        self._dampers[row] = damper
+    def set_damper(self, row: int, damper: Optional[Damper]) -> None:
+        """Let this spring or damper, or none, act on the axis of `row`."""
+        self._dampers.pop(row, None)
+        if damper is not None:
+            self._dampers[row] = damper
 
     def disturbed(self, body: Body) -> None:
         """The joints of a body were set."""

@@ -24,13 +24,15 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
         spec = specs[axis.name][axis.number] or JointAxis()
         # createMultiBody leaves a velocity motor on every axis; as a brake it is the friction.
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
-                                       targetVelocity=0.0, force=max(0.0, spec.friction))
+                                       targetVelocity=spec.motor_rate,
+                                       force=max(0.0, spec.friction))
         _limit(body, axis, spec, mass)
         forces.set_limits(axis.row, spec.effort, spec.velocity)
-        if spec.spring_stiffness or spec.damping * dt > _EXPLICIT_DAMPING * inertia:
-            forces.add_damper(axis.row, Damper(body.uid, axis.index, inertia, spec))
-        else:
-            pybullet.changeDynamics(body.uid, axis.index, jointDamping=spec.damping)
+        implicit = spec.spring_stiffness or spec.damping * dt > _EXPLICIT_DAMPING * inertia
+        forces.set_damper(axis.row, Damper(body.uid, axis.index, inertia, spec)
+                          if implicit else None)
+        pybullet.changeDynamics(body.uid, axis.index,
+                                jointDamping=0.0 if implicit else spec.damping)
 
 
 def _free(body: Body) -> None:

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
 
 import numpy as np
@@ -27,6 +26,7 @@ from ...description.shapes import (
 )
 from ...geometry import IDENTITY, Pose, compose, multiply, transform
 from ..hulls import hull_points, naming_triangles
+from ..scratch import Scratch
 
 MAX_SHAPES = 16
 """Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
@@ -40,13 +40,13 @@ class ShapeFactory:
     """Makes compounds. Meshes go through files in a private directory, removed at the end."""
 
     def __init__(self) -> None:
-        self._scratch = tempfile.TemporaryDirectory(prefix="my_simulations_")
+        self._scratch = Scratch()
         self._files: Dict[str, str] = {}
         self._count = 0
 
     def close(self) -> None:
         """Remove the mesh files."""
-        self._scratch.cleanup()
+        self._scratch.close()
 
     def compounds(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                   static: bool) -> List[int]:
@@ -129,7 +129,7 @@ class ShapeFactory:
                frame: Pose) -> Dict[str, Any]:
         """Several collisions as one file of convex parts, in the body's frame."""
         self._count += 1
-        path = os.path.join(self._scratch.name, f"{self._count}.obj")
+        path = os.path.join(self._scratch.path, f"{self._count}.obj")
         with open(path, "w", encoding="ascii") as stream:
             first = 1
             for collision in collisions:
@@ -153,7 +153,7 @@ class ShapeFactory:
         key = f"{key} {'triangles' if static else 'pieces'}"
         if key not in self._files:
             self._count += 1
-            path = os.path.join(self._scratch.name, f"{self._count}.obj")
+            path = os.path.join(self._scratch.path, f"{self._count}.obj")
             first = 1
             with open(path, "w", encoding="ascii") as stream:
                 for piece in [mesh] if static or not mesh.parts else mesh.parts:

@@ -1,0 +1,78 @@
+"""Folders for files that other code reads by name, gone at the latest when the next one is made.
+
+A folder belongs to whoever holds the lock on it. The kernel drops the locks of a process that ends
+in whatever way, so a folder that can be locked has been left behind.
+"""
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import shutil
+import tempfile
+
+_PREFIX = "my_simulations_scratch_"
+
+
+class Scratch:
+    """A private folder, made when its path is first asked for.
+
+    As a context manager it is removed at the end.
+    """
+
+    def __init__(self) -> None:
+        self._path = ""
+        self._lock = -1
+
+    def __enter__(self) -> "Scratch":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def path(self) -> str:
+        """The folder. Raises OSError when there is no room for one."""
+        while not self._path:
+            sweep()
+            made = tempfile.mkdtemp(prefix=_PREFIX)
+            self._lock = _locked(made)
+            if self._lock >= 0:  # else somebody swept it between the two
+                self._path = made
+        return self._path
+
+    def close(self) -> None:
+        """Remove the folder and all that is in it."""
+        if self._path:
+            shutil.rmtree(self._path, ignore_errors=True)
+            os.close(self._lock)
+            self._path, self._lock = "", -1
+
+
+def sweep() -> None:
+    """Remove the folders whose owners have ended without doing so."""
+    try:
+        parent = tempfile.gettempdir()
+        names = os.listdir(parent)
+    except OSError:  # no folder for such things: then there are none
+        return
+    for name in names:
+        if name.startswith(_PREFIX):
+            path = os.path.join(parent, name)
+            lock = _locked(path)
+            if lock >= 0:
+                shutil.rmtree(path, ignore_errors=True)
+                os.close(lock)
+
+
+def _locked(path: str) -> int:
+    """A descriptor that locks a folder of ours; -1 when it is not to be had."""
+    descriptor = -1
+    with contextlib.suppress(OSError):  # gone, another user's, or locked
+        descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if os.fstat(descriptor).st_uid == os.getuid() and os.path.isdir(path):
+            return descriptor
+    if descriptor >= 0:
+        os.close(descriptor)
+    return -1
