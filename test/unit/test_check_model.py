@@ -44,6 +44,15 @@ def test_what_the_package_ships_is_clean(path):
     assert issues == []
 
 
+def test_a_file_with_nothing_but_an_actor_is_clean(tmp_path):
+    path = tmp_path / "walker.sdf"
+    path.write_text(sdf('<actor name="a"><skin><filename>walk.dae</filename></skin></actor>'))
+    loaded, issues = check(str(path), Resolver())
+    assert loaded.skin == "walk.dae"
+    assert [(issue.code, issue.severity) for issue in issues] == [
+        ("not-simulated", Severity.NOTE)]
+
+
 @pytest.mark.parametrize("pose", ["0 0 0.5 0 0 0", "0 0 0.496 0 0 0.7", "0 0 2 1 1 1"])
 def test_a_box_that_touches_the_ground_or_floats_is_fine(found, pose):
     assert found(GROUND, solid("b", pose)) == []

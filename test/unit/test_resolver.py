@@ -39,6 +39,11 @@ def test_a_model_uri_may_name_a_package(resolver, tree):
     assert found(resolver, "model://pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
 
 
+def test_slashes_before_the_name_change_nothing(resolver, tree):
+    assert found(resolver, "model:///lamp/b.dae", tree) == "second/lamp/b.dae"
+    assert found(resolver, "package:///pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
+
+
 def test_a_package_uri_is_looked_for_in_the_package_then_in_the_model_paths(resolver, tree):
     assert found(resolver, "package://pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
     assert found(resolver, "package://lamp/b.dae", tree) == "second/lamp/b.dae"

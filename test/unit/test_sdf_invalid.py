@@ -51,8 +51,7 @@ MODEL_FAULTS = {
 
 PART_FAULTS = {
     "box_size_negative.sdf": ("bad-shape", 5),
-    "box_size_zero.sdf": ("bad-shape", 5),
-    "sphere_radius_zero.sdf": ("bad-shape", 5),
+    "sphere_radius_negative.sdf": ("bad-shape", 5),
     "cylinder_length_negative.sdf": ("bad-shape", 5),
     "mesh_scale_zero.sdf": ("bad-shape", 5),
     "collision_mesh_missing.sdf": ("mesh-not-found", 5),

@@ -144,7 +144,7 @@ def test_images_are_found_and_their_fields_read(tmp_path):
     ("<polyline/>", "bad-shape"),
     ("<polyline><point>0 0</point><point>1 1</point></polyline>", "bad-shape"),
     ("<polyline><point>0 0</point><point>1 x</point></polyline>", "bad-value"),
-    ("<capsule><radius>0</radius></capsule>", "bad-shape"),
+    ("<capsule><radius>-1</radius></capsule>", "bad-shape"),
     ("<ellipsoid><radii>1 -1 1</radii></ellipsoid>", "bad-shape"),
     ("<cone><length>-1</length></cone>", "bad-shape"),
 ])
@@ -294,12 +294,42 @@ def test_a_static_model_may_have_any_inertia():
     assert errors(issues) == [] and len(model.models) == 1
 
 
-def test_a_shape_of_zero_size_in_a_static_model_is_dropped_with_a_warning():
+@pytest.mark.parametrize("shape", [
+    "<box><size>1 1 0</size></box>", "<box><size>0 0 0</size></box>",
+    "<sphere><radius>0</radius></sphere>",
+    "<cylinder><radius>0</radius><length>1</length></cylinder>",
+    "<capsule><radius>0</radius></capsule>", "<ellipsoid><radii>1 0 1</radii></ellipsoid>",
+])
+@pytest.mark.parametrize("static", ["", "<static>true</static>"])
+def test_a_collision_of_zero_size_touches_nothing_and_is_left_out_with_a_warning(shape, static):
     model, issues = model_of(
-        '<static>true</static><link name="l"><collision name="c"><geometry><box><size>1 1 0</size>'
-        "</box></geometry></collision></link>")
+        f'{static}<link name="l"><collision name="c"><geometry>{shape}</geometry></collision>'
+        "</link>")
     assert model.links[0].collisions == []
+    assert model.links[0].extra[0].startswith('<collision name="c">')
     assert [(i.code, i.severity) for i in issues] == [("bad-shape", Severity.WARNING)]
+
+
+@pytest.mark.parametrize("moments, expected", [
+    ((1, 0, 0), (1, 0.5, 0.5)), ((0, 2, 0), (1, 2, 1)), ((0.5, 0.5, 0), (0.5, 0.5, 0.0005)),
+    ((3, 0, 1), (3, 2, 1)),
+])
+def test_moments_of_zero_beside_others_become_what_a_body_may_have(moments, expected):
+    xx, yy, zz = moments
+    model, issues = model_of(
+        f'<link name="l"><inertial><mass>2</mass><inertia><ixx>{xx}</ixx><iyy>{yy}</iyy>'
+        f"<izz>{zz}</izz></inertia></inertial></link>")
+    inertial = model.links[0].inertial
+    assert (inertial.ixx, inertial.iyy, inertial.izz) == pytest.approx(expected)
+    assert inertial.mass == 2
+    assert [(i.code, i.severity) for i in issues] == [("inertia-zero", Severity.WARNING)]
+
+
+def test_zeros_beside_products_of_inertia_are_refused():
+    _, issues = model_of(
+        '<link name="l"><inertial><inertia><ixx>1</ixx><iyy>1</iyy><izz>0</izz><ixy>0.1</ixy>'
+        "</inertia></inertial></link>")
+    assert errors(issues) == ["inertia-not-positive"]
 
 
 def test_plugins_are_kept_as_written():

@@ -13,9 +13,9 @@ from ..description.flatten import flattened
 from ..description.model import Link, Model
 from ..description.shapes import Mesh, MeshTable, mesh_key
 from ..description.validate import Fault
-from ..description.world import Light, World
+from ..description.world import Actor, Light, World
 from ..errors import InputError, Issue, Severity, error, errors_of
-from ..formats.load import read_entity, read_world_text
+from ..formats.load import read_any
 from ..formats.meshes import collision_meshes
 from ..formats.source import Log
 from ..formats.xmltext import parse
@@ -27,7 +27,7 @@ from .object_documents import run_xacro
 NAME = "check_model"
 XACRO_SECONDS = 60.0
 
-Loaded = Union[World, Model, Light]
+Loaded = Union[World, Model, Light, Actor]
 
 
 def parser() -> argparse.ArgumentParser:
@@ -75,11 +75,7 @@ def check(file: str, resolver: Resolver) -> Tuple[Optional[Loaded], List[Issue]]
     except InputError as fault:
         return None, fault.issues
     try:
-        loaded: Loaded
-        if root.find("world") is not None:
-            loaded, issues = read_world_text(text, resolver, path)
-        else:
-            loaded, issues = read_entity(text, resolver, path)
+        loaded, issues = read_any(text, resolver, path)
     except InputError as fault:
         return None, fault.issues
     models = _models(loaded)

@@ -219,7 +219,9 @@ def has_zero_size(geometry: Geometry) -> bool:
         sizes = geometry.size
     elif isinstance(geometry, Sphere):
         sizes = (geometry.radius,)
-    elif isinstance(geometry, Cylinder):
+    elif isinstance(geometry, Ellipsoid):
+        sizes = geometry.radii
+    elif isinstance(geometry, (Cylinder, Capsule, Cone)):
         sizes = (geometry.radius, geometry.length)
     return 0 in sizes and is_finite(*sizes) and min(sizes) >= 0
 

@@ -5,12 +5,13 @@ import os
 from typing import Any, List, Tuple, Union
 
 from ..description.model import Model
-from ..description.world import Light, World
+from ..description.world import Actor, Light, World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
 from .sdf_include import read_include
 from .sdf_light import LightPlacement, read_light
 from .sdf_model import Changes, Placement, read_model
+from .sdf_scene import read_actor
 from .sdf_versions import upgrade
 from .sdf_world import read_world_element
 from .source import Level, Log, Source
@@ -23,19 +24,26 @@ _UNNAMED = "unnamed"
 _SDF_ROOTS = ("sdf", "gazebo")  # `<gazebo version="1.x">` is SDF from before it had its name
 
 
-def read_world(path: str, resolver: Resolver) -> Tuple[World, List[Issue]]:
+def read_world(path: str, resolver: Resolver, *, seed: int = 0,
+               profile: str = "") -> Tuple[World, List[Issue]]:
     """The first world of a file, with every issue met on the way.
 
     A model that cannot be used is left out whole, with its errors among the issues.
 
+    Args:
+        path: the file.
+        resolver: finds what it names.
+        seed: of what the world draws at random.
+        profile: name of the physics preset to use; "" for the world's own choice.
+
     Raises:
         InputError: nothing usable: no such file, cut-off XML, no `<world>`.
     """
-    return read_world_text(_content(path), resolver, path)
+    return read_world_text(_content(path), resolver, path, seed=seed, profile=profile)
 
 
-def read_world_text(text: Text, resolver: Resolver,
-                    file: str = "<world>") -> Tuple[World, List[Issue]]:
+def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
+                    profile: str = "") -> Tuple[World, List[Issue]]:
     """As `read_world`, from text; `file` names it and, where it is a path, anchors relative URIs.
 
     Raises:
@@ -47,7 +55,7 @@ def read_world_text(text: Text, resolver: Resolver,
     element = root.find("world")
     if element is None:
         raise _unusable(source, "world-missing", "the file holds no <world>", root)
-    world = read_world_element(element, source)
+    world = read_world_element(element, source, seed, profile)
     if len(root.findall("world")) > 1:
         source.warn("world-many", "the file holds several worlds; the first is used", root)
     return world, source.log.issues
@@ -89,6 +97,23 @@ def read_entity(text: Text, resolver: Resolver,
         raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
                         root, hint)
     return entity, source.log.issues
+
+
+def read_any(text: Text, resolver: Resolver,
+             file: str) -> Tuple[Union[World, Model, Light, Actor], List[Issue]]:
+    """Whatever a document holds: its first world, else its first model or light, else an actor.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    source, root = _open(text, resolver, file)
+    if root.find("world") is not None:
+        return read_world_text(text, resolver, file)
+    actor = root.find("actor")
+    if actor is None or any(root.find(tag) is not None for tag in ("model", "light", "include")):
+        return read_entity(text, resolver, file)
+    source.tell_unused(actor)
+    return read_actor(actor, source), source.log.issues
 
 
 def _first_entity(root: Any, source: Source) -> Entity:

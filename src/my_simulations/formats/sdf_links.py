@@ -5,12 +5,12 @@ from typing import Any, Dict, List, Set, Tuple
 
 from ..description.model import Inertial, Link
 from ..description.shapes import Heightmap, ImageMap
+from .inertia import completed
 from .sdf_frames import FrameTree
 from .sdf_shapes import read_collision, read_visual
 from .sdf_tables import INERTIAL, LINK
 from .source import Level, Source
 from .tables import Found, fill
-from .urdf_inertia import is_zero, of_shapes
 
 
 def relative_to(found: Found) -> str:
@@ -52,7 +52,7 @@ class LinkReader:
             self._note_pose(link.inertial, inside, link)
         self.elements.setdefault(id(link.inertial), element)
         for child in found.get("collision", ()):
-            collision = read_collision(child, source, static, link.extra)
+            collision = read_collision(child, source, link.extra)
             if collision is not None:
                 link.collisions.append(collision[0])
                 self.elements[id(collision[0])] = child
@@ -63,19 +63,19 @@ class LinkReader:
                 link.visuals.append(visual[0])
                 self.elements[id(visual[0])] = child
                 self._note_pose(*visual, link)
-        if not static and is_zero(link.inertial):
-            self._replace_zero_inertia(link)
+        if not static:
+            self._complete_inertia(link)
         self._distinct("collision", link.collisions, link)
         self._distinct("visual", link.visuals, link)
         return link
 
-    def _replace_zero_inertia(self, link: Link) -> None:
-        better = of_shapes(link.inertial, link.collisions)
+    def _complete_inertia(self, link: Link) -> None:
+        better = completed(link.inertial, link.collisions)
         if better is not None:
-            self.elements[id(better)] = self.elements[id(link.inertial)]
-            link.inertial = better
-            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} is zero; that of"
-                              " its shapes is used", self.elements[id(better)])
+            element = self.elements[id(better[0])] = self.elements[id(link.inertial)]
+            link.inertial = better[0]
+            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}",
+                              element)
 
     def _note_pose(self, thing: Any, found: Found, link: Link) -> None:
         frame = relative_to(found)

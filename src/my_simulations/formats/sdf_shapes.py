@@ -5,7 +5,6 @@ import os
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
 from ..description.shapes import (
-    Box,
     Collision,
     Empty,
     Geometry,
@@ -25,7 +24,7 @@ from .values import VECTOR2
 
 
 def read_collision(
-    element: Any, source: Source, static: bool, kept: List[str]
+    element: Any, source: Source, kept: List[str]
 ) -> Optional[Tuple[Collision, Found]]:
     """A collision; None where it is left out: its XML is then in `kept`.
 
@@ -33,8 +32,7 @@ def read_collision(
     """
     collision = Collision(element.get("name", ""), Empty())
     found = fill(collision, element, COLLISION, source, collision.extra)
-    geometry = _geometry(found.get("geometry", ()), element, source, True, static,
-                         collision.extra)
+    geometry = _geometry(found.get("geometry", ()), element, source, True, collision.extra)
     if geometry is None:
         kept.append(to_xml(element))
         return None
@@ -49,7 +47,7 @@ def read_visual(element: Any, source: Source, kept: List[str]) -> Optional[Tuple
     """
     visual = Visual(element.get("name", ""), Empty())
     found = fill(visual, element, VISUAL, source, visual.extra)
-    geometry = _geometry(found.get("geometry", ()), element, source, False, False, visual.extra)
+    geometry = _geometry(found.get("geometry", ()), element, source, False, visual.extra)
     if geometry is None:
         kept.append(to_xml(element))
         return None
@@ -78,8 +76,7 @@ def _anchored(uri: str, base_dir: str) -> str:
 
 
 def _geometry(
-    elements: Sequence[Any], owner: Any, source: Source, collides: bool, static: bool,
-    kept: List[str],
+    elements: Sequence[Any], owner: Any, source: Source, collides: bool, kept: List[str],
 ) -> Optional[Geometry]:
     level = Level.ERROR if collides else Level.WARNING
     shapes = [child for element in elements for child in element if isinstance(child.tag, str)]
@@ -105,7 +102,7 @@ def _geometry(
         kept += [f"<geometry><{shape.tag}>{xml}</{shape.tag}></geometry>" for xml in extra]
     if isinstance(geometry, Polyline) and not _loops(geometry, shapes, source, level):
         return None
-    return checked(geometry, shape, owner.tag, source, static)
+    return checked(geometry, shape, owner.tag, source)
 
 
 def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: Level) -> bool:
@@ -138,8 +135,7 @@ def unknown_shape(shape: Any, owner: str, level: Level, source: Source,
                   closest(shape.tag, list(known)))
 
 
-def checked(geometry: Geometry, shape: Any, owner: str, source: Source,
-            static: bool) -> Optional[Geometry]:
+def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optional[Geometry]:
     """The shape where it can be used, its mesh found; None, with an issue, where it cannot."""
     collides = owner == "collision"
     if isinstance(geometry, (Mesh, Heightmap, ImageMap)) and not find_mesh(
@@ -147,9 +143,8 @@ def checked(geometry: Geometry, shape: Any, owner: str, source: Source,
         return None
     problem = geometry_fault(geometry)
     if problem:
-        # Care-O-bot's objects hold boxes of size 0 0 0: place-holders, not meant to be touched.
-        placeholder = isinstance(geometry, Box) and not any(geometry.size)
-        mild = not collides or placeholder or (static and has_zero_size(geometry))
+        # ODE never lets a geometry of size 0 touch anything: files use them as place-holders.
+        mild = not collides or has_zero_size(geometry)
         source.report(Level.WARNING if mild else Level.ERROR, "bad-shape",
                       f"{problem}; this {owner} is left out", shape)
         return None

@@ -7,11 +7,11 @@ from ..description.model import WORLD, JointAxis, Model
 from ..description.validate import faults
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose
+from .inertia import completed
 from .sdf_model import Changes
 from .source import Level, Source
 from .tables import closest, fill
 from .urdf_gazebo import Extensions, moved
-from .urdf_inertia import is_zero, of_shapes
 from .urdf_joint import read_connection
 from .urdf_lump import lump, standing
 from .urdf_parts import read_body, read_origin, read_palette
@@ -188,19 +188,19 @@ class _RobotReader:
                            for n, (stem, c) in enumerate(body.collisions)]
         link.visuals = [self._named(v, stem, "visual", n, body)
                         for n, (stem, v) in enumerate(body.visuals)]
-        if not self._model.static and is_zero(link.inertial):
-            self._replace_zero_inertia(body)
+        if not self._model.static:
+            self._complete_inertia(body)
         for thing in (link, link.inertial, *link.collisions, *link.visuals):
             self._elements[id(thing)] = body.element
         self._model.links.append(link)
 
-    def _replace_zero_inertia(self, body: Body) -> None:
+    def _complete_inertia(self, body: Body) -> None:
         link = body.link
-        better = of_shapes(link.inertial, link.collisions)
+        better = completed(link.inertial, link.collisions)
         if better is not None:
-            link.inertial = better
-            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} is zero; that of"
-                              " its shapes is used", body.element)
+            link.inertial = better[0]
+            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}",
+                              body.element)
 
     def _named(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
         prefix = body.link.name if stem.startswith(LUMP) else ""

@@ -47,7 +47,7 @@ def read_body(element: Any, source: Source, static: bool, palette: Palette) -> B
         collision = Collision("", Empty())
         inside = fill(collision, child, COLLISION, source, [])
         collision.pose = read_origin(inside.get("origin", ()), source)
-        geometry = _geometry(inside.get("geometry", ()), child, source, True, static)
+        geometry = _geometry(inside.get("geometry", ()), child, source, True)
         if geometry is not None:
             collision.geometry = geometry
             body.collisions.append((child.get("name") or link.name, collision))
@@ -55,7 +55,7 @@ def read_body(element: Any, source: Source, static: bool, palette: Palette) -> B
         visual = Visual("", Empty())
         inside = fill(visual, child, VISUAL, source, [])
         visual.pose = read_origin(inside.get("origin", ()), source, Level.WARNING)
-        geometry = _geometry(inside.get("geometry", ()), child, source, False, static)
+        geometry = _geometry(inside.get("geometry", ()), child, source, False)
         if geometry is not None:
             visual.geometry = geometry
             for material in inside.get("material", ()):
@@ -79,8 +79,8 @@ def _inertial(element: Any, source: Source, static: bool) -> Inertial:
     return inertial
 
 
-def _geometry(elements: Sequence[Any], owner: Any, source: Source, collides: bool,
-              static: bool) -> Optional[Geometry]:
+def _geometry(elements: Sequence[Any], owner: Any, source: Source,
+              collides: bool) -> Optional[Geometry]:
     level = Level.ERROR if collides else Level.WARNING
     shapes = [child for element in elements for child in element]
     if not shapes:
@@ -99,7 +99,7 @@ def _geometry(elements: Sequence[Any], owner: Any, source: Source, collides: boo
     geometry: Geometry = table.of()
     if BAD in fill(geometry, shape, table, source, [], level):
         return None
-    return checked(geometry, shape, owner.tag, source, static)
+    return checked(geometry, shape, owner.tag, source)
 
 
 def read_palette(elements: Sequence[Any], source: Source) -> Palette:

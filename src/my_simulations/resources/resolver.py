@@ -172,9 +172,11 @@ class Resolver:
 
                 yield from self._for_path(unquote(rest), base_dir)
         elif scheme == "model":
+            rest = rest.lstrip("/")  # `model:///name` is found, too (Gazebo behaviour)
             yield from self._for_model(rest)
             yield from self._for_package(uri, rest)
         elif scheme == "package":
+            rest = rest.lstrip("/")
             yield from self._for_package(uri, rest)
             yield from self._for_model(rest)
         else:

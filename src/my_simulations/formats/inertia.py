@@ -1,16 +1,51 @@
-"""An inertia for links whose file gives a mass and a tensor of zeros.
+"""An inertia for links whose file leaves some of it out, by zeros in its tensor.
 
-Care-O-bot's furniture is written so. No body has such a tensor; what the author left open is taken
-from the shapes.
+Gazebo loads such links. Care-O-bot's furniture has tensors of zeros, and files that care about one
+axis only give its moment and zeros for the others. What the author left open is taken from the
+shapes, or is as little as a body can have; ODE, which cannot invert such a tensor, goes on with
+1 kg m^2 about each axis, whatever the size of the body.
 """
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import List, Optional, Tuple
 
 from ..description.model import Inertial
 from ..description.shapes import Box, Collision, Cylinder, Geometry, Sphere
 from .urdf_lump import merged
+
+_LEAST = 1e-3
+"""The least moment, of the largest one: a rod a hundred times as long as it is wide."""
+
+
+def completed(inertial: Inertial,
+              collisions: List[Collision]) -> Optional[Tuple[Inertial, str]]:
+    """The inertia with what was left out, and words that end "the inertia of link 'x' …".
+
+    Returns:
+        None where nothing is left out, or nothing can be said about it.
+    """
+    if is_zero(inertial):
+        better = of_shapes(inertial, collisions)
+        return None if better is None else (better, "is zero; that of its shapes is used")
+    return _raised(inertial)
+
+
+def _raised(i: Inertial) -> Optional[Tuple[Inertial, str]]:
+    """Moments of 0 beside others, about the given axes, as small as a body of the others has.
+
+    No principal moment is larger than the sum of the two others.
+    """
+    moments = (i.ixx, i.iyy, i.izz)
+    least, middle, largest = sorted(moments)
+    if least != 0 or largest <= 0 or i.mass <= 0 or any((i.ixy, i.ixz, i.iyz)):
+        return None
+    value = largest / 2 if middle == 0 else max(largest - middle, _LEAST * largest)
+    x, y, z = (moment or value for moment in moments)
+    names = " and ".join(name for name, was in zip(("ixx", "iyy", "izz"), moments) if was == 0)
+    return replace(i, ixx=x, iyy=y, izz=z), (
+        f"has {names} 0, which no body has; {value:g} kg m^2 is used")
 
 
 def is_zero(inertial: Inertial) -> bool:
