@@ -50,9 +50,9 @@ class ModelEdits(WorldCore):
                 old = self._registry.model(name)
                 if model.name != name:
                     self._check_free(model.name)
-            known = {**old.meshes, **(meshes or {})}
+            parts = self._solids.of(model, {**old.meshes, **(meshes or {})})
             with self._lock:
-                entity = self._make(model, old.initial_pose, self._solids.of(model, known))
+                entity = self._make(model, old.initial_pose, parts)
             entity.pose = old.pose
             loads = self._loads_of(old, entity)
             commands: List[Command] = [replace(self._loading(entity), inherit=old.model_id),

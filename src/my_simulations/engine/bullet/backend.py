@@ -25,6 +25,7 @@ from ..api import (
     Clear,
     ClearLoads,
     Command,
+    Connect,
     Event,
     Frame,
     Hold,
@@ -54,6 +55,7 @@ from .readout import Readout
 from .restore import Entry, inherited, restore
 from .shapes import ShapeError, ShapeFactory
 from .spin import SpinKeeper
+from .ties import Ties
 from .wake import Waker
 
 
@@ -74,11 +76,12 @@ class BulletBackend:
         self._friction = FrictionBalance()
         self._spin = SpinKeeper()
         self._holds = Holds(self._waker.around)
+        self._ties = Ties()
         self._events: List[Event] = []
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             SetModelState: self._set_model, SetLinkState: self._set_link,
-            SetJoints: self._set_joints, SetAxes: self._set_axes, Hold: self._hold,
+            Connect: self._connect, SetJoints: self._set_joints, SetAxes: self._set_axes, Hold: self._hold,
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit),
             AddLoads: self._add_loads, ClearLoads: self._clear_loads,
         }
@@ -117,11 +120,11 @@ class BulletBackend:
             if not self._friction.idle and step % EVERY == 0:
                 self._friction.balance()
             self._forces.apply(step, dt, gravity)
-            self._holds.apply()
             free = self._spin.before(step)
             one()
             if free:
                 self._spin.after(free, self._forces.loaded_links, dt)
+            self._holds.apply()
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -225,6 +228,7 @@ class BulletBackend:
             self._friction.forget(body)
             self._spin.forget(body)
             self._holds.forget(body)
+            self._ties.forget(body)
             self._readout.forget(body)
             for uid in body.uids:
                 del self._bodies[uid]
@@ -233,6 +237,11 @@ class BulletBackend:
             for axis in body.axes:
                 del self._axes[axis.row]
             bodies.remove(body)
+
+    def _connect(self, command: Connect) -> None:
+        self._ties.connect(command, self._rows)
+        self._waker.around([self._rows[row][0] for row in (command.child_row, command.parent_row)
+                            if row >= 0])
 
     def _clear(self, _: Clear) -> None:
         for model_id in list(self._models):
@@ -244,6 +253,7 @@ class BulletBackend:
         self._friction.clear()
         self._spin.clear()
         self._holds.clear()
+        self._ties.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         pybullet.resetSimulation()

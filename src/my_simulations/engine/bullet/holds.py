@@ -12,7 +12,7 @@ _STILL = (0.0, 0.0, 0.0)
 
 
 class Holds:
-    """Puts held bodies back, at rest, before every step."""
+    """Puts held bodies back, at rest, after every step."""
 
     def __init__(self, wake: Callable[[List[Body]], None]) -> None:
         self._wake = wake
