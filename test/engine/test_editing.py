@@ -5,7 +5,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from conftest import arm, ball, box, ground, inertial_of_box, slab
+from conftest import arm, ball, box, inertial_of_box, slab
 from test_process import kill, start  # noqa: F401
 
 from my_simulations.description.model import Inertial, JointAxis, Link
