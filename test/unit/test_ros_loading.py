@@ -72,3 +72,34 @@ def test_an_engine_nobody_took_is_ended():
     first = supply._first
     supply.close()
     assert first.closed
+
+
+PRESETS = """<sdf version="1.6"><world name="w">
+<physics name="usual" default="true" type="ode"><max_step_size>0.001</max_step_size></physics>
+<physics name="fast" type="ode"><max_step_size>0.004</max_step_size></physics>
+</world></sdf>"""
+
+
+@pytest.mark.parametrize("profile, step", [("", 0.001), ("fast", 0.004), ("none", 0.001)])
+def test_a_physics_preset_is_chosen_by_name(tmp_path, profile, step):
+    (tmp_path / "a.world").write_text(PRESETS)
+    issues = []
+    world, _ = load_world(str(tmp_path / "a.world"), Resolver(), issues.append, profile=profile)
+    assert world.physics.max_step_size == step
+    assert [issue.code for issue in issues] == (["physics-profile"] if profile == "none" else [])
+
+
+RANDOM = """<sdf version="1.6"><world name="w"><population name="p">
+<model name="m"><static>true</static><link name="l"/></model><model_count>5</model_count>
+<box><size>9 9 9</size></box></population></world></sdf>"""
+
+
+def test_a_seed_decides_where_a_population_stands(tmp_path):
+    (tmp_path / "a.world").write_text(RANDOM)
+
+    def places(seed):
+        world, _ = load_world(str(tmp_path / "a.world"), Resolver(), lambda issue: None, seed=seed)
+        return [model.pose.position for model in world.models]
+
+    assert len(places(1)) == 5
+    assert places(1) == places(1) != places(2)

@@ -24,12 +24,15 @@ from .tables import Found, fill, to_xml
 from .values import BOOL
 
 
-def read_world_element(element: Any, source: Source) -> World:
-    """A world; models with a fatal fault are left out whole. Source: SDF spec 1.7, world."""
-    world = World(element.get("name") or "default", file=source.file)
+def read_world_element(element: Any, source: Source, seed: int = 0, profile: str = "") -> World:
+    """A world; models with a fatal fault are left out whole. Source: SDF spec 1.7, world.
+
+    `seed` and `profile` are as for `load.read_world`.
+    """
+    world = World(element.get("name") or "default", file=source.file, seed=seed)
     found = fill(world, element, WORLD, source, world.extra)
     world.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
-    _read_physics(found.get("physics", ()), world, source)
+    _read_physics(found.get("physics", ()), world, source, profile)
     read_surroundings(found, world, source)
     _Entities(world, source, found).read(element)
     for state in found.get("state", ())[:1]:
@@ -169,9 +172,16 @@ class _Entities:
                     self._world.lights.remove(entity)
 
 
-def _read_physics(elements: Sequence[Any], world: World, source: Source) -> None:
-    """The first preset with default="true", else the first; the others are kept."""
+def _read_physics(elements: Sequence[Any], world: World, source: Source, profile: str) -> None:
+    """The preset `profile`, else the first with default="true", else the first; others are kept."""
     chosen = next((e for e in elements if _is_default(e)), elements[0] if elements else None)
+    if profile:
+        named = {e.get("name"): e for e in reversed(elements) if e.get("name")}
+        if profile not in named:
+            source.warn("physics-profile", f"the world has no physics preset {profile!r}",
+                        elements[0].getparent() if elements else None,
+                        hint=f"it has: {', '.join(sorted(named)) or 'none with a name'}")
+        chosen = named.get(profile, chosen)
     for element in elements:
         if element is not chosen:
             # Only one is the default, so that writing and reading again chooses the same.

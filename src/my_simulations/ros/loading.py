@@ -12,7 +12,8 @@ from ..resources.resolver import NotFound, Resolver
 Log = Callable[[Issue], None]
 
 
-def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str, MeshTable]]:
+def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0,
+               profile: str = "") -> Tuple[World, Dict[str, MeshTable]]:
     """Read a world.
 
     A collision whose mesh cannot be used collides with nothing, and the rest of the world loads;
@@ -22,6 +23,8 @@ def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str
         name: a path, or a name in the resource paths.
         resolver: finds the file and what it names.
         log: hears every issue of a world that is usable.
+        seed: of what the world draws at random.
+        profile: name of the physics preset to use; "" for the world's own choice.
 
     Returns:
         The world, and the collision meshes of its models by model name.
@@ -38,7 +41,7 @@ def load_world(name: str, resolver: Resolver, log: Log) -> Tuple[World, Dict[str
         raise InputError([error("world-not-found", f"world file {missing}",
                                 hint="give its full path, or a folder of GAZEBO_RESOURCE_PATH "
                                      "that holds it")]) from missing
-    world, issues = read_world(path, resolver)
+    world, issues = read_world(path, resolver, seed=seed, profile=profile)
     for issue in issues:
         log(issue)
     world = apply_state(world)

@@ -1,4 +1,4 @@
-"""The server's command line: gzserver's options, as far as they mean something here."""
+"""The server's command line: the options of Gazebo's gzserver."""
 from __future__ import annotations
 
 import argparse
@@ -12,6 +12,31 @@ ENGINES = ("ode", "bullet", "dart", "simbody")
 """The physics engines that Gazebo's `-e` knows."""
 
 
+RECORD_ENCODINGS = ("zlib", "bz2", "txt")
+"""How Gazebo packs a state log (`--record_encoding`)."""
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What `-r` and its companions ask for.
+
+    Attributes:
+        on: record at all.
+        encoding: one of RECORD_ENCODINGS.
+        path: folder of the log; "" for the usual place.
+        period: seconds of sim time between states; negative for every change.
+        filter: which models; "" for all.
+        resources: put meshes and textures into the log too.
+    """
+
+    on: bool = False
+    encoding: str = "zlib"
+    path: str = ""
+    period: float = -1.0
+    filter: str = ""
+    resources: bool = False
+
+
 @dataclass(frozen=True)
 class ServerOptions:
     """What the command line asks for.
@@ -21,12 +46,20 @@ class ServerOptions:
         paused: start without stepping.
         verbose: log at debug level.
         notices: one line each on options that are accepted and do nothing.
+        seed: of what a world draws at random; None for the usual one.
+        iterations: steps after which the world stands still; 0 for never.
+        profile: name of the physics preset to use; "" for the world's own choice.
+        recording: the state log that is asked for.
     """
 
     world: str = DEFAULT_WORLD
     paused: bool = False
     verbose: bool = False
     notices: List[str] = field(default_factory=list)
+    seed: Optional[int] = None
+    iterations: int = 0
+    profile: str = ""
+    recording: Recording = Recording()
 
 
 def is_remapping(word: str) -> bool:
@@ -41,22 +74,57 @@ def parser(program: str = "gzserver") -> argparse.ArgumentParser:
         description="Run a simulated world as the ROS node /gazebo.",
         epilog="ROS remappings (name:=value, _param:=value, __name:=name) are accepted anywhere.")
     made.add_argument("world", nargs="?", default=DEFAULT_WORLD,
-                      help="world file; looked up in the resource paths (default %(default)s)")
-    made.add_argument("-u", "--pause", action="store_true", help="start paused")
-    made.add_argument("--verbose", action="store_true", help="log more")
+                      help=f"world file; looked up in the resource paths (default {DEFAULT_WORLD})")
+    made.add_argument("more", nargs="*", help="for plugins of the command line; not used")
     made.add_argument("-v", "--version", action="store_true", help="print the version and end")
+    made.add_argument("--verbose", action="store_true", help="log more")
+    made.add_argument("-u", "--pause", action="store_true", help="start paused")
     made.add_argument("-e", "--physics", metavar="ENGINE", default="bullet",
                       help=f"one of {', '.join(ENGINES)}; Bullet moves the world in any case")
+    made.add_argument("-o", "--profile", metavar="NAME", default="",
+                      help="physics preset of the world file to use")
+    made.add_argument("--seed", type=_seed, metavar="N",
+                      help="for what the world draws at random (default 0)")
+    made.add_argument("--iters", type=_count, default=0, metavar="N",
+                      help="let time stand still after N steps")
     made.add_argument("-s", "--server-plugin", metavar="FILE", action="append", default=[],
-                      help="accepted and ignored: the ROS API is built in")
-    for ignored in (("-g", "--gui-client-plugin"), ("-o", "--profile")):
-        made.add_argument(*ignored, metavar="X", action="append", default=[],
-                          help=argparse.SUPPRESS)
-    made.add_argument("-r", "--record", action="store_true", help=argparse.SUPPRESS)
-    made.add_argument("--lockstep", "--minimal_comms", dest="lockstep", action="store_true",
-                      help=argparse.SUPPRESS)
-    made.add_argument("--seed", type=int, help=argparse.SUPPRESS)
+                      help="accepted and not loaded: the ROS API is built in")
+    made.add_argument("-g", "--gui-plugin", "--gui-client-plugin", dest="gui_plugin",
+                      metavar="FILE", action="append", default=[], help=argparse.SUPPRESS)
+    made.add_argument("--lockstep", action="store_true",
+                      help="accepted: no sensor is ever behind the world here")
+    made.add_argument("--minimal_comms", action="store_true",
+                      help="accepted: nothing is sent that nobody hears")
+    made.add_argument("-p", "--play", metavar="LOG", help="refused: logs are not played here")
+    _add_recording(made)
     return made
+
+
+def _add_recording(made: argparse.ArgumentParser) -> None:
+    made.add_argument("-r", "--record", action="store_true", help="record a state log")
+    made.add_argument("--record_path", metavar="FOLDER", default="", help="where the log goes")
+    made.add_argument("--record_period", type=float, default=-1.0, metavar="SECONDS",
+                      help="sim time between recorded states")
+    made.add_argument("--record_encoding", choices=RECORD_ENCODINGS, default="zlib",
+                      help="how the log is packed (default %(default)s)")
+    made.add_argument("--record_filter", metavar="NAME", default="", help="what is recorded")
+    made.add_argument("--record_resources", action="store_true",
+                      help="put meshes and textures into the log")
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of steps")
+    return value
+
+
+def _seed(text: str) -> int:
+    # Gazebo reads it as a floating-point number.
+    value = float(text)
+    if not value.is_integer():
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number")
+    return int(value)
 
 
 def parse(argv: Sequence[str], program: str = "gzserver") -> ServerOptions:
@@ -67,31 +135,32 @@ def parse(argv: Sequence[str], program: str = "gzserver") -> ServerOptions:
     """
     reader = parser(program)
     words = [word for word in argv if not is_remapping(word)]
-    given = reader.parse_args(words)
+    # What follows the world may stand among options, as roslaunch's `extra_gazebo_args` do.
+    given = reader.parse_intermixed_args(words)
     if given.version:
         from .. import __version__
 
         reader.exit(0, f"my_simulations {__version__}\n")
-    return ServerOptions(world=given.world, paused=given.pause, verbose=given.verbose,
-                         notices=_notices(given, reader))
+    if given.play:
+        reader.error(f"argument -p/--play: {given.play} cannot be played; name the world file")
+    recording = Recording(
+        given.record, given.record_encoding, given.record_path, given.record_period,
+        given.record_filter, given.record_resources)
+    return ServerOptions(
+        world=given.world, paused=given.pause, verbose=given.verbose, notices=_notices(given),
+        seed=given.seed, iterations=given.iters, profile=given.profile, recording=recording)
 
 
-def _notices(given: argparse.Namespace, reader: argparse.ArgumentParser) -> List[str]:
+def _notices(given: argparse.Namespace) -> List[str]:
     notices: List[str] = []
     if given.physics not in ENGINES:
-        reader.error(f"argument -e/--physics: {given.physics!r} is not one of {', '.join(ENGINES)}")
-    if given.physics != "bullet":
+        notices.append(f"physics engine {given.physics!r} is none of {', '.join(ENGINES)}; "
+                       "Bullet moves this world")
+    elif given.physics != "bullet":
         notices.append(f"physics engine {given.physics!r} was asked for; Bullet moves this world")
-    plugins = given.server_plugin + given.gui_client_plugin
+    plugins = given.server_plugin + given.gui_plugin
     if plugins:
         notices.append(f"plugins of the command line are not loaded: {', '.join(plugins)}")
-    idle: List[Optional[str]] = [
-        "--profile" if given.profile else None,
-        "--lockstep or --minimal_comms" if given.lockstep else None,
-        "--record" if given.record else None,
-        "--seed" if given.seed is not None else None,
-    ]
-    named = [option for option in idle if option]
-    if named:
-        notices.append(f"accepted without effect: {', '.join(named)}")
+    if given.more:
+        notices.append(f"arguments for plugins are not used: {' '.join(given.more)}")
     return notices

@@ -64,13 +64,13 @@ class WorldLoader:
         fault: why it did not.
     """
 
-    def __init__(self, world: str, engines: EngineSupply, log: IssueLog, profile: StartProfile,
-                 on_fault: Callable[[], None]) -> None:
+    def __init__(self, options: ServerOptions, engines: EngineSupply, log: IssueLog,
+                 profile: StartProfile, on_fault: Callable[[], None]) -> None:
         self.simulator: Any = None
         self.resolver: Any = None
         self.fault: Optional[InputError] = None
         self.defect: Optional[Exception] = None
-        self._given = (world, engines, log)
+        self._given = (options, engines, log)
         self._profile = profile
         self._on_fault = on_fault
         self._thread = threading.Thread(target=self._run, name="world loader", daemon=True)
@@ -90,7 +90,8 @@ class WorldLoader:
             self._on_fault()
 
     def _load(self) -> None:
-        world_file, engines, log = self._given
+        options, engines, log = self._given
+        from ..engine.api import FOREVER
         from ..resources.downloads import DownloadNotes
         from ..resources.resolver import Resolver
         from ..simulator.simulator import Simulator
@@ -98,9 +99,11 @@ class WorldLoader:
 
         self._profile.mark("readers imported")
         self.resolver = Resolver.from_environment(DownloadNotes(log))
-        world, meshes = load_world(world_file, self.resolver, log)
+        world, meshes = load_world(options.world, self.resolver, log, seed=options.seed or 0,
+                                   profile=options.profile)
         self._profile.mark("world read")
-        simulator = Simulator(world, engine_factory=engines, paused=True, log=log, meshes=meshes)
+        simulator = Simulator(world, engine_factory=engines, paused=True, log=log, meshes=meshes,
+                              steps=options.iterations or FOREVER)
         simulator.start()
         self.simulator = simulator
         self._profile.mark("world loaded into the engine")
@@ -141,7 +144,7 @@ class Server:
             signal.signal(number, self._on_signal)
         import_genpy()
         self._profile.mark("messages imported")
-        loader = WorldLoader(self._options.world, self._engines, self._log, self._profile,
+        loader = WorldLoader(self._options, self._engines, self._log, self._profile,
                              self._settled.set)
         node: Any = None
         try:
