@@ -1,0 +1,90 @@
+/**
+ * Poses in plain arrays: [x, y, z, qx, qy, qz, qw], m, parent from child, as the simulator's.
+ * Vectors are [x, y, z]; quaternions [x, y, z, w], unit.
+ */
+
+/** @typedef {number[]} Vec3 */
+/** @typedef {number[]} Quat */
+/** @typedef {number[]|Float64Array} Pose7 */
+
+export const IDENTITY = Object.freeze([0, 0, 0, 0, 0, 0, 1]);
+
+/** @returns {Vec3} */
+export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+/** @returns {Vec3} */
+export const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+/** @returns {Vec3} */
+export const scale = (a, factor) => [a[0] * factor, a[1] * factor, a[2] * factor];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+/** @returns {Vec3} */
+export const cross = (a, b) => [
+  a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
+];
+export const length = (a) => Math.hypot(a[0], a[1], a[2]);
+/** The unit vector along `a`; `a` itself when it is zero. */
+export const normalized = (a) => {
+  const norm = length(a);
+  return norm > 0 ? scale(a, 1 / norm) : [...a];
+};
+
+/** a * b: first b, then a. @returns {Quat} */
+export function multiply(a, b) {
+  return [
+    a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+    a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+    a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+    a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2],
+  ];
+}
+
+/** @returns {Quat} */
+export const conjugate = (q) => [-q[0], -q[1], -q[2], q[3]];
+
+/** @returns {Vec3} */
+export function rotate(q, v) {
+  const t = scale(cross(q, v), 2);
+  return add(add(v, scale(t, q[3])), cross(q, t));
+}
+
+/** Rotation by `angle` rad about the unit vector `axis`. @returns {Quat} */
+export function axisAngle(axis, angle) {
+  const s = Math.sin(angle / 2);
+  return [axis[0] * s, axis[1] * s, axis[2] * s, Math.cos(angle / 2)];
+}
+
+/** The shortest rotation that turns unit vector `a` into unit vector `b`. @returns {Quat} */
+export function rotationBetween(a, b) {
+  const w = 1 + dot(a, b);
+  if (w < 1e-9) {
+    const side = Math.abs(a[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0];
+    return [...normalized(cross(a, side)), 0];
+  }
+  const q = [...cross(a, b), w];
+  return scale4(q, 1 / Math.hypot(...q));
+}
+
+const scale4 = (q, factor) => q.map((part) => part * factor);
+
+export const position = (pose) => [pose[0], pose[1], pose[2]];
+export const orientation = (pose) => [pose[3], pose[4], pose[5], pose[6]];
+
+/** parent_from_a * a_from_b. @returns {number[]} */
+export function compose(a, b) {
+  const q = orientation(a);
+  return [...add(position(a), rotate(q, position(b))), ...multiply(q, orientation(b))];
+}
+
+/** @returns {number[]} */
+export function inverse(pose) {
+  const q = conjugate(orientation(pose));
+  return [...scale(rotate(q, position(pose)), -1), ...q];
+}
+
+/** Where a point of the child frame is in the parent frame. @returns {Vec3} */
+export const transform = (pose, point) => add(position(pose), rotate(orientation(pose), point));
+
+/** Roll, pitch, yaw about fixed x, y, z (SDF's pose angles), rad. @returns {Quat} */
+export function fromRpy(roll, pitch, yaw) {
+  return multiply(axisAngle([0, 0, 1], yaw),
+    multiply(axisAngle([0, 1, 0], pitch), axisAngle([1, 0, 0], roll)));
+}
