@@ -33,11 +33,24 @@ def test_a_wrong_command_line_is_status_2(words):
     assert refused.value.code == 2
 
 
-def test_joint_positions_are_refused_clearly(capsys):
+def test_joint_positions_in_every_spelling_and_the_last_of_a_joint():
+    options = parsed("-urdf", "-param", "p", "-model", "m", "-J", "j", "-1e-2", "-J", "k", "2.",
+                     "-J", "j", "-.5")
+    assert spawn_model.joint_positions(options) == {"j": -0.5, "k": 2.0}
+
+
+@pytest.mark.parametrize("position", ["high", "nan", "inf"])
+def test_a_joint_position_that_is_no_number_is_status_2(position, capsys):
     with pytest.raises(SystemExit) as refused:
-        spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-J", "j", "-1e-2"])
+        spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-J", "j",
+                          position])
     assert refused.value.code == 2
     assert "-J" in capsys.readouterr().err
+
+
+def test_the_option_names_of_older_distributions_are_accepted():
+    options = parsed("-gazebo", "-param", "p", "-model", "m", "-namespace", "robot")
+    assert (options.sdf, options.urdf, options.robot_namespace) == (True, False, "robot")
 
 
 def test_a_missing_file_is_status_1_before_ros_is_asked(tmp_path, capsys):

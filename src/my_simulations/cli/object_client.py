@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-import threading
 import time
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -17,6 +16,7 @@ from ..objects.listing import ObjectList, parse_objects
 from ..objects.selection import parse_groups
 from ..objects.yaml_source import Source
 from ..ros import master
+from ..ros.deadline import NoAnswer, within
 
 OK, FAILED, USAGE = 0, 1, 2
 TIMEOUT = 30.0
@@ -81,31 +81,6 @@ def show(issues: Sequence[Issue]) -> None:
 def has_errors(issues: Sequence[Issue]) -> bool:
     """Whether any of them is an error."""
     return any(issue.severity is Severity.ERROR for issue in issues)
-
-
-def within(limit: float, what: str, call: Callable[[], Any]) -> Any:
-    """Runs a call that has no time-out of its own.
-
-    Raises:
-        ToolError: no answer came within `limit` wall seconds.
-    """
-    box: Dict[str, Any] = {}
-
-    def work() -> None:
-        try:
-            box["answer"] = call()
-        except BaseException as fault:  # handed to the caller below
-            box["fault"] = fault
-
-    # A daemon: a call that never answers must not keep the tool alive.
-    thread = threading.Thread(target=work, daemon=True)
-    thread.start()
-    thread.join(limit)
-    if "fault" in box:
-        raise box["fault"]
-    if "answer" not in box:
-        raise ToolError(f"{what} gave no answer within {limit:g} s; is the simulator stuck?")
-    return box["answer"]
 
 
 class Parameters:
@@ -241,6 +216,8 @@ class Simulator:
             self._proxies[full] = rospy.ServiceProxy(full, _service_class(kind), persistent=True)
         try:
             return within(self._timeout, f"service {full}", lambda: self._proxies[full](**fields))
+        except NoAnswer as fault:
+            raise ToolError(str(fault)) from fault
         except (rospy.ServiceException, rospy.ROSException, OSError) as fault:
             self._proxies.pop(full).close()
             raise ToolError(f"service {full} failed: {fault}; is the simulator still running?"

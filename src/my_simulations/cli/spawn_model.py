@@ -2,13 +2,16 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import re
 import sys
 import threading
 import time
 from decimal import Decimal
-from typing import Any, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence
+
+from ..ros.deadline import NoAnswer, within
 
 OK, FAILED, USAGE = 0, 1, 2
 WAIT_SECONDS = 120.0
@@ -32,6 +35,8 @@ def parser() -> argparse.ArgumentParser:
     kind = made.add_mutually_exclusive_group(required=True)
     kind.add_argument("-urdf", action="store_true", help="the description is URDF")
     kind.add_argument("-sdf", action="store_true", help="the description is SDF")
+    # What the options were called before ROS Lunar.
+    kind.add_argument("-gazebo", dest="sdf", action="store_true", help=argparse.SUPPRESS)
     source = made.add_mutually_exclusive_group(required=True)
     source.add_argument("-file", metavar="FILE", help="read it from a file")
     source.add_argument("-param", metavar="NAME", help="read it from a ROS parameter")
@@ -45,6 +50,7 @@ def parser() -> argparse.ArgumentParser:
                       help="namespace of the server (default %(default)s)")
     made.add_argument("-robot_namespace", default=None, metavar="NS",
                       help="namespace for the model's plugins (default: this node's)")
+    made.add_argument("-namespace", dest="robot_namespace", help=argparse.SUPPRESS)
     made.add_argument("-unpause", action="store_true", help="unpause the world after the spawn")
     made.add_argument("-wait", metavar="MODEL", help="first wait until this model is in the world")
     made.add_argument("-timeout", type=_seconds, default=WAIT_SECONDS, metavar="SECONDS",
@@ -53,7 +59,8 @@ def parser() -> argparse.ArgumentParser:
         made.add_argument(f"-{axis}", type=float, default=0.0, metavar=unit.upper(),
                           help=f"initial pose, {unit}")
     made.add_argument("-J", dest="joints", nargs=2, action="append", default=[],
-                      metavar=("JOINT", "POSITION"), help="not supported yet: refused")
+                      metavar=("JOINT", "POSITION"),
+                      help="initial position of a joint, rad or m; may be repeated")
     made.add_argument("-package_to_model", action="store_true",
                       help="read package:// of mesh file names as model://")
     made.add_argument("-b", dest="bond", action="store_true",
@@ -68,6 +75,24 @@ def _seconds(text: str) -> float:
     return value
 
 
+def joint_positions(options: argparse.Namespace) -> Dict[str, float]:
+    """What `-J` asks for, by joint; of a joint named twice the last.
+
+    Raises:
+        ValueError: a position is not a finite number.
+    """
+    positions: Dict[str, float] = {}
+    for joint, text in options.joints:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise ValueError(f"argument -J: the position of {joint} is not a number: {text}")
+        positions[joint] = value
+    return positions
+
+
 def main(argv: Optional[List[str]] = None) -> int:
     """Run the program.
 
@@ -80,9 +105,10 @@ def main(argv: Optional[List[str]] = None) -> int:
     words = sys.argv if argv is None else argv
     reader = parser()
     options = reader.parse_args(plain_numbers([w for w in words[1:] if not _is_remapping(w)]))
-    if options.joints:
-        reader.error("-J needs the service set_model_configuration, which this server does not "
-                     "offer yet; spawn without it")
+    try:
+        joint_positions(options)
+    except ValueError as fault:
+        reader.error(str(fault))
     try:
         _spawn(options, words)
     except SpawnFailed as fault:
@@ -112,16 +138,15 @@ def _spawn(options: argparse.Namespace, words: List[str]) -> None:
         if text is None:
             text = _parameter(options.param)
         _call_spawn(options, text)
+        if options.joints:
+            _set_joints(options)
         if options.unpause:
-            from std_srvs.srv import Empty
+            from std_srvs.srv import Empty, EmptyRequest
 
-            name = client.api_name(options.gazebo_namespace, "unpause_physics")
-            client.service(name, Empty, options.timeout)()
+            _call(options, "unpause_physics", Empty, EmptyRequest())
         if options.bond:
             _bond(options)
-    except client.NotThere as fault:
-        raise SpawnFailed(str(fault)) from fault
-    except rospy.ROSException as fault:
+    except (client.NotThere, NoAnswer, rospy.ROSException) as fault:
         raise SpawnFailed(str(fault)) from fault
     except rospy.ServiceException as fault:
         raise SpawnFailed(f"the call failed: {fault}") from fault
@@ -205,7 +230,6 @@ def _call_spawn(options: argparse.Namespace, text: str) -> None:
     from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 
     from ..geometry import quat_from_rpy
-    from ..ros import client
 
     if options.package_to_model:
         text = _package_to_model(text)
@@ -219,12 +243,30 @@ def _call_spawn(options: argparse.Namespace, text: str) -> None:
     (orientation.x, orientation.y, orientation.z,
      orientation.w) = quat_from_rpy(options.R, options.P, options.Y)
     kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
-    call = client.service(client.api_name(options.gazebo_namespace, kind), SpawnModel,
-                          options.timeout)
-    answer = call(request)
-    if not answer.success:
+    print(f"spawn_model: {_call(options, kind, SpawnModel, request)}", flush=True)
+
+
+def _set_joints(options: argparse.Namespace) -> None:
+    from gazebo_msgs.srv import SetModelConfiguration, SetModelConfigurationRequest
+
+    positions = joint_positions(options)
+    request = SetModelConfigurationRequest(
+        model_name=options.model, urdf_param_name=options.param or "",
+        joint_names=list(positions), joint_positions=list(positions.values()))
+    said = _call(options, "set_model_configuration", SetModelConfiguration, request)
+    print(f"spawn_model: {said}", flush=True)
+
+
+def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> str:
+    """What a service of the server says, once it has succeeded."""
+    from ..ros import client
+
+    full = client.api_name(options.gazebo_namespace, name)
+    proxy = client.service(full, kind, options.timeout)
+    answer = within(options.timeout, f"service {full}", lambda: proxy(request))
+    if not getattr(answer, "success", True):
         raise SpawnFailed(answer.status_message)
-    print(f"spawn_model: {answer.status_message}", flush=True)
+    return str(getattr(answer, "status_message", ""))
 
 
 def _package_to_model(text: str) -> str:

@@ -1,7 +1,7 @@
 """Spawning from Python: the three functions that other packages import.
 
-Same names, arguments and results as in Gazebo's package of this name; the waits end after a minute
-instead of never.
+Same names, arguments and results as in Gazebo's package of this name; the waits end: for a service
+after a minute, for its answer after five, instead of never.
 """
 from __future__ import annotations
 
@@ -16,6 +16,10 @@ from gazebo_msgs.srv import (
 )
 
 from my_simulations.ros.client import NotThere, api_name, service
+from my_simulations.ros.deadline import NoAnswer, within
+
+CALL_SECONDS = 300.0
+"""How long an answer may take; dividing a big mesh into convex parts takes minutes."""
 
 
 def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
@@ -71,8 +75,9 @@ def _spawn(kind: str, model_name: str, model_xml: str, robot_namespace: str, ini
 
 def _call(name: str, service_class: Any, request: Any) -> Optional[bool]:
     try:
-        answer = service(name, service_class)(request)
-    except (NotThere, rospy.ServiceException) as fault:
+        proxy = service(name, service_class)
+        answer = within(CALL_SECONDS, name, lambda: proxy(request))
+    except (NotThere, NoAnswer, rospy.ServiceException) as fault:
         rospy.logerr("%s: %s", name, fault)
         return None
     rospy.loginfo("%s: %s", name, answer.status_message)

@@ -1,0 +1,21 @@
+import threading
+
+import pytest
+
+from my_simulations.ros.deadline import NoAnswer, within
+
+
+def test_a_call_in_time_gives_its_answer():
+    assert within(10.0, "the call", lambda: 7) == 7
+
+
+def test_a_call_in_time_raises_its_fault():
+    with pytest.raises(KeyError):
+        within(10.0, "the call", lambda: {}["x"])
+
+
+def test_a_call_that_never_answers_ends_at_its_deadline_which_is_named():
+    never = threading.Event()
+    with pytest.raises(NoAnswer, match="the call gave no answer within 0.05 s"):
+        within(0.05, "the call", never.wait)
+    never.set()
