@@ -10,7 +10,7 @@ by its row in the ring's link table, a joint axis by its row in the joint table.
 from __future__ import annotations
 
 from concurrent.futures import Future
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Callable, Dict, List, Optional, Protocol, Tuple
 
 from ..description.model import Joint, Model
@@ -81,6 +81,14 @@ class Load:
     effort: Optional[float] = None
     in_link_axes: bool = False
     point: Vec3 = (0.0, 0.0, 0.0)
+
+    def begun(self, step: int) -> "Load":
+        """As it acts when it is queued whole at `step`: none of its steps lies in the past."""
+        late = step - self.start
+        if late <= 0:
+            return self
+        return replace(self, start=step,
+                       stop=FOREVER if self.stop == FOREVER else self.stop + late)
 
 
 class Command:
@@ -259,9 +267,14 @@ class Advance(Command):
 
 @dataclass(frozen=True)
 class AddLoads(Command):
-    """Add timed wrenches and efforts; loads on one target add up."""
+    """Add timed wrenches and efforts; loads on one target add up.
+
+    With `whole`, a load whose start has passed begins with the next step and acts as many steps as
+    it would have.
+    """
 
     loads: Tuple[Load, ...]
+    whole: bool = False
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import traceback
 from typing import List, Optional, Protocol, Tuple
 
 from .api import (
+    AddLoads,
     Advance,
     Backend,
     Batch,
@@ -162,6 +163,8 @@ class Runner:
             return None
         if isinstance(command, Ping):
             return None
+        if isinstance(command, AddLoads) and command.whole:
+            command = AddLoads(tuple(load.begun(self._step) for load in command.loads))
         return self._backend.apply(command)
 
     def _configure(self, settings: PhysicsSettings) -> None:

@@ -42,7 +42,7 @@ class WorldCore(WorldViews):
 
     def __init__(self, world: World, *, engine_factory: Callable[[], Engine],
                  log: Callable[[Issue], None], paused: bool = False,
-                 meshes: Optional[Dict[str, MeshTable]] = None) -> None:
+                 meshes: Optional[Dict[str, MeshTable]] = None, steps: int = FOREVER) -> None:
         """See `Simulator`."""
         super().__init__(Supervisor(engine_factory, self._restore, log))
         self.world = world
@@ -58,6 +58,8 @@ class WorldCore(WorldViews):
         self._physics = world.physics
         self._gravity = world.gravity
         self._paused = paused
+        self._lockstep = False
+        self._steps = steps
         self._horizon = FOREVER
         self._solids = ConvexParts(log, lambda text: log(Issue(Severity.NOTE, "meshes", text)))
 
@@ -72,19 +74,26 @@ class WorldCore(WorldViews):
         self._fill()
         self._supervisor.engine.on_event(lambda event: self._log(
             error("state-diverged", event.message)) if event.kind == "diverged" else None)
-        if not self._paused:
+        if self._runs:
             self._call(Run(self._horizon))
 
     def _fill(self) -> None:
         """Settings, clock and models of the world, into an empty engine."""
         self._call(SetPhysics(self._settings()))
         started = self.world.initial_ns
-        self._call(SetClock(round(started * 1e-9 / self._physics.max_step_size), started))
+        step = round(started * 1e-9 / self._physics.max_step_size)
+        self._horizon = FOREVER if self._steps == FOREVER else step + self._steps
+        self._call(SetClock(step, started))
         for model in self.world.models:
             try:
                 self.spawn(model, meshes=self._world_meshes.get(model.name))
             except CommandError as fault:
                 self._log(error("model-refused", str(fault), file=self.world.file))
+
+    @property
+    def _runs(self) -> bool:
+        """Whether time goes on by itself."""
+        return not (self._paused or self._lockstep)
 
     def close(self) -> None:
         """End the engine."""
@@ -163,6 +172,10 @@ class WorldCore(WorldViews):
         return Entity(self._next_id, model, pose, first_link, first_joint, meshes)
 
     def _free(self, entity: Entity) -> None:
+        """Its rows are for others now: what the engine forgets, is forgotten here too."""
+        self._loads = {key: load for key, load in self._loads.items()
+                       if not (entity.has_link_row if load.effort is None
+                               else entity.has_joint_row)(load.row)}
         self._link_rows.give(entity.first_link_row, len(entity.link_names))
         self._joint_rows.give(entity.first_joint_row, len(entity.joint_names))
 
@@ -210,7 +223,7 @@ class WorldCore(WorldViews):
         pending = tuple(load for load in self._loads.values() if load.stop > snapshot.step)
         if pending:
             commands.append(AddLoads(pending))
-        if not self._paused:
+        if self._runs:
             commands.append(Run(self._horizon))
         reply = submit(Batch(tuple(commands)))
         if reply.error:

@@ -62,6 +62,14 @@ class Entity:
         """Row of the link that carries the model frame."""
         return self.first_link_row + self.canonical
 
+    def has_link_row(self, row: int) -> bool:
+        """Whether a row of the link table is one of its links."""
+        return 0 <= row - self.first_link_row < len(self.link_names)
+
+    def has_joint_row(self, row: int) -> bool:
+        """Whether a row of the joint table is one of its axes."""
+        return 0 <= row - self.first_joint_row < len(self.joint_names)
+
     def state(self, snapshot: Snapshot) -> Tuple[Pose, Twist]:
         """World pose of the model frame, twist of the canonical link at its origin."""
         if not self.link_names:

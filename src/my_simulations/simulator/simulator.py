@@ -18,7 +18,6 @@ from ..engine.api import (
     Clear,
     ClearLoads,
     Command,
-    Load,
     Pause,
     Run,
     SetClock,
@@ -30,10 +29,10 @@ from ..engine.api import (
 from ..geometry import STILL, Pose, Twist, Vec3, compose
 from .frames import in_frame, usable
 from .initial import initial_commands
-from .surroundings import Surroundings
+from .loads import TimedLoads
 
 
-class Simulator(Surroundings):
+class Simulator(TimedLoads):
     """Owns the description, the clock and the engine.
 
     Args:
@@ -42,6 +41,7 @@ class Simulator(Surroundings):
         paused: start paused.
         log: who hears of issues that no caller waits for.
         meshes: the collision meshes of the world's models, by model name.
+        steps: after so many steps from the start time stands still.
     """
 
     # -- time ------------------------------------------------------------------------------------
@@ -61,7 +61,14 @@ class Simulator(Surroundings):
         """Go on."""
         with self._order:
             self._paused = False
-            self._call(Run(self._horizon))
+            if self._runs:
+                self._call(Run(self._horizon))
+
+    def set_lockstep(self, lockstep: bool) -> None:
+        """Let time go on only by `advance`, whether paused or not; or by itself again."""
+        with self._order:
+            self._lockstep = lockstep
+            self._call(Run(self._horizon) if self._runs else Pause())
 
     def advance(self, steps: int) -> int:
         """Make exactly `steps` steps as fast as possible; returns the step count after them."""
@@ -100,28 +107,6 @@ class Simulator(Surroundings):
                          for name, value in positions.items())
         self._call(SetJoints(rows))
 
-    # -- loads -----------------------------------------------------------------------------------
-
-    def add_loads(self, loads: List[Load]) -> List[int]:
-        """Queue timed loads; returns their ids. `load_id` of the arguments is replaced."""
-        with self._order:
-            numbered = []
-            for load in loads:
-                self._next_id += 1
-                numbered.append(replace(load, load_id=self._next_id))
-            self._call(AddLoads(tuple(numbered)))
-            now = self.step()
-            self._loads = {key: load for key, load in self._loads.items() if load.stop > now}
-            self._loads.update({load.load_id: load for load in numbered})
-            return [load.load_id for load in numbered]
-
-    def clear_loads(self, load_ids: List[int]) -> None:
-        """Drop loads; unknown ids have run out."""
-        with self._order:
-            for load_id in load_ids:
-                self._loads.pop(load_id, None)
-            self._call(ClearLoads(tuple(load_ids)))
-
     # -- physics ---------------------------------------------------------------------------------
 
     def set_physics(self, physics: Physics, gravity: Vec3) -> None:
@@ -135,14 +120,13 @@ class Simulator(Surroundings):
     def reset_time(self) -> None:
         """Sim time 0; everything stays where it is, and timed loads go on as long as they had."""
         with self._order:
-            was_paused = self._paused
             now = self._call(Pause()).step
             pending = [replace(load, start=max(0, load.start - now),
                                stop=load.stop if load.stop == FOREVER else load.stop - now)
                        for load in self._loads.values() if load.stop > now]
             self._loads = {load.load_id: load for load in pending}
             commands: List[Command] = [SetClock(0, 0), AddLoads(tuple(pending))]
-            if not was_paused:
+            if self._runs:
                 commands.append(Run(self._horizon))
             self._call(Batch(tuple(commands)))
 
@@ -178,7 +162,6 @@ class Simulator(Surroundings):
         is no engine.
         """
         with self._order:
-            running = not self._paused
             self._call(Batch((Pause(), Clear(), ClearLoads(tuple(self._loads)))))
             with self._lock:
                 for entity in self._registry.entities():
@@ -190,5 +173,5 @@ class Simulator(Surroundings):
             self._starts = dict(world.initial)
             self._physics, self._gravity = world.physics, world.gravity
             self._fill()
-            if running:
+            if self._runs:
                 self._call(Run(self._horizon))
