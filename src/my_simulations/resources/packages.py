@@ -14,6 +14,7 @@ FindPackage = Callable[[str], Optional[str]]
 """From a package's name to its folder, None where it is unknown."""
 
 _EXPORT = re.compile(r"<gazebo_ros\b([^>]*)>")
+_NAME = re.compile(r"<name>([^<]*)</name>")
 _ATTRIBUTE = re.compile(r"""(gazebo_model_path|gazebo_media_path)\s*=\s*["']([^"']*)["']""")
 
 
@@ -61,6 +62,17 @@ class PackageIndex:
             self._rospack = rospkg.RosPack()
             self._unknown = (KeyError, rospkg.ResourceNotFound)
         return self._rospack
+
+
+def package_name(folder: str) -> str:
+    """The `<name>` in a folder's package.xml; "" where there is none."""
+    try:
+        with open(os.path.join(folder, "package.xml"), encoding="utf-8",
+                  errors="replace") as stream:
+            found = _NAME.search(stream.read())
+    except OSError:
+        return ""
+    return found.group(1).strip() if found else ""
 
 
 def _add_exports(manifest: str, prefix: str, paths: ExportedPaths) -> None:

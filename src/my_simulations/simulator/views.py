@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import threading
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 from ..description.model import Model
 from ..engine.ring import BELL, DEMAND_NS, RingReader, Snapshot
@@ -24,6 +24,7 @@ class WorldViews:
         self._registry = Registry()
         self._cached: Optional[States] = None
         self._layout: Optional[Layout] = None
+        self._demands: Dict[str, Tuple[float, bool]] = {}
 
     @property
     def engine_pid(self) -> int:
@@ -118,10 +119,17 @@ class WorldViews:
                 self._layout = lay_out(self._registry.entities(), self._registry.revision)
             return (self._layout, *self.ring.raw_links())
 
-    def set_demand(self, hz: float, bell: bool) -> None:
-        """Say how often states are wanted (0: no one waits) and whether to ring at each step."""
-        words = self.ring.words
-        words[DEMAND_NS], words[BELL] = int(1e9 / hz) if hz > 0.0 else 0, int(bell)
+    def set_demand(self, hz: float, bell: bool, who: str = "topics") -> None:
+        """Say how often `who` wants states (0: not at all) and whether to ring at each step.
+
+        The most that anybody wants is what the engine is asked for.
+        """
+        with self._lock:
+            self._demands[who] = (hz, bell)
+            most = max(hz for hz, _ in self._demands.values())
+            words = self.ring.words
+            words[DEMAND_NS] = int(1e9 / most) if most > 0.0 else 0
+            words[BELL] = int(any(bell for _, bell in self._demands.values()))
 
     def wait_step(self, after_step: int, timeout: float) -> bool:
         """Wait until the step count is not `after_step` any more, or something has changed."""
