@@ -46,25 +46,6 @@ class NotProvided(Exception):
 class MissingModels(Protocol):
     """Where models come from that no place on this machine holds."""
 
-    def model_folders(self) -> List[str]:
-        """Folders whose children are models, best first, as far as they were needed yet."""
-        return self._model_paths + (self._late.models if self._late else [])
-
-    def resource_folders(self) -> List[str]:
-        """Folders that relative paths start from, as far as they were needed yet."""
-        return self._resource_paths + (self._late.media if self._late else [])
-
-    def add_model_folder(self, folder: str) -> None:
-        """Look for models in one more folder, after the others."""
-        if folder not in self._model_paths:
-            self._model_paths.append(folder)
-
-    def knows_package(self, folder: str) -> bool:
-        """Whether a folder with a package.xml is where `package://` finds that package."""
-        name = package_name(folder)
-        found = self._find_package(name) if name else None
-        return found is not None and os.path.realpath(found) == os.path.realpath(folder)
-
     def begin(self) -> None:
         """A new document is being read."""
 
@@ -122,6 +103,25 @@ class Resolver:
 
             missing = ModelDatabase.from_environment(progress)
         return cls(models, resources, find, packages.exported, missing)
+
+    def model_folders(self) -> List[str]:
+        """Folders whose children are models, best first, as far as they were needed yet."""
+        return self._model_paths + (self._late.models if self._late else [])
+
+    def resource_folders(self) -> List[str]:
+        """Folders that relative paths start from, as far as they were needed yet."""
+        return self._resource_paths + (self._late.media if self._late else [])
+
+    def add_model_folder(self, folder: str) -> None:
+        """Look for models in one more folder, after the others."""
+        if folder not in self._model_paths:
+            self._model_paths.append(folder)
+
+    def knows_package(self, folder: str) -> bool:
+        """Whether a folder with a package.xml is where `package://` finds that package."""
+        name = package_name(folder)
+        found = self._find_package(name) if name else None
+        return found is not None and os.path.realpath(found) == os.path.realpath(folder)
 
     def begin(self) -> None:
         """A new document is being read: what could not be downloaded may be tried again."""
