@@ -224,7 +224,8 @@ def test_a_held_body_stays_where_it_is_put_until_it_is_let_go(start):
 
 
 def test_a_held_body_pushes_others_aside(start):
-    sim = start(replace(box("hand"), pose=Pose((-2, 0, 0.5))), replace(ball(), pose=Pose((0, 0, 0.5))))
+    sim = start(replace(box("hand"), pose=Pose((-2, 0, 0.5))),
+                replace(ball(), pose=Pose((0, 0, 0.5))))
     sim.hold(["hand"])
     for n in range(100):
         sim.set_model_state("hand", Pose((-2 + 0.02 * n, 0, 0.5)), STILL)
