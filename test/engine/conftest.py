@@ -79,10 +79,11 @@ class Lab:
         self.backend.configure(self.settings)
 
     def load(self, model: Model, position=(0, 0, 0), orientation=(0, 0, 0, 1),
-             meshes=None, state: Optional[ModelState] = None) -> int:
+             meshes=None, state: Optional[ModelState] = None, articulated: bool = False) -> int:
         self._id += 1
         self.backend.apply(LoadModel(self._id, model, Pose(tuple(position), tuple(orientation)),
-                                     self._links, self._joints, meshes or {}, state))
+                                     self._links, self._joints, meshes or {}, state,
+                                     articulated=articulated))
         for n, link in enumerate(model.links):
             self.rows[self._id, link.name] = self._links + n
         for n, row in enumerate(axis_rows(model)):

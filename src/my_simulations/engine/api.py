@@ -107,6 +107,8 @@ class LoadModel(Command):
             axes (in order, `joint_rows` in `engine.rows` says how many).
         meshes: what its collisions need, by `mesh_key`.
         state: where its links and joints are, instead of the pose of the file.
+        articulated: build it as articulated bodies even where it has no joints: sliding joints to
+            other models need that.
         inherit: number of a model in the world whose present states its links and joints of the
             same names take on; a link's pose in the model may differ. 0 for none.
     """
@@ -119,6 +121,25 @@ class LoadModel(Command):
     meshes: Dict[str, MeshData] = field(default_factory=dict)
     state: Optional[ModelState] = None
     inherit: int = 0
+    articulated: bool = False
+
+
+@dataclass(frozen=True)
+class Connect(Command):
+    """Join links of two models, or a link and the world, until either model is removed.
+
+    Attributes:
+        joint: its type and the direction of its axis count; limits and the like do not act.
+        parent_row, child_row: link rows; -1 for the world.
+        parent_from_joint, child_from_joint: the joint frame in the frame of each link (world pose
+            for the world); at position 0 they are the same frame.
+    """
+
+    joint: Joint
+    parent_row: int
+    parent_from_joint: Pose
+    child_row: int
+    child_from_joint: Pose
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from .api import (
     Clear,
     ClearLoads,
     Command,
+    Connect,
     Event,
     Hold,
     LinkState,
@@ -48,6 +49,7 @@ class KinematicBackend:
             SetJoints: lambda c: self.joints.update({row: (at, rate)
                                                      for row, at, rate in c.joints}),
             SetAxes: self._set_axes, Hold: self._hold, ReadContacts: lambda _: (),
+            Connect: lambda _: None,
             AddLoads: lambda c: self.loads.update({load.load_id: load for load in c.loads}),
             ClearLoads: lambda c: [self.loads.pop(number, None) for number in c.load_ids],
         }

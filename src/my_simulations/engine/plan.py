@@ -20,6 +20,9 @@ BASE = -1
 NO_LINK = -1
 """`TreeLink.index` of the massless piece between the two axes of a joint."""
 
+TIE_TYPES = ("fixed", "revolute", "continuous", "ball", "universal", "revolute2", "prismatic")
+"""The types of joints between models that constraints can stand for."""
+
 MAX_TREE_LINKS = 127
 """Links beside the base that Bullet's multibody takes; it drops the rest silently (measured)."""
 

@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace as replaced
 from typing import Callable, Dict, List, Optional
 
 from ..description.flatten import flattened
-from ..description.model import Model
+from ..description.model import Joint, Model
 from ..description.shapes import MeshTable
 from ..description.world import Physics, World
 from ..engine.api import (
@@ -30,6 +31,7 @@ from ..engine.rows import axis_rows
 from ..errors import CommandError, Issue, Severity, error
 from ..formats.meshes import without_missing_meshes
 from ..geometry import Pose, Vec3, compose, normalised
+from .connections import Connections
 from .initial import initial_commands
 from .registry import Entity, Rows
 from .solids import ConvexParts
@@ -54,6 +56,7 @@ class WorldCore(WorldViews):
         self._next_id = 0
         self._loads: Dict[int, Load] = {}
         self._held: List[str] = []
+        self._connections = Connections()
         self._starts = dict(world.initial)
         self._physics = world.physics
         self._gravity = world.gravity
@@ -84,11 +87,30 @@ class WorldCore(WorldViews):
         step = round(started * 1e-9 / self._physics.max_step_size)
         self._horizon = FOREVER if self._steps == FOREVER else step + self._steps
         self._call(SetClock(step, started))
+        self._connections = Connections(self.world.joints)
         for model in self.world.models:
             try:
                 self.spawn(model, meshes=self._world_meshes.get(model.name))
             except CommandError as fault:
                 self._log(error("model-refused", str(fault), file=self.world.file))
+        self._connect()
+
+    def _connect(self) -> None:
+        """Join the models that have just been loaded."""
+        self._connections, issues = self._connections.located(self._registry)
+        for issue in issues:
+            self._log(replaced(issue, file=self.world.file))
+        for command in self._connections.commands(self._registry):
+            try:
+                self._call(command)
+            except CommandError as fault:
+                self._log(error("joint-refused", str(fault), file=self.world.file))
+        self._connections = self._connections.present(self._registry)
+
+    @property
+    def joints_between_models(self) -> List[Joint]:
+        """Those that hold now; their ends are scoped link names, or `world`."""
+        return self._connections.joints
 
     @property
     def _runs(self) -> bool:
@@ -140,6 +162,7 @@ class WorldCore(WorldViews):
             with self._lock:
                 self._registry.add(entity)
                 if old is not None:
+                    self._connections = self._connections.without(model.name)
                     self._free(old)
 
     def delete(self, name: str) -> None:
@@ -150,6 +173,7 @@ class WorldCore(WorldViews):
             self._call(RemoveModel(entity.model_id))
             with self._lock:
                 self._registry.remove(name)
+                self._connections = self._connections.without(name)
                 self._free(entity)
 
     def _old(self, name: str, may_replace: bool) -> Optional[Entity]:
@@ -169,7 +193,8 @@ class WorldCore(WorldViews):
             raise CommandError(f"the world is full: {LINKS} links and {JOINTS} movable joints "
                                "are its limit")
         self._next_id += 1
-        return Entity(self._next_id, model, pose, first_link, first_joint, meshes)
+        return Entity(self._next_id, model, pose, first_link, first_joint, meshes,
+                      articulated=self._connections.slides(model.name))
 
     def _free(self, entity: Entity) -> None:
         """Its rows are for others now: what the engine forgets, is forgotten here too."""
@@ -183,7 +208,8 @@ class WorldCore(WorldViews):
     def _loading(entity: Entity, state: Optional[ModelState] = None) -> LoadModel:
         model = without_missing_meshes(entity.model, entity.meshes)
         return LoadModel(entity.model_id, model, entity.initial_pose,
-                         entity.first_link_row, entity.first_joint_row, entity.meshes, state)
+                         entity.first_link_row, entity.first_joint_row, entity.meshes, state,
+                         articulated=entity.articulated)
 
     # -- physics ---------------------------------------------------------------------------------
 
@@ -217,6 +243,7 @@ class WorldCore(WorldViews):
         commands: List[Command] = [SetPhysics(self._settings()),
                                    SetClock(snapshot.step, clock.sim_ns(snapshot.step))]
         commands += [self._loading(entity, entity.saved(snapshot)) for entity in entities]
+        commands += self._connections.commands(self._registry)
         held = tuple(entity.model_id for entity in entities if entity.model.name in self._held)
         if held:
             commands.append(Hold(held))

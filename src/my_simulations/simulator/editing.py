@@ -53,10 +53,11 @@ class ModelEdits(WorldCore):
             parts = self._solids.of(model, {**old.meshes, **(meshes or {})})
             with self._lock:
                 entity = self._make(model, old.initial_pose, parts)
-            entity.pose = old.pose
+            entity.pose, entity.articulated = old.pose, old.articulated
             loads = self._loads_of(old, entity)
             commands: List[Command] = [replace(self._loading(entity), inherit=old.model_id),
-                                       RemoveModel(old.model_id)]
+                                       RemoveModel(old.model_id),
+                                       *self._connections.commands(self._registry, name, entity)]
             try:
                 self._call(Batch(tuple(commands + ([AddLoads(tuple(loads))] if loads else []))))
             except CommandError:
@@ -65,6 +66,8 @@ class ModelEdits(WorldCore):
                 raise
             with self._lock:
                 self._registry.swap(old, entity)
+                self._connections = self._connections.renamed(
+                    name, model.name).present(self._registry)
                 self._free(old)
             self._loads.update({load.load_id: load for load in loads})
             self._held = [model.name if held == name else held for held in self._held]

@@ -36,6 +36,7 @@ class Entity:
         first_link_row, first_joint_row: where its rows begin.
         meshes: what its collisions need, kept for a restart of the engine.
         pose: world pose of a model without links; others are where their canonical link is.
+        articulated: built so that a sliding joint can connect it with another model.
     """
 
     model_id: int
@@ -45,6 +46,7 @@ class Entity:
     first_joint_row: int
     meshes: MeshTable = field(default_factory=dict)
     pose: Pose = IDENTITY
+    articulated: bool = False
 
     def __post_init__(self) -> None:
         self.pose = self.initial_pose

@@ -149,6 +149,7 @@ class Simulator(TimedLoads):
                 entity.pose = entity.initial_pose
                 commands.append(self._loading(entity))
                 commands += initial_commands(entity, self.world.initial.get(entity.model.name))
+            commands += self._connections.commands(self._registry)
             self._loads.clear()
             if self._held:
                 commands.append(self._holding())

@@ -81,7 +81,8 @@ class BulletBackend:
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             SetModelState: self._set_model, SetLinkState: self._set_link,
-            Connect: self._connect, SetJoints: self._set_joints, SetAxes: self._set_axes, Hold: self._hold,
+            SetJoints: self._set_joints, SetAxes: self._set_axes, Hold: self._hold,
+            Connect: self._connect,
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit),
             AddLoads: self._add_loads, ClearLoads: self._clear_loads,
         }
@@ -167,7 +168,7 @@ class BulletBackend:
             plans = plan_bodies(command.model)
             built = Builder(command.model_id, command.model, command.pose, command.meshes,
                             self._shapes, command.first_link_row, joint_rows,
-                            self._settings.step_size).build(plans)
+                            self._settings.step_size, command.articulated).build(plans)
         except (PlanError, ShapeError) as fault:
             raise Refused(str(fault)) from fault
         constraints = Constraints(command.model, plans, built, command.pose,

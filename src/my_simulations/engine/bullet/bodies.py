@@ -103,6 +103,7 @@ class Body:
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
+        ties: how many joints connect it with other models.
     """
 
     uid: int
@@ -116,6 +117,7 @@ class Body:
     may_sleep: bool = True
     radius: float = 0.0
     still: int = 0
+    ties: int = 0
 
     @property
     def uids(self) -> Tuple[int, ...]:
@@ -133,8 +135,9 @@ class Builder:
 
     def __init__(self, model_id: int, model: Model, pose: Pose, meshes: MeshTable,
                  shapes: ShapeFactory, link_rows: int, joint_rows: Dict[str, int],
-                 dt: float) -> None:
+                 dt: float, articulated: bool = False) -> None:
         self.dt = dt
+        self.articulated = articulated
         self.model_id = model_id
         self.model = model
         self.pose = pose
@@ -148,13 +151,20 @@ class Builder:
         """All bodies, at their initial poses, with Gazebo's dynamics instead of PyBullet's."""
         try:
             for plan in plans:
-                self.built.append(self._rigid(plan) if plan.is_rigid else self._tree(plan))
+                self.built.append(self._rigid(plan) if self._is_rigid(plan)
+                                  else self._tree(plan))
             self._ignore_each_other()
         except Exception:
             for body in self.built:
                 remove(body)
             raise
         return self.built
+
+    def _is_rigid(self, plan: BodyPlan) -> bool:
+        if not plan.is_rigid:
+            return False
+        return (not self.articulated or self.model.static
+                or self.model.links[plan.links[0].index].kinematic)
 
     def _rigid(self, plan: BodyPlan) -> Body:
         link = self.model.links[plan.links[0].index]
@@ -165,12 +175,12 @@ class Builder:
         at = compose(compose(self.pose, link.pose), com)
         uids = [
             pybullet.createMultiBody(mass, piece, -1, at.position, at.orientation,
-                                     useMaximalCoordinates=1)
+                                     useMaximalCoordinates=int(not self.articulated))
             for piece in (pieces or [-1])
         ]
         part = self._part(plan.links[0].index, BASE, com, mass, moments)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]), moves=not static,
-                    may_sleep=self._may_sleep(link))
+                    rigid=not self.articulated, may_sleep=self._may_sleep(link))
         for uid in uids:
             set_dynamics(uid, BASE, link, mass, moments, body.may_sleep and not static)
             set_decay(uid, link, self.dt)

@@ -1,18 +1,73 @@
 """What a tree of joints cannot say: closed loops, screws, gearboxes, axes that follow others."""
 from __future__ import annotations
 
+import math
 from typing import List, Optional, Sequence, Tuple
 
 import pybullet
 
 from ...description.model import WORLD, Joint, Model
-from ...geometry import Pose, Vec3, compose, inverse, scale
+from ...geometry import Pose, Vec3, compose, inverse, rotate, scale, transform
 from ..plan import NO_LINK, BodyPlan
 from .bodies import Axis, Body, Part
 
 _FORCE = 1e7          # N or N m: what a closed loop or a gear may need
-_HINGE_LENGTH = 0.1   # m between the two points that stand for a hinge
+_HINGE_LENGTH = 0.1   # m between the points that stand for a hinge
+_LEAST_RADIUS = 0.01  # m, of the points that stand for no freedom at all
 _ERP = 0.2
+
+End = Tuple[Body, Part]
+"""A link as the end of a joint."""
+
+
+def tie(joint: Joint, child: End, child_from_joint: Pose, parent: Optional[End],
+        parent_from_joint: Pose) -> List[int]:
+    """Hold a link to another as a joint would, limits and what else its axes have aside.
+
+    PyBullet has no hinge between bodies: points that stay together stand for it. Universal joints
+    hold as balls. Sliding ones are for links of articulated bodies only. Of the joint, type and
+    axis count; its frame is given in the frame of both links, or of the world for `parent` None.
+    Returns PyBullet's numbers of the constraints.
+    """
+    points: List[Vec3] = [(0.0, 0.0, 0.0)]
+    kind = {"fixed": pybullet.JOINT_FIXED, "prismatic": pybullet.JOINT_PRISMATIC}.get(
+        joint.type, pybullet.JOINT_POINT2POINT)
+    axis = joint.axis.xyz if joint.axis is not None else (0.0, 0.0, 1.0)
+    if joint.type in ("revolute", "continuous"):
+        points = [scale(axis, half * _HINGE_LENGTH) for half in (-0.5, 0.5)]
+    elif joint.type == "fixed" and (child[0].rigid or (parent is not None and parent[0].rigid)):
+        kind = pybullet.JOINT_POINT2POINT  # to rigid bodies "fixed" gets the turns wrong
+        points = _about_the_centre(child[1], child_from_joint)
+    return [_tie(child, compose(child_from_joint, Pose(at)), parent,
+                 compose(parent_from_joint, Pose(at)), kind, axis) for at in points]
+
+
+def _about_the_centre(part: Part, link_from_joint: Pose) -> List[Vec3]:
+    """Three points, in the joint frame, about a link's centre of mass.
+
+    As far from it as the mass is on average, they move the least when one of them is corrected.
+    """
+    radius = max(_LEAST_RADIUS, (sum(part.moments) / max(part.mass, 1e-9) / 2.0) ** 0.5)
+    joint_from_com = compose(inverse(link_from_joint), part.link_from_com)
+    turns = (0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0)
+    return [transform(joint_from_com, (radius * math.cos(turn), radius * math.sin(turn), 0.0))
+            for turn in turns]
+
+
+def _tie(one: End, mine: Pose, other: Optional[End], theirs: Pose, kind: int, axis: Vec3) -> int:
+    (body, part), uid, index = one, -1, -1
+    mine = compose(inverse(part.link_from_com), mine)
+    if other is not None:
+        theirs = compose(inverse(other[1].link_from_com), theirs)
+        uid, index = other[0].uid, other[1].index
+        if body.rigid and not other[0].rigid:  # PyBullet wants the articulated body first
+            (body, part), uid, index = other, body.uid, part.index
+            mine, theirs = theirs, mine
+    made = pybullet.createConstraint(
+        body.uid, part.index, uid, index, kind, rotate(mine.orientation, axis), mine.position,
+        theirs.position, mine.orientation, theirs.orientation)
+    pybullet.changeConstraint(made, maxForce=_FORCE)
+    return int(made)
 
 
 class Constraints:
@@ -45,49 +100,23 @@ class Constraints:
     # -- loops -----------------------------------------------------------------------------------
 
     def _close(self, joint: Joint) -> None:
-        """A joint that would close a loop, as points that stay together."""
+        """A joint that would close a loop."""
         parent, child = self._end(joint.parent), self._end(joint.child)
-        model_from_joint = self._model_from_joint(joint)
-        if parent is None and child is None:
-            return
-        if child is None:
-            parent, child = child, parent
-        assert child is not None
-        offsets: List[Vec3] = [(0.0, 0.0, 0.0)]
-        if joint.type in ("revolute", "continuous") and joint.axis is not None:
-            offsets = [scale(joint.axis.xyz, half * _HINGE_LENGTH) for half in (-0.5, 0.5)]
-        kinds = {"fixed": pybullet.JOINT_FIXED, "prismatic": pybullet.JOINT_PRISMATIC}
-        kind = kinds.get(joint.type, pybullet.JOINT_POINT2POINT)
-        for offset in offsets:
-            at = compose(model_from_joint, Pose(offset))
-            self._tie(child, parent, at, kind,
-                      joint.axis.xyz if joint.axis is not None else (0.0, 0.0, 0.0))
+        at = self._model_from_joint(joint)
+        if child is not None:
+            self._made += tie(joint, child, self._seen_from(child, at), parent,
+                              compose(self._pose, at) if parent is None
+                              else self._seen_from(parent, at))
+        elif parent is not None:
+            self._made += tie(joint, parent, self._seen_from(parent, at), None,
+                              compose(self._pose, at))
 
-    def _tie(self, one: Tuple[Body, Part], other: Optional[Tuple[Body, Part]], at: Pose,
-             kind: int, axis: Vec3) -> None:
-        """Tie a link to another, or to the world, at a pose of the model frame."""
-        (body, part), mine = one, self._seen_from(one, at)
-        theirs, other_uid, other_index = compose(self._pose, at), -1, -1
-        if other is not None:
-            theirs = self._seen_from(other, at)
-            other_uid, other_index = other[0].uid, other[1].index
-            if body.rigid and not other[0].rigid:  # PyBullet wants the articulated body first
-                body, part, mine, theirs, other_uid, other_index = (
-                    *other, theirs, mine, body.uid, part.index)
-        made = pybullet.createConstraint(
-            body.uid, part.index, other_uid, other_index, kind, axis, mine.position,
-            theirs.position, mine.orientation, theirs.orientation)
-        pybullet.changeConstraint(made, maxForce=_FORCE)
-        self._made.append(made)
+    def _seen_from(self, end: End, at: Pose) -> Pose:
+        """A pose of the model frame seen from a link, at joint positions 0."""
+        index = next(n for n, (_, other) in self._parts.items() if other is end[1])
+        return compose(inverse(self._model.links[index].pose), at)
 
-    def _seen_from(self, end: Tuple[Body, Part], at: Pose) -> Pose:
-        """A pose of the model frame seen from a link's centre of mass, at joint positions 0."""
-        part = end[1]
-        index = next(n for n, (_, other) in self._parts.items() if other is part)
-        model_from_com = compose(self._model.links[index].pose, part.link_from_com)
-        return compose(inverse(model_from_com), at)
-
-    def _end(self, name: str) -> Optional[Tuple[Body, Part]]:
+    def _end(self, name: str) -> Optional[End]:
         if name == WORLD:
             return None
         return self._parts[self._index(name)]

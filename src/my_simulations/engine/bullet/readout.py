@@ -136,7 +136,7 @@ class Readout:
             offset_rows.append(row)
         if velocity == _NO_VELOCITY:
             body.still += self._stepped
-            if body.still >= 2:
+            if body.still >= 2 and not body.ties:
                 self._awake.pop(uid, None)
                 self._guards.pop(uid, None)
                 if body.moves:

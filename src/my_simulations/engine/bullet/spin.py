@@ -68,7 +68,9 @@ class SpinKeeper:
         `loaded`: rows of links that a load acted on.
         """
         for uid, turn, momentum in free:
-            if self._bodies[uid].parts[0].row in loaded or pybullet.getContactPoints(bodyA=uid):
+            body = self._bodies[uid]
+            if (body.ties or body.parts[0].row in loaded
+                    or pybullet.getContactPoints(bodyA=uid)):
                 continue
             moments = self._moments[uid]
             turn = _turned(turn, momentum, moments, dt)
