@@ -9,13 +9,14 @@ from __future__ import annotations
 import queue
 import threading
 import time
+from concurrent.futures import TimeoutError as FutureTimeout
 from typing import Callable, List, Optional, Tuple
 
-from ..engine.api import Command, Engine, EngineGone, Reply
+from ..engine.api import Advance, Command, Engine, EngineGone, Reply
 from ..engine.ring import HEARTBEAT
-from ..errors import CommandError, EngineLost, Issue, error
+from ..errors import CommandError, EngineLost, Issue, NoAnswer, error
 
-_COMMAND_S = 120.0    # after this a command counts as lost (a heavy mesh may take a while)
+_COMMAND_S = 120.0    # how long a command may take (a heavy mesh takes a while)
 _STALL_S = 30.0       # an engine that shows no heartbeat for so long is killed
 _RAPID_S = 10.0       # this many seconds, so many deaths: the world itself kills the engine
 _RAPID_DEATHS = 3
@@ -29,11 +30,14 @@ class Supervisor:
         restore: called in that thread after each restart with a submit function; puts the world
             back. With `paused` True it must leave it paused.
         log: who is told of deaths.
+        patience: seconds that a command may take while the engine shows signs of life. `Advance`
+            may take for ever.
     """
 
     def __init__(self, engine_factory: Callable[[], Engine],
                  restore: Callable[["Callable[[Command], Reply]", bool], None],
-                 log: Callable[[Issue], None]) -> None:
+                 log: Callable[[Issue], None], patience: float = _COMMAND_S) -> None:
+        self._patience = patience
         self._restore = restore
         self._log = log
         self._ready = threading.Event()
@@ -61,16 +65,17 @@ class Supervisor:
 
         Raises:
             CommandError: refused, or no engine can be had.
+            NoAnswer: the engine lives, but did not answer in time.
             EngineLost: the engine died over it.
         """
         while True:
             engine = self.engine
-            if not self._ready.wait(_COMMAND_S):
+            if not self._ready.wait(self._patience):
                 raise CommandError("the physics engine has not come back")
             if self._failure:
                 raise CommandError(self._failure)
             try:
-                reply = engine.submit(command).result(_COMMAND_S)
+                reply = self._answer(engine, command)
             except EngineGone:
                 self._await_restart(command)
                 continue
@@ -92,7 +97,7 @@ class Supervisor:
         for killer, why in list(self._killers):
             if killer is command:
                 self._killers.remove((killer, why))
-                self._ready.wait(_COMMAND_S)
+                self._ready.wait(self._patience)
                 raise EngineLost(f"{why} over this request; the world was put back as it was "
                                  "before")
         time.sleep(0.005)  # the supervisor clears `ready` a moment after the future fails
@@ -160,4 +165,12 @@ class Supervisor:
 
     def _submit(self, command: Command) -> Reply:
         assert self._engine is not None
-        return self._engine.submit(command).result(_COMMAND_S)
+        return self._answer(self._engine, command)
+
+    def _answer(self, engine: Engine, command: Command) -> Reply:
+        patience = None if isinstance(command, Advance) else self._patience
+        try:
+            return engine.submit(command).result(patience)
+        except FutureTimeout as late:
+            raise NoAnswer(f"the physics engine has not answered for {self._patience:g} s; "
+                           f"{type(command).__name__} may still be carried out") from late
