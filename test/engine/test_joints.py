@@ -458,3 +458,32 @@ def test_a_double_pendulum_keeps_its_energy(lab: Lab):
     for _ in range(100):
         lab.steps(100)
         assert energy() == pytest.approx(start, abs=0.01 * 58.8)
+
+
+@pytest.mark.parametrize("dt", [0.001, 0.004])
+def test_velocity_decay_of_an_articulated_link_takes_its_share_off_in_every_step(lab: Lab,
+                                                                                dt: float):
+    lab.configure(gravity=(0.0, 0.0, 0.0), step_size=dt)
+    model = arm("revolute", JointAxis((0, 0, 1)), mass=2.0, moment=0.5)
+    model.links[0].linear_decay, model.links[0].angular_decay = 0.01, 0.005
+    swinging = lab.load(model)
+    lab.apply(SetJoints(((lab.joint_rows[swinging, "hinge"], 0.0, 1.0),)))
+    lab.steps(100)
+    # Of I = m l^2 + I_c = 2.5 each share slows its part.
+    share = (0.01 * 2.0 + 0.005 * 0.5) / 2.5
+    assert lab.joint(swinging)[1] == pytest.approx((1 - share) ** 100, rel=1e-4)
+
+
+def test_velocity_decay_slows_a_free_articulated_body_as_a_rigid_one(lab: Lab):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = Inertial(1.0, Pose((0.2, 0, 0), quat_from_rpy(0.3, 0.2, 0.1)),
+                        0.1, 0, 0, 0.1, 0, 0.1)
+    links = [Link(name, inertial=inertial, linear_decay=0.01, angular_decay=0.005)
+             for name in ("link", "tip")]
+    jointed = lab.load(Model("m", links=links, joints=[Joint("j", "fixed", "link", "tip")]))
+    lab.push(jointed, (3, -2, 1))
+    lab.steps(100)
+    assert lab.twist(jointed).linear == pytest.approx([v * 0.99 ** 100 for v in (3, -2, 1)],
+                                                      rel=1e-4)
+    lab.remove(jointed)
+    assert lab.backend._decay.idle

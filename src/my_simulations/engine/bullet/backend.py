@@ -48,6 +48,7 @@ from . import bodies, joints
 from .bodies import Body, Builder, Part
 from .constraints import Constraints
 from .contacts import read_contacts
+from .decay import Decay
 from .forces import Forces
 from .friction import EVERY, FrictionBalance
 from .holds import Holds
@@ -77,6 +78,7 @@ class BulletBackend:
         self._spin = SpinKeeper()
         self._holds = Holds(self._waker.around)
         self._ties = Ties()
+        self._decay = Decay()
         self._events: List[Event] = []
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
@@ -112,7 +114,8 @@ class BulletBackend:
         """Make `count` steps."""
         self._readout.stepped()
         one = pybullet.stepSimulation
-        if self._forces.idle and self._friction.idle and self._spin.idle and self._holds.idle:
+        if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
+                                      self._decay)):
             for _ in range(count):
                 one()
             return
@@ -121,6 +124,7 @@ class BulletBackend:
             if not self._friction.idle and step % EVERY == 0:
                 self._friction.balance()
             self._forces.apply(step, dt, gravity)
+            self._decay.apply(dt)
             free = self._spin.before(step)
             one()
             if free:
@@ -178,6 +182,8 @@ class BulletBackend:
         self._models[command.model_id] = entry
         for body in built:
             self._register(body)
+            for part in body.parts:
+                self._decay.add(body, part, command.model.links[part.row - entry.first_row])
             joints.set_up(body, command.model, self._forces, self._settings.step_size)
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
@@ -230,6 +236,7 @@ class BulletBackend:
             self._spin.forget(body)
             self._holds.forget(body)
             self._ties.forget(body)
+            self._decay.forget(body)
             self._readout.forget(body)
             for uid in body.uids:
                 del self._bodies[uid]
@@ -255,6 +262,7 @@ class BulletBackend:
         self._spin.clear()
         self._holds.clear()
         self._ties.clear()
+        self._decay.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         pybullet.resetSimulation()

@@ -183,7 +183,8 @@ class Builder:
                     rigid=not self.articulated, may_sleep=self._may_sleep(link))
         for uid in uids:
             set_dynamics(uid, BASE, link, mass, moments, body.may_sleep and not static)
-            set_decay(uid, link, self.dt)
+            if body.rigid:
+                set_decay(uid, link, self.dt)
         body.radius = _radius(uids[0])
         return body
 
