@@ -124,7 +124,8 @@ class WorldCore(WorldViews):
     # -- models ----------------------------------------------------------------------------------
 
     def spawn(self, model: Model, pose: Optional[Pose] = None, frame: str = "",
-              meshes: Optional[MeshTable] = None, replace: bool = False) -> None:
+              meshes: Optional[MeshTable] = None, replace: bool = False,
+              state: Optional[ModelState] = None) -> None:
         """Put a model into the world; returns when it is there.
 
         Args:
@@ -133,6 +134,7 @@ class WorldCore(WorldViews):
             frame: reference frame of `pose`.
             meshes: its loaded collision meshes by `mesh_key`.
             replace: take the place of a model of that name, in one step.
+            state: where its links and joints are, instead of at rest at `pose`.
 
         Raises:
             CommandError: empty or taken name, unknown frame, or the engine refused it.
@@ -152,7 +154,7 @@ class WorldCore(WorldViews):
                 entity = self._make(model, at, meshes)
             try:
                 self._call(Batch(tuple([
-                    self._loading(entity),
+                    self._loading(entity, state),
                     *initial_commands(entity, self._starts.pop(model.name, None)),
                     *([] if old is None else [RemoveModel(old.model_id)])])))
             except CommandError:

@@ -30,6 +30,7 @@ from ..geometry import STILL, Pose, Twist, Vec3, compose
 from .frames import in_frame, usable
 from .initial import initial_commands
 from .loads import TimedLoads
+from .moments import Moment
 
 
 class Simulator(TimedLoads):
@@ -113,7 +114,9 @@ class Simulator(TimedLoads):
         """Replace the settings. Raises CommandError, then the old ones stay."""
         with self._order:
             self._call(SetPhysics(self._settings(physics, gravity)))
-            self._physics, self._gravity = physics, gravity
+            with self._lock:
+                self._physics, self._gravity = physics, gravity
+                self._registry.revision += 1
 
     # -- reset -----------------------------------------------------------------------------------
 
@@ -155,6 +158,18 @@ class Simulator(TimedLoads):
                 commands.append(self._holding())
             self._registry.revision += 1
             self._call(Batch(tuple(commands)))
+
+    def put_back(self, moment: Moment) -> None:
+        """Poses, velocities, joints and the clock as they were; what has come since stays.
+
+        Models that have gone or got other links meanwhile are passed over.
+        """
+        with self._order:
+            running = not self._paused
+            with self._lock:
+                commands = moment.commands(self._registry.entities())
+            self._call(Batch((Pause(), SetClock(moment.step, moment.sim_ns), *commands,
+                              *([Run(self._horizon)] if running else []))))
 
     def load_world(self, world: World, meshes: Optional[Dict[str, MeshTable]] = None) -> None:
         """Replace everything by another world, as at a start; paused stays what it is.
