@@ -7,6 +7,7 @@ dataclass, so that it is written down once.
 from __future__ import annotations
 
 import enum
+import functools
 from dataclasses import dataclass, field, fields
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
 
@@ -128,12 +129,17 @@ def _values(children: Mapping[str, Entry], attributes: Mapping[str, Value], of: 
 
 def default_of(of: Any, name: str) -> Any:
     """The default of a dataclass's field; None where it has none."""
-    for item in fields(of):
-        if item.name == name:
-            if callable(item.default_factory):
-                return item.default_factory()
-            return item.default if item.default.__class__.__name__ != "_MISSING_TYPE" else None
-    raise AttributeError(f"{of.__name__} has no field {name}")
+    item = _fields_by_name(of).get(name)
+    if item is None:
+        raise AttributeError(f"{of.__name__} has no field {name}")
+    if callable(item.default_factory):
+        return item.default_factory()
+    return item.default if item.default.__class__.__name__ != "_MISSING_TYPE" else None
+
+
+@functools.lru_cache(maxsize=None)
+def _fields_by_name(of: Any) -> Dict[str, Any]:
+    return {item.name: item for item in fields(of)}
 
 
 Found = Dict[str, List[Any]]
