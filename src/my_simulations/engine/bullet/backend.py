@@ -118,6 +118,7 @@ class BulletBackend:
                                       self._decay)):
             for _ in range(count):
                 one()
+            self._forces.stepped()
             return
         dt, gravity = self._settings.step_size, self._settings.gravity
         for step in range(first, first + count):

@@ -9,7 +9,7 @@ from typing import Callable, Dict, List, Optional, Set, Tuple
 import pybullet
 
 from ...description.model import JointAxis
-from ...geometry import Vec3, add, cross, rotate, scale
+from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
 from ..api import Load
 from ..plan import BASE
 from .bodies import Axis, Body, Part
@@ -64,9 +64,11 @@ class Forces:
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
         self._dampers: Dict[int, Damper] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
+        self._placed: Set[int] = set()
 
     def add_body(self, body: Body) -> None:
         """Know the rows of a new body."""
+        self._placed.add(body.uid)
         for part in body.parts:
             self._parts[part.row] = (body, part)
             if not part.gravity and body.moves:
@@ -87,13 +89,15 @@ class Forces:
             self._dampers[row] = damper
 
     def disturbed(self, body: Body) -> None:
-        """The joints of a body were set."""
+        """A body was put somewhere, or its joints were set."""
+        self._placed.add(body.uid)
         for axis in body.axes:
             if axis.row in self._dampers:
                 self._dampers[axis.row].disturbed()
 
     def forget(self, body: Body) -> None:
         """Drop a body and every load on it."""
+        self._placed.discard(body.uid)
         for part in body.parts:
             self._parts.pop(part.row, None)
             self._weightless.pop(part.row, None)
@@ -142,7 +146,7 @@ class Forces:
             self._turn_over(step)
             for load in self._acting.values():
                 if load.effort is None:
-                    self._push(load)
+                    self._push(load, dt)
                 else:
                     efforts[load.row] = efforts.get(load.row, 0.0) + self._allowed(load)
         for row, damper in self._dampers.items():
@@ -155,6 +159,11 @@ class Forces:
             at = self._com(body, part)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
+        self._placed.clear()
+
+    def stepped(self) -> None:
+        """A step was made without `apply`."""
+        self._placed.clear()
 
     def _allowed(self, load: Load) -> float:
         """An effort within the limits of its axis, each load by itself as in Gazebo.
@@ -186,7 +195,7 @@ class Forces:
     def _target(self, load: Load) -> Body:
         return (self._parts if load.effort is None else self._axes)[load.row][0]
 
-    def _push(self, load: Load) -> None:
+    def _push(self, load: Load, dt: float) -> None:
         body, part = self._parts[load.row]
         if not body.moves:
             return
@@ -201,7 +210,9 @@ class Forces:
         torque = add(torque, cross(point, force))
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
-        if torque != _NOTHING:
+        if torque != _NOTHING and body.rigid and body.uid in self._placed:
+            _spin_up(body.uid, turn, part.moments, scale(torque, dt))
+        elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
 
     @staticmethod
@@ -209,3 +220,15 @@ class Forces:
         if part.index == BASE:
             return pybullet.getBasePositionAndOrientation(body.uid)
         return pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)[:2]
+
+
+def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:
+    """Give a rigid body angular momentum (N m s, world axes).
+
+    In its first step, and in the first after it was put somewhere, a torque would meet the inertia
+    of its shape, or of its former attitude: Bullet turns the inertia along at the end of a step.
+    """
+    linear, angular = pybullet.getBaseVelocity(uid)
+    a, b, c = rotate(conjugate(turn), impulse)
+    gained = rotate(turn, (a / moments[0], b / moments[1], c / moments[2]))
+    pybullet.resetBaseVelocity(uid, linear, add(angular, gained))
