@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The node offers exactly Gazebo's names, with Gazebo's types, and save_world."""
+"""The live graph and the interface table say the same, both ways."""
 import os
 import sys
 import unittest
@@ -10,48 +10,47 @@ import rosgraph
 import rospy
 import rosservice
 import support
-from my_simulations_msgs.srv import SaveWorld
+from my_simulations.ros import interface
+from my_simulations.ros.interface import HEARS, PUBLISHES, SERVES
 
-PUBLISHED = {
-    "/clock": "rosgraph_msgs/Clock",
-    "/gazebo/model_states": "gazebo_msgs/ModelStates",
-    "/gazebo/link_states": "gazebo_msgs/LinkStates",
-}
-SUBSCRIBED = {
-    "/gazebo/set_model_state": "gazebo_msgs/ModelState",
-    "/gazebo/set_link_state": "gazebo_msgs/LinkState",
-}
-OURS = {"save_world": SaveWorld}
-LOGGERS = {"/gazebo/get_loggers", "/gazebo/set_logger_level"}
+NODE = "/gazebo"
+INDEX = {PUBLISHES: 0, HEARS: 1, SERVES: 2}
+"""Where the master's system state lists what."""
 
 
 class ApiSurface(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
         cls.master = rosgraph.Master("/api_surface")
+        cls.extensions = rospy.get_param("/gazebo/extensions", True)
+        cls.gazebo = support.Gazebo()
+        if cls.extensions:
+            rospy.wait_for_service("/gazebo/open_editor", timeout=support.SECONDS)
 
-    def of_gazebo(self, index):
-        return {name for name, nodes in self.master.getSystemState()[index] if "/gazebo" in nodes}
+    def rows(self, direction):
+        return [row for row in interface.rows(extensions=self.extensions)
+                if row.direction is direction]
 
-    def test_it_publishes_exactly_these_topics(self):
-        self.assertEqual(self.of_gazebo(0), set(PUBLISHED) | {"/rosout"})
+    def of_gazebo(self, direction):
+        return {name for name, nodes in self.master.getSystemState()[INDEX[direction]]
+                if NODE in nodes}
 
-    def test_it_subscribes_to_exactly_these_topics(self):
-        self.assertEqual(self.of_gazebo(1), set(SUBSCRIBED))
+    def test_everything_in_the_table_is_offered_and_nothing_else(self):
+        for direction in INDEX:
+            wanted = {row.under(NODE) for row in self.rows(direction)}
+            support.wait_for(lambda d=direction, w=wanted: w <= self.of_gazebo(d),
+                             f"the {direction.value} names")
+            self.assertEqual(self.of_gazebo(direction), wanted)
 
-    def test_it_offers_exactly_these_services(self):
-        offered = {f"/gazebo/{name}" for name in (*support.TYPES, *OURS)}
-        self.assertEqual(self.of_gazebo(2), offered | LOGGERS)
-
-    def test_topic_types_are_gazebos(self):
+    def test_topic_types_are_the_tables(self):
         types = dict(self.master.getTopicTypes())
-        for topic, wanted in {**PUBLISHED, **SUBSCRIBED}.items():
-            self.assertEqual(types[topic], wanted, topic)
+        for direction in (PUBLISHES, HEARS):
+            for row in self.rows(direction):
+                self.assertEqual(types[row.under(NODE)], row.type, row.name)
 
-    def test_service_types_are_gazebos(self):
-        for name, service_class in {**support.TYPES, **OURS}.items():
-            self.assertEqual(rosservice.get_service_type(f"/gazebo/{name}"), service_class._type)
+    def test_service_types_are_the_tables(self):
+        for row in self.rows(SERVES):
+            self.assertEqual(rosservice.get_service_type(row.under(NODE)), row.type)
 
     def test_use_sim_time_is_set(self):
         self.assertIs(rospy.get_param("/use_sim_time"), True)

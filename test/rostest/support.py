@@ -13,30 +13,12 @@ import rospy
 import rostest
 from gazebo_msgs import srv
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from my_simulations.ros import interface
+from my_simulations.ros.registration import class_of
 from rosgraph_msgs.msg import Log
-from std_srvs.srv import Empty
 
 PACKAGE = "my_simulations"
 SECONDS = 20.0
-
-TYPES = {
-    "spawn_urdf_model": srv.SpawnModel,
-    "spawn_sdf_model": srv.SpawnModel,
-    "delete_model": srv.DeleteModel,
-    "get_world_properties": srv.GetWorldProperties,
-    "get_model_properties": srv.GetModelProperties,
-    "get_model_state": srv.GetModelState,
-    "set_model_state": srv.SetModelState,
-    "get_link_state": srv.GetLinkState,
-    "set_link_state": srv.SetLinkState,
-    "get_physics_properties": srv.GetPhysicsProperties,
-    "set_physics_properties": srv.SetPhysicsProperties,
-    "pause_physics": Empty,
-    "unpause_physics": Empty,
-    "reset_world": Empty,
-    "reset_simulation": Empty,
-}
-
 
 def wait_for(condition, what, seconds=SECONDS):
     """The first true value of `condition()`; an AssertionError that says `what` is missing."""
@@ -55,10 +37,21 @@ class Gazebo:
 
     def __init__(self, node="/gazebo", persistent=True):
         self.node = node
-        for name, service_class in TYPES.items():
-            rospy.wait_for_service(f"{node}/{name}", timeout=SECONDS)
-            setattr(self, name, rospy.ServiceProxy(f"{node}/{name}", service_class,
-                                                   persistent=persistent))
+        self._persistent = persistent
+        for row in interface.rows(extensions=False):
+            if row.direction is interface.SERVES:
+                rospy.wait_for_service(row.under(node), timeout=SECONDS)
+
+    def __getattr__(self, name):
+        try:
+            row = interface.row_of(name, interface.SERVES)
+        except KeyError:
+            raise AttributeError(name) from None
+        rospy.wait_for_service(row.under(self.node), timeout=SECONDS)
+        proxy = rospy.ServiceProxy(row.under(self.node), class_of(row),
+                                   persistent=self._persistent)
+        setattr(self, name, proxy)
+        return proxy
 
     def names(self):
         """Models of the world, in its order."""

@@ -4,9 +4,18 @@ from __future__ import annotations
 from typing import Any, Tuple
 
 from ..errors import CommandError
-from ..geometry import Pose, Twist, is_finite, normalised
+from ..geometry import Pose, Twist, Vec3, is_finite, normalised
 
 NANOSECONDS = 1000000000
+
+LENGTH, SPEED, SPIN = 1e6, 1e6, 1e5
+"""The largest coordinate in m, speed in m/s and rate in rad/s that a request may name.
+
+Beyond them nothing is simulated that means anything, and doubles lose what is small beside them.
+"""
+
+FORCE = 1e9
+"""The largest component of a force or torque, N or N m."""
 
 
 def pose_from_message(message: Any, field: str = "pose") -> Pose:
@@ -20,14 +29,16 @@ def pose_from_message(message: Any, field: str = "pose") -> Pose:
         field: its name in the request, for the error.
 
     Raises:
-        CommandError: a number is NaN or infinite.
+        CommandError: a number is NaN, infinite or absurdly large.
     """
     p, q = message.position, message.orientation
     position, orientation = (p.x, p.y, p.z), (q.x, q.y, q.z, q.w)
-    if not is_finite(*position):
-        raise CommandError(f"{field}.position has a number that is not finite: {position}")
+    within(position, LENGTH, "m", f"{field}.position")
     if not is_finite(*orientation):
         raise CommandError(f"{field}.orientation has a number that is not finite: {orientation}")
+    largest = max(abs(number) for number in orientation)
+    if largest > LENGTH:   # its square would not be a number
+        orientation = (q.x / largest, q.y / largest, q.z / largest, q.w / largest)
     return Pose(position, normalised(orientation))
 
 
@@ -35,15 +46,42 @@ def twist_from_message(message: Any, field: str = "twist") -> Twist:
     """A geometry_msgs/Twist as a twist, m/s and rad/s, in the axes it was given in.
 
     Raises:
-        CommandError: a number is NaN or infinite.
+        CommandError: a number is NaN, infinite or absurdly large.
     """
-    v, w = message.linear, message.angular
-    twist = Twist((v.x, v.y, v.z), (w.x, w.y, w.z))
-    if not is_finite(*twist.linear):
-        raise CommandError(f"{field}.linear has a number that is not finite: {twist.linear}")
-    if not is_finite(*twist.angular):
-        raise CommandError(f"{field}.angular has a number that is not finite: {twist.angular}")
-    return twist
+    linear = within(vector(message.linear), SPEED, "m/s", f"{field}.linear")
+    angular = within(vector(message.angular), SPIN, "rad/s", f"{field}.angular")
+    return Twist(linear, angular)
+
+
+def vector(message: Any) -> Vec3:
+    """A geometry_msgs/Vector3 or Point as a tuple."""
+    return (message.x, message.y, message.z)
+
+
+def within(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
+    """The vector itself.
+
+    Raises:
+        CommandError: a number is NaN, infinite or beyond the limit.
+    """
+    if not is_finite(*values):
+        raise CommandError(f"{field} has a number that is not finite: {values}")
+    if any(abs(value) > limit for value in values):
+        raise CommandError(f"{field} has a number beyond {limit:g} {unit}: {values}")
+    return values
+
+
+def between(value: float, low: float, high: float, field: str, unit: str = "") -> float:
+    """The value itself.
+
+    Raises:
+        CommandError: it is NaN, infinite or not in `low` to `high`.
+    """
+    finite(value, field)
+    if not low <= value <= high:
+        unit = f" {unit}" if unit else ""
+        raise CommandError(f"{field} must be in {low:g} to {high:g}{unit}, it is {value:g}")
+    return value
 
 
 def finite(value: float, field: str) -> float:

@@ -1,11 +1,11 @@
-"""The table of services and how a handler's outcome becomes an answer."""
+"""How a handler's outcome becomes an answer."""
 from __future__ import annotations
 
 import socket
 import struct
 import traceback
 from dataclasses import dataclass
-from typing import Any, Callable, Iterable, List
+from typing import Any, Callable
 
 import rospy
 from rospy.exceptions import TransportException, TransportTerminated
@@ -88,9 +88,3 @@ class LastingService(rospy.Service):
         except (TransportException, OSError) as fault:
             rospy.logdebug("[%s] the client is gone: %s", self.resolved_name, fault)
         transport.close()
-
-
-def advertise(endpoints: Iterable[Endpoint]) -> List[Any]:
-    """Offer all services under the node's private namespace."""
-    return [LastingService(f"~{endpoint.name}", endpoint.type, answering(endpoint))
-            for endpoint in endpoints]

@@ -1,11 +1,11 @@
-"""spawn_urdf_model, spawn_sdf_model and delete_model."""
+"""spawn_urdf_model, spawn_sdf_model (models and lights) and delete_model."""
 from __future__ import annotations
 
+from dataclasses import replace as with_changes
 from typing import Any, Callable, List, Optional
 
-from gazebo_msgs import srv
-
 from ..description.model import Model
+from ..description.world import Light
 from ..errors import CommandError, InputError, Issue, errors_of
 from ..formats.load import read_entity
 from ..formats.meshes import collision_meshes
@@ -14,8 +14,9 @@ from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 from .convert import pose_from_message
 from .document import REPLACE_ATTRIBUTE, asks_to_replace, checked_name, named, root_of
-from .endpoints import Endpoint
 from .entities import in_gazebos_words
+
+NO_FRAME = "reference reference_frame not found"
 
 
 class ModelServices:
@@ -26,14 +27,6 @@ class ModelServices:
         self._simulator = simulator
         self._resolver = resolver
         self._log = log
-
-    def endpoints(self) -> List[Endpoint]:
-        """Its rows of the table."""
-        return [
-            Endpoint("spawn_urdf_model", "SpawnModel", srv.SpawnModel, self.spawn_urdf),
-            Endpoint("spawn_sdf_model", "SpawnModel", srv.SpawnModel, self.spawn_sdf),
-            Endpoint("delete_model", "DeleteModel", srv.DeleteModel, self.delete),
-        ]
 
     def spawn_urdf(self, request: Any, _response: Any) -> str:
         """A URDF document; any other root is refused, as in Gazebo."""
@@ -60,11 +53,11 @@ class ModelServices:
     def spawn_text(self, text: str, name: Optional[str], initial: Pose = IDENTITY, *,
                    frame: str = "", namespace: str = "", replace: bool = False,
                    file: str = "model_xml") -> str:
-        """Put the model of a document into the world.
+        """Put the model or light of a document into the world.
 
         Args:
             text: URDF or SDF.
-            name: the model's name in the world; None for the document's own.
+            name: its name in the world; None for the document's own.
             initial: pose in `frame`; the document's own pose is composed onto it, and with
                 several frames T_frame o T_initial o T_own is where the model goes (Gazebo).
             frame: "" or a literal for the world, else a model or link.
@@ -82,7 +75,7 @@ class ModelServices:
         entity, issues = read_entity(text, self._resolver, file=file)
         if not isinstance(entity, Model):
             self._report(issues)
-            raise CommandError("the document describes a light; lights come with the world file")
+            return self._spawn_light(entity, name, initial, frame)
         model = named(entity, name if name is not None else entity.name, namespace)
         meshes, mesh_issues = collision_meshes(model)
         # Every message about the attribute is about what was read from it already.
@@ -91,10 +84,19 @@ class ModelServices:
         self._report(issues)
         if errors_of(issues):
             raise InputError(issues)
-        with in_gazebos_words("", "reference reference_frame not found"):
+        with in_gazebos_words("", NO_FRAME):
             self._simulator.spawn(model, compose(initial, model.pose), frame, meshes, replace)
         warnings = f" ({len(issues)} remarks in the log)" if issues else ""
         return f"Successfully spawned entity{warnings}"
+
+    def _spawn_light(self, light: Light, name: Optional[str], initial: Pose, frame: str) -> str:
+        light = with_changes(light, name=light.name if name is None else name,
+                             pose=compose(initial, light.pose))
+        if any(one.name == light.name for one in self._simulator.lights()):
+            raise CommandError(f"Failure - entity already exists. (light {light.name!r})")
+        with in_gazebos_words("", NO_FRAME):
+            self._simulator.add_light(light, frame)
+        return "Successfully spawned entity"
 
     def _report(self, issues: List[Issue]) -> None:
         for issue in issues:

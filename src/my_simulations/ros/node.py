@@ -12,6 +12,7 @@ from ..errors import CommandError, InputError
 from ..geometry import Pose, is_finite
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
+from .editor import Open
 from .log import log_issue
 
 ROSOUT_SECONDS = 1.0
@@ -21,13 +22,24 @@ ROSOUT_SECONDS = 1.0
 class Node:
     """Owns the ROS side of a running simulator."""
 
-    def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher) -> None:
+    def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher,
+                 open_editor: Optional[Open] = None) -> None:
+        """Take over a simulator that does not run yet.
+
+        Args:
+            simulator: started, paused.
+            resolver: finds what spawned models name.
+            clock: the advertised `/clock`.
+            open_editor: starts the world editor and returns its address.
+        """
         self._simulator = simulator
         self._clock = clock
         self._resolver = resolver
-        self._services: List[Any] = []
-        self._subscribers: List[Any] = []
+        self._open_editor = open_editor
+        self._registered: List[Any] = []
         self._publishers: Optional[Any] = None
+        self._metrics: Optional[Any] = None
+        self._reconfigure: Optional[Any] = None
         self._parameters = _private_parameters()
         self._engine_pid = 0
 
@@ -37,51 +49,82 @@ class Node:
         from .publishers import Publishers
 
         network = _flag(self._parameters, "enable_ros_network", True)
+        extensions = _flag(self._parameters, "extensions", True)
+        if _flag(self._parameters, "lockstep", False):
+            self._simulator.set_lockstep(True)
         self._publishers = Publishers(
             self._simulator, self._clock, states=network,
             clock_hz=_number(self._parameters, "pub_clock_frequency", 0.0),
             states_hz=_number(self._parameters, "model_states_rate", 0.0))
         take_side_by_side()
         if network:
-            self._advertise_api()
+            self._advertise_api(extensions)
         rospy.set_param("~world_base_name", base_name(self._simulator.world.file))
         rospy.set_param("~my_simulations/version", __version__)
-        self.keep_up()
+        self._keep_engine_pid()
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
 
-    def _advertise_api(self) -> None:
-        from .endpoints import advertise
+    def _advertise_api(self, extensions: bool) -> None:
+        from .interface import rows
+        from .registration import register
+
+        if extensions:
+            from .metrics import Metrics
+
+            self._metrics = Metrics(self._simulator)
+        faces = self._faces()
+        self._reconfigure = faces["reconfigure"]
+        self._registered = register(rows(extensions=extensions), faces)
+
+    def _faces(self) -> Dict[str, Any]:
+        """Who handles what, by the first half of the table's handlers."""
+        from .editor import EditorService
+        from .joints import JointServices
+        from .lights import LightServices
+        from .links import LinkServices
+        from .loads import LoadServices
         from .models import ModelServices
         from .saving import SaveService
         from .states import StateServices
+        from .stepping import SteppingService
         from .world import WorldServices
 
-        states = StateServices(self._simulator)
-        faces = (WorldServices(self._simulator), states,
-                 ModelServices(self._simulator, self._resolver, log_issue),
-                 SaveService(self._simulator, self._resolver))
-        self._services = advertise(row for face in faces for row in face.endpoints())
-        self._subscribers = states.subscribe()
+        simulator = self._simulator
+        return {
+            "editor": EditorService(self._open_editor), "joints": JointServices(simulator),
+            "lights": LightServices(simulator), "links": LinkServices(simulator),
+            "loads": LoadServices(simulator),
+            "models": ModelServices(simulator, self._resolver, log_issue),
+            "reconfigure": _reconfigure(simulator),
+            "saving": SaveService(simulator, self._resolver),
+            "states": StateServices(simulator), "stepping": SteppingService(simulator),
+            "world": WorldServices(simulator),
+        }
 
     def keep_up(self) -> None:
-        """Keep `~my_simulations/engine_pid` true; call it now and then.
+        """Keep the parameters true that follow the world; call it now and then.
 
         A master that is away is asked again the next time.
         """
-        pid = self._simulator.engine_pid
-        if pid == self._engine_pid:
-            return
         try:
-            rospy.set_param("~my_simulations/engine_pid", pid)
-            self._engine_pid = pid
+            self._keep_engine_pid()
+            if self._reconfigure is not None:
+                self._reconfigure.keep_up()
         except OSError as fault:
             rospy.logdebug("the master does not answer: %s", fault)
 
+    def _keep_engine_pid(self) -> None:
+        pid = self._simulator.engine_pid
+        if pid != self._engine_pid:
+            rospy.set_param("~my_simulations/engine_pid", pid)
+            self._engine_pid = pid
+
     def start_publishing(self) -> None:
-        """Begin to publish `/clock` and the states."""
-        if self._publishers is not None:
-            self._publishers.start()
+        """Begin to publish `/clock`, the states and the metrics."""
+        for publishers in (self._publishers, self._metrics):
+            if publishers is not None:
+                publishers.start()
 
     def spawn_robot(self) -> None:
         """Spawn the parameter `robot_description` when `~spawn_robot` says so.
@@ -113,8 +156,19 @@ class Node:
 
     def stop(self) -> None:
         """Stop publishing; rospy's own shutdown takes the services off the graph."""
-        if self._publishers is not None:
-            self._publishers.stop()
+        for publishers in (self._publishers, self._metrics):
+            if publishers is not None:
+                publishers.stop()
+
+
+def _reconfigure(simulator: Simulator) -> Optional[Any]:
+    """The dynamic_reconfigure server; None where its messages are not installed."""
+    try:
+        from .reconfigure import Reconfigure
+    except ImportError as fault:
+        rospy.logwarn("the physics settings are not offered to dynamic_reconfigure: %s", fault)
+        return None
+    return Reconfigure(simulator)
 
 
 def base_name(world_file: str) -> str:

@@ -16,7 +16,9 @@ from rosgraph_msgs.msg import Clock
 from ..simulator.layout import Layout, Place
 from ..simulator.simulator import Simulator
 from .buffers import StatesBuffer, packed_time
+from .listeners import Arrivals
 from .pacing import StateGate, StepSelector
+from .registration import publisher
 
 LOOK_SECONDS = 0.001
 """Between two looks at a world that makes many steps in that time."""
@@ -57,24 +59,10 @@ class _PackedLinkStates(LinkStates):
         buff.write(self.packed)
 
 
-class _Arrivals(rospy.SubscribeListener):
-    """Tells of every subscriber that comes or goes."""
-
-    def __init__(self, tell: Callable[[], None]) -> None:
-        super().__init__()
-        self._tell = tell
-
-    def peer_subscribe(self, _topic: str, _publish: Any, _peer_publish: Any) -> None:
-        self._tell()
-
-    def peer_unsubscribe(self, _topic: str, _peers: int) -> None:
-        self._tell()
-
-
 class Channel:
     """One state topic: its publisher, whether a message is owed, and when one is due."""
 
-    def __init__(self, topic: str, data_class: Any, packed_class: Any,
+    def __init__(self, topic: str, packed_class: Any,
                  entities: Callable[[Layout], Tuple[List[str], List[Place]]], rate: float,
                  wake: threading.Event) -> None:
         self._entities = entities
@@ -83,9 +71,8 @@ class Channel:
         self._message = packed_class()
         self._owed = threading.Event()
         self._wake = wake
-        self.publisher = rospy.Publisher(topic, data_class, queue_size=STATES_QUEUE,
-                                         tcp_nodelay=True,
-                                         subscriber_listener=_Arrivals(self._hear))
+        self.publisher = publisher(topic, queue_size=STATES_QUEUE, tcp_nodelay=True,
+                                   subscriber_listener=Arrivals(self._hear))
 
     def _hear(self) -> None:
         self._owed.set()
@@ -133,14 +120,14 @@ class Publishers:
         self._demand = (-1.0, False)
         self._clock_message = _PackedClock()
         self._clock = clock
-        self._clock.impl.add_subscriber_listener(_Arrivals(self._wake.set))
+        self._clock.impl.add_subscriber_listener(Arrivals(self._wake.set))
         self._channels: List[Channel] = []
         if states:
             self._channels = [
-                Channel("~model_states", ModelStates, _PackedModelStates,
+                Channel("model_states", _PackedModelStates,
                         lambda layout: (layout.model_names, layout.model_places), states_hz,
                         self._wake),
-                Channel("~link_states", LinkStates, _PackedLinkStates,
+                Channel("link_states", _PackedLinkStates,
                         lambda layout: (layout.link_names, layout.link_places), states_hz,
                         self._wake),
             ]

@@ -8,7 +8,6 @@ import rospy
 from ..errors import CommandError
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
-from .endpoints import Endpoint
 
 ROOTS = "~save_roots"
 """Parameter: a list of the folders below which worlds may be saved, instead of the usual ones."""
@@ -20,16 +19,6 @@ class SaveService:
     def __init__(self, simulator: Simulator, resolver: Resolver) -> None:
         self._simulator = simulator
         self._resolver = resolver
-
-    def endpoints(self) -> List[Endpoint]:
-        """Its rows of the table; none in a workspace whose set-up was not run since it came."""
-        try:
-            from my_simulations_msgs.srv import SaveWorld
-        except ImportError:
-            rospy.logwarn("save_world is not offered: the package my_simulations_msgs is not "
-                          "built in this workspace; tools/run builds it")
-            return []
-        return [Endpoint("save_world", "SaveWorld", SaveWorld, self.save)]
 
     def save(self, request: Any, response: Any) -> str:
         """The world as it is now, to a file."""

@@ -200,7 +200,8 @@ class Server:
 
     def _init_node(self) -> None:
         import rospy
-        from rosgraph_msgs.msg import Clock
+
+        from .registration import publisher
 
         self._profile.mark("rospy imported")
         threading.Thread(target=self._break_off, daemon=True).start()
@@ -214,7 +215,7 @@ class Server:
             raise OSError(str(fault)) from fault
         rospy.on_shutdown(self._ended.set)
         # Already now: a subscriber takes as long to connect as the rest of the start.
-        self._clock = rospy.Publisher("/clock", Clock, queue_size=CLOCK_QUEUE, tcp_nodelay=True)
+        self._clock = publisher("/clock", queue_size=CLOCK_QUEUE, tcp_nodelay=True)
         self._profile.mark("node registered")
         faces.join()
         self._profile.mark("interface imported")
@@ -275,4 +276,4 @@ class Server:
 
 def _import_faces() -> None:
     """Import the services and topics while `rospy.init_node` sleeps on its registration."""
-    from . import models, publishers, states, world  # noqa: F401
+    from . import joints, loads, metrics, models, publishers, states, world  # noqa: F401

@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
-from typing import Any, List
+from typing import Any
 
 import rospy
-from gazebo_msgs import msg, srv
+from gazebo_msgs import srv
 
 from ..errors import CommandError
 from ..simulator.simulator import Simulator
@@ -17,7 +17,6 @@ from .convert import (
     seconds_and_nanoseconds,
     twist_from_message,
 )
-from .endpoints import Endpoint
 from .entities import in_gazebos_words
 
 NO_FRAME = "specified reference frame entity does not exist"
@@ -32,29 +31,12 @@ class _CountedResponse(srv.GetModelStateResponse):
 class StateServices:
     """Where models and links are, and putting them elsewhere."""
 
+    responses = {"get_model": _CountedResponse}
+
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
         self._calls: "Counter[str]" = Counter()
         self._lock = threading.Lock()
-
-    def endpoints(self) -> List[Endpoint]:
-        """Its rows of the table."""
-        return [
-            Endpoint("get_model_state", "GetModelState", srv.GetModelState, self.get_model,
-                     _CountedResponse),
-            Endpoint("set_model_state", "SetModelState", srv.SetModelState, self.set_model),
-            Endpoint("get_link_state", "GetLinkState", srv.GetLinkState, self.get_link),
-            Endpoint("set_link_state", "SetLinkState", srv.SetLinkState, self.set_link),
-        ]
-
-    def subscribe(self) -> List[rospy.Subscriber]:
-        """Listen to the two topics that do the same as the services, without an answer."""
-        return [
-            rospy.Subscriber("~set_model_state", msg.ModelState, self._on_model_state,
-                             queue_size=10, tcp_nodelay=True),
-            rospy.Subscriber("~set_link_state", msg.LinkState, self._on_link_state,
-                             queue_size=10, tcp_nodelay=True),
-        ]
 
     def get_model(self, request: Any, response: Any) -> str:
         """Pose and twist of a model in a frame; `seq` counts the calls for this model (Gazebo)."""
@@ -113,13 +95,15 @@ class StateServices:
         with in_gazebos_words("link does not exist", NO_FRAME):
             self._simulator.set_link_state(state.link_name, pose, twist, state.reference_frame)
 
-    def _on_model_state(self, state: Any) -> None:
+    def on_model_state(self, state: Any) -> None:
+        """What `move_model` does, faults to the log."""
         try:
             self.move_model(state)
         except CommandError as fault:
             rospy.logerr_throttle_identical(1.0, f"SetModelState (topic): {fault}")
 
-    def _on_link_state(self, state: Any) -> None:
+    def on_link_state(self, state: Any) -> None:
+        """What `move_link` does, faults to the log."""
         try:
             self.move_link(state)
         except CommandError as fault:

@@ -1,35 +1,14 @@
 """Services about the world as a whole: its models, its physics, its clock."""
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any, Dict, List
+from typing import Any
 
-from gazebo_msgs import srv
-from std_srvs.srv import Empty
-
-from ..description.world import OdePhysics
-from ..errors import CommandError
 from ..simulator.simulator import Simulator
-from .convert import finite
-from .endpoints import Endpoint
 from .entities import in_gazebos_words
+from .physics import ODE, change, present
 
 SCOPE = "::"
 """Between the names of a nested model and its link."""
-
-ODE_FIELDS = (
-    ("auto_disable_bodies", "auto_disable_bodies"),
-    ("sor_pgs_precon_iters", "precon_iters"),
-    ("sor_pgs_iters", "iters"),
-    ("sor_pgs_w", "sor"),
-    ("sor_pgs_rms_error_tol", "rms_error_tol"),
-    ("contact_surface_layer", "contact_surface_layer"),
-    ("contact_max_correcting_vel", "contact_max_correcting_vel"),
-    ("cfm", "cfm"),
-    ("erp", "erp"),
-    ("max_contacts", "max_contacts"),
-)
-"""Fields of gazebo_msgs/ODEPhysics and of our `OdePhysics`."""
 
 
 class WorldServices:
@@ -37,23 +16,6 @@ class WorldServices:
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
-
-    def endpoints(self) -> List[Endpoint]:
-        """Its rows of the table."""
-        return [
-            Endpoint("get_world_properties", "GetWorldProperties", srv.GetWorldProperties,
-                     self.get_world),
-            Endpoint("get_model_properties", "GetModelProperties", srv.GetModelProperties,
-                     self.get_model),
-            Endpoint("get_physics_properties", "GetPhysicsProperties", srv.GetPhysicsProperties,
-                     self.get_physics),
-            Endpoint("set_physics_properties", "SetPhysicsProperties", srv.SetPhysicsProperties,
-                     self.set_physics),
-            Endpoint("pause_physics", "PausePhysics", Empty, self.pause),
-            Endpoint("unpause_physics", "UnpausePhysics", Empty, self.unpause),
-            Endpoint("reset_world", "ResetWorld", Empty, self.reset_world),
-            Endpoint("reset_simulation", "ResetSimulation", Empty, self.reset_simulation),
-        ]
 
     def get_world(self, _request: Any, response: Any) -> str:
         """Sim time in seconds and the names of the models, in load order."""
@@ -78,26 +40,24 @@ class WorldServices:
 
     def get_physics(self, _request: Any, response: Any) -> str:
         """Step size (s), rate (Hz of steps, 0 unthrottled), gravity and the stored ODE values."""
-        physics, gravity = self._simulator.physics, self._simulator.gravity
-        response.time_step = physics.max_step_size
+        values = present(self._simulator)
+        response.time_step = values["time_step"]
         response.pause = self._simulator.paused
-        response.max_update_rate = physics.real_time_update_rate
-        response.gravity.x, response.gravity.y, response.gravity.z = gravity
-        for theirs, ours in ODE_FIELDS:
-            setattr(response.ode_config, theirs, getattr(physics.ode, ours))
+        response.max_update_rate = values["max_update_rate"]
+        gravity = response.gravity
+        gravity.x, gravity.y, gravity.z = self._simulator.gravity
+        for parameter in ODE:
+            setattr(response.ode_config, parameter.name, values[parameter.name])
         return "got properties"
 
     def set_physics(self, request: Any, _response: Any) -> str:
         """Replace all of them; nothing changes when one is refused."""
-        step = finite(request.time_step, "time_step")
-        rate = finite(request.max_update_rate, "max_update_rate")
-        g = request.gravity
-        gravity = (finite(g.x, "gravity.x"), finite(g.y, "gravity.y"), finite(g.z, "gravity.z"))
-        if step <= 0.0:
-            raise CommandError(f"time_step must be greater than 0 s, it is {step}")
-        physics = replace(self._simulator.physics, max_step_size=step,
-                          real_time_update_rate=max(rate, 0.0), ode=_ode(request.ode_config))
-        self._simulator.set_physics(physics, gravity)
+        gravity = request.gravity
+        change(self._simulator, {
+            "time_step": request.time_step, "max_update_rate": request.max_update_rate,
+            "gravity_x": gravity.x, "gravity_y": gravity.y, "gravity_z": gravity.z,
+            **{parameter.name: getattr(request.ode_config, parameter.name)
+               for parameter in ODE}})
         return "physics engine updated"
 
     def pause(self, _request: Any, _response: Any) -> str:
@@ -120,10 +80,7 @@ class WorldServices:
         self._simulator.reset_simulation()
         return ""
 
-
-def _ode(config: Any) -> OdePhysics:
-    values: Dict[str, Any] = {}
-    for theirs, ours in ODE_FIELDS:
-        value = getattr(config, theirs)
-        values[ours] = finite(value, f"ode_config.{theirs}") if isinstance(value, float) else value
-    return OdePhysics(**values)
+    def reset_time(self, _request: Any, _response: Any) -> str:
+        """Sim time to zero, everything else goes on as it is."""
+        self._simulator.reset_time()
+        return ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 import threading
 from typing import Dict, List, Optional, Tuple
 
-from ..description.model import Model
+from ..description.model import Link, Model
 from ..engine.ring import BELL, DEMAND_NS, RingReader, Snapshot
 from ..errors import CommandError
 from ..geometry import IDENTITY, Pose, Twist, compose
@@ -59,6 +59,12 @@ class WorldViews:
         """The flattened description. Raises UnknownEntity."""
         with self._lock:
             return self._registry.model(name).model
+
+    def link(self, name: str) -> Link:
+        """The description of a link, by plain or scoped name. Raises UnknownEntity."""
+        with self._lock:
+            entity, index = self._registry.link(name)
+            return entity.model.links[index]
 
     def model_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
         """Pose and twist of a model frame in `frame` (see `Registry.frame`).
