@@ -10,6 +10,7 @@ import rosgraph
 import rospy
 import rosservice
 import support
+
 from my_simulations.ros import interface
 from my_simulations.ros.interface import HEARS, PUBLISHES, SERVES
 

@@ -13,9 +13,10 @@ import rospy
 import rostest
 from gazebo_msgs import srv
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from rosgraph_msgs.msg import Log
+
 from my_simulations.ros import interface
 from my_simulations.ros.registration import class_of
-from rosgraph_msgs.msg import Log
 
 PACKAGE = "my_simulations"
 SECONDS = 20.0

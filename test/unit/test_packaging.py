@@ -19,22 +19,25 @@ ARGUMENTS = {
 }
 """Arguments of gazebo_ros' empty_world.launch, with their defaults."""
 
+OURS = {"extensions": "true", "lockstep": "false"}
+"""What Gazebo's has not."""
+
 
 def _arguments(path):
     return [arg for arg in ET.parse(path).getroot().findall("arg") if "default" in arg.attrib]
 
 
-def test_empty_world_launch_has_gazebos_arguments_and_defaults():
+def test_empty_world_launch_has_gazebos_arguments_and_defaults_and_ours():
     arguments = _arguments(LAUNCH / "empty_world.launch.in")
     found = {arg.get("name"): arg.get("default") for arg in arguments}
-    assert found == ARGUMENTS
+    assert found == {**ARGUMENTS, **OURS}
 
 
 @pytest.mark.parametrize("path", sorted(LAUNCH.glob("*.launch*")), ids=lambda path: path.name)
 def test_world_launch_file_documents_and_offers_every_argument(path):
     arguments = _arguments(path)
     assert all(arg.get("doc") for arg in arguments)
-    assert set(ARGUMENTS) <= {arg.get("name") for arg in arguments}
+    assert {*ARGUMENTS, *OURS} <= {arg.get("name") for arg in arguments}
 
 
 @pytest.mark.parametrize("name", ["empty", "shapes", "mud", "rubble", "willowgarage"])

@@ -6,6 +6,7 @@ import pathlib
 import sys
 
 import pytest
+
 from my_simulations.ros import interface
 from my_simulations.ros.interface import BY_ROSPY, HEARS, PUBLISHES, SERVES, TABLE
 

@@ -180,5 +180,6 @@ def markdown() -> str:
 
 
 def _line(row: Row) -> str:
-    meaning = "; ".join(part for part in ("*extension*" if row.extension else "", row.meaning) if part)
+    parts = ("*extension*" if row.extension else "", row.meaning)
+    meaning = "; ".join(part for part in parts if part)
     return f"| `{row.name}` | `{row.type}` | {meaning} |"
