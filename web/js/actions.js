@@ -27,7 +27,7 @@ export function createActions({store, connection}) {
   const edit = (op, options) => ask('edit', {op}, options);
   const dialog = (name, fields = {}) => store.emit('dialog', {name, ...fields});
   const modelOf = (name) => name.split('::')[0];
-  const note = (message) => store.addIssue({severity: 'info', code: 'editor', message});
+  const note = (message) => store.addIssue({severity: 'note', code: 'editor', message});
 
   const actions = {
     attachView(theView) { view = theView; },
@@ -75,7 +75,7 @@ export function createActions({store, connection}) {
     async copy(names = store.selection) {
       const wanted = names.filter((name) => ['model', 'light'].includes(store.entity(name)?.kind));
       if (!wanted.length) return NOTHING;
-      const outcome = await edit({kind: 'copy', names: wanted});
+      const outcome = await ask('copy', {names: wanted});
       if (!outcome.ok) return outcome;
       store.setClipboard({
         text: outcome.value.text,
@@ -121,9 +121,9 @@ export function createActions({store, connection}) {
     async insertModel(uri) {
       const outcome = await ask('library_get', {uri});
       if (!outcome.ok) return outcome;
-      const document = outcome.value.document ?? outcome.value;
+      const {model, light} = outcome.value;
       store.setPlacing({
-        kind: document.links ? 'model' : 'light', document, uri,
+        kind: model ? 'model' : 'light', document: model ?? light, uri,
         op: (pose) => ({kind: 'insert', uri, pose}),
       });
       return outcome;
@@ -228,7 +228,7 @@ export function createActions({store, connection}) {
     logClose: () => ask('log_close'),
 
     // ---- windows of the panels
-    applyForce: (name = store.selection.at(-1)) => dialog('applyForce', {name}),
+    applyForce: (name = store.selection.at(-1)) => dialog('applyForce', {target: name}),
     hotkeys: () => dialog('hotkeys'),
     about: () => dialog('about'),
     plot: () => dialog('plot'),

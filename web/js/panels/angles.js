@@ -2,6 +2,7 @@
  * Roll, pitch, yaw (fixed axes x, y, z, as SDF writes poses) and poses of seven numbers
  * [x, y, z, qx, qy, qz, qw]. Pure.
  */
+import {fromRpy} from '../pose.js';
 
 /**
  * @param {number[]} q unit quaternion x, y, z, w
@@ -25,21 +26,6 @@ function clean(angle) {
   return Math.abs(turned) < 1e-12 ? 0 : turned;
 }
 
-/**
- * @param {number[]} rpy rad
- * @returns {number[]} unit quaternion x, y, z, w
- */
-export function quaternionOf([roll, pitch, yaw]) {
-  const [cr, cp, cy] = [roll, pitch, yaw].map((angle) => Math.cos(angle / 2));
-  const [sr, sp, sy] = [roll, pitch, yaw].map((angle) => Math.sin(angle / 2));
-  return [
-    sr * cp * cy - cr * sp * sy,
-    cr * sp * cy + sr * cp * sy,
-    cr * cp * sy - sr * sp * cy,
-    cr * cp * cy + sr * sp * sy,
-  ];
-}
-
 /** @returns {number[]} x, y, z, roll, pitch, yaw of a pose of seven numbers */
 export function sixOf(pose) {
   return [...pose.slice(0, 3), ...rpyOf(pose.slice(3, 7))];
@@ -47,5 +33,5 @@ export function sixOf(pose) {
 
 /** @returns {number[]} the pose of seven numbers of x, y, z, roll, pitch, yaw */
 export function sevenOf(six) {
-  return [...six.slice(0, 3), ...quaternionOf(six.slice(3, 6))];
+  return [...six.slice(0, 3), ...fromRpy(six[3], six[4], six[5])];
 }

@@ -26,7 +26,7 @@ export function h(tag, attributes = {}, ...children) {
   return element;
 }
 
-const PROPERTIES = { checked: 1, value: 1, indeterminate: 1, disabled: 1, readOnly: 1 };
+const PROPERTIES = {checked: 1, value: 1, indeterminate: 1, disabled: 1, readOnly: 1};
 
 /** Replaces the children of an element. */
 export function fill(element, ...children) {
@@ -42,7 +42,7 @@ export function fill(element, ...children) {
  * @param {string} selector
  * @param {{vertical?: boolean, wrap?: boolean}} [options]
  */
-export function roving(container, selector, { vertical = false, wrap = true } = {}) {
+export function roving(container, selector, {vertical = false, wrap = true} = {}) {
   const [back, forth] = vertical ? ['ArrowUp', 'ArrowDown'] : ['ArrowLeft', 'ArrowRight'];
   const items = () => [...container.querySelectorAll(selector)]
     .filter((item) => !item.disabled && item.offsetParent !== null);
@@ -60,7 +60,7 @@ export function roving(container, selector, { vertical = false, wrap = true } = 
     if (!item || (event.target !== item && isTextInput(event.target))) return;
     const all = items();
     const at = all.indexOf(item);
-    const to = { [back]: at - 1, [forth]: at + 1, Home: 0, End: all.length - 1 }[event.key];
+    const to = {[back]: at - 1, [forth]: at + 1, Home: 0, End: all.length - 1}[event.key];
     if (to === undefined || !all.length) return;
     event.preventDefault();
     event.stopPropagation();
@@ -69,7 +69,7 @@ export function roving(container, selector, { vertical = false, wrap = true } = 
     all[within].focus();
   });
   settle(container.querySelector(selector));
-  return { settle: () => settle(items()[0]) };
+  return {settle: () => settle(items()[0])};
 }
 
 /** Whether key presses in this element are text, and so no hotkeys. */
@@ -111,7 +111,7 @@ export function onceAFrame(run) {
 
 /** A colour of the theme as the canvas wants it. */
 export function themeColor(name) {
-  const probe = h('span', { style: `color: var(--${name}); display: none` });
+  const probe = h('span', {style: `color: var(--${name}); display: none` });
   document.body.append(probe);
   const color = getComputedStyle(probe).color;
   probe.remove();

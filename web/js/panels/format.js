@@ -40,8 +40,8 @@ function trimmed(text) {
 }
 
 const TOKEN = /\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([a-zA-Z°]+)|([-+*/()]))/y;
-const NAMES = { pi: Math.PI, inf: 1e16, infinity: 1e16 };
-const UNITS = { deg: Math.PI / 180, '°': Math.PI / 180, rad: 1, cm: 0.01, mm: 0.001, m: 1, g: 0.001, kg: 1 };
+const NAMES = {pi: Math.PI, inf: 1e16, infinity: 1e16};
+const UNITS = {deg: Math.PI / 180, '°': Math.PI / 180, rad: 1, cm: 0.01, mm: 0.001, m: 1, g: 0.001, kg: 1};
 
 /**
  * What a person types into a number field: a number, `pi/2`, `90deg`, `25cm`, `(1+2)/3`, `inf`.
@@ -52,7 +52,7 @@ const UNITS = { deg: Math.PI / 180, '°': Math.PI / 180, rad: 1, cm: 0.01, mm: 0
 export function parseNumber(text) {
   const tokens = tokensOf(text);
   if (!tokens || !tokens.length) return NaN;
-  const state = { tokens, at: 0 };
+  const state = {tokens, at: 0};
   const value = sum(state);
   return state.at === tokens.length ? value : NaN;
 }

@@ -1,12 +1,12 @@
 /** The fields of each kind of geometry, with paths below `geometry`. Pure. */
 
-const positive = { above: 0 };
+const positive = {above: 0};
 const number = (name, label, unit = 'm', more = positive) =>
-  ({ path: `geometry.${name}`, label, type: 'number', unit, ...more });
+  ({path: `geometry.${name}`, label, type: 'number', unit, ...more});
 const vector = (name, label, parts, unit = 'm', more = {}) =>
-  ({ path: `geometry.${name}`, label, type: 'vector', parts, unit, ...more });
+  ({path: `geometry.${name}`, label, type: 'vector', parts, unit, ...more});
 const fixed = (name, label, type = 'text', more = {}) =>
-  ({ path: `geometry.${name}`, label, type, fixed: true, ...more });
+  ({path: `geometry.${name}`, label, type, fixed: true, ...more});
 
 const XYZ = ['x', 'y', 'z'];
 const RADIUS_LENGTH = [number('radius', 'radius'), number('length', 'length')];
@@ -25,14 +25,25 @@ const TABLE = {
     vector('position', 'position', XYZ)],
   polyline: [number('height', 'height')],
   image: [fixed('uri', 'file'), number('scale', 'scale', 'm/pixel'),
-    { path: 'geometry.threshold', label: 'threshold', type: 'integer', min: 0, max: 255 },
+    {path: 'geometry.threshold', label: 'threshold', type: 'integer', min: 0, max: 255},
     number('height', 'height'),
-    { path: 'geometry.granularity', label: 'granularity', type: 'integer', min: 1 }],
+    {path: 'geometry.granularity', label: 'granularity', type: 'integer', min: 1}],
   empty: [],
 };
 
 /** What a shape may be turned into by choosing another type: those that need no file. */
 const SIMPLE = ['box', 'sphere', 'cylinder', 'capsule', 'cone', 'ellipsoid'];
+
+const UNIT = {
+  box: {size: [1, 1, 1]}, sphere: {radius: 0.5}, cylinder: {radius: 0.5, length: 1},
+  capsule: {radius: 0.5, length: 1}, cone: {radius: 0.5, length: 1},
+  ellipsoid: {radii: [0.5, 0.5, 0.5]},
+};
+
+/** A simple shape of unit size. */
+export function unitGeometry(type) {
+  return {type, ...UNIT[type]};
+}
 
 /**
  * @param {{type: string}} geometry

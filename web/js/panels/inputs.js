@@ -6,9 +6,9 @@
  * @property {HTMLElement} element
  * @property {(value: any) => void} show
  */
-import { sevenOf, sixOf } from './angles.js';
-import { h } from './dom.js';
-import { colorOf, colorText, numberText, parseNumber } from './format.js';
+import {sevenOf, sixOf} from './angles.js';
+import {h} from './dom.js';
+import {colorOf, colorText, numberText, parseNumber} from './format.js';
 
 /**
  * @param {import('./properties_table.js').Field} field
@@ -22,7 +22,8 @@ export function makeInput(field, commit, refuse) {
 
 const MAKERS = {
   number: numberInput, integer: numberInput, text: textInput, flag: flagInput, color: colorInput,
-  vector: vectorInput, pose: poseInput, choice: choiceInput, xml: xmlInput,
+  vector: vectorInput, pose: poseInput, choice: choiceInput,
+  optional: optionalInput, xml: xmlInput,
 };
 
 /** What is wrong with a number in this field; '' when nothing is. */
@@ -43,10 +44,14 @@ function numberInput(field, commit, refuse) {
     type: 'text', inputmode: 'decimal', class: 'number', autocomplete: 'off', spellcheck: 'false',
     'aria-label': field.label, readOnly: Boolean(field.fixed), title: field.hint,
   });
-  const restore = () => { element.value = numberText(shown); };
-  const isEdited = () => element.value !== numberText(shown);
+  let edited = false;
+  const restore = () => {
+    edited = false;
+    element.value = numberText(shown);
+  };
   const take = () => {
-    if (!isEdited() || field.fixed) return;
+    if (!edited) return;
+    edited = false;
     const value = parseNumber(element.value);
     const fault = numberFault(field, value);
     if (fault) {
@@ -54,8 +59,10 @@ function numberInput(field, commit, refuse) {
       restore();
       return;
     }
-    commit(value);
+    if (value !== shown) commit(value);
+    else restore();
   };
+  element.addEventListener('input', () => { edited = true; });
   element.addEventListener('blur', take);
   element.addEventListener('focus', () => element.select());
   element.addEventListener('keydown', (event) => {
@@ -63,7 +70,7 @@ function numberInput(field, commit, refuse) {
       event.preventDefault();
       take();
       element.select();
-    } else if (event.key === 'Escape' && isEdited()) {
+    } else if (event.key === 'Escape' && edited) {
       event.stopPropagation();
       restore();
     } else if ((event.key === 'ArrowUp' || event.key === 'ArrowDown') && !field.fixed) {
@@ -73,14 +80,14 @@ function numberInput(field, commit, refuse) {
       const value = (parseNumber(element.value) || 0) + (event.key === 'ArrowUp' ? step : -step);
       const limited = Math.min(Math.max(value, field.min ?? -Infinity), field.max ?? Infinity);
       element.value = numberText(Math.round(limited * 1e6) / 1e6);
+      edited = true;
     }
   });
   return {
     element,
     show(value) {
-      const busy = document.activeElement === element && isEdited();
       shown = value ?? null;
-      if (!busy) restore();
+      if (!edited) restore();
     },
   };
 }
@@ -91,23 +98,26 @@ function textInput(field, commit) {
     type: 'text', class: 'text', autocomplete: 'off', spellcheck: 'false',
     'aria-label': field.label, readOnly: Boolean(field.fixed), title: field.hint,
   });
+  let edited = false;
   const take = () => {
-    if (!field.fixed && element.value !== shown) commit(element.value);
+    if (edited && element.value !== shown) commit(element.value);
+    edited = false;
   };
+  element.addEventListener('input', () => { edited = true; });
   element.addEventListener('blur', take);
   element.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') take();
-    if (event.key === 'Escape' && element.value !== shown) {
+    if (event.key === 'Escape' && edited) {
       event.stopPropagation();
+      edited = false;
       element.value = shown;
     }
   });
   return {
     element,
     show(value) {
-      const busy = document.activeElement === element && element.value !== shown;
       shown = value === null || value === undefined ? '' : String(value);
-      if (!busy) element.value = shown;
+      if (!edited) element.value = shown;
       if (field.fixed) element.title = shown;
     },
   };
@@ -127,16 +137,21 @@ function flagInput(field, commit) {
   };
 }
 
+function optionalInput(field, commit) {
+  const flag = flagInput(field, (on) => commit(on ? field.initial : null));
+  return {element: flag.element, show: (value) => flag.show(Boolean(value))};
+}
+
 function choiceInput(field, commit) {
   const element = h('select', {
     'aria-label': field.label, disabled: Boolean(field.fixed),
     onchange: () => commit(element.value),
-  }, ...field.choices.map((choice) => h('option', { value: choice, text: choice })));
+  }, ...field.choices.map((choice) => h('option', {value: choice, text: choice})));
   return {
     element,
     show(value) {
       if (value && !field.choices.includes(value)) {
-        element.append(h('option', { value, text: value }));
+        element.append(h('option', {value, text: value}));
       }
       element.value = value ?? '';
     },
@@ -150,10 +165,10 @@ function colorInput(field, commit, refuse) {
     onchange: () => commit(colorOf(swatch.value, shown[3] ?? 1)),
   });
   const parts = ['red', 'green', 'blue', 'alpha'].map((name, at) => numberInput(
-    { type: 'number', label: `${field.label} ${name}`, min: 0, max: 1, fixed: field.fixed },
+    {type: 'number', label: `${field.label} ${name}`, min: 0, max: 1, fixed: field.fixed},
     (value) => commit(shown.map((old, index) => (index === at ? value : old))), refuse));
   return {
-    element: h('div', { class: 'color-input' }, swatch, ...parts.map((part) => part.element)),
+    element: h('div', {class: 'color-input'}, swatch, ...parts.map((part) => part.element)),
     show(value) {
       swatch.classList.toggle('unset', !value);
       shown = [...(value ?? [0, 0, 0, 1])];
@@ -167,12 +182,12 @@ function colorInput(field, commit, refuse) {
 function vectorInput(field, commit, refuse) {
   let shown = field.parts.map(() => 0);
   const parts = field.parts.map((name, at) => numberInput(
-    { ...field, type: 'number', label: `${field.label} ${name}` },
+    {...field, type: 'number', label: `${field.label} ${name}`},
     (value) => commit(shown.map((old, index) => (index === at ? value : old))), refuse));
   return {
-    element: h('div', { class: 'vector-input' }, ...parts.map((part, at) => h('span',
-      { class: `part axis-${field.parts[at]}` },
-      h('i', { text: field.parts[at], 'aria-hidden': 'true' }), part.element))),
+    element: h('div', {class: 'vector-input'}, ...parts.map((part, at) => h('span',
+      {class: `part axis-${field.parts[at]}`},
+      h('i', {text: field.parts[at], 'aria-hidden': 'true'}), part.element))),
     show(value) {
       shown = value ?? field.parts.map(() => 0);
       parts.forEach((part, at) => part.show(shown[at]));
@@ -185,12 +200,12 @@ const POSE_PARTS = ['x', 'y', 'z', 'roll', 'pitch', 'yaw'];
 function poseInput(field, commit, refuse) {
   let shown = [0, 0, 0, 0, 0, 0];
   const parts = POSE_PARTS.map((name, at) => numberInput(
-    { type: 'number', label: `${field.label} ${name}`, fixed: field.fixed },
+    {type: 'number', label: `${field.label} ${name}`, fixed: field.fixed},
     (value) => commit(sevenOf(shown.map((old, index) => (index === at ? value : old)))), refuse));
-  const cell = (at) => h('span', { class: `part axis-${'xyz'[at % 3]}` },
-    h('i', { text: POSE_PARTS[at], 'aria-hidden': 'true' }), parts[at].element);
+  const cell = (at) => h('span', {class: `part axis-${'xyz'[at % 3]}`},
+    h('i', {text: POSE_PARTS[at], 'aria-hidden': 'true'}), parts[at].element);
   return {
-    element: h('div', { class: 'pose-input' }, ...POSE_PARTS.map((_, at) => cell(at))),
+    element: h('div', {class: 'pose-input'}, ...POSE_PARTS.map((_, at) => cell(at))),
     show(value) {
       shown = value ? sixOf(value) : [0, 0, 0, 0, 0, 0];
       parts.forEach((part, at) => part.show(tidy(shown[at])));
@@ -205,6 +220,6 @@ function tidy(value) {
 }
 
 function xmlInput(field) {
-  const element = h('pre', { class: 'xml', tabindex: 0, 'aria-label': field.label });
+  const element = h('pre', {class: 'xml', tabindex: 0, 'aria-label': field.label});
   return { element, show: (value) => { element.textContent = value ?? ''; } };
 }

@@ -4,7 +4,8 @@
  * @typedef {Object} Field
  * @property {string} path     dotted path within the entity, as the `set` operation takes it
  * @property {string} label
- * @property {string} type     number, integer, text, flag, color, vector, pose, choice, xml
+ * @property {string} type     number, integer, text, flag, color, vector, pose, choice,
+ *   optional, xml
  * @property {string} [unit]
  * @property {string[]} [parts]    labels of a vector's numbers
  * @property {[string, string][]|string[]} [choices]
@@ -20,27 +21,32 @@
  * @property {any} entity      that the paths begin at
  * @property {Field[]} fields
  */
-import { geometryFields } from './geometry_fields.js';
 
-const field = (path, label, type, more = {}) => ({ path, label, type, ...more });
-const number = (path, label, unit = '', more = {}) => field(path, label, 'number', { unit, ...more });
+const field = (path, label, type, more = {}) => ({path, label, type, ...more});
+const number = (path, label, unit = '', more = {}) => field(path, label, 'number', {unit, ...more});
 const flag = (path, label, more = {}) => field(path, label, 'flag', more);
 const color = (path, label) => field(path, label, 'color');
 const vector = (path, label, unit = '', more = {}) =>
-  field(path, label, 'vector', { parts: ['x', 'y', 'z'], unit, ...more });
+  field(path, label, 'vector', {parts: ['x', 'y', 'z'], unit, ...more});
 const fixed = (path, label, type = 'text', more = {}) =>
-  field(path, label, type, { fixed: true, ...more });
+  field(path, label, type, {fixed: true, ...more});
 
-const NAME = field('name', 'name', 'text', { rename: true });
+/** A switch for what may be absent: on puts `initial` there, off takes it away. */
+const optional = (path, label, initial) => field(path, label, 'optional', {initial});
+
+const NAME = fixed('name', 'name');
+const NEW_NAME = field('name', 'name', 'text', {rename: true});
 const POSE = field('pose', 'pose', 'pose');
-const NOT_NEGATIVE = { min: 0 };
+const NOT_NEGATIVE = {min: 0};
+
+export const GUI = [optional('gui_camera', 'camera in the file', {})];
 
 export const GUI_CAMERA = [
   fixed('name', 'name'),
   POSE,
-  field('view_controller', 'view control', 'choice', { choices: ['orbit', 'fps', 'ortho'] }),
-  field('projection_type', 'projection', 'choice', { choices: ['perspective', 'orthographic'] }),
-  field('track', 'track visual', 'text', { hint: 'model that the camera follows' }),
+  field('view_controller', 'view control', 'choice', {choices: ['orbit', 'fps', 'ortho']}),
+  field('projection_type', 'projection', 'choice', {choices: ['perspective', 'orthographic']}),
+  field('track', 'track visual', 'text', {hint: 'model that the camera follows'}),
   flag('track_static', 'track: static'),
   flag('track_use_model_frame', 'track: use model frame'),
   flag('track_inherit_yaw', 'track: inherit yaw'),
@@ -55,31 +61,35 @@ export const SCENE = [
   flag('shadows', 'shadows'),
   flag('grid', 'grid'),
   flag('origin_visual', 'origin visual'),
+  optional('sky', 'sky', {}),
+  optional('fog', 'fog', {type: 'linear'}),
 ];
 
 export const SKY = [
-  number('time', 'time of day', 'h', { min: 0, max: 24 }),
-  number('sunrise', 'sunrise', 'h', { min: 0, max: 24 }),
-  number('sunset', 'sunset', 'h', { min: 0, max: 24 }),
+  number('time', 'time of day', 'h', {min: 0, max: 24}),
+  number('sunrise', 'sunrise', 'h', {min: 0, max: 24}),
+  number('sunset', 'sunset', 'h', {min: 0, max: 24}),
   number('cloud_speed', 'cloud speed', 'm/s', NOT_NEGATIVE),
   number('cloud_direction', 'cloud direction', 'rad'),
-  number('cloud_humidity', 'cloud humidity', '', { min: 0, max: 1 }),
-  number('cloud_mean_size', 'cloud mean size', '', { min: 0, max: 1 }),
+  number('cloud_humidity', 'cloud humidity', '', {min: 0, max: 1}),
+  number('cloud_mean_size', 'cloud mean size', '', {min: 0, max: 1}),
   color('cloud_ambient', 'cloud ambient'),
 ];
 
 export const FOG = [
-  field('type', 'type', 'choice', { choices: ['none', 'constant', 'linear', 'quadratic'] }),
+  field('type', 'type', 'choice', {choices: ['none', 'constant', 'linear', 'quadratic']}),
   color('color', 'colour'),
   number('start', 'start', 'm', NOT_NEGATIVE),
   number('end', 'end', 'm', NOT_NEGATIVE),
   number('density', 'density', '', NOT_NEGATIVE),
 ];
 
+export const GLOBE = [optional('spherical_coordinates', 'on the globe', {})];
+
 export const SPHERICAL = [
-  field('surface_model', 'surface model', 'choice', { choices: ['EARTH_WGS84'] }),
-  number('latitude_deg', 'latitude', '°', { min: -90, max: 90 }),
-  number('longitude_deg', 'longitude', '°', { min: -180, max: 180 }),
+  field('surface_model', 'surface model', 'choice', {choices: ['EARTH_WGS84']}),
+  number('latitude_deg', 'latitude', '°', {min: -90, max: 90}),
+  number('longitude_deg', 'longitude', '°', {min: -180, max: 180}),
   number('elevation', 'elevation', 'm'),
   number('heading_deg', 'heading', '°'),
 ];
@@ -87,7 +97,7 @@ export const SPHERICAL = [
 export const PHYSICS = [
   fixed('type', 'engine'),
   number('real_time_update_rate', 'real time update rate', '1/s', NOT_NEGATIVE),
-  number('max_step_size', 'max step size', 's', { above: 0 }),
+  number('max_step_size', 'max step size', 's', {above: 0}),
 ];
 
 export const WORLD_PHYSICS = [
@@ -96,10 +106,10 @@ export const WORLD_PHYSICS = [
 ];
 
 export const ODE = [
-  field('iters', 'solver iterations', 'integer', { min: 1 }),
+  field('iters', 'solver iterations', 'integer', {min: 1}),
   number('sor', 'SOR', '', NOT_NEGATIVE),
   number('cfm', 'constraints CFM', '', NOT_NEGATIVE),
-  number('erp', 'constraints ERP', '', { min: 0, max: 1 }),
+  number('erp', 'constraints ERP', '', {min: 0, max: 1}),
   number('contact_max_correcting_vel', 'max velocity', 'm/s', NOT_NEGATIVE),
   number('contact_surface_layer', 'surface layer', 'm', NOT_NEGATIVE),
   field('max_contacts', 'max contacts', 'integer', NOT_NEGATIVE),
@@ -108,7 +118,7 @@ export const ODE = [
 
 export const ATMOSPHERE = [
   fixed('type', 'type'),
-  number('temperature', 'temperature', 'K', { above: 0 }),
+  number('temperature', 'temperature', 'K', {above: 0}),
   number('pressure', 'pressure', 'Pa', NOT_NEGATIVE),
   number('temperature_gradient', 'temperature gradient', 'K/m'),
 ];
@@ -116,7 +126,7 @@ export const ATMOSPHERE = [
 export const WIND = [vector('linear_velocity', 'linear velocity', 'm/s')];
 
 export const MODEL = [
-  NAME,
+  NEW_NAME,
   POSE,
   flag('static', 'static'),
   flag('self_collide', 'self collide'),
@@ -133,7 +143,7 @@ export const LINK = [
 ];
 
 export const INERTIAL = [
-  number('mass', 'mass', 'kg', { above: 0 }),
+  number('mass', 'mass', 'kg', {above: 0}),
   POSE,
   number('ixx', 'ixx', 'kg m²', NOT_NEGATIVE), number('ixy', 'ixy', 'kg m²'),
   number('ixz', 'ixz', 'kg m²'), number('iyy', 'iyy', 'kg m²', NOT_NEGATIVE),
@@ -150,7 +160,7 @@ export const SURFACE = [
   vector('fdir1', 'friction direction'),
   number('slip1', 'slip1', '', NOT_NEGATIVE),
   number('slip2', 'slip2', '', NOT_NEGATIVE),
-  number('restitution', 'restitution', '', { min: 0, max: 1 }),
+  number('restitution', 'restitution', '', {min: 0, max: 1}),
   number('bounce_threshold', 'bounce threshold', 'm/s', NOT_NEGATIVE),
   number('kp', 'contact kp', 'N/m', NOT_NEGATIVE),
   number('kd', 'contact kd', 'N s/m', NOT_NEGATIVE),
@@ -159,21 +169,19 @@ export const SURFACE = [
 ];
 
 export const VISUAL = [NAME, POSE,
-  number('transparency', 'transparency', '', { min: 0, max: 1 }),
-  flag('cast_shadows', 'cast shadows')];
+  number('transparency', 'transparency', '', {min: 0, max: 1}),
+  flag('cast_shadows', 'cast shadows'),
+  optional('material', 'material', {ambient: [0.5, 0.5, 0.5, 1], diffuse: [0.7, 0.7, 0.7, 1]})];
 
 export const MATERIAL = ['ambient', 'diffuse', 'specular', 'emissive']
   .map((path) => color(path, path));
-
-export const JOINT_TYPES = ['revolute', 'prismatic', 'fixed', 'ball', 'universal', 'revolute2',
-  'screw', 'gearbox'];
 
 export const JOINT = [
   NAME,
   fixed('type', 'type'),
   fixed('parent', 'parent'),
   fixed('child', 'child'),
-  field('pose', 'pose', 'pose', { fixed: true, hint: 'in the child link' }),
+  field('pose', 'pose', 'pose', {fixed: true, hint: 'in the child link'}),
 ];
 
 /** The fields of an axis, for rad or m. */
@@ -184,8 +192,8 @@ export function axisFields(joint) {
     vector('xyz', 'axis'),
     number('lower', 'lower limit', length),
     number('upper', 'upper limit', length),
-    number('effort', 'effort limit', force, { hint: '-1: none' }),
-    number('velocity', 'velocity limit', `${length}/s`, { hint: '-1: none' }),
+    number('effort', 'effort limit', force, {hint: '-1: none'}),
+    number('velocity', 'velocity limit', `${length}/s`, {hint: '-1: none'}),
     number('damping', 'damping', `${force} s/${length}`, NOT_NEGATIVE),
     number('friction', 'friction', force, NOT_NEGATIVE),
     number('spring_reference', 'spring reference', length),
@@ -204,13 +212,13 @@ export function lightFields(light) {
     number('quadratic', 'attenuation quadratic', '1/m²', NOT_NEGATIVE),
   ];
   const spot = light.type !== 'spot' ? [] : [
-    number('inner_angle', 'spot inner angle', 'rad', { min: 0, max: Math.PI }),
-    number('outer_angle', 'spot outer angle', 'rad', { min: 0, max: Math.PI }),
+    number('inner_angle', 'spot inner angle', 'rad', {min: 0, max: Math.PI}),
+    number('outer_angle', 'spot outer angle', 'rad', {min: 0, max: Math.PI}),
     number('falloff', 'spot falloff', '', NOT_NEGATIVE),
   ];
   return [
-    NAME,
-    field('type', 'type', 'choice', { choices: LIGHT_TYPES }),
+    NEW_NAME,
+    field('type', 'type', 'choice', {choices: LIGHT_TYPES}),
     POSE,
     color('diffuse', 'diffuse'),
     color('specular', 'specular'),
@@ -222,6 +230,4 @@ export function lightFields(light) {
 }
 
 export const PLUGIN = [fixed('name', 'name'), fixed('filename', 'file'),
-  field('xml', 'XML', 'xml', { fixed: true })];
-
-export { geometryFields };
+  field('xml', 'XML', 'xml', {fixed: true})];

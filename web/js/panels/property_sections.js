@@ -2,7 +2,7 @@
  * Which sections the property panel shows for a row of the World tab. Pure.
  */
 import * as table from './properties_table.js';
-import { geometryFields } from './geometry_fields.js';
+import {geometryFields} from './geometry_fields.js';
 
 /**
  * @param {any} document
@@ -15,9 +15,9 @@ export function sectionsOf(document, row) {
   const made = make ? make(document, row) : null;
   if (!made) return null;
   const sections = made.filter((section) => section.entity)
-    .map((section) => ({ ...section, fields: present(section) }))
+    .map((section) => ({...section, fields: present(section)}))
     .filter((section) => section.fields.length);
-  return { title: titleOf(row), sections };
+  return {title: titleOf(row), sections};
 }
 
 function titleOf(row) {
@@ -26,13 +26,13 @@ function titleOf(row) {
 }
 
 const section = (title, target, entity, fields, prefix = '') =>
-  ({ key: `${target}|${title}`, title, target, entity, fields, prefix });
+  ({key: `${target}|${title}`, title, target, entity, fields, prefix});
 
 /** A field of an entity that has no such member is not for this version of the server. */
-function present({ entity, fields, prefix }) {
+function present({entity, fields, prefix}) {
   return fields
     .filter((field) => valueAt(entity, field.path) !== undefined)
-    .map((field) => ({ ...field, local: field.path, path: prefix + field.path }));
+    .map((field) => ({...field, local: field.path, path: prefix + field.path}));
 }
 
 /** The value at a dotted path, undefined where there is none. */
@@ -49,6 +49,7 @@ const named = (list, name) => (list ?? []).find((entity) => entity.name === name
 
 const KINDS = {
   gui: (world) => [
+    section('', '', world, table.GUI),
     section('Camera', '', world.gui_camera, table.GUI_CAMERA, 'gui_camera.'),
   ],
   scene: (world) => [
@@ -57,7 +58,8 @@ const KINDS = {
     section('Fog', '', world.scene.fog, table.FOG, 'scene.fog.'),
   ],
   spherical: (world) => [
-    section('', '', world.spherical_coordinates, table.SPHERICAL, 'spherical_coordinates.'),
+    section('', '', world, table.GLOBE),
+    section('Origin', '', world.spherical_coordinates, table.SPHERICAL, 'spherical_coordinates.'),
   ],
   physics: (world) => [
     section('', '', world.physics, table.PHYSICS, 'physics.'),
@@ -101,7 +103,7 @@ function linkSections(world, row) {
   const canonical = model.links[0] === link;
   const sections = [
     section('', target, link, table.LINK.map((field) => (
-      field.path === 'pose' && canonical ? { ...field, hint: 'in the model' } : field))),
+      field.path === 'pose' && canonical ? {...field, hint: 'in the model'} : field))),
     section('Inertial', target, link.inertial, table.INERTIAL, 'inertial.'),
   ];
   for (const collision of link.collisions ?? []) {

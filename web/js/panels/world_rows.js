@@ -73,12 +73,12 @@ function counted(label, shown, all) {
 }
 
 function leaf(id, label, icon, level, kind) {
-  return { id, label, icon, level, kind, expandable: false, open: false };
+  return {id, label, icon, level, kind, expandable: false, open: false};
 }
 
 function group(rows, open, id, label, icon, entities, add) {
   const opened = open.has(id);
-  rows.push({ ...leaf(id, label, icon, 1, id), expandable: entities.length > 0, open: opened });
+  rows.push({...leaf(id, label, icon, 1, id), expandable: entities.length > 0, open: opened});
   if (opened) entities.forEach(add);
 }
 
@@ -93,13 +93,13 @@ function modelRows(rows, open, model) {
   part(rows, model, 'LINKS', 'link', model.links, (link) => ({
     select: `${model.name}::${link.name}`, name: link.name,
   }));
-  part(rows, model, 'JOINTS', 'joint', model.joints, (joint) => ({ name: joint.name }));
-  part(rows, model, 'PLUGINS', 'plugin', model.plugins ?? [], (plugin, index) => ({ index }));
+  part(rows, model, 'JOINTS', 'joint', model.joints, (joint) => ({name: joint.name}));
+  part(rows, model, 'PLUGINS', 'plugin', model.plugins ?? [], (plugin, index) => ({index}));
 }
 
 function part(rows, model, heading, kind, entities, more) {
   if (!entities.length) return;
-  rows.push({ ...leaf(`${kind}s:${model.name}`, heading, '', 3, 'heading'), model: model.name });
+  rows.push({...leaf(`${kind}s:${model.name}`, heading, '', 3, 'heading'), model: model.name});
   entities.forEach((entity, index) => {
     const name = entity.name || entity.filename || kind;
     rows.push({
@@ -120,12 +120,12 @@ function part(rows, model, heading, kind, entities, more) {
 export function rowOf(document, name) {
   if (!document) return null;
   if (document.lights.some((light) => light.name === name)) {
-    return { id: `light:${name}`, opens: ['lights'] };
+    return {id: `light:${name}`, opens: ['lights']};
   }
   const model = modelOf(document, name);
   if (!model) return null;
-  if (model.name === name) return { id: `model:${name}`, opens: ['models'] };
-  return { id: `link:${name}`, opens: ['models', `model:${model.name}`] };
+  if (model.name === name) return {id: `model:${name}`, opens: ['models']};
+  return {id: `link:${name}`, opens: ['models', `model:${model.name}`]};
 }
 
 /** The model of a name that may be scoped, `model::link::visual`; null when there is none. */

@@ -1,0 +1,162 @@
+/**
+ * Windows over the page: a title, a content, buttons. Escape and the cross answer as Cancel does.
+ */
+import {h} from './dom.js';
+import {icon} from './icons.js';
+
+let numbers = 0;
+
+/**
+ * @typedef {Object} DialogButton
+ * @property {string} title
+ * @property {any} [value]   the dialog closes with it
+ * @property {() => (any|Promise<any>)} [run] asked first; the dialog stays open on false
+ * @property {boolean} [primary]  Enter in a field presses it
+ * @property {boolean} [danger]
+ */
+export class Dialog {
+  /**
+   * @param {Object} options
+   * @param {string} options.title
+   * @param {Node[]} options.content
+   * @param {DialogButton[]} options.buttons
+   * @param {boolean} [options.modal]  false leaves the page usable beside it
+   * @param {string} [options.name]    a class of its own
+   */
+  constructor({title, content, buttons, modal = true, name = ''}) {
+    const id = `dialog-title-${numbers += 1}`;
+    this.modal = modal;
+    this.#note = h('div', {class: 'dialog-note', role: 'alert', hidden: true});
+    this.#buttons = buttons.map((button) => h('button', {
+      type: button.primary ? 'submit' : 'button', text: button.title,
+      class: button.primary ? 'primary' : button.danger ? 'danger' : '',
+      onclick: button.primary ? null : () => this.#press(button),
+    }));
+    const primary = buttons.find((button) => button.primary);
+    const form = h('form', {
+      novalidate: true,
+      onsubmit: (event) => {
+        event.preventDefault();
+        if (primary) this.#press(primary);
+      },
+    }, h('div', {class: 'dialog-body'}, ...content), this.#note,
+    h('div', {class: 'dialog-buttons'}, ...this.#buttons));
+    const head = h('header', {}, h('h2', {id, text: title}), h('button', {
+      type: 'button', class: 'plain', 'aria-label': 'Close', onclick: () => this.close(undefined),
+    }, icon('close', 16)));
+    this.element = h('dialog', {class: `dialog ${name}`, 'aria-labelledby': id}, head, form);
+    this.element.addEventListener('cancel', (event) => {
+      event.preventDefault();
+      this.close(undefined);
+    });
+    this.element.addEventListener('keydown', (event) => {
+      if (event.key === 'Escape' && !event.defaultPrevented) {
+        event.preventDefault();
+        this.close(undefined);
+      }
+      // The page's hotkeys are not for what is typed here.
+      event.stopPropagation();
+    });
+    this.closed = new Promise((resolve) => { this.#resolve = resolve; });
+    movable(this.element, head);
+  }
+
+  #note;
+  #buttons;
+  #resolve;
+  #before = null;
+
+  /** Opens it. @returns {Promise<any>} the value of the button that closed it, or undefined */
+  open() {
+    this.#before = document.activeElement;
+    document.body.append(this.element);
+    if (this.modal) this.element.showModal();
+    else this.element.show();
+    const first = this.element.querySelector('[autofocus]') ??
+      this.element.querySelector('.dialog-body input, .dialog-body select') ?? this.#buttons[0];
+    first?.focus();
+    return this.closed;
+  }
+
+  close(value) {
+    if (!this.element.isConnected) return;
+    this.element.close();
+    this.element.remove();
+    this.#before?.focus?.();
+    this.#resolve(value);
+  }
+
+  /** Says in the dialog what is wrong; '' takes it back. */
+  say(text) {
+    this.#note.hidden = !text;
+    this.#note.textContent = text;
+  }
+
+  /** Presses the primary button, as a double click on a list does. */
+  submit() {
+    this.element.querySelector('form').requestSubmit();
+  }
+
+  async #press(button) {
+    if (!button.run) {
+      this.close(button.value);
+      return;
+    }
+    this.#buttons.forEach((element) => { element.disabled = true; });
+    try {
+      const answer = await button.run();
+      if (answer !== false) this.close(answer ?? button.value);
+    } catch (fault) {
+      this.say(faultText(fault));
+    } finally {
+      this.#buttons.forEach((element) => { element.disabled = false; });
+    }
+  }
+}
+
+/** What a refused request says: the first issue with its place, or the error's words. */
+export function faultText(fault) {
+  const issue = fault?.issues?.[0];
+  if (!issue) return fault?.message ?? String(fault);
+  const place = issue.file ? ` (${issue.file}${issue.line ? `:${issue.line}` : ''})` : '';
+  return `${issue.message}${place}${issue.hint ? ` ${issue.hint}` : ''}`;
+}
+
+/**
+ * A question with a few answers.
+ *
+ * @param {string} title
+ * @param {string} text
+ * @param {DialogButton[]} buttons
+ * @returns {Promise<any>} the value of the button, undefined for Escape
+ */
+export function ask(title, text, buttons) {
+  const content = [h('p', {text})];
+  return new Dialog({title, content, buttons, name: 'question'}).open();
+}
+
+/** A labelled field of a dialog. */
+export function labelled(label, input, more) {
+  return h('label', {class: 'dialog-field'}, h('span', {text: label}), input, more);
+}
+
+function movable(element, handle) {
+  handle.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0 || event.target.closest('button')) return;
+    const box = element.getBoundingClientRect();
+    const offset = [event.clientX - box.left, event.clientY - box.top];
+    handle.setPointerCapture(event.pointerId);
+    const move = (moved) => {
+      const left = Math.min(Math.max(moved.clientX - offset[0], 0), window.innerWidth - 80);
+      const top = Math.min(Math.max(moved.clientY - offset[1], 0), window.innerHeight - 40);
+      Object.assign(element.style, {left: `${left}px`, top: `${top}px`, margin: '0'});
+    };
+    const end = () => {
+      handle.removeEventListener('pointermove', move);
+      handle.removeEventListener('pointerup', end);
+    };
+    handle.addEventListener('pointermove', move);
+    handle.addEventListener('pointerup', end);
+  });
+}
+

@@ -1,0 +1,203 @@
+/**
+ * Save As and Open: the folders that the server allows, a list, a name.
+ *
+ * The server answers `folders {path}` with {path, parent, roots, folders, files}.
+ */
+import {Dialog, ask, labelled} from '../dialog.js';
+import {fill, h, roving} from '../dom.js';
+import {bytesText} from '../format.js';
+import {icon} from '../icons.js';
+
+const ENDINGS = /\.(world|sdf|xml)$/i;
+
+/** The list of one folder, with its way up and the allowed roots above it. */
+class FolderList {
+  constructor(request, {onFile, onOpen}) {
+    this.request = request;
+    this.handlers = {onFile, onOpen};
+    this.listing = null;
+    this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
+    this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
+    this.list = h('div', {class: 'folder-list', role: 'listbox', 'aria-label': 'Files'});
+    this.element = h('div', {class: 'folders'}, this.roots,
+      h('div', {class: 'folder-main'}, this.path, this.list));
+    this.#rove = roving(this.list, '[role=option]', {vertical: true, wrap: false});
+  }
+
+  #rove;
+
+  async go(path) {
+    this.listing = await this.request('folders', path ? {path} : {});
+    this.#show();
+  }
+
+  #show() {
+    const {path, parent, roots = [], folders = [], files = []} = this.listing;
+    this.path.textContent = path;
+    this.path.title = path;
+    fill(this.roots, ...roots.map((root) => h('button', {
+      type: 'button', class: 'plain wide', title: root, onclick: () => this.go(root),
+      'aria-pressed': String(path === root || path.startsWith(`${root}/`)),
+    }, icon('folder', 15), h('span', {text: baseName(root) || root}))));
+    const rows = [];
+    if (parent) rows.push(this.#row('..', 'up', '', () => this.go(parent)));
+    for (const folder of folders) {
+      rows.push(this.#row(folder.name, 'folder', '', () => this.go(folder.path)));
+    }
+    for (const file of files) {
+      const row = this.#row(file.name, 'file', bytesText(file.size), () => this.handlers.onOpen(file.name));
+      row.addEventListener('click', () => this.handlers.onFile(file.name));
+      row.addEventListener('focus', () => this.handlers.onFile(file.name));
+      rows.push(row);
+    }
+    if (!rows.length) rows.push(h('p', {class: 'empty', text: 'This folder is empty.'}));
+    fill(this.list, ...rows);
+    this.#rove.settle();
+  }
+
+  #row(name, glyph, more, open) {
+    const row = h('div', {
+      class: 'folder-row', role: 'option', tabindex: -1, 'aria-selected': 'false',
+      ondblclick: open,
+      onkeydown: (event) => {
+        if (event.key !== 'Enter') return;
+        event.preventDefault();
+        open();
+      },
+      onfocus: () => {
+        for (const other of this.list.children) other.setAttribute('aria-selected', 'false');
+        row.setAttribute('aria-selected', 'true');
+      },
+    }, icon(glyph, 15), h('span', {class: 'label', text: name}), h('span', {class: 'more', text: more}));
+    if (glyph !== 'file') row.addEventListener('click', open);
+    return row;
+  }
+}
+
+/** A file's path below a folder. */
+export function joined(folder, name) {
+  return `${folder.replace(/\/$/, '')}/${name}`;
+}
+
+/** The name as it is saved: with the ending of a world, where the user gave none. */
+export function withEnding(name) {
+  return ENDINGS.test(name) ? name : `${name}.world`;
+}
+
+/**
+ * Asks for a name and saves; asks again before it overwrites.
+ *
+ * @param {import('../panels.js').Page} page
+ * @returns {Promise<string|undefined>} the path, undefined when cancelled
+ */
+export async function saveAsDialog({store, request}) {
+  const name = h('input', {
+    type: 'text', value: baseName(store.history?.file || store.document?.file) || 'untitled.world',
+    spellcheck: 'false', autocomplete: 'off', autofocus: true, 'aria-label': 'File name',
+  });
+  const folders = new FolderList(request, {
+    onFile: (file) => { name.value = file; },
+    onOpen: (file) => {
+      name.value = file;
+      dialog.submit();
+    },
+  });
+  const save = async () => {
+    const wanted = name.value.trim();
+    if (!wanted) {
+      dialog.say('Give the file a name.');
+      return false;
+    }
+    const path = wanted.startsWith('/') ? withEnding(wanted)
+      : joined(folders.listing.path, withEnding(wanted));
+    return saveTo(request, path);
+  };
+  const dialog = new Dialog({
+    title: 'Save World As', name: 'files',
+    content: [labelled('File name', name), folders.element],
+    buttons: [{title: 'Cancel'}, {title: 'Save', primary: true, run: save}],
+  });
+  await folders.go();
+  const opened = dialog.open();
+  name.setSelectionRange(0, name.value.replace(ENDINGS, '').length);
+  return opened;
+}
+
+async function saveTo(request, path) {
+  try {
+    return (await request('save', {path, overwrite: false})).path;
+  } catch (fault) {
+    if (!fault.issues?.some((issue) => issue.code === 'file-exists')) throw fault;
+  }
+  const overwrite = await ask('Overwrite the file?', `${path} exists already.`, [
+    {title: 'Cancel'}, {title: 'Overwrite', value: true, primary: true}]);
+  return overwrite ? (await request('save', {path, overwrite: true})).path : false;
+}
+
+function baseName(path) {
+  return path ? path.split('/').pop() : '';
+}
+
+/**
+ * Chooses a world file and opens it.
+ *
+ * @param {import('../panels.js').Page} page
+ * @returns {Promise<string|undefined>}
+ */
+export async function openDialog({store, request}) {
+  const discard = await mayDiscard({store, request});
+  if (!discard) return undefined;
+  const name = h('input', {
+    type: 'text', spellcheck: 'false', autocomplete: 'off', autofocus: true,
+    'aria-label': 'File name', placeholder: 'a name from the list, or a path',
+  });
+  const folders = new FolderList(request, {
+    onFile: (file) => { name.value = file; },
+    onOpen: (file) => {
+      name.value = file;
+      dialog.submit();
+    },
+  });
+  const open = async () => {
+    const wanted = name.value.trim();
+    if (!wanted) {
+      dialog.say('Choose a file.');
+      return false;
+    }
+    const path = wanted.startsWith('/') ? wanted : joined(folders.listing.path, wanted);
+    await request('open', {path, discard: true});
+    return path;
+  };
+  const dialog = new Dialog({
+    title: 'Open World', name: 'files',
+    content: [labelled('File name', name), folders.element],
+    buttons: [{title: 'Cancel'}, {title: 'Open', primary: true, run: open}],
+  });
+  await folders.go();
+  return dialog.open();
+}
+
+/**
+ * Asks what becomes of unsaved changes.
+ *
+ * @returns {Promise<boolean>} whether to go on
+ */
+export async function mayDiscard({store, request}) {
+  if (!store.history?.dirty) return true;
+  const choice = await ask('Save the changes?',
+    'This world has changes that are not saved.', [
+      {title: 'Cancel'}, {title: "Don't save", value: 'discard', danger: true},
+      {title: 'Save', value: 'save', primary: true}]);
+  if (choice === 'discard') return true;
+  if (choice !== 'save') return false;
+  if (store.history.file) {
+    await request('save', {});
+    return true;
+  }
+  return Boolean(await saveAsDialog({store, request}));
+}
+
+/** An empty world in place of this one. */
+export async function newWorld(page) {
+  if (await mayDiscard(page)) await page.request('new', {discard: true});
+}

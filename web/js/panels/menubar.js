@@ -1,0 +1,60 @@
+/** The menu bar: arrow keys walk along it, an open menu follows the mouse. */
+import {fill, h, roving} from './dom.js';
+import {closePopup, menuList, openPopup} from './popup.js';
+
+/**
+ * @param {HTMLElement} element
+ * @param {{title: string, items: () => import('./popup.js').MenuItem[]}[]} menus
+ */
+export function mountMenuBar(element, menus) {
+  let open = null;
+  const buttons = menus.map((menu) => h('button', {
+    type: 'button', class: 'menu-title', role: 'menuitem', 'aria-haspopup': 'menu',
+    'aria-expanded': 'false', text: menu.title,
+  }));
+  const show = (at) => {
+    const button = buttons[at];
+    const close = openPopup(menuList(menus[at].items(), () => close(), menus[at].title), {
+      anchor: button,
+      onClose: () => {
+        button.setAttribute('aria-expanded', 'false');
+        if (open === at) open = null;
+      },
+    });
+    open = at;
+    button.setAttribute('aria-expanded', 'true');
+    const list = document.querySelector('.popup .menu');
+    list.querySelector('[role^="menuitem"]:not(:disabled)')?.focus();
+    list.addEventListener('keydown', (event) => {
+      const step = {ArrowLeft: -1, ArrowRight: 1}[event.key];
+      if (!step) return;
+      event.preventDefault();
+      event.stopPropagation();
+      show((at + step + buttons.length) % buttons.length);
+    });
+  };
+  buttons.forEach((button, at) => {
+    let wasOpen = false;
+    button.addEventListener('pointerdown', () => { wasOpen = open === at; });
+    button.addEventListener('click', (event) => {
+      if (wasOpen && event.detail) {
+        wasOpen = false;
+        closePopup();
+        return;
+      }
+      show(at);
+    });
+    button.addEventListener('pointerenter', () => {
+      if (open !== null && open !== at) show(at);
+    });
+    button.addEventListener('keydown', (event) => {
+      if (event.key === 'ArrowDown') {
+        event.preventDefault();
+        show(at);
+      }
+    });
+  });
+  element.setAttribute('role', 'menubar');
+  fill(element, ...buttons);
+  roving(element, '.menu-title');
+}

@@ -1,0 +1,225 @@
+/**
+ * Everything around the 3D view: bars, tabs, windows, messages. The panels read the store and call
+ * actions; what they show of the world is what the simulator last said.
+ *
+ * @typedef {Object} Page  what the panels hand to each other
+ * @property {import('../store.js').Store} store
+ * @property {any} actions
+ * @property {import('../connection.js').Connection} connection
+ * @property {(type: string, fields?: object) => Promise<any>} request  rejects with RequestError
+ * @property {import('../watches.js').Watches} watches
+ * @property {Notices} notices
+ * @property {ReturnType<typeof mountTheme>} theme
+ * @property {any} view  null until it is there, and where there is no WebGL
+ */
+import {HOTKEYS} from '../keys.js';
+import {ask} from './dialog.js';
+import {aboutDialog, hotkeyDialog} from './dialogs/about.js';
+import {newWorld, openDialog, saveAsDialog} from './dialogs/files.js';
+import {forceDialog} from './dialogs/force.js';
+import {logsDialog} from './dialogs/logs.js';
+import {fill, h, remembered, roving} from './dom.js';
+import {InsertTab} from './insert.js';
+import {JointsPanel} from './joints.js';
+import {mountLayers} from './layers.js';
+import {mountMenuBar} from './menubar.js';
+import {contextMenu, menus} from './menus.js';
+import {Notices} from './notices.js';
+import {Plots} from './plots.js';
+import {openMenu} from './popup.js';
+import {splitter} from './splitter.js';
+import {mountTheme} from './theme.js';
+import {TimeBar} from './timebar.js';
+import {mountToolBar} from './toolbar.js';
+import {WorldTab} from './world.js';
+
+/**
+ * @param {Document} document
+ * @param {Omit<Page, 'request'|'notices'|'theme'>} parts
+ * @returns {Page}
+ */
+export function mountPanels(document, parts) {
+  const element = (id) => document.getElementById(id);
+  const page = Object.assign(parts, {
+    request: (type, fields) => parts.connection.request(type, fields),
+    notices: new Notices(element('notices')),
+    theme: mountTheme(),
+  });
+  mountMenuBar(element('menubar'), menus(page));
+  mountToolBar(element('toolbar'), page);
+  mountTabs(element('left'), page);
+  new TimeBar(element('timebar'), page);
+  const windows = new Windows(page);
+  page.store.addEventListener('dialog', (event) => windows.show(event.detail));
+  page.store.addEventListener('contextmenu', ({detail: {name, x, y}}) => {
+    const items = contextMenu(page, name);
+    if (items.length) openMenu(items, {x, y, label: name});
+  });
+  page.store.addEventListener('issue', (event) => page.notices.add(event.detail));
+  page.store.addEventListener('autosave', (event) => offerRestore(page, event.detail));
+  page.store.addEventListener('shutdown', (event) => page.notices.say(
+    `The simulator has ended${event.detail.reason ? `: ${event.detail.reason}` : ''}.`));
+  mountConnectionNote(element('centre'), page);
+  return page;
+}
+
+const TABS = [['world', 'World'], ['insert', 'Insert'], ['layers', 'Layers']];
+
+function mountTabs(element, page) {
+  const panels = TABS.map(([name]) => h('section', {
+    class: `tab-panel ${name}-tab`, id: `tab-${name}`, role: 'tabpanel', 'aria-labelledby': `tab-button-${name}`,
+  }));
+  const buttons = TABS.map(([name, title], at) => h('button', {
+    type: 'button', role: 'tab', id: `tab-button-${name}`, 'aria-controls': `tab-${name}`, text: title,
+    onclick: () => show(at),
+  }));
+  const bar = h('div', {class: 'tabs', role: 'tablist', 'aria-label': 'Left panel'}, ...buttons);
+  fill(element, bar, ...panels);
+  new WorldTab(panels[0], page);
+  const insert = new InsertTab(panels[1], page);
+  mountLayers(panels[2], page);
+  const show = (at) => {
+    buttons.forEach((button, index) => button.setAttribute('aria-selected', String(index === at)));
+    panels.forEach((panel, index) => { panel.hidden = index !== at; });
+    if (TABS[at][0] === 'insert' && !insert.locations) insert.load();
+  };
+  show(0);
+  roving(bar, '[role=tab]').settle();
+  splitter(document.getElementById('left-splitter'), {
+    key: 'left-width', initial: 292, min: 200, max: 560, from: 'left', within: document.getElementById('app'),
+    apply: (size) => document.getElementById('app').style.setProperty('--left-width', `${size}px`),
+  });
+}
+
+/** The dialogs and docked windows, by the names that actions ask for them. */
+class Windows {
+  /** @param {Page} page */
+  constructor(page) {
+    this.page = page;
+    this.joints = new JointsPanel(document.getElementById('right'), page);
+    splitter(document.getElementById('right-splitter'), {
+      key: 'right-width', initial: 300, min: 220, max: 560, from: 'right', within: document.getElementById('app'),
+      apply: (size) => document.getElementById('app').style.setProperty('--right-size', `${size}px`),
+    });
+    if (remembered.get('joints-shown', false)) this.#toggleJoints();
+  }
+
+  #plots = null;
+  #open = new Map();
+  #building = null;
+
+  /** @param {{name: string}} detail */
+  show(detail) {
+    const run = {
+      open: () => this.#files(openDialog, 'Opened'),
+      saveAs: () => this.#files(saveAsDialog, 'Saved'),
+      newWorld: () => newWorld(this.page),
+      applyForce: () => forceDialog(this.page, detail.target ?? this.#target()),
+      hotkeys: () => hotkeyDialog(HOTKEYS),
+      about: () => aboutDialog(this.page.about ?? {}),
+      logs: () => logsDialog(this.page),
+      plot: () => this.#togglePlots(),
+      joints: () => this.#toggleJoints(),
+      building: () => this.#toggleBuilding(),
+      togglePanels: () => document.body.classList.toggle('bare'),
+    }[detail.name];
+    if (!run || this.#open.has(detail.name)) return;
+    // A key that repeats must not stack the same window.
+    this.#open.set(detail.name, true);
+    Promise.resolve(run()).catch((fault) => this.page.notices.fault(fault))
+      .finally(() => this.#open.delete(detail.name));
+  }
+
+  #target() {
+    const {selection} = this.page.store;
+    return selection[selection.length - 1] ?? '';
+  }
+
+  async #files(dialog, done) {
+    const path = await dialog(this.page);
+    if (path) this.page.notices.say(`${done} ${path}`);
+  }
+
+  #togglePlots() {
+    const dock = document.getElementById('dock');
+    if (!this.#plots) {
+      const bar = h('div', {class: 'splitter horizontal', role: 'separator', tabindex: 0,
+        'aria-label': 'Height of the plots', 'aria-orientation': 'horizontal'});
+      dock.before(bar);
+      splitter(bar, {key: 'dock-height', initial: 250, min: 120, max: 600, from: 'bottom',
+        within: document.getElementById('centre'),
+        apply: (size) => dock.style.setProperty('--dock-height', `${size}px`)});
+      this.#plots = {panel: new Plots(dock, this.page, () => this.#togglePlots()), bar};
+      bar.hidden = true;
+    }
+    dock.hidden = !dock.hidden;
+    this.#plots.bar.hidden = dock.hidden;
+    if (!dock.hidden) {
+      this.#plots.panel.redraw();
+      dock.querySelector('input').focus();
+    }
+  }
+
+  #toggleJoints() {
+    const right = document.getElementById('right');
+    right.hidden = !right.hidden;
+    document.getElementById('right-splitter').hidden = right.hidden;
+    remembered.set('joints-shown', !right.hidden);
+    this.joints.show(!right.hidden);
+  }
+
+  async #toggleBuilding() {
+    const element = document.getElementById('building');
+    if (this.#building) {
+      const closed = await this.#building.close();
+      if (closed === false) return;
+      this.#building = null;
+      element.hidden = true;
+      document.body.classList.remove('building');
+      return;
+    }
+    const {mount} = await import('../building/building.js');
+    element.hidden = false;
+    document.body.classList.add('building');
+    const {store, request, actions} = this.page;
+    this.#building = await mount(element, {store, request, actions});
+    element.addEventListener('exit', () => {
+      this.#building = null;
+      element.hidden = true;
+      document.body.classList.remove('building');
+      document.getElementById('view').focus();
+    }, {once: true});
+  }
+}
+
+/** Changes that no file has, from before a crash or an end without saving. */
+async function offerRestore(page, {found, file, time}) {
+  if (!found) return;
+  const when = time ? ` of ${new Date(time * 1000).toLocaleString()}` : '';
+  const choice = await ask('Restore unsaved changes?',
+    `There are changes${when}${file ? ` to ${file}` : ''} that were never saved.`, [
+      {title: 'Discard', value: 'discard', danger: true}, {title: 'Later'},
+      {title: 'Restore', value: 'restore', primary: true}]);
+  if (!choice) return;
+  try {
+    await page.request('autosave', {action: choice});
+  } catch (fault) {
+    page.notices.fault(fault);
+  }
+}
+
+function mountConnectionNote(element, {store}) {
+  const note = h('div', {class: 'connection-note', role: 'status', hidden: true});
+  element.append(note);
+  let begun = false;
+  const show = () => {
+    begun ||= store.connected;
+    note.hidden = store.connected;
+    note.textContent = begun ? 'The connection to the simulator is lost. Trying again…'
+      : 'Connecting to the simulator…';
+  };
+  store.addEventListener('connection', show);
+  // A page that connects at once need not say so.
+  setTimeout(show, 600);
+}
+

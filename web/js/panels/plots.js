@@ -1,0 +1,239 @@
+/**
+ * The plot window, docked below the view: a palette of everything that can be plotted, any number
+ * of canvases, any number of curves on each, drawn as the values come.
+ */
+import {saveBlob} from '../actions.js';
+import {fill, h, onActivate, onceAFrame, roving} from './dom.js';
+import {icon} from './icons.js';
+import {CURVE_COLORS, drawPlot} from './plot_canvas.js';
+import {csvOf, Series, variablesOf} from './plot_data.js';
+
+const SPANS = [['5 s', 5], ['10 s', 10], ['30 s', 30], ['2 min', 120], ['all', null]];
+const SHOWN = 300;
+
+export class Plots {
+  /**
+   * @param {HTMLElement} element
+   * @param {import('./panels.js').Page} page
+   * @param {() => void} close
+   */
+  constructor(element, page, close) {
+    this.page = page;
+    this.span = 10;
+    this.#search = h('input', {
+      type: 'search', placeholder: 'Find a variable', 'aria-label': 'Find a variable',
+      oninput: () => this.#showPalette(),
+    });
+    this.#list = h('div', {class: 'plot-variables', role: 'listbox', 'aria-label': 'Variables'});
+    this.#canvases = h('div', {class: 'plot-canvases'});
+    const span = h('select', {'aria-label': 'Time span', onchange: () => {
+      this.span = SPANS[span.selectedIndex][1];
+      this.#draw();
+    }}, ...SPANS.map(([title, value]) => h('option', {text: title, selected: value === 10})));
+    const tool = (glyph, text, run) => h('button', {type: 'button', onclick: run}, icon(glyph, 14), text);
+    const bar = h('div', {class: 'dock-bar', role: 'toolbar', 'aria-label': 'Plots'},
+      h('h2', {text: 'Plots'}), tool('add', 'Canvas', () => this.addCanvas()), span,
+      tool('export', 'CSV', () => this.exportCsv()), tool('export', 'PNG', () => this.exportPng()),
+      tool('trash', 'Clear', () => this.clear()), h('span', {class: 'spring'}),
+      h('button', {type: 'button', class: 'plain', 'aria-label': 'Close plots', onclick: close}, icon('close', 15)));
+    fill(element, bar, h('div', {class: 'plots'},
+      h('div', {class: 'plot-palette'}, this.#search, this.#list), this.#canvases));
+    roving(this.#list, '[role=option]', {vertical: true, wrap: false});
+    this.#draw = onceAFrame(() => this.#plots.forEach((plot) => plot.draw(this.span)));
+    const palette = onceAFrame(() => this.#showPalette());
+    page.store.addEventListener('watch', (event) => this.#take(event.detail));
+    for (const event of ['document', 'entity', 'selection']) page.store.addEventListener(event, palette);
+    new ResizeObserver(this.#draw).observe(this.#canvases);
+    this.addCanvas();
+    this.#showPalette();
+  }
+
+  #search;
+  #list;
+  #canvases;
+  #draw;
+  #plots = [];
+  #series = new Map();
+  #current = null;
+
+  addCanvas() {
+    const plot = new Plot(this);
+    this.#plots.push(plot);
+    this.#canvases.append(plot.element);
+    this.choose(plot);
+    this.#draw();
+    return plot;
+  }
+
+  /** Variables that are double-clicked go to this canvas. */
+  choose(plot) {
+    this.#current = plot;
+    for (const one of this.#plots) one.element.classList.toggle('current', one === plot);
+  }
+
+  /** Asks for a variable, or finds it where another canvas shows it already. */
+  series(variable) {
+    let kept = this.#series.get(variable);
+    if (!kept) {
+      kept = {series: new Series(variable), uses: 0, off: this.page.watches.add(`plot:${variable}`)};
+      this.#series.set(variable, kept);
+    }
+    kept.uses += 1;
+    return kept.series;
+  }
+
+  release(variable) {
+    const kept = this.#series.get(variable);
+    kept.uses -= 1;
+    if (kept.uses) return;
+    kept.off();
+    this.#series.delete(variable);
+  }
+
+  remove(plot) {
+    this.#plots = this.#plots.filter((one) => one !== plot);
+    plot.element.remove();
+    if (!this.#plots.length) this.addCanvas();
+    else this.choose(this.#plots[this.#plots.length - 1]);
+  }
+
+  redraw() {
+    this.#draw();
+  }
+
+  clear() {
+    for (const {series} of this.#series.values()) series.clear();
+    this.#draw();
+  }
+
+  exportCsv() {
+    const all = [...this.#series.values()].map(({series}) => series);
+    if (!all.length) this.page.notices.say('There is no curve to export.');
+    else saveBlob(new Blob([csvOf(all)], {type: 'text/csv'}), 'plot.csv');
+  }
+
+  /** The canvases below each other in one picture. */
+  exportPng() {
+    const sheets = this.#plots.map(({canvas}) => canvas);
+    const whole = h('canvas', {
+      width: Math.max(...sheets.map(({width}) => width)),
+      height: sheets.reduce((sum, {height}) => sum + height, 0),
+    });
+    let top = 0;
+    for (const sheet of sheets) {
+      whole.getContext('2d').drawImage(sheet, 0, top);
+      top += sheet.height;
+    }
+    whole.toBlob((blob) => saveBlob(blob, 'plot.png'), 'image/png');
+  }
+
+  #take({topic, time, value, problem}) {
+    if (!topic.startsWith('plot:')) return;
+    const kept = this.#series.get(topic.slice(5));
+    if (!kept) return;
+    if (problem && kept.problem !== problem) this.page.notices.say(`${topic.slice(5)}: ${problem}`);
+    kept.problem = problem;
+    if (value === undefined || value === null) return;
+    kept.series.add(time, value);
+    this.#draw();
+  }
+
+  #showPalette() {
+    const word = this.#search.value.trim().toLowerCase();
+    const chosen = new Set(this.page.store.selection.map((name) => name.split('::')[0]));
+    const groups = variablesOf(this.page.store.document)
+      .sort((a, b) => chosen.has(b.owner) - chosen.has(a.owner));
+    const found = groups.flatMap(({owner, variables}) => variables
+      .filter((variable) => !word || variable.toLowerCase().includes(word))
+      .map((variable) => ({owner, variable})));
+    let owner = null;
+    fill(this.#list, ...found.slice(0, SHOWN).flatMap((one) => {
+      const head = one.owner !== owner && h('h3', {text: one.owner});
+      owner = one.owner;
+      return [head, this.#option(one.variable)];
+    }), found.length > SHOWN && h('p', {class: 'empty', text: `and ${found.length - SHOWN} more: search for them`}));
+    if (!this.#list.querySelector('[tabindex="0"]')) {
+      this.#list.querySelector('[role=option]')?.setAttribute('tabindex', '0');
+    }
+  }
+
+  #option(variable) {
+    const option = h('div', {
+      class: 'plot-variable', role: 'option', tabindex: -1, draggable: true, text: variable,
+      'aria-selected': String(this.#series.has(variable)), title: 'Click, or drag onto a canvas',
+      ondragstart: (event) => event.dataTransfer.setData('text/x-variable', variable),
+    });
+    onActivate(option, () => {
+      this.#current.add(variable);
+      this.#showPalette();
+    });
+    return option;
+  }
+}
+
+class Plot {
+  #owner;
+  #legend;
+  #curves = [];
+  #cursor = null;
+
+  /** @param {Plots} owner */
+  constructor(owner) {
+    this.#owner = owner;
+    this.canvas = h('canvas', {class: 'plot-canvas', role: 'img', 'aria-label': 'Plot'});
+    this.#legend = h('div', {class: 'plot-legend'});
+    this.element = h('div', {
+      class: 'plot', onpointerdown: () => owner.choose(this),
+      ondragover: (event) => {
+        if (event.dataTransfer.types.includes('text/x-variable')) event.preventDefault();
+      },
+      ondrop: (event) => {
+        event.preventDefault();
+        this.add(event.dataTransfer.getData('text/x-variable'));
+      },
+    }, this.#legend, this.canvas);
+    this.canvas.addEventListener('pointermove', (event) => {
+      this.#cursor = event.offsetX;
+      owner.redraw();
+    });
+    this.canvas.addEventListener('pointerleave', () => {
+      this.#cursor = null;
+      owner.redraw();
+    });
+    this.#showLegend();
+  }
+
+  add(variable) {
+    if (!variable || this.#curves.some(({series}) => series.variable === variable)) return;
+    const used = new Set(this.#curves.map(({color}) => color));
+    const color = CURVE_COLORS.find((one) => !used.has(one)) ?? CURVE_COLORS[0];
+    this.#curves.push({series: this.#owner.series(variable), color});
+    this.#showLegend();
+    this.#owner.redraw();
+  }
+
+  #drop(curve) {
+    this.#curves = this.#curves.filter((one) => one !== curve);
+    this.#owner.release(curve.series.variable);
+    this.#showLegend();
+    this.#owner.redraw();
+  }
+
+  #showLegend() {
+    fill(this.#legend, ...this.#curves.map((curve) => h('span', {class: 'plot-key'},
+      h('i', {style: `background:${curve.color}`}), curve.series.variable,
+      h('button', {type: 'button', class: 'plain', 'aria-label': `Remove ${curve.series.variable}`,
+        onclick: () => this.#drop(curve)}, icon('close', 10)))),
+    !this.#curves.length && h('span', {class: 'soft', text: 'Click variables, or drop them here'}),
+    h('span', {class: 'spring'}),
+    h('button', {type: 'button', class: 'plain', 'aria-label': 'Remove this canvas', title: 'Remove this canvas',
+      onclick: () => {
+        [...this.#curves].forEach((curve) => this.#drop(curve));
+        this.#owner.remove(this);
+      }}, icon('close', 12)));
+  }
+
+  draw(span) {
+    drawPlot(this.canvas, this.#curves, {span, cursor: this.#cursor});
+  }
+}

@@ -1,0 +1,46 @@
+/** Bars that change the size of a panel, with the mouse or the arrow keys; the size is remembered. */
+import {remembered} from './dom.js';
+
+/**
+ * @param {HTMLElement} bar
+ * @param {{key: string, initial: number, min: number, max: number,
+ *   from: 'left'|'right'|'bottom', within: HTMLElement, apply: (size: number) => void}} options
+ *   `from`: the side of `within` that the size counts from
+ */
+export function splitter(bar, {key, initial, min, max, from, within, apply}) {
+  let size = 0;
+  const set = (wanted, keep = true) => {
+    size = Math.round(Math.min(Math.max(wanted, min), max));
+    bar.setAttribute('aria-valuenow', String(size));
+    apply(size);
+    if (keep) remembered.set(key, size);
+  };
+  bar.setAttribute('aria-valuemin', String(min));
+  bar.setAttribute('aria-valuemax', String(max));
+  const sizeAt = (event) => {
+    const box = within.getBoundingClientRect();
+    if (from === 'left') return event.clientX - box.left;
+    if (from === 'right') return box.right - event.clientX;
+    return box.bottom - event.clientY;
+  };
+  bar.addEventListener('pointerdown', (event) => {
+    bar.setPointerCapture(event.pointerId);
+    const offset = size - sizeAt(event);
+    const move = (moved) => set(sizeAt(moved) + offset);
+    const end = () => {
+      bar.removeEventListener('pointermove', move);
+      bar.removeEventListener('lostpointercapture', end);
+    };
+    bar.addEventListener('pointermove', move);
+    bar.addEventListener('lostpointercapture', end);
+  });
+  const [less, more] = {left: ['ArrowLeft', 'ArrowRight'], right: ['ArrowRight', 'ArrowLeft'],
+    bottom: ['ArrowDown', 'ArrowUp'] }[from];
+  bar.addEventListener('keydown', (event) => {
+    if (event.key !== less && event.key !== more) return;
+    event.preventDefault();
+    event.stopPropagation();
+    set(size + (event.key === more ? 20 : -20));
+  });
+  set(remembered.get(key, initial), false);
+}

@@ -1,0 +1,127 @@
+/** The World tab: a filter, the tree, and the properties of the row that is chosen. */
+import {fill, h, onceAFrame, remembered} from './dom.js';
+import {Properties} from './properties.js';
+import {Tree} from './tree.js';
+import {rowOf, worldRows} from './world_rows.js';
+import {splitter} from './splitter.js';
+
+export class WorldTab {
+  /**
+   * @param {HTMLElement} element
+   * @param {import('./panels.js').Page} page
+   */
+  constructor(element, page) {
+    this.store = page.store;
+    this.actions = page.actions;
+    this.page = page;
+    this.#filter = h('input', {
+      type: 'search', placeholder: 'Find a model or light', 'aria-label': 'Find a model or light',
+      oninput: () => {
+        this.#open.add('models').add('lights');
+        this.update();
+      },
+    });
+    const tree = h('div', {class: 'world-tree'});
+    const properties = h('section', {class: 'properties', 'aria-label': 'Properties'});
+    const bar = h('div', {class: 'splitter horizontal', role: 'separator', tabindex: 0,
+      'aria-label': 'Height of the properties', 'aria-orientation': 'horizontal' });
+    fill(element, h('div', {class: 'filter'}, this.#filter), tree, bar, properties);
+    splitter(bar, {key: 'properties-height', initial: 300, min: 90, max: 640, from: 'bottom',
+      within: element, apply: (size) => { properties.style.height = `${size}px`; } });
+    this.tree = new Tree(tree, {
+      label: 'World',
+      choose: (row, event) => this.#choose(row, event),
+      toggle: (row, open) => this.#toggle(row, open),
+      activate: (row) => this.actions.moveTo(row.select),
+      menu: (row, x, y) => this.#menu(row, x, y),
+      decorate: (row) => this.#decorate(row),
+    });
+    this.properties = new Properties(properties, page);
+    this.update = onceAFrame(() => this.#update());
+    for (const event of ['document', 'entity']) this.store.addEventListener(event, this.update);
+    this.store.addEventListener('selection', () => this.#followSelection());
+    this.update();
+  }
+
+  #filter;
+  #open = new Set(['models', 'lights', ...remembered.get('open-rows', [])]);
+  #row = null;
+
+  #update() {
+    const rows = worldRows(this.store.document, this.#open, this.#filter.value);
+    this.tree.show(rows, this.#selectedRows());
+    this.#row = rows.find((row) => row.id === this.#row?.id) ?? this.#row;
+    this.properties.show(this.#row);
+  }
+
+  #selectedRows() {
+    const ids = this.store.selection.map((name) => rowOf(this.store.document, name)?.id);
+    if (!ids.includes(this.#row?.id) && this.#row) ids.push(this.#row.id);
+    return new Set(ids.filter(Boolean));
+  }
+
+  #choose(row, event) {
+    this.#row = row;
+    if (row.select) {
+      const toggle = event.ctrlKey || event.metaKey;
+      this.store.select(toggle ? [row.select] : [row.select], {toggle});
+    } else if (row.kind !== 'heading' && this.store.selection.length &&
+        !this.#belongs(row, this.store.selection)) {
+      this.store.select([]);
+    }
+    this.update();
+  }
+
+  /** A joint's or plugin's row leaves its model selected. */
+  #belongs(row, selection) {
+    return row.model && selection.some((name) =>
+      name === row.model || name.startsWith(`${row.model}::`));
+  }
+
+  #toggle(row, open) {
+    if (open) this.#open.add(row.id);
+    else this.#open.delete(row.id);
+    const kept = [...this.#open].filter((id) => this.store.document?.models
+      .some((model) => id.endsWith(`:${model.name}`)));
+    remembered.set('open-rows', kept.slice(-50));
+    this.update();
+  }
+
+  #followSelection() {
+    const last = this.store.selection[this.store.selection.length - 1];
+    const found = last && rowOf(this.store.document, last);
+    if (found && this.#row?.id !== found.id) {
+      found.opens.forEach((id) => this.#open.add(id));
+      const rows = worldRows(this.store.document, this.#open, this.#filter.value);
+      this.#row = rows.find((row) => row.id === found.id) ??
+        worldRows(this.store.document, this.#open).find((row) => row.id === found.id) ?? null;
+      this.tree.show(rows, this.#selectedRows());
+      this.tree.reveal(found.id);
+    } else if (!last && this.#row?.select) this.#row = null;
+    this.update();
+  }
+
+  #menu(row, x, y) {
+    if (!row.select) return;
+    if (!this.store.selection.includes(row.select)) this.#choose(row, {});
+    this.store.dispatchEvent(new CustomEvent('contextmenu', {detail: {name: row.select, x, y} }));
+  }
+
+  #decorate(row) {
+    if (row.kind === 'model') {
+      const model = this.store.document.models.find((one) => one.name === row.name);
+      return model?.static && h('span', {class: 'tag', text: 'static'});
+    }
+    if (row.kind === 'physics' && this.store.stats?.paused) {
+      return h('span', {class: 'tag', text: 'paused'});
+    }
+    return null;
+  }
+
+  /** Puts the focus where names are looked for. */
+  find() {
+    this.#filter.focus();
+    this.#filter.select();
+  }
+}
+
