@@ -41,7 +41,7 @@ def found(tmp_path):
 def test_what_the_package_ships_is_clean(path):
     loaded, issues = check(str(path), Resolver.from_environment())
     assert loaded is not None
-    assert issues == []
+    assert [str(issue) for issue in issues if issue.severity is not Severity.NOTE] == []
 
 
 def test_a_file_with_nothing_but_an_actor_is_clean(tmp_path):

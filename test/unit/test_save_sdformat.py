@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from reading import VALID, sdf, world_of
+from reading import VALID, model_of, sdf, world_of
 
 from my_simulations.description.model import Joint, JointAxis, Link, Mimic, Model
 from my_simulations.description.world import World
@@ -83,6 +83,16 @@ def test_it_reads_a_running_world_with_joints_and_nested_models(faults, tmp_path
         path = save_world(sim, "s.world", roots=[str(tmp_path)])
     finally:
         sim.close()
+    assert faults(path) == ""
+
+
+def test_it_reads_a_joint_called_as_a_link_and_friction_without_bound(faults, tmp_path):
+    model, _ = model_of(
+        '<link name="a"/><link name="b"><collision name="c"><geometry><box/></geometry><surface>'
+        "<friction><ode><mu>-1</mu></ode></friction></surface></collision></link>"
+        '<joint name="b" type="revolute"><parent>a</parent><child>b</child><axis/></joint>', "1.4")
+    path = tmp_path / "names.sdf"
+    path.write_bytes(write_entity(model))
     assert faults(path) == ""
 
 

@@ -58,3 +58,19 @@ def test_an_include_by_file_name_names_a_model_of_the_database(tmp_path, version
 def test_the_content_of_a_plugin_is_left_alone():
     world, _ = world_of('<plugin name="p" filename="f"><a size="1"/></plugin>', "1.0")
     assert '<a size="1"/>' in world.plugins[0].xml
+
+
+def test_a_normal_map_and_the_collisions_of_a_contact_sensor_become_what_newer_versions_ask_for():
+    world, issues = world_of(
+        '<model name="m"><link name="l"><visual name="v"><geometry><box size="1 1 1"/></geometry>'
+        '<material script="Gazebo/Red" normal_map="bumps.png"/></visual>'
+        '<sensor name="s" type="contact"><contact><collision name="c"/></contact></sensor>'
+        '<sensor name="t" type="camera"><camera><save enabled="true" path="/tmp"/></camera>'
+        "</sensor></link></model>", "1.0")
+    assert errors(issues) == []
+    link = world.models[0].links[0]
+    assert link.visuals[0].extra == [
+        '<material><shader type="normal_map_tangent_space"><normal_map>bumps.png</normal_map>'
+        "</shader></material>"]
+    assert "<contact><collision>c</collision></contact>" in link.extra[0]
+    assert '<save enabled="true" path="/tmp"/>' in link.extra[1]

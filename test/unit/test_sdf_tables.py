@@ -39,7 +39,10 @@ def test_a_misnamed_field_would_be_noticed():
     ("BOOL", " TRUE ", True), ("BOOL", "0", False), ("NEGATED", "true", False),
     ("FLOAT", " +1.5e-3\n", 0.0015), ("INT", "10.0", 10), ("INT", "0x10", 16),
     ("LIMIT", "-inf", float("-inf")), ("SCALE", "2", (2, 2, 2)), ("VECTOR3", "1\t2\n3", (1, 2, 3)),
-    ("COLOR", "1 0 0", (1, 0, 0, 1)), ("SECONDS", "2 500000000", 2.5), ("SECONDS", "2.5", 2.5),
+    ("COLOR", "1 0 0", (1, 0, 0, 1)), ("SECONDS", "2 500000000", 2.5),
+    ("COLOR", "51 -1 1 0.5", (0.2, 0, 1, 0.5)), ("COLOR", "300 0 0", (1, 0, 0, 1)),
+    ("FRICTION", "-1", 1e6), ("FRICTION", "0", 0), ("FRICTION", "0.5", 0.5),
+    ("SECONDS", "2.5", 2.5),
     ("TEXT", " a b ", "a b"),
 ])
 def test_values_are_read(kind, text, value):

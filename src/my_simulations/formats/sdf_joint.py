@@ -180,7 +180,13 @@ def place_axes(
                     source.report(Level.FATAL, "frame-unknown", f"joint {joint.name!r}: {fault}",
                                   xyz)
             assert axis is not None
-            axis.xyz = scale(vector, 1.0 / norm(vector))
+            axis.xyz = _unit(vector)
+
+
+def _unit(vector: Vec3) -> Vec3:
+    """The direction; a unit vector as it was written stays the same numbers."""
+    length = norm(vector)
+    return vector if abs(length - 1.0) < 1e-13 else scale(vector, 1.0 / length)
 
 
 def _vector(xyz: Any, source: Source) -> Optional[Vec3]:

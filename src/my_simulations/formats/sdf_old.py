@@ -42,7 +42,8 @@ def _convert(element: Any) -> None:
     for child in list(element):
         _convert(child)
     for name, value in list(element.items()):
-        if element.tag == "include" or (name == "pose" and element.tag == "origin") or (
+        # `save`, of a camera, has an attribute to this day.
+        if element.tag in ("include", "save") or (name == "pose" and element.tag == "origin") or (
                 name in _STAYS and element.tag not in _NOT_TYPED):
             continue
         del element.attrib[name]
@@ -53,14 +54,23 @@ def _convert(element: Any) -> None:
             etree.SubElement(script, "uri").text = _BUILT_IN
             etree.SubElement(script, "name").text = value
         elif element.tag == "material" and name == "normal_map":
-            etree.SubElement(etree.SubElement(element, "shader"), name).text = value
+            shader = etree.SubElement(element, "shader", type="normal_map_tangent_space")
+            etree.SubElement(shader, name).text = value
         elif (name in _TEXT and not (element.tag == "fog")) or _TEXT_OF.get(element.tag) == name:
             element.text = value
         elif element.find(name) is None:
             etree.SubElement(element, "color" if name == "rgba" else name).text = value
     parent = element.getparent()
-    if parent is not None and parent.tag == "material":
+    if parent is not None:
+        _convert_inside(element, parent)
+
+
+def _convert_inside(element: Any, parent: Any) -> None:
+    """What depends on where an element stands."""
+    if parent.tag == "contact" and element.tag == "collision":
+        element.text = element.attrib.pop("name", element.text)  # of a contact sensor
+    if parent.tag == "material":
         element.tag = _RENAMED.get(element.tag, element.tag)
-    if element.tag == "damping" and parent is not None and parent.tag == "inertial":
+    if element.tag == "damping" and parent.tag == "inertial":
         element.tag = "velocity_decay"
         parent.getparent().append(element)

@@ -29,6 +29,7 @@ from .values import (
     BOOL,
     COLOR,
     FLOAT,
+    FRICTION,
     INT,
     LIMIT,
     PLANE_SIZE,
@@ -100,7 +101,7 @@ GEOMETRIES: Mapping[str, Table] = {
 }
 
 _ODE_FRICTION = Group({
-    "mu": Value("mu", FLOAT), "mu2": Value("mu2", FLOAT, use=KEPT),
+    "mu": Value("mu", FRICTION), "mu2": Value("mu2", FRICTION, use=KEPT),
     "fdir1": Value("fdir1", VECTOR3, use=KEPT),
     "slip1": Value("slip1", FLOAT, use=KEPT), "slip2": Value("slip2", FLOAT, use=KEPT),
 })

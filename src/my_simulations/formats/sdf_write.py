@@ -36,6 +36,7 @@ from .tables import Table
 from .values import FLOAT, TEXT, VECTOR3
 
 VERSION = "1.7"
+_OLDER = "1.6"
 
 IsPlainInclude = Callable[[Model], Optional[Model]]
 """From a model that came from an `<include>` to what its URI brings now; None where it cannot be
@@ -56,15 +57,34 @@ def write_world(world: World, state: Optional[SavedState] = None,
         UTF-8 text with an XML declaration.
     """
     writer = _Writer(included)
-    return document(VERSION, lambda root: writer.world(root, world, state))
+    return document(_version(world.models), lambda root: writer.world(root, world, state))
 
 
 def write_entity(entity: Union[Model, Light]) -> bytes:
-    """A whole document with one model or light, in full."""
+    """A whole document with one model or light, in full; UTF-8, with an XML declaration.
+
+    `formats.load.read_entity` reads it as an equal object; relative URIs have become paths, so that
+    the text means the same wherever it is put.
+    """
     writer = _Writer(None)
     if isinstance(entity, Light):
         return document(VERSION, lambda root: writer.light(root, entity))
-    return document(VERSION, lambda root: writer.model(root, entity))
+    return document(_version([entity]), lambda root: writer.model(root, entity))
+
+
+def _version(models: Iterable[Model]) -> str:
+    """The newest version that allows the names in use.
+
+    From 1.7 on a joint may not be called as a link beside it is; what is written means the same in
+    1.6, where joint axes are in the joint frame, too.
+    """
+    return _OLDER if any(_has_namesakes(model) for model in models) else VERSION
+
+
+def _has_namesakes(model: Model) -> bool:
+    others = {link.name for link in model.links} | {inner.name for inner in model.models}
+    return any(joint.name in others for joint in model.joints) or any(
+        map(_has_namesakes, model.models))
 
 
 class _Writer:

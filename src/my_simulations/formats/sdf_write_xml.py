@@ -33,14 +33,32 @@ def settled_pose(pose: Pose) -> str:
     1e-14 rad: 0.4 stays 0.4, and saving what was loaded gives the same text.
     """
     angles = _rounded(rpy_from_quat(pose.orientation))
+    if _read_again(angles) != angles:
+        angles = _rounded(_locked(angles))
     seen: List[Vec3] = []
     # Near a pitch of 90 degrees the noise is larger; it comes to rest after a few turns.
     while angles not in seen and len(seen) < _SETTLED:
         seen.append(angles)
-        angles = _rounded(rpy_from_quat(quat_from_rpy(*angles)))
+        angles = _read_again(angles)
     if angles in seen:
         angles = min(seen[seen.index(angles):])
     return " ".join(_plain(value) for value in (*pose.position, *angles))
+
+
+def _read_again(angles: Vec3) -> Vec3:
+    return _rounded(rpy_from_quat(quat_from_rpy(*angles)))
+
+
+def _locked(angles: Vec3) -> Vec3:
+    """Within 2e-9 rad of a pitch of 90 degrees, exactly there and without a roll.
+
+    There yaw and roll are told apart by the noise alone, which would never come to rest.
+    """
+    roll, pitch, yaw = angles
+    if math.cos(pitch) > 2e-9:
+        return angles
+    turn = yaw - roll if pitch > 0 else yaw + roll
+    return (0.0, math.copysign(math.pi / 2, pitch), math.remainder(turn, 2.0 * math.pi))
 
 
 def _rounded(angles: Vec3) -> Vec3:

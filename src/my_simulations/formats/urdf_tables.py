@@ -16,6 +16,7 @@ from .values import (
     BOOL,
     COLOR,
     FLOAT,
+    FRICTION,
     INT,
     LIMIT,
     NEGATED,
@@ -159,7 +160,7 @@ GAZEBO_MODEL = Table("gazebo", Model, {
 """`<gazebo>` without a reference."""
 
 GAZEBO_COLLISION: Mapping[str, Value] = {
-    "mu1": Value("mu", FLOAT, part="surface"), "mu2": Value("mu2", FLOAT, part="surface"),
+    "mu1": Value("mu", FRICTION, part="surface"), "mu2": Value("mu2", FRICTION, part="surface"),
     "fdir1": Value("fdir1", VECTOR3, part="surface"),
     "kp": Value("kp", FLOAT, part="surface"), "kd": Value("kd", FLOAT, part="surface"),
     "minDepth": Value("min_depth", FLOAT, part="surface"),

@@ -95,6 +95,16 @@ class Float:
         return _formatted(value)
 
 
+class Friction(Float):
+    """A friction coefficient; below 0 it stands for one without bound (Gazebo behaviour)."""
+
+    _UNBOUNDED = 1e6
+
+    def parse(self, text: str) -> float:
+        value = super().parse(text)
+        return value if value >= 0 else self._UNBOUNDED
+
+
 class Limit:
     """A number that may be infinite, as joint limits may be; never NaN."""
 
@@ -182,14 +192,21 @@ class UniformScale(Vector3):
 
 
 class Color:
-    """Red, green, blue and, where given, alpha (else 1), each 0..1."""
+    """Red, green, blue and, where given, alpha (else 1), each 0..1.
+
+    What is above 1 counts as of 255, what is below 0 as 0 (Gazebo behaviour).
+    """
 
     def parse(self, text: str) -> Tuple[float, float, float, float]:
         parts = text.split()
         if len(parts) not in (3, 4):
             raise ValueError(f"expected 3 or 4 numbers, found {_shown(text)}")
-        r, g, b, a = (number(part) for part in (*parts, "1")[:4])
+        r, g, b, a = (self._share(number(part)) for part in (*parts, "1")[:4])
         return (r, g, b, a)
+
+    @staticmethod
+    def _share(value: float) -> float:
+        return min(value / 255.0, 1.0) if value > 1.0 else max(value, 0.0)
 
     def format(self, value: Tuple[float, float, float, float]) -> str:
         return _formatted(*value)
@@ -233,5 +250,5 @@ class Seconds:
 
 BOOL, NEGATED, FLOAT, LIMIT, INT, TEXT = Bool(), Negated(), Float(), Limit(), Int(), Text()
 VECTOR2, VECTOR3, SCALE, COLOR = Vector2(), Vector3(), UniformScale(), Color()
-PLANE_SIZE = PlaneSize()
+PLANE_SIZE, FRICTION = PlaneSize(), Friction()
 RPY, POSE, SECONDS = Rpy(), PoseKind(), Seconds()
