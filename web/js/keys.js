@@ -78,12 +78,14 @@ function belongsToControl(event) {
 /**
  * Listens to the keyboard.
  * @param {Window} target
- * @param {{actions: any}} parts
+ * @param {{store: any, actions: any}} parts
  * @returns {() => void} stops listening
  */
-export function mountKeys(target, {actions}) {
+export function mountKeys(target, {store, actions}) {
   const pressed = (event) => {
     const row = hotkey(event);
+    // Walking has the keys W, A, S and D.
+    if (row?.keys === 'S' && store.camera.controller === 'fps') return;
     if (!row || event.defaultPrevented || belongsToControl(event)) return;
     event.preventDefault();
     if (!event.repeat || row.action === 'undo' || row.action === 'redo') actions[row.action]();

@@ -19,8 +19,8 @@ function initialOverlays() {
  * Emits: `document` (a whole new world), `entity` (detail {name, kind: model|light|world, value};
  * value null: gone), `order`, `poses` (detail: Set of link ids), `selection`, `mode`, `placing`,
  * `overlays`, `stats`, `history`, `issue` (detail: Issue), `connection`, `clipboard`, `camera`,
- * `preview`, and pushes as they come: `watch`, `log`, `autosave`, `library`, `shutdown`; `dialog`
- * and `contextmenu` are asked for by actions and view, and shown by the panels.
+ * `preview`, and pushes as they come: `watch`, `log`, `autosave`, `library`, `download`,
+ * `shutdown`; `dialog` and `contextmenu` are asked for by actions and view, shown by the panels.
  */
 export class Store extends EventTarget {
   /** The world's document, null until the simulator has sent one. */
@@ -84,7 +84,8 @@ export class Store extends EventTarget {
       case 'issue': this.addIssue(message.issue); break;
       case 'autosave': this.autosave = message; this.emit('autosave', message); break;
       case 'log': this.log = message; this.emit('log', message); break;
-      case 'watch': case 'library': case 'shutdown': this.emit(message.type, message); break;
+      case 'watch': case 'library': case 'download': case 'shutdown':
+        this.emit(message.type, message); break;
       default: break;  // of a newer simulator
     }
   }
@@ -136,12 +137,10 @@ export class Store extends EventTarget {
   }
 
   #sort(order) {
-    const names = Array.isArray(order) ? {models: order, lights: order} : order;
-    for (const kind of ['models', 'lights']) {
-      if (!names[kind]) continue;
-      const place = new Map(names[kind].map((name, index) => [name, index]));
-      this.document[kind].sort((a, b) => (place.get(a.name) ?? 1e9) - (place.get(b.name) ?? 1e9));
-    }
+    const places = new Map(order.map((name, index) => [name, index]));
+    const place = ({name}) => places.get(name) ?? order.length;
+    this.document.models.sort((a, b) => place(a) - place(b));
+    this.document.lights.sort((a, b) => place(a) - place(b));
   }
 
   #reindex(name, model) {

@@ -1,0 +1,138 @@
+/**
+ * The camera's moves. A view is {position, yaw, pitch}: m and rad, pitch up positive; there is no
+ * roll. It looks along its forward vector; the world's z is up.
+ */
+import {add, axisAngle, cross, dot, length, rotate, scale, subtract} from './pose.js';
+
+/** @typedef {{position: number[], yaw: number, pitch: number}} View */
+
+export const RADIANS_PER_PIXEL = 0.004;
+export const LOOK_PER_PIXEL = Math.PI / 1800;
+export const HORIZONTAL_FOV = Math.PI / 3;
+/** Pixels per metre of an orthographic view at first. */
+export const ORTHOGRAPHIC_ZOOM = 100;
+const STEEPEST = Math.PI / 2 - 1e-4;
+const NEAREST = 0.05;
+
+const clampPitch = (pitch) => Math.max(-STEEPEST, Math.min(STEEPEST, pitch));
+
+export const forward = ({yaw, pitch}) => [
+  Math.cos(pitch) * Math.cos(yaw), Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch),
+];
+export const right = ({yaw}) => [Math.sin(yaw), -Math.cos(yaw), 0];
+export const up = (view) => cross(right(view), forward(view));
+
+/** @returns {View} from a position towards a point */
+export function lookAt(position, point) {
+  const [x, y, z] = subtract(point, position);
+  return {position: [...position], yaw: Math.atan2(y, x),
+    pitch: clampPitch(Math.atan2(z, Math.hypot(x, y)))};
+}
+
+/** The view of a camera pose of a world file: it looks along its x. @returns {View} */
+export function fromPose(pose) {
+  const ahead = rotate(pose.slice(3), [1, 0, 0]);
+  return lookAt(pose.slice(0, 3), add(pose.slice(0, 3), ahead));
+}
+
+/** The inverse of `fromPose`. @returns {number[]} pose7 */
+export function toPose({position, yaw, pitch}) {
+  const half = [Math.cos(yaw / 2), Math.sin(yaw / 2), Math.cos(-pitch / 2), Math.sin(-pitch / 2)];
+  return [...position, -half[1] * half[3], half[0] * half[3], half[1] * half[2], half[0] * half[2]];
+}
+
+/** Gazebo's first view. */
+export const HOME = Object.freeze(lookAt([5, -5, 2], [0, 0, 0]));
+
+/** Vertical field of view, rad, of a picture `aspect` times as wide as high. */
+export const verticalFov = (aspect) => 2 * Math.atan(Math.tan(HORIZONTAL_FOV / 2) / aspect);
+
+/** Metres that a pixel covers at a point. @param {number} height of the picture, px */
+export function metresPerPixel(view, point, fov, height) {
+  const depth = Math.max(dot(subtract(point, view.position), forward(view)), NEAREST);
+  return 2 * depth * Math.tan(fov / 2) / height;
+}
+
+/**
+ * Turns the camera about a pivot, which stays where it is in the picture.
+ * @param {'pitch'|'yaw'|null} only
+ * @returns {View}
+ */
+export function orbit(view, pivot, dx, dy, only = null) {
+  const turn = only === 'pitch' ? 0 : -dx * RADIANS_PER_PIXEL;
+  const wanted = only === 'yaw' ? view.pitch : view.pitch - dy * RADIANS_PER_PIXEL;
+  const pitch = clampPitch(wanted);
+  const lever = subtract(view.position, pivot);
+  const pitched = rotate(axisAngle(right(view), pitch - view.pitch), lever);
+  const turned = rotate(axisAngle([0, 0, 1], turn), pitched);
+  return {position: add(pivot, turned), yaw: view.yaw + turn, pitch};
+}
+
+/** Looks round from where the camera is. @returns {View} */
+export function look(view, dx, dy) {
+  return {position: view.position, yaw: view.yaw - dx * LOOK_PER_PIXEL,
+    pitch: clampPitch(view.pitch - dy * LOOK_PER_PIXEL)};
+}
+
+/**
+ * Shifts the camera so that a point keeps under the mouse.
+ * @param {number} unit  metres per pixel at that point
+ * @param {'x'|'y'|'z'|null} axis  only along this world axis
+ * @returns {View}
+ */
+export function pan(view, dx, dy, unit, axis = null) {
+  const shift = add(scale(right(view), -dx * unit), scale(up(view), dy * unit));
+  const kept = axis ? ['x', 'y', 'z'].map((name, i) => (name === axis ? shift[i] : 0)) : shift;
+  return {...view, position: add(view.position, kept)};
+}
+
+/** Goes towards a point (factor < 1) or away from it. @returns {View} */
+export function zoom(view, point, factor) {
+  const lever = subtract(view.position, point);
+  const distance = length(lever);
+  if (distance === 0) return view;
+  const wanted = Math.max(distance * factor, NEAREST);
+  return {...view, position: add(point, scale(lever, wanted / distance))};
+}
+
+/** Walks: metres forward and to the right. @returns {View} */
+export function walk(view, ahead, sideways) {
+  return {...view, position: add(view.position,
+    add(scale(forward(view), ahead), scale(right(view), sideways)))};
+}
+
+const SIDES = {
+  top: [0, 0, 1], bottom: [0, 0, -1], front: [1, 0, 0], back: [-1, 0, 0], left: [0, 1, 0],
+  right: [0, -1, 0],
+};
+
+/** A look at `centre` from one side, as far from it as now. @returns {View} */
+export function fromSide(view, side, centre) {
+  const distance = Math.max(length(subtract(view.position, centre)), 0.5);
+  const from = SIDES[side];
+  const ahead = scale(from, -1);
+  return {
+    position: add(centre, scale(from, distance)),
+    yaw: side === 'top' || side === 'bottom' ? 0 : Math.atan2(ahead[1], ahead[0]),
+    pitch: clampPitch(Math.asin(ahead[2])),
+  };
+}
+
+/** From the same direction, so near that a box fills the picture. @returns {View} */
+export function framing(view, {min, max}, fov, aspect) {
+  const centre = scale(add(min, max), 0.5);
+  const radius = Math.max(length(subtract(max, min)) / 2, 0.1);
+  const narrow = 2 * Math.atan(Math.tan(fov / 2) * Math.min(1, aspect));
+  const distance = radius / Math.sin(narrow / 2) * 1.1;
+  const towards = lookAt(view.position, centre);
+  return {...towards, position: subtract(centre, scale(forward(towards), distance))};
+}
+
+/** Between two views; `part` 0..1, slow at both ends; the shorter way round. @returns {View} */
+export function between(a, b, part) {
+  const eased = part * part * (3 - 2 * part);
+  const mix = (from, to) => from + (to - from) * eased;
+  const turn = Math.atan2(Math.sin(b.yaw - a.yaw), Math.cos(b.yaw - a.yaw));
+  return {position: a.position.map((value, index) => mix(value, b.position[index])),
+    yaw: a.yaw + turn * eased, pitch: mix(a.pitch, b.pitch)};
+}

@@ -1,0 +1,23 @@
+/** What Ctrl does to a drag: positions, turns and sizes stick to round values (Gazebo behaviour). */
+
+export const METRE = 1;
+export const SENSITIVITY = 0.4;
+export const TURN = Math.PI / 4;
+export const SMALLEST_SIZE = 1e-4;
+
+/**
+ * A value that sticks to whole multiples of `interval` when it comes near one.
+ * @param {number} value
+ * @param {number} [interval]
+ * @param {number} [sensitivity]  how near, as a part of the interval
+ */
+export function magnetic(value, interval = METRE, sensitivity = SENSITIVITY) {
+  const whole = Math.round(value / interval) * interval;
+  return Math.abs(value - whole) <= sensitivity * interval + 1e-12 ? whole + 0 : value;
+}
+
+/** An angle in whole steps of 45 degrees. @param {number} angle rad */
+export const snapTurn = (angle) => Math.round(angle / TURN) * TURN + 0;
+
+/** A size that sticks to whole metres but never vanishes. @param {number} size m */
+export const snapSize = (size) => Math.max(magnetic(size), SMALLEST_SIZE);

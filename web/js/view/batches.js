@@ -1,0 +1,143 @@
+/**
+ * Many bodies in few draws: what has equal geometry and material becomes one instanced mesh, from a
+ * handful on; fewer are meshes of their own, which are left out when they are not in sight.
+ */
+import {InstancedMesh, Matrix4, Mesh, DynamicDrawUsage} from 'three';
+
+const HANDFUL = 4;
+
+/**
+ * One thing drawn; also what picking looks at.
+ * @typedef {object} Item
+ * @property {import('three').BufferGeometry} geometry
+ * @property {Matrix4} matrix  world from geometry; change it through `moveItem`
+ * @property {any} owner       whatever the caller said
+ */
+
+class Batch {
+  items = [];
+  #meshes = [];
+  #instanced = null;
+
+  constructor(scene, sample) {
+    this.scene = scene;
+    this.sample = sample;
+  }
+
+  add(item) {
+    item.slot = this.items.length;
+    this.items.push(item);
+    if (this.#instanced && this.items.length <= this.#instanced.instanceMatrix.count) {
+      this.#instanced.count = this.items.length;
+      this.move(item);
+    } else if (!this.#instanced && this.items.length <= HANDFUL) {
+      const mesh = new Mesh(item.geometry, item.material);
+      mesh.matrixAutoUpdate = false;
+      this.#show(mesh);
+      this.#meshes.push(mesh);
+      this.move(item);
+    } else this.#grow();
+  }
+
+  /** The last one takes the place of the one that goes. */
+  remove(item) {
+    const last = this.items.pop();
+    if (last !== item) {
+      last.slot = item.slot;
+      this.items[item.slot] = last;
+      this.move(last);
+    }
+    if (this.#instanced) this.#instanced.count = this.items.length;
+    else this.scene.remove(this.#meshes.pop());
+    if (!this.items.length) this.#drop();
+  }
+
+  move({slot, matrix}) {
+    if (this.#instanced) {
+      matrix.toArray(this.#instanced.instanceMatrix.array, slot * 16);
+      this.#instanced.instanceMatrix.needsUpdate = true;
+    } else {
+      const mesh = this.#meshes[slot];
+      mesh.matrix.copy(matrix);
+      mesh.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  #grow() {
+    this.#drop();
+    const capacity = Math.max(16, 2 * this.items.length);
+    const mesh = new InstancedMesh(this.sample.geometry, this.sample.material, capacity);
+    mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+    mesh.count = this.items.length;
+    // Its bounds would have to follow every body at every frame.
+    mesh.frustumCulled = false;
+    this.#show(mesh);
+    this.#instanced = mesh;
+    for (const item of this.items) this.move(item);
+  }
+
+  #show(mesh) {
+    mesh.castShadow = this.sample.castShadow;
+    mesh.receiveShadow = this.sample.receiveShadow;
+    mesh.renderOrder = this.sample.renderOrder;
+    this.scene.add(mesh);
+  }
+
+  #drop() {
+    for (const mesh of this.#meshes) this.scene.remove(mesh);
+    this.#meshes = [];
+    if (this.#instanced) {
+      this.scene.remove(this.#instanced);
+      this.#instanced.dispose();
+      this.#instanced = null;
+    }
+  }
+}
+
+const materialKey = (material) => Array.isArray(material)
+  ? material.map(({uuid}) => uuid).join() : material.uuid;
+
+export class Batches {
+  #batches = new Map();
+  #scene;
+  #nextAlone = 0;
+
+  /** @param {import('three').Object3D} scene */
+  constructor(scene) {
+    this.#scene = scene;
+  }
+
+  /**
+   * @param {{geometry: any, material: any, matrix: Matrix4, owner: any, castShadow?: boolean,
+   *          receiveShadow?: boolean, renderOrder?: number}} wanted
+   * @returns {Item}
+   */
+  add({castShadow = true, receiveShadow = true, renderOrder = 0, ...wanted}) {
+    const item = {...wanted, castShadow, receiveShadow, renderOrder};
+    // What is seen through is sorted by distance, which instances are not.
+    const alone = [item.material].flat().some(({transparent}) => transparent);
+    item.key = [item.geometry.uuid, materialKey(item.material), castShadow, receiveShadow,
+      renderOrder, alone ? this.#nextAlone++ : ''].join(' ');
+    let batch = this.#batches.get(item.key);
+    if (!batch) this.#batches.set(item.key, batch = new Batch(this.#scene, item));
+    batch.add(item);
+    return item;
+  }
+
+  /** @param {Item} item */
+  remove(item) {
+    const batch = this.#batches.get(item.key);
+    batch.remove(item);
+    if (!batch.items.length) this.#batches.delete(item.key);
+  }
+
+  /** Tells that an item's matrix has changed. @param {Item} item */
+  moved(item) {
+    this.#batches.get(item.key).move(item);
+  }
+
+  /** Everything that is drawn. @returns {Generator<Item>} */
+  *items() {
+    for (const batch of this.#batches.values()) yield* batch.items;
+  }
+}

@@ -1,0 +1,27 @@
+/** From the document's numbers to three's objects. */
+import {Color, Matrix4, Quaternion, SRGBColorSpace, Vector3} from 'three';
+
+const position = new Vector3();
+const turn = new Quaternion();
+const ONE = new Vector3(1, 1, 1);
+
+/** @param {ArrayLike<number>} pose  pose7 @param {Matrix4} [into] */
+export function matrixOf(pose, into = new Matrix4()) {
+  position.set(pose[0], pose[1], pose[2]);
+  turn.set(pose[3], pose[4], pose[5], pose[6]);
+  return into.compose(position, turn, ONE);
+}
+
+/** A colour as files write it: as it should look on the screen. @returns {Color} */
+export const colorOf = (rgba, fallback = [1, 1, 1]) => {
+  const [r, g, b] = rgba ?? fallback;
+  return new Color().setRGB(r, g, b, SRGBColorSpace);
+};
+
+export const vectorOf = ([x, y, z]) => new Vector3(x, y, z);
+
+/** Puts a three object where a pose says. */
+export function place(object, pose) {
+  object.position.set(pose[0], pose[1], pose[2]);
+  object.quaternion.set(pose[3], pose[4], pose[5], pose[6]);
+}

@@ -1,0 +1,153 @@
+/** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
+import {LoadingManager, Matrix4, Mesh, MeshPhongMaterial, DoubleSide} from 'three';
+
+/**
+ * @typedef {object} MeshPart
+ * @property {import('three').BufferGeometry} geometry
+ * @property {any} material  the file's own: a three material or, for groups, a list
+ * @property {Matrix4} matrix  file frame from part
+ * @property {string[]} names  of the part and the nodes above it
+ */
+
+const plainMaterial = new MeshPhongMaterial({color: 0xc8c8c8, specular: 0x0d0d0d,
+  side: DoubleSide});
+
+async function bytes(url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
+  return response.arrayBuffer();
+}
+
+const text = async (url) => new TextDecoder().decode(await bytes(url));
+const folder = (url) => url.slice(0, url.lastIndexOf('/') + 1);
+
+async function readCollada(url, manager) {
+  const [{ColladaLoader}, content] = await Promise.all([
+    import('three/addons/loaders/ColladaLoader.js'), text(url)]);
+  const loader = new ColladaLoader(manager);
+  const read = loader.parse(content, folder(url));
+  if (!read) throw new Error(`${url} is not COLLADA`);
+  // Gazebo takes coordinates as Z up whatever the file says (public issue 1305), the unit it heeds:
+  // three put the rotation here, and the unit into the scale, which stays.
+  read.scene.quaternion.identity();
+  return read.scene;
+}
+
+async function readStl(url) {
+  const [{STLLoader}, content] = await Promise.all([
+    import('three/addons/loaders/STLLoader.js'), bytes(url)]);
+  return new Mesh(new STLLoader().parse(content), plainMaterial);
+}
+
+async function readObj(url, manager) {
+  const [{OBJLoader}, {MTLLoader}, content] = await Promise.all([
+    import('three/addons/loaders/OBJLoader.js'), import('three/addons/loaders/MTLLoader.js'),
+    text(url)]);
+  const loader = new OBJLoader(manager);
+  const library = /^mtllib\s+(.+?)\s*$/m.exec(content)?.[1];
+  if (library) {
+    const address = new URL(encodeURI(library), new URL(url, location.href)).href;
+    const materials = new MTLLoader(manager).parse(await text(address), folder(address));
+    materials.preload();
+    loader.setMaterials(materials);
+  }
+  return loader.parse(content);
+}
+
+const READERS = {dae: readCollada, stl: readStl, obj: readObj};
+
+function formatOf({format, url}) {
+  return (format || url.split('?')[0].split('.').pop()).toLowerCase();
+}
+
+function namesOf(object) {
+  const names = [];
+  for (let node = object; node; node = node.parent) if (node.name) names.push(node.name);
+  if (object.geometry.name) names.push(object.geometry.name);
+  return names;
+}
+
+function partsOf(root) {
+  const parts = [];
+  root.updateMatrixWorld(true);
+  root.traverse((object) => {
+    if (!object.isMesh) return;
+    if (!object.geometry.getAttribute('position')) return;
+    if (!object.geometry.getAttribute('normal')) object.geometry.computeVertexNormals();
+    const materials = Array.isArray(object.material) ? object.material : [object.material];
+    for (const material of materials) {
+      material.side = DoubleSide;
+      if (material.map) material.map.anisotropy = 4;
+    }
+    parts.push({geometry: object.geometry, material: object.material,
+      matrix: object.matrixWorld.clone(), names: namesOf(object)});
+  });
+  return parts;
+}
+
+export class Meshes {
+  /** Tells of pictures that arrive after their mesh. */
+  manager = new LoadingManager();
+  #busy = false;
+  #waiting = [];
+  #files = new Map();
+  #ready = new Map();
+
+  /** @param {(problem: string) => void} onProblem  called once for each file that cannot be read */
+  constructor(onProblem) {
+    this.onProblem = onProblem;
+    const told = new Set();
+    this.manager.onStart = () => { this.#busy = true; };
+    this.manager.onLoad = () => {
+      this.#busy = false;
+      for (const resolve of this.#waiting.splice(0)) resolve();
+      this.onArrived();
+    };
+    this.manager.onError = (url) => {
+      if (told.has(url)) return;
+      told.add(url);
+      onProblem(`The picture ${decodeURI(url)} could not be read.`);
+    };
+  }
+
+  /** Called when pictures have come. */
+  onArrived = () => {};
+
+  /** Resolves when no picture is under way. @returns {Promise<void>} */
+  idle() {
+    return this.#busy ? new Promise((resolve) => this.#waiting.push(resolve)) : Promise.resolve();
+  }
+
+  /** The parts of a mesh that was read before, or undefined. @returns {MeshPart[]|undefined} */
+  present(geometry) {
+    return this.#ready.get(geometry.url);
+  }
+
+  /** @returns {Promise<MeshPart[]>} empty for a file that cannot be read */
+  load(geometry) {
+    const {url} = geometry;
+    if (!this.#files.has(url)) {
+      this.#files.set(url, this.#read(geometry).catch((error) => {
+        this.onProblem(`The mesh ${decodeURI(url)} could not be read: ${error.message}`);
+        return [];
+      }).then((parts) => {
+        this.#ready.set(url, parts);
+        return parts;
+      }));
+    }
+    return this.#files.get(url);
+  }
+
+  async #read(geometry) {
+    const reader = READERS[formatOf(geometry)];
+    if (!reader) throw new Error(`the page reads ${Object.keys(READERS).join(', ')}`);
+    if (formatOf(geometry) !== 'stl') await this.#withTga();
+    return partsOf(await reader(geometry.url, this.manager));
+  }
+
+  async #withTga() {
+    if (this.manager.getHandler('a.tga')) return;
+    const {TGALoader} = await import('three/addons/loaders/TGALoader.js');
+    this.manager.addHandler(/\.tga$/i, new TGALoader(this.manager));
+  }
+}

@@ -1,0 +1,223 @@
+/** What can be shown of models besides their looks: collisions, joints, masses, frames, contacts. */
+import {
+  BoxGeometry, CanvasTexture, DoubleSide, Group, LineBasicMaterial, Matrix4, Mesh,
+  MeshBasicMaterial, MeshPhongMaterial, Quaternion, SRGBColorSpace, Vector3,
+} from 'three';
+import {equivalentBox} from '../inertia_math.js';
+import {place} from './convert.js';
+import {visualParts} from './geometry.js';
+import {arrow, ball, boxLines, empty, segments, through, triad} from './marks.js';
+import {patternCanvas} from './textures.js';
+
+const PER_MODEL = ['collisions', 'joints', 'com', 'inertia', 'frames'];
+/** Density of lead: a ball of the link's mass is then small enough to see round. */
+const LEAD = 11340;
+const FRAME_SIZE = 0.25;
+
+const collisionMaterial = new MeshPhongMaterial({color: 0xff8c1a, opacity: 0.4, transparent: true,
+  depthWrite: false, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: -1,
+  polygonOffsetUnits: -1});
+const axisMaterial = through(0xffe600, 0.8);
+const inertiaMaterial = through(0xb030d0, 0.4);
+const crossMaterial = new LineBasicMaterial({color: 0x33cc66, depthTest: false, transparent: true});
+const contactMaterial = through(0x2563eb, 0.9);
+const normalMaterial = new LineBasicMaterial({color: 0x22d3ee, depthTest: false,
+  transparent: true});
+const unitBox = new BoxGeometry(1, 1, 1);
+
+function massMaterial() {
+  const map = new CanvasTexture(patternCanvas('com'));
+  map.colorSpace = SRGBColorSpace;
+  return new MeshBasicMaterial({map, depthTest: false, depthWrite: false, transparent: true});
+}
+
+function massMark({inertial}, bounds) {
+  const group = new Group();
+  place(group, inertial.pose);
+  const mark = new Mesh(ball, massMaterial());
+  mark.scale.setScalar(Math.cbrt((3 * Math.max(inertial.mass, 1e-6)) / (4 * Math.PI * LEAD)));
+  mark.renderOrder = 52;
+  const half = bounds ? bounds.getSize(new Vector3()).multiplyScalar(0.5).toArray()
+    : [0.1, 0.1, 0.1];
+  const ends = [0, 1, 2].flatMap((axis) => [-1, 1].map((sign) =>
+    [0, 1, 2].map((index) => (index === axis ? sign * half[axis] : 0))));
+  group.add(mark, segments(ends, crossMaterial));
+  return group;
+}
+
+function inertiaMark({inertial}) {
+  const box = equivalentBox(inertial);
+  if (!box) return null;
+  const group = new Group();
+  place(group, inertial.pose);
+  const solid = new Mesh(unitBox, inertiaMaterial);
+  const lines = boxLines(crossMaterial);
+  const axes = new Matrix4().makeBasis(...box.vectors.map((axis) => new Vector3(...axis)));
+  for (const part of [solid, lines]) {
+    part.quaternion.copy(new Quaternion().setFromRotationMatrix(axes));
+    part.scale.set(...box.size.map((edge) => Math.max(edge, 1e-4)));
+    part.renderOrder = 51;
+    group.add(part);
+  }
+  return group;
+}
+
+function jointMark(joint) {
+  const group = new Group();
+  place(group, joint.pose);
+  group.add(triad(FRAME_SIZE));
+  for (const axis of [joint.axis, joint.axis2]) {
+    if (!axis) continue;
+    const mark = arrow(axis.xyz, axisMaterial);
+    mark.scale.setScalar(0.45);
+    group.add(mark);
+  }
+  return group;
+}
+
+export class Overlays {
+  #store;
+  #models;
+  #stage;
+  #stock;
+  #watches;
+  #groups = new Map();
+  #contacts = new Group();
+  #unwatch = null;
+
+  constructor({store, models, stage, stock, watches}) {
+    this.#store = store;
+    this.#models = models;
+    this.#stage = stage;
+    this.#stock = stock;
+    this.#watches = watches;
+    stage.scene.add(this.#contacts);
+    store.addEventListener('document', () => this.#rebuildAll());
+    store.addEventListener('overlays', (event) => this.#flagsChanged(event.detail ?? {}));
+    store.addEventListener('entity', ({detail}) => {
+      if (detail.kind === 'model') this.#rebuild(detail.name);
+    });
+    store.addEventListener('watch', ({detail}) => {
+      if (detail.topic === 'contacts') this.#showContacts(detail.contacts ?? []);
+    });
+  }
+
+  /** Moves the marks with their links. @param {Set<number>|null} ids  null: all of them */
+  follow(ids) {
+    for (const links of this.#groups.values()) {
+      for (const [id, group] of links) {
+        if (ids && !ids.has(id)) continue;
+        const matrix = this.#models.linkMatrix(id);
+        if (!matrix) continue;
+        group.matrix.copy(matrix);
+        group.matrixWorldNeedsUpdate = true;
+      }
+    }
+  }
+
+  #flagsChanged({flag, model, layer}) {
+    const names = model ? [model] : this.#store.document?.models.map(({name}) => name) ?? [];
+    if (layer !== undefined || flag === 'transparent' || flag === 'wireframe') {
+      for (const name of names) this.#models.rebuild(name);
+    }
+    if (PER_MODEL.includes(flag)) for (const name of names) this.#rebuild(name);
+    if (flag === 'contacts') this.#watchContacts();
+    this.#stage.invalidate();
+  }
+
+  #rebuildAll() {
+    for (const name of [...this.#groups.keys()]) this.#drop(name);
+    for (const {name} of this.#store.document?.models ?? []) this.#rebuild(name);
+    this.#watchContacts();
+  }
+
+  #drop(name) {
+    for (const group of this.#groups.get(name)?.values() ?? []) this.#stage.scene.remove(group);
+    this.#groups.delete(name);
+  }
+
+  #rebuild(name) {
+    this.#drop(name);
+    const model = this.#store.model(name);
+    const flags = PER_MODEL.filter((flag) => this.#store.overlay(flag, name));
+    if (!model || !flags.length) return;
+    const links = new Map();
+    this.#groups.set(name, links);
+    for (const link of model.links) {
+      const group = new Group();
+      group.matrixAutoUpdate = false;
+      for (const flag of flags) this.#fill(group, flag, model, link);
+      links.set(link.id, group);
+      this.#stage.scene.add(group);
+    }
+    this.follow(null);
+    this.#stage.invalidate();
+  }
+
+  #fill(group, flag, model, link) {
+    const add = (mark) => mark && group.add(mark);
+    if (flag === 'frames') add(triad(FRAME_SIZE));
+    else if (flag === 'collisions') this.#addCollisions(group, link);
+    else if (flag === 'joints') {
+      for (const joint of model.joints) if (joint.child === link.name) add(jointMark(joint));
+    } else if (!model.static) {
+      const name = `${model.name}::${link.name}`;
+      if (flag === 'com') {
+        add(massMark(link, this.#models.bounds(name, this.#models.shownPose(name))));
+      } else add(inertiaMark(link));
+    }
+  }
+
+  #addCollisions(group, link) {
+    for (const collision of link.collisions) {
+      const add = (parts) => {
+        for (const {geometry, material, matrix} of parts) {
+          const mesh = new Mesh(geometry, material);
+          mesh.matrixAutoUpdate = false;
+          mesh.matrix.copy(matrix);
+          mesh.renderOrder = 5;
+          group.add(mesh);
+        }
+        this.#stage.invalidate();
+      };
+      const parts = visualParts(collision, this.#stock, {material: collisionMaterial});
+      if (parts instanceof Promise) parts.then(add);
+      else add(parts);
+    }
+  }
+
+  #watchContacts() {
+    const wanted = this.#contactsWanted();
+    if (wanted && !this.#unwatch) this.#unwatch = this.#watches?.add('contacts') ?? null;
+    if (!wanted && this.#unwatch) {
+      this.#unwatch();
+      this.#unwatch = null;
+    }
+    if (!wanted) this.#showContacts([]);
+  }
+
+  #contactsWanted() {
+    const {scene, models} = this.#store.overlays;
+    return scene.contacts || Object.values(models).some(({contacts}) => contacts);
+  }
+
+  #showContacts(contacts) {
+    if (!contacts.length && !this.#contacts.children.length) return;
+    for (const child of this.#contacts.children) if (!child.isMesh) child.geometry.dispose();
+    empty(this.#contacts);
+    const shown = contacts.filter(({a, b}) => [a, b].some((name) =>
+      this.#store.overlay('contacts', this.#store.entity(name)?.model?.name ?? name.split('::')[0])));
+    const lines = [];
+    for (const {position, normal, depth} of shown) {
+      const mark = new Mesh(ball, contactMaterial);
+      mark.position.set(...position);
+      mark.scale.setScalar(0.02);
+      mark.renderOrder = 53;
+      this.#contacts.add(mark);
+      lines.push(position, position.map((part, i) => part + 0.2 * normal[i]),
+        position, position.map((part, i) => part - depth * normal[i]));
+    }
+    if (lines.length) this.#contacts.add(segments(lines, normalMaterial));
+    this.#stage.invalidate();
+  }
+}

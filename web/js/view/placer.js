@@ -1,0 +1,76 @@
+/** The ghost of what is being added: it follows the mouse over the ground, a click puts it down. */
+import {rayPlane, WORLD_AXES} from '../drag_math.js';
+import {magnetic} from '../snapping.js';
+import {place} from './convert.js';
+import {lightIcon} from './lights.js';
+import {soloModel} from './solo.js';
+
+export class Placer {
+  #store;
+  #actions;
+  #picker;
+  #stage;
+  #stock;
+  #ghost = null;
+
+  constructor({store, actions, picker, stage, stock}) {
+    this.#store = store;
+    this.#actions = actions;
+    this.#picker = picker;
+    this.#stage = stage;
+    this.#stock = stock;
+    store.addEventListener('placing', () => this.#change());
+  }
+
+  /** Goes where the mouse is; with Ctrl to whole metres when near. */
+  follow(event) {
+    const pose = this.#pose(event);
+    if (!this.#ghost || !pose) return;
+    this.#ghost.visible = true;
+    place(this.#ghost, pose);
+    this.#stage.shadowsChanged();
+  }
+
+  /** The mouse has left the picture. */
+  hide() {
+    if (!this.#ghost?.visible) return;
+    this.#ghost.visible = false;
+    this.#stage.shadowsChanged();
+  }
+
+  /** Puts it down where the mouse is. */
+  put(event) {
+    const pose = this.#pose(event);
+    if (pose) this.#actions.place(pose);
+  }
+
+  /** Keeps its own height and turn (Gazebo behaviour). */
+  #pose({clientX, clientY, ctrlKey, metaKey}) {
+    const {placing} = this.#store;
+    if (!placing) return null;
+    const ray = this.#picker.ray(clientX, clientY);
+    const hit = rayPlane(ray, [0, 0, 0], WORLD_AXES.z);
+    if (!hit) return null;
+    const [x, y] = ctrlKey || metaKey ? hit.map((part) => magnetic(part)) : hit;
+    return [x, y, ...placing.document.pose.slice(2)];
+  }
+
+  #change() {
+    if (this.#ghost) this.#stage.scene.remove(this.#ghost);
+    this.#ghost = null;
+    const {placing} = this.#store;
+    if (placing) {
+      this.#ghost = placing.kind === 'light' ? lightIcon(placing.document)
+        : this.#modelGhost(placing.document);
+      this.#ghost.visible = false;
+      this.#stage.scene.add(this.#ghost);
+    }
+    this.#stage.shadowsChanged();
+  }
+
+  #modelGhost(document) {
+    const {group, ready} = soloModel(document, this.#stock, {opacity: 0.75});
+    ready.then(() => this.#stage.shadowsChanged());
+    return group;
+  }
+}

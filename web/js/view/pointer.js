@@ -1,0 +1,191 @@
+/** The mouse and the held keys over the view: who gets a drag, and what a click means. */
+
+const CLICK_PIXELS = 4;
+const PLACE_PIXELS = 50;
+const WHEEL_STEP = 0.15;
+const AXIS_KEYS = ['x', 'y', 'z'];
+const WALK_KEYS = ['w', 'a', 's', 'd'];
+
+/** Keys that are down, and only while the page has the keyboard. */
+class HeldKeys {
+  #down = new Set();
+
+  constructor(target, onChange) {
+    const change = (event) => {
+      const key = event.key.toLowerCase();
+      if (event.type === 'keydown') {
+        if (event.repeat || event.target.closest?.('input, textarea, select')) return;
+        this.#down.add(key);
+      } else this.#down.delete(key);
+      onChange(event, key);
+    };
+    const clear = (event) => {
+      this.#down.clear();
+      onChange(event, '');
+    };
+    target.addEventListener('keydown', change);
+    target.addEventListener('keyup', change);
+    target.addEventListener('blur', clear);
+    this.dispose = () => {
+      target.removeEventListener('keydown', change);
+      target.removeEventListener('keyup', change);
+      target.removeEventListener('blur', clear);
+    };
+  }
+
+  has(key) { return this.#down.has(key); }
+
+  /** x, y or z when one is held. */
+  get axis() { return AXIS_KEYS.find((key) => this.#down.has(key)) ?? null; }
+}
+
+export class Pointer {
+  #parts;
+  #keys;
+  #press = null;
+  #listeners = [];
+
+  /**
+   * @param {{stage: any, store: any, actions: any, rig: any, manipulator: any, placer: any,
+   *          faceSnap: any, forces: any, selector: any, pivotMark: any}} parts
+   */
+  constructor(parts) {
+    this.#parts = parts;
+    const {canvas} = parts.stage;
+    this.#keys = new HeldKeys(window, (event) => this.#keysChanged(event));
+    this.#listen(canvas, 'pointerdown', (event) => this.#down(event));
+    this.#listen(canvas, 'pointermove', (event) => this.#move(event));
+    this.#listen(canvas, 'pointerup', (event) => this.#up(event));
+    this.#listen(canvas, 'pointercancel', () => this.#abandon());
+    this.#listen(canvas, 'pointerleave', () => this.#leave());
+    this.#listen(canvas, 'dblclick', (event) => this.#parts.selector.flyTo(event));
+    this.#listen(canvas, 'wheel', (event) => this.#wheel(event), {passive: false});
+    this.#listen(canvas, 'contextmenu', (event) => event.preventDefault());
+    this.#listen(canvas, 'dragover', (event) => event.preventDefault());
+    this.#listen(canvas, 'drop', (event) => this.#drop(event));
+  }
+
+  dispose() {
+    this.#keys.dispose();
+    for (const [target, type, listener] of this.#listeners) {
+      target.removeEventListener(type, listener);
+    }
+  }
+
+  #listen(target, type, listener, options) {
+    target.addEventListener(type, listener, options);
+    this.#listeners.push([target, type, listener]);
+  }
+
+  #down(event) {
+    const {stage, store, manipulator, selector, forces} = this.#parts;
+    if (this.#press) return;
+    stage.canvas.parentElement.focus?.({preventScroll: true});
+    stage.canvas.setPointerCapture(event.pointerId);
+    const point = selector.point(event);
+    this.#press = {x: event.clientX, y: event.clientY, lastX: event.clientX, lastY: event.clientY,
+      button: event.button, moved: 0, point, owner: 'camera'};
+    if (event.button !== 0 || store.mode === 'insert') return;
+    if (forces.grab(event)) this.#press.owner = 'force';
+    else if (manipulator.grab(event, () => selector.movable(event), this.#keys.axis)) {
+      this.#press.owner = 'manipulator';
+    }
+  }
+
+  #move(event) {
+    const press = this.#press;
+    if (!press) {
+      this.#hover(event);
+      return;
+    }
+    const dx = event.clientX - press.lastX;
+    const dy = event.clientY - press.lastY;
+    press.lastX = event.clientX;
+    press.lastY = event.clientY;
+    press.moved = Math.max(press.moved,
+      Math.hypot(event.clientX - press.x, event.clientY - press.y));
+    if (this.#parts.store.mode === 'insert') this.#parts.placer.follow(event);
+    if (press.moved < CLICK_PIXELS) return;
+    if (press.owner === 'manipulator') this.#parts.manipulator.drag(event, this.#keys.axis);
+    else if (press.owner === 'force') this.#parts.forces.drag(event);
+    else this.#moveCamera(event, press, dx, dy);
+  }
+
+  #moveCamera(event, press, dx, dy) {
+    const {rig, store, pivotMark} = this.#parts;
+    const fps = store.camera.controller === 'fps';
+    const times = event.ctrlKey ? 2 : 1;
+    const [x, y] = [dx * times, dy * times];
+    if (press.button === 2) rig.zoom(press.point, Math.exp(y * 0.01));
+    else if (fps && press.button === 0) rig.look(x, y);
+    else if (press.button === 1 || event.shiftKey) {
+      const only = this.#keys.has('y') ? 'pitch' : this.#keys.has('z') ? 'yaw' : null;
+      pivotMark.show(press.point);
+      rig.orbit(press.point, x, y, only);
+    } else rig.pan(x, y, press.point, this.#keys.axis);
+  }
+
+  #up(event) {
+    const press = this.#press;
+    if (!press || event.button !== press.button) return;
+    this.#press = null;
+    const {store, manipulator, placer, faceSnap, forces, selector, pivotMark} = this.#parts;
+    pivotMark.hide();
+    const clicked = press.moved < CLICK_PIXELS;
+    if (press.owner === 'manipulator') manipulator.release();
+    else if (press.owner === 'force') forces.release();
+    else if (store.mode === 'insert') {
+      if (press.button === 0 && press.moved < PLACE_PIXELS) placer.put(event);
+      else if (press.button === 2 && clicked) this.#parts.actions.escape();
+    } else if (clicked && press.button === 0) {
+      if (store.mode === 'snap') faceSnap.click(event);
+      else selector.click(event);
+    } else if (clicked && press.button === 2) selector.menu(event);
+  }
+
+  #abandon() {
+    this.#press = null;
+    this.#parts.manipulator.cancel();
+    this.#parts.pivotMark.hide();
+  }
+
+  #leave() {
+    if (this.#press) return;
+    this.#parts.placer.hide();
+    this.#parts.faceSnap.leave();
+  }
+
+  #hover(event) {
+    const {stage, store, manipulator, placer, faceSnap, forces} = this.#parts;
+    let cursor = '';
+    if (store.mode === 'insert') placer.follow(event);
+    else if (store.mode === 'snap') faceSnap.hover(event);
+    else if (forces.hover(event) || manipulator.hover(event)) cursor = 'grab';
+    if (stage.canvas.style.cursor !== cursor) stage.canvas.style.cursor = cursor;
+  }
+
+  #wheel(event) {
+    event.preventDefault();
+    const {rig, store, selector} = this.#parts;
+    const steps = Math.sign(event.deltaY) * Math.min(Math.abs(event.deltaY) / 100, 3);
+    if (store.camera.controller === 'fps') rig.changeWalkSpeed(1 - 0.05 * Math.sign(steps));
+    else rig.zoom(selector.point(event), Math.exp(steps * WHEEL_STEP * (event.ctrlKey ? 2 : 1)));
+  }
+
+  #keysChanged(event) {
+    const {manipulator, rig, store} = this.#parts;
+    manipulator.keysChanged(event, this.#keys.axis);
+    if (store.camera.controller !== 'fps' || event.ctrlKey) return;
+    const [w, a, s, d] = WALK_KEYS.map((key) => Number(this.#keys.has(key)));
+    rig.walk(w - s, d - a, event.shiftKey);
+  }
+
+  async #drop(event) {
+    event.preventDefault();
+    const uri = event.dataTransfer.getData('text/x-model-uri');
+    if (!uri) return;
+    const {clientX, clientY} = event;
+    const outcome = await this.#parts.actions.insertModel(uri);
+    if (outcome?.ok) this.#parts.placer.put({clientX, clientY});
+  }
+}

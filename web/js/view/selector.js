@@ -1,0 +1,88 @@
+/** What clicks select, and where the ray under the mouse meets the world. */
+import {rayPlane, WORLD_AXES} from '../drag_math.js';
+
+export class Selector {
+  #store;
+  #batches;
+  #lights;
+  #models;
+  #picker;
+  #rig;
+
+  constructor({store, batches, lights, models, picker, rig}) {
+    this.#store = store;
+    this.#batches = batches;
+    this.#lights = lights;
+    this.#models = models;
+    this.#picker = picker;
+    this.#rig = rig;
+  }
+
+  /** @returns {{name: string, link?: string, point: number[], plane?: boolean}|null} */
+  under({clientX, clientY}) {
+    const body = this.#picker.nearest(this.#batches.items(), clientX, clientY,
+      (owner) => owner.model !== undefined);
+    const icons = this.#lights.icons;
+    const [light] = this.#picker.objects([...icons.values()], clientX, clientY)
+      .filter(({object}) => object.isMesh);
+    if (light && (!body || light.distance < body.distance)) {
+      const [name] = [...icons].find(([, icon]) => icon === light.object.parent);
+      return {name, point: light.point.toArray()};
+    }
+    if (!body) return null;
+    const {model, link, plane} = body.owner;
+    return {name: model, link, point: body.point, plane};
+  }
+
+  /** What a drag may take hold of. */
+  movable(event) {
+    const hit = this.under(event);
+    return hit && !hit.plane ? hit : null;
+  }
+
+  /** The point under the mouse: of a body, of the ground, or 10 m ahead. */
+  point(event) {
+    const hit = this.under(event);
+    if (hit) return hit.point;
+    const ray = this.#picker.ray(event.clientX, event.clientY);
+    const ground = rayPlane(ray, [0, 0, 0], WORLD_AXES.z);
+    const near = ground && Math.hypot(...ground.map((part, i) => part - ray.origin[i])) < 200;
+    return near ? ground : ray.origin.map((part, i) => part + 10 * ray.direction[i]);
+  }
+
+  click(event) {
+    const hit = this.movable(event);
+    const several = event.ctrlKey || event.metaKey;
+    if (!hit) {
+      if (!several) this.#store.select([]);
+      return;
+    }
+    if (several) this.#store.select([hit.name], {toggle: true});
+    else if (this.#wantsLink(hit)) this.#store.select([`${hit.name}::${hit.link}`]);
+    else this.#store.select([hit.name]);
+  }
+
+  /** The second click on a model of several links means the link. */
+  #wantsLink({name, link}) {
+    const {selection, mode} = this.#store;
+    const [chosen] = selection;
+    const model = this.#store.model(name);
+    return mode === 'select' && link && selection.length === 1 && model?.links.length > 1 &&
+      (chosen === name || chosen.startsWith(`${name}::`));
+  }
+
+  menu(event) {
+    const hit = this.movable(event);
+    if (hit && !this.#store.selection.includes(hit.name)) this.#store.select([hit.name]);
+    this.#store.emit('contextmenu',
+      {name: hit?.name ?? null, x: event.clientX, y: event.clientY});
+  }
+
+  flyTo(event) {
+    if (this.#store.mode === 'insert') return;
+    const hit = this.movable(event);
+    const box = hit && this.#models.bounds(hit.name);
+    if (box) this.#rig.flyTo(box);
+    else this.#rig.flyTowards(this.point(event));
+  }
+}

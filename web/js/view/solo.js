@@ -1,0 +1,38 @@
+/** A model drawn by itself, outside of the world: ghosts, previews, thumbnails. */
+import {Group, Mesh} from 'three';
+import {place} from './convert.js';
+import {visualParts} from './geometry.js';
+
+/**
+ * @param {any} model  document
+ * @param {any} stock  meshes and materials
+ * @param {{opacity?: number}} [look]
+ * @returns {{group: Group, ready: Promise<void>}} the group's children are the links, named so; its
+ *          own pose is left to the caller
+ */
+export function soloModel(model, stock, look = {}) {
+  const group = new Group();
+  const waits = [];
+  for (const link of model.links) {
+    const linkGroup = new Group();
+    linkGroup.name = link.name;
+    place(linkGroup, link.pose);
+    group.add(linkGroup);
+    for (const visual of link.visuals) {
+      const add = (parts) => {
+        for (const {geometry, material, matrix} of parts) {
+          const mesh = new Mesh(geometry, material);
+          mesh.matrixAutoUpdate = false;
+          mesh.matrix.copy(matrix);
+          mesh.castShadow = visual.cast_shadows;
+          mesh.receiveShadow = true;
+          linkGroup.add(mesh);
+        }
+      };
+      const parts = visualParts(visual, stock, look);
+      if (parts instanceof Promise) waits.push(parts.then(add));
+      else add(parts);
+    }
+  }
+  return {group, ready: Promise.all(waits).then(() => {})};
+}

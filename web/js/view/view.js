@@ -1,0 +1,241 @@
+/** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
+import {subtract} from '../pose.js';
+import {Batches} from './batches.js';
+import {CameraRig} from './camera.js';
+import {place} from './convert.js';
+import {FaceSnap} from './face_snap.js';
+import {Forces} from './forces.js';
+import {Lights} from './lights.js';
+import {Manipulator} from './manipulator.js';
+import {Materials} from './materials.js';
+import {Meshes} from './meshes.js';
+import {Models} from './models.js';
+import {Overlays} from './overlays.js';
+import {Picker} from './picking.js';
+import {Placer} from './placer.js';
+import {PivotMark} from './marks.js';
+import {Pointer} from './pointer.js';
+import {SelectionBoxes} from './selection_boxes.js';
+import {Selector} from './selector.js';
+import {soloModel} from './solo.js';
+import {NoWebGL, Stage} from './stage.js';
+import {Surroundings} from './surroundings.js';
+import {thumbnail} from './thumbnails.js';
+
+const NO_WEBGL = `This browser offers no WebGL, which the 3D view needs. The tree, the properties,
+  the time bar and saving work without it. What helps: switch hardware acceleration on in the
+  browser's settings, bring the graphics driver up to date, or allow software rendering (Chromium:
+  --enable-unsafe-swiftshader).`;
+
+/** What stands in for the view where there is no WebGL. */
+function withoutWebGL(element) {
+  const text = document.createElement('p');
+  text.className = 'no-webgl';
+  text.setAttribute('role', 'alert');
+  text.textContent = NO_WEBGL;
+  element.append(text);
+  return {fps: 0, available: false, thumbnail: async () => null, dispose: () => text.remove()};
+}
+
+/**
+ * @param {HTMLElement} element  gets the canvas
+ * @param {{store: any, actions: any, connection: any, watches?: any}} parts
+ * @returns {{fps: number, available: boolean, thumbnail: Function, dispose: Function}}
+ */
+export function mountView(element, parts) {
+  try {
+    return new View(element, parts);
+  } catch (error) {
+    if (!(error instanceof NoWebGL)) throw error;
+    return withoutWebGL(element);
+  }
+}
+
+class View {
+  available = true;
+  #store;
+  #stage;
+  #stock;
+  #models;
+  #lights;
+  #rig;
+  #picker;
+  #manipulator;
+  #forces;
+  #boxes;
+  #overlays;
+  #pointer;
+  #preview = null;
+  #thumbnails = new Map();
+  #shifted = [];
+  #connection;
+
+  constructor(element, {store, actions, connection, watches}) {
+    this.#store = store;
+    this.#connection = connection;
+    const stage = new Stage(element);
+    this.#stage = stage;
+    const meshes = new Meshes((message) =>
+      store.addIssue({severity: 'warning', code: 'resource', message}));
+    meshes.onArrived = () => stage.invalidate();
+    const materials = new Materials(meshes.manager);
+    const stock = {meshes, materials};
+    const batches = new Batches(stage.scene);
+    const models = new Models({store, batches, stock, stage});
+    const lights = new Lights({stage, store});
+    const rig = new CameraRig({stage, store, models});
+    const picker = new Picker(stage);
+    const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
+      picker};
+    this.#stock = stock;
+    this.#models = models;
+    this.#lights = lights;
+    this.#rig = rig;
+    this.#picker = picker;
+    new Surroundings({stage, store, materials});
+    this.#overlays = new Overlays(shared);
+    this.#boxes = new SelectionBoxes(shared);
+    this.#manipulator = new Manipulator(shared);
+    this.#forces = new Forces(shared);
+    this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
+      placer: new Placer(shared), faceSnap: new FaceSnap(shared), forces: this.#forces,
+      selector: new Selector(shared), pivotMark: new PivotMark(shared)});
+    this.#connect();
+    actions.attachView(this);
+    // The world may have come while the view's modules were on their way.
+    if (store.document) store.emit('document');
+  }
+
+  /** Pictures drawn in the last second. */
+  get fps() { return this.#stage.fps; }
+
+  dispose() {
+    this.#pointer.dispose();
+    this.#stage.dispose();
+  }
+
+  #connect() {
+    this.#models.onMoved = (ids) => {
+      this.#rig.follow();
+      this.#boxes.follow(ids);
+      this.#overlays.follow(ids);
+      if (!this.#manipulator.dragging) this.#manipulator.update();
+    };
+    this.#manipulator.onMoved = () => this.#boxes.update();
+    this.#rig.onMoved = () => this.#manipulator.update();
+    this.#stage.onResize = () => this.#rig.apply();
+    this.#stage.onBeforeDraw = (now) => {
+      const moving = this.#rig.advance(now);
+      this.#forces.update();
+      this.#coverWithShadow();
+      return moving;
+    };
+    this.#store.addEventListener('preview', () => this.#showPreview());
+  }
+
+  /** Far-away lights throw shadows about the middle of the picture. */
+  #coverWithShadow() {
+    const {position} = this.#rig.view;
+    const [, , height] = position;
+    const ahead = subtract(this.#rig.ahead, position).map((part) => part / 10);
+    const down = -ahead[2];
+    const distance = this.#rig.orthographic ? 10
+      : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
+    const centre = position.map((part, index) => part + ahead[index] * distance);
+    this.#lights.cover(centre, Math.max(distance * 1.3, 4));
+  }
+
+  // ---- what actions ask
+
+  /** @param {string} side */
+  viewFrom(side) {
+    const centres = this.#store.selection.map((name) => this.#centre(name)).filter(Boolean);
+    const centre = centres.length
+      ? [0, 1, 2].map((i) => centres.reduce((sum, one) => sum + one[i], 0) / centres.length)
+      : [0, 0, 0];
+    this.#rig.flyToSide(side, centre);
+  }
+
+  moveTo(name) {
+    const box = this.#models.bounds(name);
+    const pose = this.#models.shownPose(name);
+    if (box) this.#rig.flyTo(box);
+    else if (pose) this.#rig.flyTowards(pose.slice(0, 3));
+  }
+
+  #centre(name) {
+    const bounds = this.bounds(name);
+    if (bounds) return bounds.min.map((part, index) => (part + bounds.max[index]) / 2);
+    return this.#models.shownPose(name)?.slice(0, 3) ?? null;
+  }
+
+  /** @returns {{min: number[], max: number[]}|null} in world axes, m */
+  bounds(name) {
+    const box = this.#models.bounds(name);
+    return box && {min: box.min.toArray(), max: box.max.toArray()};
+  }
+
+  /** Shows models elsewhere without moving them; null ends that. */
+  setPreviewPoses(poses) {
+    this.#models.release(this.#shifted);
+    this.#shifted = Object.keys(poses ?? {});
+    if (poses) this.#models.hold(poses);
+  }
+
+  cancelDrag() {
+    return this.#manipulator.cancel();
+  }
+
+  showForce(wrench, onTurned) {
+    this.#forces.show(wrench, onTurned);
+  }
+
+  /** @returns {Promise<Blob>} PNG of the view as it is */
+  picture() {
+    return this.#stage.picture();
+  }
+
+  // ---- a model beside the world
+
+  #showPreview() {
+    const {preview} = this.#store;
+    const before = this.#preview;
+    this.#preview = null;
+    const remove = () => before && this.#stage.scene.remove(before);
+    if (preview) {
+      const {group, ready} = soloModel(preview, this.#stock);
+      place(group, preview.pose);
+      this.#preview = group;
+      this.#stage.scene.add(group);
+      ready.then(() => this.#stage.shadowsChanged());
+    }
+    remove();
+    this.#stage.shadowsChanged();
+  }
+
+  /** The link of the preview under a point of the page. @returns {{link: string}|null} */
+  previewPick(clientX, clientY) {
+    if (!this.#preview) return null;
+    const [hit] = this.#picker.objects([this.#preview], clientX, clientY);
+    return hit ? {link: hit.object.parent.name} : null;
+  }
+
+  /**
+   * A small picture of a library model: drawn once, and given to the simulator to keep.
+   * @param {string} uri  of the model
+   * @param {string} [address]  where the picture is kept
+   * @returns {Promise<string|null>} an address for an <img>
+   */
+  thumbnail(uri, address) {
+    if (!this.#thumbnails.has(uri)) this.#thumbnails.set(uri, this.#drawThumbnail(uri, address));
+    return this.#thumbnails.get(uri);
+  }
+
+  async #drawThumbnail(uri, address) {
+    const {model} = await this.#connection.request('library_get', {uri}).catch(() => ({}));
+    const blob = model && await thumbnail(this.#stage, model, this.#stock);
+    if (!blob) return null;
+    if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);
+    return URL.createObjectURL(blob);
+  }
+}
