@@ -12,7 +12,7 @@ from ..formats.meshes import collision_meshes
 from ..geometry import IDENTITY, Pose, compose
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
-from .convert import pose_from_message
+from .convert import LENGTH, pose_from_message, within
 from .document import REPLACE_ATTRIBUTE, asks_to_replace, checked_name, named, root_of
 from .entities import in_gazebos_words
 
@@ -84,8 +84,10 @@ class ModelServices:
         self._report(issues)
         if errors_of(issues):
             raise InputError(issues)
+        where = compose(initial, model.pose)
+        within(where.position, LENGTH, "m", "the model's position")
         with in_gazebos_words("", NO_FRAME):
-            self._simulator.spawn(model, compose(initial, model.pose), frame, meshes, replace)
+            self._simulator.spawn(model, where, frame, meshes, replace)
         warnings = f" ({len(issues)} remarks in the log)" if issues else ""
         return f"Successfully spawned entity{warnings}"
 
