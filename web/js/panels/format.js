@@ -40,8 +40,10 @@ function trimmed(text) {
 }
 
 const TOKEN = /\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([a-zA-Z°]+)|([-+*/()]))/y;
-const NAMES = {pi: Math.PI, inf: 1e16, infinity: 1e16};
-const UNITS = {deg: Math.PI / 180, '°': Math.PI / 180, rad: 1, cm: 0.01, mm: 0.001, m: 1, g: 0.001, kg: 1};
+const NAMES = new Map(Object.entries({pi: Math.PI, inf: 1e16, infinity: 1e16}));
+const UNITS = new Map(Object.entries({
+  deg: Math.PI / 180, '°': Math.PI / 180, rad: 1, cm: 0.01, mm: 0.001, m: 1, g: 0.001, kg: 1,
+}));
 
 /**
  * What a person types into a number field: a number, `pi/2`, `90deg`, `25cm`, `(1+2)/3`, `inf`.
@@ -97,13 +99,13 @@ function factor(state) {
   else if (token === '(') {
     value = sum(state);
     if (state.tokens[state.at++] !== ')') return NaN;
-  } else if (typeof token === 'string' && token.toLowerCase() in NAMES) {
-    value = NAMES[token.toLowerCase()];
+  } else if (NAMES.has(String(token).toLowerCase())) {
+    value = NAMES.get(token.toLowerCase());
   }
   const unit = state.tokens[state.at];
-  if (typeof unit === 'string' && unit in UNITS) {
+  if (UNITS.has(unit)) {
     state.at += 1;
-    value *= UNITS[unit];
+    value *= UNITS.get(unit);
   }
   return value;
 }

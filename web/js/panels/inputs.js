@@ -213,9 +213,9 @@ function poseInput(field, commit, refuse) {
   };
 }
 
-/** A physics engine's 0.49999998 is what the user put at 0.5. */
+/** What fits the field; a physics engine's 0.49999998 is what the user put at 0.5. */
 function tidy(value) {
-  const rounded = Math.round(value * 1e6) / 1e6;
+  const rounded = Math.round(value * 1e5) / 1e5;
   return rounded === 0 ? 0 : rounded;
 }
 

@@ -155,7 +155,7 @@ export class InsertTab {
     clearTimeout(this.#hide);
     this.#progress.hidden = false;
     const known = expected > 0;
-    fill(this.#progress, h('span', {text: `Downloading ${name}: ${bytesText(done)}${known ? ` of ${bytesText(expected)}` : ''}` }),
+    fill(this.#progress, h('span', {text: `Downloading ${name}: ${bytesText(done)}${known ? ` of ${bytesText(expected)}` : ''}`}),
       h('progress', known ? {max: expected, value: done} : {}));
     const over = known && done >= expected;
     this.#hide = setTimeout(() => { this.#progress.hidden = true; }, over ? 800 : 15000);

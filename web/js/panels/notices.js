@@ -97,7 +97,7 @@ export class Notices {
           icon('close', 14))),
       this.entries.length ? h('ol', {}, ...this.entries.map(({issue, count, at}) => h('li',
         {class: issue.severity ?? 'error'}, icon(glyph(issue.severity ?? 'error'), 15),
-        body(issue), h('span', {class: 'soft', text: `${count > 1 ? `${count}× ` : ''}${at.toLocaleTimeString()}` }))))
+        body(issue), h('span', {class: 'soft', text: `${count > 1 ? `${count}× ` : ''}${at.toLocaleTimeString()}`}))))
         : h('p', {class: 'empty', text: 'Nothing was reported.'}));
   }
 }

@@ -38,7 +38,9 @@ export function openPopup(content, {anchor, x, y, onClose, keepFocus = false}) {
     if (!popup.contains(event.target) && !anchor?.contains(event.target)) close();
   };
   const key = (event) => {
-    if (event.key !== 'Escape' && event.key !== 'Tab') return;
+    // In menus Tab leaves; panels with fields are walked through with it.
+    const leaves = event.key === 'Tab' && popup.querySelector('[role=menu]');
+    if (event.key !== 'Escape' && !leaves) return;
     if (event.key === 'Escape') event.preventDefault();
     event.stopPropagation();
     close();
@@ -50,14 +52,15 @@ export function openPopup(content, {anchor, x, y, onClose, keepFocus = false}) {
       document.activeElement === document.body;
     popup.remove();
     document.removeEventListener('pointerdown', outside, true);
+    document.removeEventListener('keydown', key, true);
     window.removeEventListener('blur', close);
     if (hadFocus && !keepFocus) (anchor ?? before)?.focus?.();
     onClose?.();
   };
   closeOpen = close;
   document.addEventListener('pointerdown', outside, true);
+  document.addEventListener('keydown', key, true);
   window.addEventListener('blur', close);
-  popup.addEventListener('keydown', key);
   popup.addEventListener('contextmenu', (event) => event.preventDefault());
   return close;
 }

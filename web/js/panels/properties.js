@@ -118,6 +118,7 @@ export class Properties {
       setTimeout(() => element.classList.remove('taken'), 700);
     } catch (fault) {
       note.textContent = faultText(fault);
+      note.scrollIntoView({block: 'nearest'});
     }
     element.classList.remove('pending');
     this.#show();

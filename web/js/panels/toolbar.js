@@ -32,8 +32,10 @@ export function mountToolBar(element, page) {
   const lights = LIGHTS.map(([type, title]) => button(type, title, () => actions.insertLight(type)));
   const copy = button('copy', 'Copy (Ctrl+C)', () => actions.copy());
   const paste = button('paste', 'Paste (Ctrl+V)', () => actions.paste());
-  const align = button('align', 'Align', () => openPopup(alignPanel(page), {
-    anchor: align, onClose: () => actions.alignPreview(null) }));
+  const align = button('align', 'Align', () => {
+    openPopup(alignPanel(page), {anchor: align, onClose: () => actions.alignPreview(null)});
+    document.querySelector('.popup input').focus();
+  });
   const snap = button('snap', 'Snap (N)', () => actions.snapMode());
   const views = button('views', 'View angle', () => {
     const close = openPopup(viewPanel(page, () => close()), {anchor: views});

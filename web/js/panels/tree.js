@@ -98,7 +98,7 @@ export class Tree {
       'aria-level': row.level, 'aria-selected': this.selected.has(row.id),
       'aria-expanded': row.expandable ? String(row.open) : null,
       'aria-setsize': this.rows.length, 'aria-posinset': at + 1,
-      title: row.label,
+      title: row.label, 'aria-label': row.label,
     }, arrow, row.icon && icon(row.icon, 15), h('span', {class: 'label', text: row.label}),
     this.handlers.decorate?.(row));
   }
@@ -161,11 +161,18 @@ export class Tree {
       ArrowRight: row.expandable && row.open ? at + 1 : undefined,
     }[event.key];
     if (to === undefined) return false;
-    const next = this.rows[Math.min(Math.max(to, 0), last)];
+    const next = this.#beyondHeadings(Math.min(Math.max(to, 0), last), to < at ? -1 : 1);
     this.reveal(next.id);
     // With Ctrl the row is only looked at; Space then adds it to the selection.
     if (!event.ctrlKey) this.handlers.choose(next, event);
     return true;
+  }
+
+  /** Headings of a model's parts have nothing to show. */
+  #beyondHeadings(at, step) {
+    let to = at;
+    while (this.rows[to]?.kind === 'heading') to += step;
+    return this.rows[to] ?? this.rows[at - step];
   }
 
   #keyActs(event, row) {

@@ -61,12 +61,11 @@ export class WorldTab {
   }
 
   #choose(row, event) {
+    if (row.kind === 'heading') return;
     this.#row = row;
     if (row.select) {
-      const toggle = event.ctrlKey || event.metaKey;
-      this.store.select(toggle ? [row.select] : [row.select], {toggle});
-    } else if (row.kind !== 'heading' && this.store.selection.length &&
-        !this.#belongs(row, this.store.selection)) {
+      this.store.select([row.select], {toggle: event.ctrlKey || event.metaKey});
+    } else if (this.store.selection.length && !this.#belongs(row, this.store.selection)) {
       this.store.select([]);
     }
     this.update();

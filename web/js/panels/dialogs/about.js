@@ -26,7 +26,7 @@ export function aboutDialog(about) {
   return new Dialog({
     title: 'About', name: 'about',
     content: [
-      h('p', {text: `${about.app ?? 'my_simulations'}${about.version ? `, protocol ${about.version}` : ''}` }),
+      h('p', {text: `${about.app ?? 'my_simulations'}${about.version ? `, protocol ${about.version}` : ''}`}),
       h('p', {text: 'Worlds as Gazebo Classic describes them, moved by Bullet, edited in a browser.'}),
       h('p', {class: 'soft', text: `Drawn with three.js. Browser: ${navigator.userAgent}`}),
     ],
