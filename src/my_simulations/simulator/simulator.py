@@ -159,8 +159,8 @@ class Simulator(TimedLoads):
             self._registry.revision += 1
             self._call(Batch(tuple(commands)))
 
-    def put_back(self, moment: Moment) -> None:
-        """Poses, velocities, joints and the clock as they were; what has come since stays.
+    def put_back(self, moment: Moment, clock: bool = True) -> None:
+        """Poses, velocities, joints and, with `clock`, the time; what has come since stays.
 
         Models that have gone or got other links meanwhile are passed over.
         """
@@ -168,7 +168,9 @@ class Simulator(TimedLoads):
             running = not self._paused
             with self._lock:
                 commands = moment.commands(self._registry.entities())
-            self._call(Batch((Pause(), SetClock(moment.step, moment.sim_ns), *commands,
+                self._registry.revision += 1
+            time = [SetClock(moment.step, moment.sim_ns)] if clock else []
+            self._call(Batch((Pause(), *time, *commands,
                               *([Run(self._horizon)] if running else []))))
 
     def load_world(self, world: World, meshes: Optional[Dict[str, MeshTable]] = None) -> None:

@@ -1,0 +1,218 @@
+"""The clients of one world: what all of them are told, and when.
+
+Everything here runs in the server's event loop, but for what is said to be safe from any thread.
+"""
+from __future__ import annotations
+
+import asyncio
+import functools
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable, Deque, Dict, Iterable, List, Optional
+
+from ..errors import CommandError, Issue, error
+from ..simulator.simulator import Simulator
+from .client import Client, encoded
+from .clock import RealTime
+from .document import Documents
+from .faults import issue_document
+from .frames import LIVE, Poses
+from .mirror import Mirror
+from .protocol import Protocol
+
+_KEPT_ISSUES = 100
+_DEMAND = "editor"
+
+
+class Hub:
+    """Tells clients of changes, poses, time and issues.
+
+    Args:
+        simulator: the world.
+        documents: makes documents.
+        protocol: gives the rates.
+        check: hold what is sent to the protocol.
+    """
+
+    def __init__(self, simulator: Simulator, documents: Documents, protocol: Protocol,
+                 check: bool = False) -> None:
+        self.simulator = simulator
+        self.protocol = protocol
+        self.documents = documents
+        self.clients: Dict[int, Client] = {}
+        self.on_tick: List[Callable[[Optional[Poses], int], None]] = []
+        self.clock = RealTime(simulator)
+        self._check = check
+        self._mirror = Mirror(simulator, documents)
+        self._loop = asyncio.get_running_loop()
+        self._writer = ThreadPoolExecutor(1, "editor documents")
+        self._nudged = asyncio.Event()
+        self._sequence = -1
+        self._listeners = 0
+        self._stats_due = 0.0
+        self._issues: Deque[Issue] = deque(maxlen=_KEPT_ISSUES)
+        self._poses: Optional[Poses] = None
+        self._layout: Any = None
+        self._ids: Any = None
+
+    # -- telling ---------------------------------------------------------------------------------
+
+    def push(self, message: Dict[str, Any], to: Optional[Iterable[Client]] = None) -> None:
+        """Send a message to clients, all by default."""
+        if self._check:
+            self.protocol.check_push(message)
+        text = encoded(message)
+        for client in list(self.clients.values()) if to is None else to:
+            client.post_text(text)
+
+    def push_soon(self, message: Dict[str, Any]) -> None:
+        """As `push` to all; safe from any thread."""
+        self._soon(self.push, message)
+
+    def tell(self, issue: Issue) -> None:
+        """Show an issue to everybody, and to who comes later; safe from any thread."""
+        self._soon(self._tell, issue)
+
+    def nudge(self) -> None:
+        """Something may have changed: look now; safe from any thread."""
+        self._soon(self._nudged.set)
+
+    def stats_soon(self) -> None:
+        """Tell the time now; safe from any thread."""
+        self._stats_due = 0.0
+        self.nudge()
+
+    def _soon(self, call: Callable[..., object], *arguments: Any) -> None:
+        try:
+            self._loop.call_soon_threadsafe(functools.partial(call, *arguments))
+        except RuntimeError:
+            return  # the server has ended
+
+    def _tell(self, issue: Issue) -> None:
+        self._issues.append(issue)
+        self.push({"type": "issue", "issue": issue_document(issue)})
+
+    # -- coming and going ------------------------------------------------------------------------
+
+    async def welcome(self, client: Client, new: bool) -> None:
+        """Give a client the world, and from then on all of its changes."""
+        if self._mirror.revision < 0:
+            await self._look()
+        world = await self._loop.run_in_executor(self._writer, self._whole)
+        client.post_text(world)
+        client.sent.forget()
+        client.live = True
+        self._sequence = -1
+        self.push(self.clock.read(), [client])
+        for issue in list(self._issues) if new else ():
+            self.push({"type": "issue", "issue": issue_document(issue)}, [client])
+        self._nudged.set()
+
+    def listen(self, more: int) -> None:
+        """So many more (fewer) want poses."""
+        self._listeners += more
+        rate = self.protocol.limits["frames_hz"] if self._listeners else 0.0
+        self.simulator.set_demand(rate, False, _DEMAND)
+        self._sequence = -1
+        self._nudged.set()
+
+    # -- the loop --------------------------------------------------------------------------------
+
+    async def run(self) -> None:
+        """Look after the world until cancelled."""
+        period = 1.0 / self.protocol.limits["frames_hz"]
+        while True:
+            if not self._listeners:
+                await self._nudged.wait()
+                self._nudged.clear()
+                continue
+            started = self._loop.time()
+            self._nudged.clear()
+            try:
+                await self._tick()
+            except CommandError as fault:
+                self._tell(error("editor-view", str(fault)))
+                await asyncio.sleep(1.0)
+            await self._pause(started + period)
+
+    async def _pause(self, until: float) -> None:
+        left = until - self._loop.time()
+        if left <= 0.0:
+            await asyncio.sleep(0)
+            return
+        timer = self._loop.call_later(left, self._nudged.set)
+        await self._nudged.wait()
+        timer.cancel()
+
+    async def _tick(self) -> None:
+        if self.simulator.revision != self._mirror.revision:
+            await self._look()
+        sequence = self.simulator.ring.latest
+        moved = sequence != self._sequence or self._behind()
+        if moved:
+            self._sequence = sequence
+            self._poses = self._read()
+            self._send_poses()
+        for listener in self.on_tick:
+            listener(self._poses if moved else None, self._mirror.revision)
+        if self._loop.time() >= self._stats_due:
+            self._stats_due = self._loop.time() + 1.0 / self.protocol.limits["stats_hz"]
+            news = self.clock.news()
+            if news is not None:
+                self.push(news, self._live())
+
+    def _live(self) -> List[Client]:
+        return [client for client in self.clients.values() if client.live]
+
+    def _behind(self) -> bool:
+        """Whether some client could not take its last frame."""
+        return any(client.live and client.sent.late for client in self.clients.values())
+
+    async def _look(self) -> None:
+        """Tell everybody what has changed in the description."""
+        news = await self._loop.run_in_executor(self._writer, self._mirror.news)
+        if news is None:
+            return
+        live = self._live()
+        self.push(news.push, live)
+        for client in live:
+            client.sent.forget(news.links)
+        self._sequence = -1
+
+    def _whole(self) -> str:
+        message = self._mirror.whole()
+        if self._check:
+            self.protocol.check_push(message)
+        return encoded(message)
+
+    def _read(self) -> Optional[Poses]:
+        """All poses of now; None while names have changed that clients have not heard of."""
+        import numpy as np
+
+        layout, _, raw = self.simulator.raw_states()
+        if layout.revision != self._mirror.revision:
+            self._sequence = -1
+            return None
+        step, clock = self.simulator.ring.clock()
+        if layout is not self._layout:
+            self._layout = layout
+            self._ids = np.fromiter((row for row, _ in layout.link_places), dtype=np.int64,
+                                    count=len(layout.link_places))
+        ids = self._ids
+        table = np.frombuffer(raw, dtype=np.float64).reshape(-1, 13)
+        if len(ids) and int(ids.max()) >= len(table):
+            self._sequence = -1
+            return None
+        return Poses(ids, table[ids, :7].astype(np.float32), step, clock.sim_ns(step) * 1e-9,
+                     self.clock.real_ns * 1e-9)
+
+    def _send_poses(self) -> None:
+        poses = self._poses
+        for client in self.clients.values():
+            if not client.live:
+                continue
+            client.sent.late = poses is None or not client.free
+            if poses is not None and client.free:
+                frame = client.sent.frame(LIVE, self._mirror.revision, poses)
+                if frame:
+                    client.offer(frame)

@@ -1,0 +1,63 @@
+"""What the editor's server is told: where to listen, and which folders are its own."""
+from __future__ import annotations
+
+import ipaddress
+import os
+from dataclasses import dataclass, field
+from typing import Callable, List, Optional
+
+from ..errors import Issue
+
+DEFAULT_PORT = 11346
+"""Beside Gazebo's master port, 11345."""
+
+
+def _ignore(_issue: Issue) -> None:
+    """Nobody listens."""
+
+
+@dataclass(frozen=True)
+class EditorOptions:
+    """Settings of one server.
+
+    Attributes:
+        host: address or name to listen at; other than this machine's own needs a token in the URL,
+            which is made up when `token` is "".
+        port: to listen at; 0 takes a free one, and so does `DEFAULT_PORT` when it is taken.
+        token: what requests from elsewhere must show.
+        save_roots: folders below which worlds are opened and saved; None for the usual ones.
+        log: hears of issues that belong to no request.
+        web: folder of the page; "" for the package's own.
+        config_dir: keeps the folders a user added to the library.
+        cache_dir: keeps autosaves and thumbnails.
+        data_dir: keeps state logs.
+        check_outgoing: hold what is sent to the protocol too (tests).
+    """
+
+    host: str = "127.0.0.1"
+    port: int = DEFAULT_PORT
+    token: str = ""
+    save_roots: Optional[List[str]] = None
+    log: Callable[[Issue], None] = _ignore
+    web: str = ""
+    config_dir: str = field(default_factory=lambda: _xdg("XDG_CONFIG_HOME", "~/.config"))
+    cache_dir: str = field(default_factory=lambda: _xdg("XDG_CACHE_HOME", "~/.cache"))
+    data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
+    check_outgoing: bool = False
+
+
+def is_loopback(host: str) -> bool:
+    """True for an address that only this machine can reach."""
+    if host.strip().lower() == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
+
+
+def _xdg(variable: str, default: str) -> str:
+    """A user's folder of ours (XDG Base Directory Specification)."""
+    base = os.environ.get(variable, "")
+    return os.path.join(base if os.path.isabs(base) else os.path.expanduser(default),
+                        "my_simulations")

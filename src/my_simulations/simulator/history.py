@@ -1,0 +1,114 @@
+"""Undo and redo: the operations done, in words, each with its inverse."""
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from typing import List, Optional
+
+from ..errors import CommandError
+from .operations import Operation
+from .simulator import Simulator
+
+LONGEST = 500
+"""Steps that can be taken back; older ones are forgotten."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """`inverse` takes it back; `number` tells steps with the same words apart."""
+
+    label: str
+    inverse: Operation
+    number: int
+
+
+class History:
+    """What was done to one world through `do`. Safe from any thread."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
+        self._lock = threading.RLock()
+        self._done: List[Step] = []
+        self._undone: List[Step] = []
+        self._number = 0
+        self._saved: Optional[int] = 0
+
+    @property
+    def undo_labels(self) -> List[str]:
+        """What can be undone, newest first."""
+        with self._lock:
+            return [step.label for step in reversed(self._done)]
+
+    @property
+    def redo_labels(self) -> List[str]:
+        """What can be done again, next first."""
+        with self._lock:
+            return [step.label for step in reversed(self._undone)]
+
+    @property
+    def dirty(self) -> bool:
+        """Whether the world was edited since it was loaded or saved."""
+        with self._lock:
+            return self._top != self._saved
+
+    @property
+    def state(self) -> int:
+        """A number that tells one state of editing from another."""
+        with self._lock:
+            return self._top
+
+    @property
+    def _top(self) -> int:
+        return self._done[-1].number if self._done else 0
+
+    def do(self, label: str, operation: Operation) -> None:
+        """Carry an operation out and remember it; what was undone is forgotten.
+
+        Raises CommandError; then nothing has changed.
+        """
+        with self._lock:
+            inverse = operation.apply(self._simulator)
+            self._number += 1
+            self._done.append(Step(label, inverse, self._number))
+            self._undone.clear()
+            if len(self._done) > LONGEST:
+                if self._saved is not None and self._saved < self._done.pop(0).number:
+                    self._saved = None  # cannot be reached any more
+
+    def undo(self, to: int = 0) -> str:
+        """Take back the newest step, or all down to the `to`-th newest; returns its words.
+
+        Raises CommandError: nothing to undo, or the world has not got what a step needs any more;
+        such a step is forgotten.
+        """
+        return self._move(self._done, self._undone, to, "undo")
+
+    def redo(self, to: int = 0) -> str:
+        """Do again what was undone last, or all up to the `to`-th. Raises CommandError."""
+        return self._move(self._undone, self._done, to, "redo")
+
+    def saved(self) -> None:
+        """The world is on disk as it is now."""
+        with self._lock:
+            self._saved = self._top
+
+    def clear(self, dirty: bool = False) -> None:
+        """Another world: nothing can be undone."""
+        with self._lock:
+            self._done.clear()
+            self._undone.clear()
+            self._saved = None if dirty else 0
+
+    def _move(self, source: List[Step], target: List[Step], to: int, verb: str) -> str:
+        with self._lock:
+            if not 0 <= to < len(source):
+                raise CommandError(f"there is nothing to {verb}")
+            for _ in range(to + 1):
+                step = source.pop()
+                try:
+                    inverse = step.inverse.apply(self._simulator)
+                except CommandError as fault:
+                    how = "undone" if verb == "undo" else "done again"
+                    raise CommandError(f"{step.label!r} cannot be {how}: {fault}") from fault
+                target.append(Step(step.label, inverse, step.number))
+            return step.label

@@ -1,0 +1,336 @@
+"""What an editor does to a world: each operation carries itself out and answers with its inverse.
+
+An inverse restores what the operation has changed, not the world of that time: what physics or
+others did meanwhile stays.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple
+
+from ..description.model import Joint, Model
+from ..description.shapes import MeshTable
+from ..description.world import Light, Physics
+from ..engine.api import ModelState
+from ..errors import CommandError
+from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
+from .moments import Moment
+from .simulator import Simulator
+
+
+class Operation(Protocol):
+    """One change."""
+
+    def apply(self, world: Simulator) -> "Operation":
+        """Carry it out; returns what undoes it. Raises CommandError, then nothing has changed."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Several as one: all of them or none."""
+
+    parts: Tuple[Operation, ...]
+
+    def apply(self, world: Simulator) -> Operation:
+        """In order; undone in the opposite order."""
+        done: List[Operation] = []
+        for part in self.parts:
+            try:
+                done.append(part.apply(world))
+            except CommandError:
+                for inverse in reversed(done):
+                    inverse.apply(world)
+                raise
+        return Group(tuple(reversed(done)))
+
+
+@dataclass(frozen=True)
+class AddModel:
+    """A model comes, at `pose`, or with the state it had."""
+
+    model: Model
+    pose: Pose
+    meshes: MeshTable = field(default_factory=dict)
+    state: Optional[ModelState] = None
+
+    def apply(self, world: Simulator) -> Operation:
+        """Put it in."""
+        world.spawn(self.model, self.pose, meshes=self.meshes, state=self.state)
+        return RemoveModel(self.model.name)
+
+
+@dataclass(frozen=True)
+class RemoveModel:
+    """A model goes."""
+
+    name: str
+
+    def apply(self, world: Simulator) -> Operation:
+        """Take it out, remembering where everything of it was."""
+        world.model(self.name)  # says when there is none
+        entities, snapshot = world.moment()
+        entity = next(one for one in entities if one.model.name == self.name)
+        state = entity.saved(snapshot) if entity.link_names else None
+        back = AddModel(entity.model, entity.initial_pose, entity.meshes, state)
+        pose = entity.pose
+        world.delete(self.name)
+        return back if state is not None else Group((back, Place({self.name: pose})))
+
+
+@dataclass(frozen=True)
+class EditModel:
+    """A model gets another description, perhaps another name."""
+
+    name: str
+    model: Model
+    meshes: MeshTable = field(default_factory=dict)
+
+    def apply(self, world: Simulator) -> Operation:
+        """Change it; states stay."""
+        old = world.model(self.name)
+        world.edit_model(self.name, self.model, self.meshes)
+        return EditModel(self.model.name, old)
+
+
+@dataclass(frozen=True)
+class EditJoint:
+    """A joint of `model` gets other properties."""
+
+    model: str
+    joint: Joint
+
+    def apply(self, world: Simulator) -> Operation:
+        """Change it in place where the engine can."""
+        scoped = f"{self.model}::{self.joint.name}"
+        _, old, _ = world.find_joint(scoped)
+        world.edit_joint(scoped, self.joint)
+        return EditJoint(self.model, old)
+
+
+@dataclass(frozen=True)
+class Place:
+    """Models, lights and links (`model::link`) go to world poses, at rest.
+
+    `before`: where they were, when that is not where they are (a drag moved them already).
+    """
+
+    poses: Dict[str, Pose]
+    before: Dict[str, Pose] = field(default_factory=dict)
+
+    def apply(self, world: Simulator) -> Operation:
+        """Move them all; those before one that cannot be moved go back."""
+        done: Dict[str, Pose] = {}
+        try:
+            for name, pose in self.poses.items():
+                was = pose_of(world, name)
+                place(world, name, pose)
+                done[name] = was
+        except CommandError:
+            for name, pose in done.items():
+                place(world, name, pose)
+            raise
+        return Place({**done, **{name: pose for name, pose in self.before.items() if name in done}})
+
+
+def pose_of(world: Simulator, name: str) -> Pose:
+    """World pose of a model, light or link. Raises CommandError for none of them."""
+    if world.has_model(name):
+        return world.model_state(name)[0]
+    for light in world.lights():
+        if light.name == name:
+            return light.pose
+    if "::" not in name:
+        world.model(name)  # says that there is none
+    return world.link_state(name)[0]
+
+
+def place(world: Simulator, name: str, pose: Pose) -> None:
+    """Put a model, light or link at a world pose, at rest. Raises CommandError."""
+    if world.has_model(name):
+        world.set_model_state(name, pose, STILL)
+    elif any(light.name == name for light in world.lights()):
+        world.set_light(name, replace(world.light(name), pose=pose))
+    elif "::" in name:
+        world.set_link_state(name, pose, STILL)
+    else:
+        world.model(name)
+
+
+@dataclass(frozen=True)
+class AddLight:
+    """A light comes."""
+
+    light: Light
+
+    def apply(self, world: Simulator) -> Operation:
+        """Put it in."""
+        world.add_light(self.light)
+        return RemoveLight(self.light.name)
+
+
+@dataclass(frozen=True)
+class RemoveLight:
+    """A light goes."""
+
+    name: str
+
+    def apply(self, world: Simulator) -> Operation:
+        """Take it out."""
+        return AddLight(world.delete_light(self.name))
+
+
+@dataclass(frozen=True)
+class EditLight:
+    """A light gets other properties, perhaps another name."""
+
+    name: str
+    light: Light
+
+    def apply(self, world: Simulator) -> Operation:
+        """Change it."""
+        old = world.light(self.name)
+        world.set_light(self.name, self.light)
+        return EditLight(self.light.name, old)
+
+
+@dataclass(frozen=True)
+class SetPhysics:
+    """Other physics settings and gravity."""
+
+    physics: Physics
+    gravity: Vec3
+
+    def apply(self, world: Simulator) -> Operation:
+        """Set both."""
+        back = SetPhysics(world.physics, world.gravity)
+        world.set_physics(self.physics, self.gravity)
+        return back
+
+
+SETTERS: Dict[str, Callable[[Simulator, Any], None]] = {
+    "scene": Simulator.set_scene, "gui_camera": Simulator.set_gui_camera,
+    "wind": Simulator.set_wind, "atmosphere": Simulator.set_atmosphere,
+    "magnetic_field": Simulator.set_magnetic_field,
+    "spherical_coordinates": Simulator.set_spherical_coordinates,
+}
+"""Fields of a world besides models, lights and physics, and who sets them."""
+
+
+@dataclass(frozen=True)
+class SetSurrounding:
+    """Another value of one of `SETTERS`."""
+
+    name: str
+    value: Any
+
+    def apply(self, world: Simulator) -> Operation:
+        """Set it."""
+        back = SetSurrounding(self.name, getattr(world.world, self.name))
+        SETTERS[self.name](world, self.value)
+        return back
+
+
+@dataclass(frozen=True)
+class PutBack:
+    """States as they were at a moment."""
+
+    moment: Moment
+
+    def apply(self, world: Simulator) -> Operation:
+        """Put them back."""
+        back = PutBack(Moment.of(*world.moment()))
+        world.put_back(self.moment)
+        return back
+
+
+@dataclass(frozen=True)
+class Reset:
+    """`what`: time, poses (of models), or world (all of it, as loaded)."""
+
+    what: str
+
+    def apply(self, world: Simulator) -> Operation:
+        """Reset it."""
+        back = PutBack(Moment.of(*world.moment()))
+        {"time": world.reset_time, "poses": world.reset_world,
+         "world": world.reset_simulation}[self.what]()
+        return back
+
+
+@dataclass(frozen=True)
+class Push:
+    """A wrench on a link for some steps.
+
+    `point`: of attack in the link frame, m; None for the centre of mass. Force (N) and torque (N m)
+    in world axes, or in the link's, with which they turn then.
+    """
+
+    link: str
+    force: Vec3
+    torque: Vec3
+    point: Optional[Vec3]
+    in_link_axes: bool
+    steps: int
+
+    def apply(self, world: Simulator) -> Operation:
+        """Push; undone, the model is where it was, as fast as it was."""
+        name, _, plain = self.link.partition("::")
+        model = world.model(name)
+        com = next((link.inertial.pose.position for link in model.links if link.name == plain),
+                   None)
+        pose, _ = world.link_state(self.link)
+        back = Moment.of(*world.moment())
+        if com is None:
+            raise CommandError(f"there is no link '{self.link}'")
+        lever = ZERO3 if self.point is None else subtract(self.point, com)
+        duration = round(self.steps * world.physics.max_step_size * 1e9)
+        if self.in_link_axes:
+            at = com if self.point is None else self.point
+            world.push(self.link, self.force, self.torque, frame=self.link, point=at,
+                       duration_ns=duration)
+        else:
+            world.push(self.link, self.force, self.torque, duration_ns=duration,
+                       point=rotate(pose.orientation, lever))
+        return _PutModelBack(Moment(back.step, back.sim_ns, {name: back.models[name]}), self)
+
+
+@dataclass(frozen=True)
+class _PutModelBack:
+    """Undoes a push: states go back, the clock does not; its own inverse is the push again."""
+
+    moment: Moment
+    push: Push
+
+    def apply(self, world: Simulator) -> Operation:
+        """Put the model back."""
+        world.put_back(self.moment, clock=False)
+        return self.push
+
+
+@dataclass(frozen=True)
+class SetJoints:
+    """Joint axes (scoped names) go to positions, rad or m."""
+
+    positions: Dict[str, float]
+
+    def apply(self, world: Simulator) -> Operation:
+        """Set them, at rest."""
+        back = {name: world.joint_state(name)[0] for name in self.positions}
+        world.set_joints(self.positions)
+        return SetJoints(back)
+
+
+@dataclass(frozen=True)
+class Drive:
+    """An effort (N m or N) on a joint axis, until another comes; 0 lets go."""
+
+    joint: str
+    effort: float
+    before: float = 0.0
+
+    def apply(self, world: Simulator) -> Operation:
+        """Replace the effort."""
+        world.clear_drives(self.joint)
+        if self.effort:
+            world.drive(self.joint, self.effort)
+        return Drive(self.joint, self.before, self.effort)
