@@ -19,7 +19,8 @@ MOMENT = MASS * SIZE * SIZE / 6.0
 
 OFF_CENTRE = ('<robot name="r"><link name="body">'
               '<inertial><origin xyz="0.5 0 0"/><mass value="1"/>'
-              '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>')
+              '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+              '</robot>')
 
 WHEEL = ('<robot name="r"><link name="world"/>'
          '<link name="wheel"><inertial><mass value="1"/>'
