@@ -42,7 +42,15 @@ export function createActions({store, connection}) {
     open: (path, options = {}) =>
       path ? ask('open', {path, ...options}, {quiet: true}) : dialog('open'),
     /** Saves to the file of the world; asks for a name the first time. */
-    save: () => store.history.file ? ask('save') : actions.saveAs(),
+    async save() {
+      if (!store.history.file) return actions.saveAs();
+      const outcome = await ask('save', {}, {quiet: true});
+      // A world that was launched from a file is not written over without a word.
+      if (outcome.issues.some(({code}) => code === 'path-needed')) return actions.saveAs();
+      outcome.issues.forEach((issue) => store.addIssue(issue));
+      if (outcome.ok) note(`Saved ${outcome.value.path}`);
+      return outcome;
+    },
     saveAs: (path, options = {}) =>
       path ? ask('save', {path, ...options}, {quiet: true}) : dialog('saveAs'),
     folders: (path) => ask('folders', path ? {path} : {}),
@@ -236,6 +244,10 @@ export function createActions({store, connection}) {
     joints: () => dialog('joints'),
     building: () => dialog('building'),
     togglePanels: () => dialog('togglePanels'),
+    find: () => dialog('find'),
+    renameSelected: () => dialog('rename'),
+    nextRegion: () => dialog('nextRegion'),
+    previousRegion: () => dialog('previousRegion'),
     fullScreen() {
       if (document.fullscreenElement) return document.exitFullscreen();
       return document.documentElement.requestFullscreen();

@@ -16,6 +16,8 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Ctrl+C', title: 'Copy', group: 'Edit', action: 'copy'},
   {keys: 'Ctrl+V', title: 'Paste', group: 'Edit', action: 'paste'},
   {keys: 'Ctrl+A', title: 'Select all models', group: 'Edit', action: 'selectAll'},
+  {keys: 'Ctrl+F', title: 'Find a model or light', group: 'Edit', action: 'find'},
+  {keys: 'F2', title: 'Rename', group: 'Edit', action: 'renameSelected'},
   {keys: 'Delete', title: 'Delete what is selected', group: 'Edit', action: 'remove'},
   {keys: 'Ctrl+Shift+R', title: 'Reset model poses', group: 'Edit', action: 'resetPoses'},
   {keys: 'Ctrl+R', title: 'Reset world', group: 'Edit', action: 'resetWorld'},
@@ -40,6 +42,9 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Ctrl+D', title: 'Log data', group: 'Window', action: 'logs'},
   {keys: 'Ctrl+P', title: 'Plot', group: 'Window', action: 'plot'},
   {keys: 'Ctrl+H', title: 'Show or hide the panels', group: 'Window', action: 'togglePanels'},
+  {keys: 'F6', title: 'Next part of the window', group: 'Window', action: 'nextRegion'},
+  {keys: 'Shift+F6', title: 'Part of the window before', group: 'Window',
+    action: 'previousRegion'},
   {keys: 'F11', title: 'Full screen', group: 'Window', action: 'fullScreen'},
   {keys: 'F1', title: 'This chart', group: 'Help', action: 'hotkeys'},
 ]);

@@ -47,9 +47,9 @@ export function mountPanels(document, parts) {
   });
   mountMenuBar(element('menubar'), menus(page));
   mountToolBar(element('toolbar'), page);
-  mountTabs(element('left'), page);
+  const tabs = mountTabs(element('left'), page);
   new TimeBar(element('timebar'), page);
-  const windows = new Windows(page);
+  const windows = new Windows(page, tabs);
   page.store.addEventListener('dialog', (event) => windows.show(event.detail));
   page.store.addEventListener('contextmenu', ({detail: {name, x, y}}) => {
     const items = contextMenu(page, name);
@@ -75,7 +75,7 @@ function mountTabs(element, page) {
   }));
   const bar = h('div', {class: 'tabs', role: 'tablist', 'aria-label': 'Left panel'}, ...buttons);
   fill(element, bar, ...panels);
-  new WorldTab(panels[0], page);
+  const world = new WorldTab(panels[0], page);
   const insert = new InsertTab(panels[1], page);
   mountLayers(panels[2], page);
   const show = (at) => {
@@ -89,13 +89,34 @@ function mountTabs(element, page) {
     key: 'left-width', initial: 292, min: 200, max: 560, from: 'left', within: document.getElementById('app'),
     apply: (size) => document.getElementById('app').style.setProperty('--left-width', `${size}px`),
   });
+  return {world, show: (name) => show(TABS.findIndex((tab) => tab[0] === name))};
+}
+
+/** The parts of the window that F6 visits, each with what takes the focus there. */
+const REGIONS = ['#menubar [tabindex="0"]', '#toolbar [tabindex="0"]', '.world-tree',
+  '.properties input, .properties select', '#view', '#dock input', '#right [tabindex="0"]',
+  '#timebar [tabindex="0"]'];
+
+/** Moves the focus to the next part of the window that is there. */
+function goToRegion(step) {
+  const shown = REGIONS.map((selector) => [...document.querySelectorAll(selector)]
+    .find((element) => element.offsetParent !== null)).filter(Boolean);
+  const parts = shown.map((element) => element.closest(
+    '#menubar, #toolbar, .world-tree, .properties, #view, #dock, #right, #timebar'));
+  const at = parts.findIndex((part) => part.contains(document.activeElement));
+  const from = at < 0 && step < 0 ? 0 : at;
+  shown[(from + step + shown.length) % shown.length].focus();
 }
 
 /** The dialogs and docked windows, by the names that actions ask for them. */
 class Windows {
-  /** @param {Page} page */
-  constructor(page) {
+  /**
+   * @param {Page} page
+   * @param {ReturnType<typeof mountTabs>} tabs
+   */
+  constructor(page, tabs) {
     this.page = page;
+    this.tabs = tabs;
     this.joints = new JointsPanel(document.getElementById('right'), page);
     splitter(document.getElementById('right-splitter'), {
       key: 'right-width', initial: 300, min: 220, max: 560, from: 'right', within: document.getElementById('app'),
@@ -122,12 +143,22 @@ class Windows {
       joints: () => this.#toggleJoints(),
       building: () => this.#toggleBuilding(),
       togglePanels: () => document.body.classList.toggle('bare'),
+      find: () => this.#inWorld((world) => world.find()),
+      rename: () => this.#inWorld((world) => world.rename()),
+      nextRegion: () => goToRegion(1),
+      previousRegion: () => goToRegion(-1),
     }[detail.name];
     if (!run || this.#open.has(detail.name)) return;
     // A key that repeats must not stack the same window.
     this.#open.set(detail.name, true);
     Promise.resolve(run()).catch((fault) => this.page.notices.fault(fault))
       .finally(() => this.#open.delete(detail.name));
+  }
+
+  #inWorld(run) {
+    document.body.classList.remove('bare');
+    this.tabs.show('world');
+    run(this.tabs.world);
   }
 
   #target() {

@@ -40,7 +40,9 @@ export class Plots {
       h('div', {class: 'plot-palette'}, this.#search, this.#list), this.#canvases));
     roving(this.#list, '[role=option]', {vertical: true, wrap: false});
     this.#draw = onceAFrame(() => this.#plots.forEach((plot) => plot.draw(this.span)));
-    const palette = onceAFrame(() => this.#showPalette());
+    const palette = onceAFrame(() => {
+      if (!element.hidden) this.#showPalette();
+    });
     page.store.addEventListener('watch', (event) => this.#take(event.detail));
     for (const event of ['document', 'entity', 'selection']) page.store.addEventListener(event, palette);
     new ResizeObserver(this.#draw).observe(this.#canvases);

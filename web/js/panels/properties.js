@@ -2,6 +2,7 @@
  * The property panel under the tree. A change goes to the server; what the panel then shows is what
  * came back.
  */
+import {compose, inverse} from '../pose.js';
 import {fill, h, onceAFrame, remembered} from './dom.js';
 import {faultText} from './dialog.js';
 import {icon} from './icons.js';
@@ -57,9 +58,15 @@ export class Properties {
     }
   }
 
+  /** Poses are what they are now: models in the world, links in their model. */
   #value(entity, field) {
     if (field.path === 'pose' && this.row.kind === 'model') {
       return this.store.worldPose(entity.name) ?? entity.pose;
+    }
+    if (field.path === 'pose' && this.row.kind === 'link' && field.local === 'pose' &&
+        entity.inertial) {
+      const [model, link] = [this.row.model, this.row.select].map((name) => this.store.worldPose(name));
+      return model && link ? compose(inverse(model), link) : entity.pose;
     }
     return valueAt(entity, field.local);
   }

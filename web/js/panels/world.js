@@ -55,9 +55,13 @@ export class WorldTab {
   }
 
   #selectedRows() {
-    const ids = this.store.selection.map((name) => rowOf(this.store.document, name)?.id);
-    if (!ids.includes(this.#row?.id) && this.#row) ids.push(this.#row.id);
-    return new Set(ids.filter(Boolean));
+    const {document, selection} = this.store;
+    if (!document) return new Set();
+    const models = new Set(document.models.map(({name}) => name));
+    const lights = new Set(document.lights.map(({name}) => name));
+    const idOf = (name) => (models.has(name) ? `model:${name}`
+      : lights.has(name) ? `light:${name}` : `link:${name}`);
+    return new Set([...selection.map(idOf), ...(this.#row ? [this.#row.id] : [])]);
   }
 
   #choose(row, event) {
@@ -121,6 +125,11 @@ export class WorldTab {
   find() {
     this.#filter.focus();
     this.#filter.select();
+  }
+
+  /** Puts the focus into the name of what is selected. */
+  rename() {
+    this.properties.element.querySelector('[data-path="name"] input:not([readonly])')?.focus();
   }
 }
 

@@ -127,7 +127,7 @@ async function saveTo(request, path) {
   try {
     return (await request('save', {path, overwrite: false})).path;
   } catch (fault) {
-    if (!fault.issues?.some((issue) => issue.code === 'file-exists')) throw fault;
+    if (!fault.issues?.some((issue) => issue.code === 'exists')) throw fault;
   }
   const overwrite = await ask('Overwrite the file?', `${path} exists already.`, [
     {title: 'Cancel'}, {title: 'Overwrite', value: true, primary: true}]);
@@ -190,11 +190,20 @@ export async function mayDiscard({store, request}) {
       {title: 'Save', value: 'save', primary: true}]);
   if (choice === 'discard') return true;
   if (choice !== 'save') return false;
-  if (store.history.file) {
-    await request('save', {});
-    return true;
+  return saved({store, request});
+}
+
+/** Saves to the world's own file, or asks for a name where it has none that may be replaced. */
+async function saved(page) {
+  try {
+    if (page.store.history.file) {
+      await page.request('save', {});
+      return true;
+    }
+  } catch (fault) {
+    if (!fault.issues?.some(({code}) => code === 'path-needed')) throw fault;
   }
-  return Boolean(await saveAsDialog({store, request}));
+  return Boolean(await saveAsDialog(page));
 }
 
 /** An empty world in place of this one. */
