@@ -96,6 +96,15 @@ def test_it_reads_a_joint_called_as_a_link_and_friction_without_bound(faults, tm
     assert faults(path) == ""
 
 
+def test_it_reads_joints_between_models(faults, tmp_path):
+    world, _ = world_of('<model name="a"><link name="l"/></model><model name="b"><link name="l"/>'
+                        '<joint name="j" type="fixed"><parent>a::l</parent><child>l</child></joint>'
+                        "</model>")
+    path = tmp_path / "between.world"
+    path.write_bytes(write_world(world))
+    assert b'<joint name="b::j"' in path.read_bytes() and faults(path) == ""
+
+
 def test_it_reads_what_was_kept_and_the_newer_shapes(faults, tmp_path):
     shapes = ("<capsule><radius>0.1</radius><length>1</length></capsule>",
               "<ellipsoid><radii>1 2 3</radii></ellipsoid>",

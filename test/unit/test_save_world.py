@@ -2,15 +2,17 @@
 from __future__ import annotations
 
 import errno
+import math
 import os
 import stat
+from dataclasses import replace
 
 import pytest
 from lxml import etree
 
 from my_simulations.description.compare import differences
 from my_simulations.description.flatten import flattened
-from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model, PluginSpec
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.unflatten import unflattened
 from my_simulations.description.world import Light, World
@@ -130,11 +132,48 @@ def test_nested_models_come_back_nested(running, tmp_path):
                        flattened(cabinet("spare")).joints) == []
 
 
+@pytest.mark.parametrize("later", [False, True])
+def test_nested_models_keep_what_is_theirs_when_they_come_later_and_when_renamed(
+        running, tmp_path, later):
+    whole = cabinet("cabinet")
+    whole.models[0].plugins.append(PluginSpec("p", "libp.so", '<plugin name="p" filename="l"/>'))
+    sim = running() if later else running(whole)
+    if later:
+        sim.spawn(whole, AWAY)
+    sim.edit_model("cabinet", replace(sim.model("cabinet"), name="cupboard"))
+    copy = load(save_world(sim, "w.world", roots=[str(tmp_path)])).models[0]
+    assert copy.name == "cupboard" and copy.models[0].plugins[0].name == "p"
+    assert differences(copy.models[0].pose, whole.models[0].pose, 1e-12) == []
+
+
+def test_joints_between_models_and_moved_lights_are_saved(running, tmp_path):
+    tie = Joint("tie", "ball", "a::link", "b::link", Pose((0, 0, 0.5)))
+    sim = running(world=World("lab", models=[box("a"), box("b"), box("c")], joints=[
+        tie, replace(tie, name="gone", parent="c::link")], lights=[Light("sun")]))
+    sim.set_light("sun", Light("sun", pose=AWAY))
+    sim.delete("c")
+    copy = load(save_world(sim, "w.world", roots=[str(tmp_path)]))
+    assert copy.joints == [tie]
+    assert differences(copy.lights[0].pose, AWAY, 1e-12) == []
+
+
+@pytest.mark.parametrize("pitch", [math.pi / 2, -math.pi / 2, math.pi / 2 - 1e-9, 1.5707963])
+def test_a_state_near_a_pitch_of_90_degrees_comes_back(running, tmp_path, pitch):
+    sim = running(arm("arm"))
+    pose = Pose((1, 2, 3), quat_from_rpy(0.7, pitch, -2.0))
+    sim.set_model_state("arm", pose, Twist())
+    path = save_world(sim, "w.world", roots=[str(tmp_path)])
+    again = running(world=apply_state(load(path)))
+    assert differences(present_world(again).models[0].pose, pose, 1e-8) == []
+    assert differences(load(path).models[0].pose, pose, 1e-8) == []
+
+
 def test_unflattening_undoes_flattening():
     model = cabinet("c")
     model.models[0].models.append(box("inner", pose=Pose((0.1, 0.2, 0.3))))
-    assert differences(unflattened(flattened(model), model), model) == []
-    assert differences(flattened(unflattened(flattened(model))), flattened(model), 1e-15) == []
+    assert differences(unflattened(flattened(model)), model) == []
+    bare = replace(flattened(model), guide=None)
+    assert differences(flattened(unflattened(bare)), flattened(model), 1e-15) == []
 
 
 def test_a_file_is_replaced_only_when_asked(running, tmp_path):

@@ -6,6 +6,8 @@ from reading import INERTIAL, errors, model_of, sdf, warnings, world_of
 
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Mimic
+from my_simulations.formats.load import read_world_text
+from my_simulations.formats.sdf_write import write_world
 from my_simulations.resources.resolver import Resolver
 
 
@@ -108,8 +110,8 @@ def test_a_joint_between_models_of_a_world_is_kept_by_the_world():
     assert [model.joints for model in world.models] == [[], []]
     assert [(one.name, one.parent, one.child) for one in world.joints] == [
         ("b::j", "a::l", "b::l")]
-    assert world.models[1].extra[0].startswith('<joint name="j"')  # to be written back
-    assert errors(issues) == [] and warnings(issues) == ["joint-between-models"]
+    assert world.models[1].extra == []
+    assert errors(issues) == [] and warnings(issues) == []
 
 
 def test_a_joint_of_the_world_is_kept_by_it():
@@ -117,10 +119,58 @@ def test_a_joint_of_the_world_is_kept_by_it():
         f'<model name="a">{link("l")}</model><model name="b">{link("l")}</model>'
         + joint("j", "a::l", "b::l"), "1.10")
     assert [(one.name, one.parent, one.child) for one in world.joints] == [("j", "a::l", "b::l")]
-    assert errors(issues) == [] and world.extra[0].startswith('<joint name="j"')
+    assert errors(issues) == [] and world.extra == []
     _, issues = world_of(f'<model name="a">{link("l")}</model>' + joint("j", "a::l", "c::l"),
                          "1.10")
     assert errors(issues) == ["joint-link-unknown"]
+
+
+TURNED = "0 0 1.5707963267948966"
+
+
+def two_models(joints, inside="", version="1.7"):
+    """Models `a` and `b`, `b` at x = 5 and turned by a quarter, its link at y = 1."""
+    world, issues = world_of(
+        f'<model name="a"><pose>1 0 0 0 0 0</pose>{link("l")}</model>'
+        f'<model name="b"><pose>5 0 0 {TURNED}</pose>{link("l", "0 1 0 0 0 0")}{inside}</model>'
+        + joints, version)
+    assert errors(issues) == []
+    return world
+
+
+@pytest.mark.parametrize("xyz, version, expected", [
+    ('<xyz>1 0 0</xyz>', "1.7", (1, 0, 0)),
+    ('<xyz expressed_in="__model__">1 0 0</xyz>', "1.7", (1, 0, 0)),
+    ('<xyz expressed_in="a::l">2 0 0</xyz>', "1.7", (0, -1, 0)),
+    ('<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>', "1.6", (1, 0, 0)),
+])
+def test_the_axis_of_a_joint_between_models_is_brought_to_its_child(xyz, version, expected):
+    world = two_models("", '<joint name="j" type="revolute"><parent>a::l</parent><child>l</child>'
+                       f"<axis>{xyz}</axis></joint>", version)
+    (one,) = world.joints
+    assert one.axis.xyz == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("ends, at, position, axis", [
+    (("a::l", "b::l"), "0 0 2 0 0 0", (0, 0, 2), (1, 0, 0)),
+    (("a::l", "b::l"), '" relative_to="world">0 0 2 0 0 0', (0, 4, 2), (1, 0, 0)),
+    (("b::l", "world"), "0 0 2 0 0 0", (0, 4, 2), (-1, 0, 0)),
+])
+def test_a_joint_of_the_world_stands_in_the_frame_of_its_child(ends, at, position, axis):
+    pose = f'<pose{at[1:]}</pose>' if at[0] == '"' else f"<pose>{at}</pose>"
+    world = two_models(f'<joint name="j" type="revolute"><parent>{ends[0]}</parent>'
+                       f"<child>{ends[1]}</child>{pose}<axis><xyz>1 0 0</xyz></axis></joint>")
+    (one,) = world.joints
+    assert one.child == "b::l"
+    assert one.pose.position == pytest.approx(position, abs=1e-9)
+    assert one.axis.xyz == pytest.approx(axis)
+
+
+def test_joints_between_models_are_written_as_the_worlds_own():
+    world = two_models(joint("k", "world", "a::l"), joint("j", "a::l", "l"))
+    copy, issues = read_world_text(write_world(world), Resolver())
+    assert errors(issues) == [] and copy.joints == world.joints
+    assert {one.name for one in copy.joints} == {"k", "b::j"}
 
 
 def test_a_joint_to_no_link_of_the_world_leaves_its_model_out():

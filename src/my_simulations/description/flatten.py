@@ -13,7 +13,10 @@ from .model import WORLD, Joint, Link, Model
 
 
 def flattened(model: Model) -> Model:
-    """The same model without nested ones; poses of their links in the outer model's frame."""
+    """The same model without nested ones; poses of their links in the outer model's frame.
+
+    Its `guide` is the model itself, for the way back.
+    """
     if not model.models:
         return model
     links: List[Link] = list(model.links)
@@ -22,7 +25,7 @@ def flattened(model: Model) -> Model:
         inner = flattened(nested)
         links += [_moved(link, nested.name, nested.pose) for link in inner.links]
         joints += [_scoped(joint, nested.name) for joint in inner.joints]
-    return replace(model, links=links, joints=joints, models=[])
+    return replace(model, links=links, joints=joints, models=[], guide=model)
 
 
 def _moved(link: Link, scope: str, pose: Pose) -> Link:

@@ -118,7 +118,8 @@ class Model:
 
     `canonical_link` is "" for the first link. `models` are nested ones; `flattened` in
     `description.flatten` gives the same model with the nested links under scoped names.
-    `extra` holds the XML of children that are kept but not simulated.
+    `extra` holds the XML of children that are kept but not simulated. `guide` is, in one that was
+    flattened, the model as it was.
     """
 
     name: str
@@ -133,3 +134,4 @@ class Model:
     plugins: List[PluginSpec] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
     uri: str = ""
+    guide: Optional["Model"] = field(default=None, compare=False, repr=False)

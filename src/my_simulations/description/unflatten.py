@@ -10,17 +10,18 @@ from .model import WORLD, Joint, Link, Model
 _SCOPE = "::"
 
 
-def unflattened(flat: Model, guide: Optional[Model] = None) -> Model:
+def unflattened(flat: Model) -> Model:
     """The model with a nested one for every scope in its links' names.
 
     Args:
-        flat: as `flattened` makes it; what it says of its links and joints counts.
-        guide: the model before it was flattened, for the poses, plugins and kept XML of the nested
-            ones; without it they lie at the origin of the outer model.
+        flat: as `flattened` makes it. What it says of its links and joints counts; its guide has
+            the poses, plugins and kept XML of the nested ones. Without one they lie at the origin
+            of the outer model.
     """
     if not any(_SCOPE in link.name for link in flat.links):
         return flat
-    return _gathered(flat, flat.links, flat.joints, guide or Model(""), IDENTITY)
+    whole = _gathered(flat, flat.links, flat.joints, flat.guide or Model(""), IDENTITY)
+    return replace(whole, guide=None)
 
 
 def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guide: Model,

@@ -171,10 +171,7 @@ class _ModelReader:
                          f"{inner.name}::{body}" if body else "")
         if placement.relative_to:
             self._links.given_in.append((inner, inner.name, ""))
-        if placement.frames is not None:
-            self._frames.include(inner.name, placement.frames, element)
-        else:
-            _add_inner_frames(self._frames, inner, inner.name, element)
+        add_frames_inside(self._frames, placement, element)
         return [one.moved_out(inner.name) for one in placement.pending]
 
     def _merge(self, placement: Placement, element: Any, model: Model) -> None:
@@ -302,6 +299,15 @@ class _ModelReader:
             )
 
 
+def add_frames_inside(frames: FrameTree, placement: Placement, element: Any) -> None:
+    """Declare what is inside a model that is declared itself, under scoped names."""
+    model = placement.model
+    if placement.frames is not None:
+        frames.include(model.name, placement.frames, element)
+    else:
+        _add_inner_frames(frames, model, model.name, element)
+
+
 def _add_inner_frames(frames: FrameTree, model: Model, scope: str, element: Any) -> None:
     for link in model.links:
         name = f"{scope}::{link.name}"
@@ -312,4 +318,5 @@ def _add_inner_frames(frames: FrameTree, model: Model, scope: str, element: Any)
         _add_inner_frames(frames, nested, inner, element)
 
 
-__all__ = ["Changes", "Placement", "read_model", "read_plugin", "relative_to"]
+__all__ = ["Changes", "Placement", "add_frames_inside", "read_model", "read_plugin",
+           "relative_to"]

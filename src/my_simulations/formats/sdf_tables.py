@@ -276,7 +276,7 @@ WORLD = Table("world", World, {
     "physics": Part(), "light": Part(use=SHOWN), "model": Part(), "include": Part(),
     "plugin": Part(use=KEPT),
     "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
-    "state": Part(kept=True), "joint": Part("1.10", use=KEPT, told=True, kept=True),
+    "state": Part(kept=True), "joint": Part("1.10"),
     "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),
     "gui": Part(use=SHOWN, kept=True), "scene": Part(use=SHOWN, kept=True),
     "actor": Part(use=KEPT, told=True, kept=True),

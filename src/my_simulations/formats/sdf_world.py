@@ -4,16 +4,22 @@ from __future__ import annotations
 import copy
 from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
-from ..description.model import WORLD as WORLD_LINK
 from ..description.model import Link, Model
 from ..description.validate import link_names
 from ..description.world import Actor, Light, Physics, World
 from ..geometry import is_finite
+from .sdf_between import Between
 from .sdf_frames import FrameFault, FrameTree
 from .sdf_include import read_include
 from .sdf_joint import Pending, read_joint
 from .sdf_light import LightPlacement, read_light
-from .sdf_model import Placement, read_model, read_plugin, relative_to
+from .sdf_model import (
+    Placement,
+    add_frames_inside,
+    read_model,
+    read_plugin,
+    relative_to,
+)
 from .sdf_population import read_population
 from .sdf_scene import read_surroundings
 from .sdf_state import read_state
@@ -116,47 +122,27 @@ class _Entities:
             attached = element.get("attached_to") or ""
             self._frames.add(probe.name, probe.pose, relative_to(inside) or attached, element,
                              attached)
-        if self._waiting or self._found.get("frame"):
+        if self._waiting or self._pending or self._found.get("frame") or self._found.get("joint"):
             for placement, element in self._inner:
-                if placement.frames is not None:
-                    self._frames.include(placement.model.name, placement.frames, element)
+                add_frames_inside(self._frames, placement, element)
 
     def _connect(self) -> None:
         """Joints between models: the world keeps those whose links there are."""
+        joints = self._found.get("joint", ())  # of SDF 1.10
+        if not (self._pending or joints):
+            return
         links = {f"{model.name}::{name}" for model in self._world.models
-                 for name in link_names(model)} if self._pending or (
-                     self._found.get("joint")) else set()
-        for element in self._found.get("joint", ()):  # of SDF 1.10
-            joint, _ = read_joint(element, self._source)
-            if {joint.parent, joint.child} <= links | {WORLD_LINK}:
-                self._world.joints.append(joint)
-            else:
-                self._source.report(Level.ERROR, "joint-link-unknown", f"joint {joint.name!r}"
-                                    f" connects {joint.parent!r} with {joint.child!r}, which are"
-                                    " not both in the world", element)
+                 for name in link_names(model)}
+        between = Between(links, self._frames, self._source)
+        for element in joints:
+            one = Pending(*read_joint(element, self._source), element)
+            if between.connect(one):
+                self._world.joints.append(one.joint)
         for one, model in self._pending:
-            joint = one.joint
-            ends = [self._link(name, one.scope, links) for name in (joint.parent, joint.child)]
-            if None in ends:
-                self._source.report(Level.ERROR, "joint-link-unknown", f"joint {joint.name!r}"
-                                    f" connects {joint.parent!r} with {joint.child!r}, which are"
-                                    " not both in the world; its model is left out", one.element)
-                if model in self._world.models:
-                    self._world.models.remove(model)
-                continue
-            joint.parent, joint.child = ends[0] or "", ends[1] or ""
-            self._world.joints.append(joint)
-            if one.scope == f"{model.name}::":
-                model.extra.append(to_xml(one.element))
-            self._source.warn("joint-between-models", f"joint {joint.name!r} connects two models;"
-                              " it is kept, but holds nothing here", one.element)
-
-    @staticmethod
-    def _link(name: str, scope: str, links: Set[str]) -> Optional[str]:
-        for candidate in (f"{scope}{name}", name):
-            if candidate in links or candidate == WORLD_LINK:
-                return candidate
-        return None
+            if between.connect(one):
+                self._world.joints.append(one.joint)
+            elif model in self._world.models:
+                self._world.models.remove(model)
 
     def _place(self) -> None:
         for entity, element in self._waiting:

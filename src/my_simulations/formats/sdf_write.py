@@ -103,6 +103,7 @@ class _Writer:
             "light": lambda at: _each(self.light, at, world.lights),
             "model": lambda at: _each(self.model_or_include, at, world.models),
             "plugin": lambda at: _plugins(at, world.plugins, WORLD),
+            "joint": lambda at: _each(self.joint, at, world.joints),
         }, extra, required=("gravity",))
         if state is not None:
             write_state(element, state)

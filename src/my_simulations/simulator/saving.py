@@ -17,7 +17,6 @@ from ..engine.rows import axis_rows
 from ..errors import CommandError, InputError
 from ..formats.load import read_file
 from ..formats.sdf_write import write_world
-from ..geometry import Pose
 from ..resources.own import own_directory
 from ..resources.resolver import NotFound, Resolver
 from .registry import Entity
@@ -34,18 +33,15 @@ def present_world(simulator: Simulator) -> World:
     """
     entities, snapshot = simulator.moment()
     world = simulator.world
-    guides = {model.name: model for model in world.models}
-    models = [_placed(entity, entity.state(snapshot)[0], guides) for entity in entities]
+    models = [replace(unflattened(entity.model), pose=entity.state(snapshot)[0])
+              for entity in entities]
     return replace(
-        world, models=models, physics=simulator.physics, gravity=simulator.gravity,
+        world, models=models, lights=simulator.lights(),
+        joints=simulator.joints_between_models, physics=simulator.physics,
+        gravity=simulator.gravity,
         state=_state(world, entities, snapshot), initial={}, initial_ns=0,
         extra=[xml for xml in world.extra if not xml.lstrip().startswith("<state")],
     )
-
-
-def _placed(entity: Entity, pose: Pose, guides: Dict[str, Model]) -> Model:
-    model = unflattened(entity.model, guides.get(entity.model.name))
-    return replace(model, pose=pose)
 
 
 def _state(world: World, entities: Sequence[Entity], snapshot: Snapshot) -> SavedState:
