@@ -274,3 +274,46 @@ def test_check_that_takes_too_long_is_ended_with_all_it_started(clone, tmp_path)
     done = shell(clone, script, tmp_path / "home")
     assert done.stdout.splitlines()[-1] == "status 124 left 0", done.stdout + done.stderr
     assert "not done after 1 s" in (tmp_path / "home" / "slow.log").read_text()
+
+
+PAGE = ("LOGS=$HOME/logs; STEPS=2; BUILD_WORKSPACE=$HOME/ws\nprepare_page\n")
+
+
+@pytest.fixture
+def page_home(clone, tmp_path):
+    """A home with an npm that only notes how it was called, and a clone with a page."""
+    (clone / "web").mkdir()
+    (clone / "web" / "package.json").write_text("{}")
+    (clone / "web" / "package-lock.json").write_text("{}")
+    home = tmp_path / "home"
+    (home / "bin").mkdir(parents=True)
+    npm = home / "bin" / "npm"
+    npm.write_text("#!/bin/bash\necho \"$@\" >>$HOME/calls\n[ ! -e $HOME/offline ]\n")
+    npm.chmod(0o755)
+    return home
+
+
+def test_page_packages_are_fetched_into_the_workspace_once(clone, page_home):
+    for expected in ("installed", "all there"):
+        done = shell(clone, PAGE, page_home)
+        assert done.returncode == 0, done.stderr
+        assert expected in done.stdout
+    calls = (page_home / "calls").read_text().splitlines()
+    assert len(calls) == 1
+    assert calls[0].startswith(f"ci --prefix {page_home}/ws/.my_simulations ")
+
+
+def test_page_packages_are_fetched_again_for_another_lock_file(clone, page_home):
+    shell(clone, PAGE, page_home)
+    (clone / "web" / "package-lock.json").write_text('{"lockfileVersion": 3}')
+    assert "installed" in shell(clone, PAGE, page_home).stdout
+    assert len((page_home / "calls").read_text().splitlines()) == 2
+
+
+def test_page_packages_that_do_not_come_stop_the_set_up_and_are_asked_for_again(clone, page_home):
+    (page_home / "offline").touch()
+    done = shell(clone, PAGE, page_home)
+    assert done.returncode == 1
+    assert "Is there a network?" in done.stderr
+    (page_home / "offline").unlink()
+    assert "installed" in shell(clone, PAGE, page_home).stdout

@@ -88,6 +88,22 @@ pytest_folder() {
     $(($(attribute errors "$head") + $(attribute failures "$head"))) "$status"
 }
 
+# node_tests NAME SECONDS FILE...: tests of the page's modules, which need no browser.
+node_tests() {
+  local name="$1" limit="$2" status=0
+  shift 2
+  begin "$name"
+  attempt "${name//\//-}" "$limit" node --test --test-reporter=tap "$@" || status=$?
+  judge "$name" "$(tap tests)" "$(tap fail)" "$status"
+}
+
+# tap WORD: the number behind WORD at the end of what node's test runner wrote, 0 without one.
+tap() {
+  local number
+  number=$(sed -n "s/^# $1 \([0-9]*\)$/\1/p" "$LOG" | tail -n 1)
+  printf '%s' "${number:-0}"
+}
+
 # attribute NAME ELEMENT: a number in an XML start tag, 0 where it is missing.
 attribute() {
   local number

@@ -7,7 +7,7 @@ PYTHON=/usr/bin/python3
 WITH_TEST_TOOLS=0
 USE_COMPANIONS="${MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS:-0}"
 OVERLAY=0
-SET_UP_STEPS=5
+SET_UP_STEPS=6
 
 # source_setup FILE: catkin's setup files use unset variables and failing tests.
 source_setup() {
@@ -24,6 +24,7 @@ set_up() {
   prepare_python "$CLONE/requirements.txt"
   [ "$WITH_TEST_TOOLS" = 0 ] || prepare_python "$CLONE/requirements-test.txt"
   finish "$PYTHON_REMARK"
+  prepare_page
   build_workspace
 }
 
@@ -83,6 +84,8 @@ install_system_packages() {
     lists+=("$CLONE/tools/apt-packages-ros.txt")
   fi
   [ "$WITH_TEST_TOOLS" = 0 ] || lists+=("$CLONE/tools/apt-packages-test.txt")
+  # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
+  command -v npm >/dev/null || lists+=("$CLONE/tools/apt-packages-page.txt")
   mapfile -t wanted < <(for list in "${lists[@]}"; do packages_of "$list"; done)
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   if [ "${#missing[@]}" -gt 0 ]; then
@@ -142,6 +145,25 @@ prepare_python() {
   logged "pip-$name" "Is there a network? Then run $COMMAND again." \
     "$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check -r "$1"
   printf '%s' "$stamp" >"$stamped"
+}
+
+# prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor
+# finds it.
+prepare_page() {
+  begin "Packages of the editor's page"
+  local place="$BUILD_WORKSPACE/.my_simulations" stamp
+  stamp=$(sha256sum <"$CLONE/web/package-lock.json")
+  if [ "$(cat "$place/.page" 2>/dev/null || true)" = "$stamp" ]; then
+    finish "all there"
+    return
+  fi
+  mkdir -p -- "$place"
+  rm -f -- "$place/.page"
+  cp -- "$CLONE/web/package.json" "$CLONE/web/package-lock.json" "$place/"
+  logged npm "Is there a network? Then run $COMMAND again." \
+    npm ci --prefix "$place" --ignore-scripts --no-audit --no-fund
+  printf '%s' "$stamp" >"$place/.page"
+  finish installed
 }
 
 # build_inputs: a text that changes when a new catkin_make is due.
