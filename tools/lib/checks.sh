@@ -93,7 +93,8 @@ node_tests() {
   local name="$1" limit="$2" status=0
   shift 2
   begin "$name"
-  attempt "${name//\//-}" "$limit" node --test --test-reporter=tap "$@" || status=$?
+  attempt "${name//\//-}" "$limit" env NODE_OPTIONS="--import=file://$CLONE/test/page/node18.mjs" \
+    node --test --test-reporter=tap "$@" || status=$?
   judge "$name" "$(tap tests)" "$(tap fail)" "$status"
 }
 

@@ -40,6 +40,7 @@ const PROTOCOL_VERSION = 1;
 export class Connection extends EventTarget {
   #url;
   #WebSocket;
+  #setTimeout;
   #socket = null;
   #nextId = 1;
   #waiting = new Map();
@@ -50,12 +51,13 @@ export class Connection extends EventTarget {
 
   /**
    * @param {string} url  of the web socket
-   * @param {{WebSocket?: any}} [options]  another implementation, for tests
+   * @param {{WebSocket?: any, setTimeout?: any}} [options]  other implementations, for tests
    */
   constructor(url, options = {}) {
     super();
     this.#url = url;
     this.#WebSocket = options.WebSocket ?? globalThis.WebSocket;
+    this.#setTimeout = options.setTimeout ?? globalThis.setTimeout.bind(globalThis);
   }
 
   /** True between the answered greeting and the loss of the line. */
@@ -153,6 +155,8 @@ export class Connection extends EventTarget {
       this.connected = false;
       this.dispatchEvent(new CustomEvent('close'));
     }
-    if (!this.#closed) this.#timer = setTimeout(() => this.#connect(), backOff(this.#attempt++));
+    if (!this.#closed) {
+      this.#timer = this.#setTimeout(() => this.#connect(), backOff(this.#attempt++));
+    }
   }
 }

@@ -1,0 +1,115 @@
+import assert from 'node:assert/strict';
+import {once} from 'node:events';
+import {test} from 'node:test';
+import {backOff, Connection, webSocketUrl} from '../../web/js/connection.js';
+
+/** A web socket whose other end is the test. */
+class Socket {
+  static made = [];
+  readyState = 0;
+  bufferedAmount = 0;
+  sent = [];
+
+  constructor(url) {
+    this.url = url;
+    Socket.made.push(this);
+  }
+
+  send(text) {
+    const message = JSON.parse(text);
+    this.sent.push(message);
+    if (message.type === 'hello') {
+      this.push({type: 'reply', id: message.id, ok: true,
+        value: {session: 's1', version: 1, app: 'test'}});
+    }
+  }
+
+  push(message) { this.onmessage({data: JSON.stringify(message)}); }
+
+  accept() {
+    this.readyState = 1;
+    this.onopen();
+  }
+
+  drop() {
+    this.readyState = 3;
+    this.onclose();
+  }
+
+  close() { this.drop(); }
+}
+
+async function connected() {
+  Socket.made = [];
+  const timers = [];
+  const connection = new Connection('ws://here/ws',
+    {WebSocket: Socket, setTimeout: (what, wait) => timers.push({what, wait})});
+  connection.open();
+  const opened = once(connection, 'open');
+  Socket.made[0].accept();
+  await opened;
+  return {connection, socket: Socket.made[0], timers};
+}
+
+test('the page greets first, and is connected when it is answered', async () => {
+  const {connection, socket} = await connected();
+  assert.equal(socket.sent[0].type, 'hello');
+  assert.equal(connection.connected, true);
+});
+
+test('answers find their requests in any order', async () => {
+  const {connection, socket} = await connected();
+  const first = connection.request('step', {steps: 1});
+  const second = connection.request('play');
+  const [, {id: one}, {id: two}] = socket.sent;
+  socket.push({type: 'reply', id: two, ok: true, value: 'second'});
+  socket.push({type: 'reply', id: one, ok: false, issues: [{message: 'no', code: 'x'}]});
+  assert.equal(await second, 'second');
+  await assert.rejects(first, /no/);
+});
+
+test('what is asked without a line fails at once', async () => {
+  const connection = new Connection('ws://here/ws', {WebSocket: Socket});
+  await assert.rejects(connection.request('play'), /no connection/);
+});
+
+test('a lost line fails what waits, and is made again with the session', async () => {
+  const {connection, socket, timers} = await connected();
+  const waiting = connection.request('play');
+  const closed = once(connection, 'close');
+  socket.drop();
+  await closed;
+  await assert.rejects(waiting, /lost/);
+  assert.equal(connection.connected, false);
+  assert.equal(timers[0].wait, backOff(0));
+  timers[0].what();
+  const again = once(connection, 'open');
+  Socket.made[1].accept();
+  await again;
+  assert.equal(Socket.made[1].sent[0].session, 's1');
+});
+
+test('a line that was closed on purpose stays closed', async () => {
+  const {connection, timers} = await connected();
+  connection.close();
+  assert.equal(timers.length, 0);
+});
+
+test('drags are dropped on a congested line', async () => {
+  const {connection, socket} = await connected();
+  socket.bufferedAmount = 1e6;
+  connection.send('drag', {names: [], poses: []});
+  assert.equal(socket.sent.length, 1);
+  socket.bufferedAmount = 0;
+  connection.send('drag', {names: [], poses: []});
+  assert.equal(socket.sent.length, 2);
+});
+
+test('waiting doubles up to four seconds', () => {
+  assert.deepEqual([0, 1, 2, 9].map(backOff), [250, 500, 1000, 4000]);
+});
+
+test('the web socket is where the page is, and the token goes along', () => {
+  assert.equal(webSocketUrl(new URL('http://127.0.0.1:11346/')), 'ws://127.0.0.1:11346/ws');
+  assert.equal(webSocketUrl(new URL('https://lab:1/?token=a%26b')), 'wss://lab:1/ws?token=a%26b');
+});
