@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+"""Prints how fast the ROS interface is. Run it in a shell with the workspace, on a quiet machine.
+
+usage: ros_interface.py [ROW …]   rows: calls clients states spawns paused (default: all)
+
+Each service is called over a persistent connection, by a client in a process of its own. Nothing
+here fails on a slow machine.
+"""
+from __future__ import annotations
+
+import json
+import os
+import random
+import subprocess
+import sys
+import time
+from typing import Any, Callable, Dict, List, Tuple
+
+sys.path.insert(0, __file__.rsplit("/", 1)[0])
+import scenes
+from bench import EMPTY, Clock, Row, milliseconds
+from server import Server, master, wait
+
+READ_MS, WRITE_MS, SLOWEST_MS = 0.3, 1.5, 20.0
+CALLS = 300
+CLIENTS, CLIENT_SECONDS = 8, 30.0
+STATES_SECONDS = 10.0
+
+ARM = """<robot name="arm"><link name="world"/><link name="fore"><inertial><mass value="1"/>
+  <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="hinge" type="revolute"><origin xyz="0 50 1"/><parent link="world"/>
+  <child link="fore"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="5" velocity="9"/>
+  </joint></robot>"""
+
+
+def proxy(name: str) -> Any:
+    """A persistent connection to a service."""
+    import rospy
+
+    from my_simulations.ros.interface import SERVES, row_of
+    from my_simulations.ros.registration import class_of
+    rospy.wait_for_service(f"/gazebo/{name}", 30)
+    return rospy.ServiceProxy(f"/gazebo/{name}", class_of(row_of(name, SERVES)), persistent=True)
+
+
+def put(model: str, x: float, y: float, z: float) -> Any:
+    """A request for set_model_state."""
+    from gazebo_msgs.msg import ModelState
+    state = ModelState(model_name=model)
+    state.pose.position.x, state.pose.position.y, state.pose.position.z = x, y, z
+    state.twist.linear.z, state.twist.angular.x = 50.0, 1.0
+    return state
+
+
+def requests() -> Tuple[Dict[str, List[Any]], Dict[str, List[Any]]]:
+    """Arguments by service, of those that read and those that write."""
+    import rospy
+    from gazebo_msgs import msg, srv
+    from geometry_msgs.msg import Point, Vector3, Wrench
+    ode = proxy("get_physics_properties")().ode_config
+    link = srv.SetLinkPropertiesRequest(link_name="box::link", mass=1.0, ixx=1.0, iyy=1.0, izz=1.0)
+    light = srv.SetLightPropertiesRequest(light_name="sun", attenuation_constant=0.5)
+    joint = msg.ODEJointProperties(damping=[0.5])
+    reads: Dict[str, List[Any]] = {
+        "get_world_properties": [], "get_model_properties": ["box"],
+        "get_model_state": ["box", ""], "get_link_state": ["box::link", "arm"],
+        "get_link_properties": ["box::link"], "get_joint_properties": ["arm::hinge"],
+        "get_light_properties": ["sun"], "get_physics_properties": []}
+    writes: Dict[str, List[Any]] = {
+        "set_model_state": [put("box", 0.0, 0.0, 9.0)],
+        "set_link_state": [msg.LinkState(link_name="box::link", pose=put("", 0, 0, 9.0).pose)],
+        "set_model_configuration": ["arm", "", ["hinge"], [0.5]],
+        "set_joint_properties": ["arm::hinge", joint], "set_link_properties": [link],
+        "set_light_properties": [light],
+        "set_physics_properties": [0.001, 1000.0, Vector3(0.0, 0.0, -9.8), ode],
+        "apply_body_wrench": ["box::link", "", Point(), Wrench(force=Vector3(1.0, 0.0, 0.0)),
+                              rospy.Time(), rospy.Duration(0, 1000000)],
+        "apply_joint_effort": ["arm::hinge", 1.0, rospy.Time(), rospy.Duration(0, 1000000)],
+        "clear_body_wrenches": ["box::link"], "clear_joint_forces": ["hinge"],
+        "pause_physics": [], "unpause_physics": [], "step_world": [1],
+        "reset_world": [], "reset_simulation": [], "reset_time": []}
+    return reads, writes
+
+
+def timed(call: Callable[..., Any], arguments: List[Any], count: int = CALLS) -> List[float]:
+    """Seconds each call took."""
+    took = []
+    for _ in range(count):
+        began = time.perf_counter()
+        answer = call(*arguments)
+        took.append(time.perf_counter() - began)
+        if not getattr(answer, "success", True):
+            raise RuntimeError(str(answer))
+    return took
+
+
+def calls() -> List[Row]:
+    rows: List[Row] = []
+    with Server(EMPTY.replace("<include><uri>model://ground",
+                              "<include><uri>model://sun</uri></include>"
+                              "<include><uri>model://ground", 1)):
+        from geometry_msgs.msg import Pose
+        spawn = proxy("spawn_urdf_model")
+        for name, xml in (("box", scenes.box_urdf("box")), ("arm", ARM)):
+            spawn(name, xml, "", Pose(), "")
+        for kind, bar, of in zip(("read", "write"), (READ_MS, WRITE_MS), requests()):
+            for name, arguments in of.items():
+                took = timed(proxy(name), arguments)
+                middle, most = milliseconds(took), max(took) * 1e3
+                rows.append((f"{kind}: {name}, median / slowest", f"{middle:.3f} / {most:.1f} ms",
+                             f"{bar:g} / {SLOWEST_MS:g} ms", middle <= bar and most <= SLOWEST_MS))
+    return rows
+
+
+def client(number: int, seconds: float) -> None:
+    """What one of several client processes does: prints what its calls took, as JSON."""
+    import rospy
+    rospy.init_node(f"client_{number}", disable_rostime=True, disable_signals=True)
+    get, move = proxy("get_model_state"), proxy("set_model_state")
+    took: List[float] = []
+    errors = 0
+    choose = random.Random(number)
+    until = time.perf_counter() + seconds
+    while time.perf_counter() < until:
+        n = choose.randrange(100)
+        for call, arguments in ((get, (f"b{n}", "")),
+                                (move, (put(f"b{n}", 3.0 * (n % 10), 3.0 * (n // 10), 500.0),))):
+            began = time.perf_counter()
+            errors += not call(*arguments).success
+            took.append(time.perf_counter() - began)
+    print(json.dumps({"took": took, "errors": errors}))
+    rospy.signal_shutdown("done")
+
+
+def clients() -> List[Row]:
+    import rospy
+    clock = Clock()
+    with Server(scenes.world("boxes", 100, True, 1000.0)):
+        rospy.wait_for_service("/gazebo/set_model_state", 30)
+        move = proxy("set_model_state")
+        for n in range(100):
+            move(put(f"b{n}", 3.0 * (n % 10), 3.0 * (n // 10), 500.0))
+        processes = [subprocess.Popen(
+            [sys.executable, os.path.abspath(__file__), "--client", str(n), str(CLIENT_SECONDS)],
+            stdout=subprocess.PIPE, text=True) for n in range(CLIENTS)]
+        wait(lambda: clock.sim > 1.0, 30, "a second")
+        sim, since = clock.sim, time.perf_counter()
+        time.sleep(CLIENT_SECONDS - 3.0)
+        factor = (clock.sim - sim) / (time.perf_counter() - since)
+        found = [json.loads(process.communicate()[0].splitlines()[-1]) for process in processes]
+    clock.close()
+    took = [one for each in found for one in each["took"]]
+    errors = sum(each["errors"] for each in found)
+    tail = milliseconds(took, 0.99)
+    return [(f"{CLIENTS} clients, 100 bodies moving: errors / p99 / real-time factor",
+             f"{errors} / {tail:.1f} ms / {factor:.3f} ({len(took) / CLIENT_SECONDS:.0f} calls/s)",
+             "0 / 25 ms / 0.95", not errors and tail <= 25.0 and factor >= 0.95)]
+
+
+def states() -> List[Row]:
+    import rospy
+    heard = [0]
+
+    def hear(_message: Any) -> None:
+        heard[0] += 1
+
+    clock = Clock()
+    # Bytes, not objects: what is measured is the server, not rospy's reading.
+    subscriber = rospy.Subscriber("/gazebo/model_states", rospy.AnyMsg, hear, tcp_nodelay=True)
+    with Server(scenes.world("boxes", 99, True, 1000.0)):
+        rospy.wait_for_service("/gazebo/set_model_state", 30)
+        move = proxy("set_model_state")
+        for n in range(99):
+            move(put(f"b{n}", 3.0 * (n % 10), 3.0 * (n // 10), 5000.0))
+        wait(lambda: heard[0] > 1000, 60, "states")
+        had, sim, since = heard[0], clock.sim, time.perf_counter()
+        time.sleep(STATES_SECONDS)
+        span = time.perf_counter() - since
+        rate, factor = (heard[0] - had) / span, (clock.sim - sim) / span
+    subscriber.unregister()
+    clock.close()
+    return [("model_states of 100 models, moving, at 1000 Hz: rate / real-time factor",
+             f"{rate:.0f} Hz / {factor:.3f}", "950 Hz / 0.99", rate >= 950 and factor >= 0.99)]
+
+
+def spawns() -> List[Row]:
+    from geometry_msgs.msg import Pose
+    with Server(EMPTY):
+        spawn = proxy("spawn_urdf_model")
+        began = time.perf_counter()
+        for n in range(1000):
+            where = Pose()
+            where.position.x, where.position.y, where.position.z = 2.0 * (n % 32), 2 * (n // 32), .5
+            if not spawn(f"b{n}", scenes.box_urdf(f"b{n}"), "", where, "").success:
+                raise RuntimeError(f"b{n} was not spawned")
+        span = time.perf_counter() - began
+    return [("spawning 1000 boxes, one by one", f"{span:.2f} s", "5 s", span <= 5.0)]
+
+
+def paused() -> List[Row]:
+    import rospy
+    from gazebo_msgs.msg import ModelStates
+    took = []
+    with Server(EMPTY, "-u"):
+        proxy("get_world_properties")()
+        for _ in range(10):
+            began = time.perf_counter()
+            rospy.wait_for_message("/gazebo/model_states", ModelStates, timeout=10)
+            took.append(time.perf_counter() - began)
+    return [("wait_for_message of model_states while paused, slowest of 10",
+             f"{max(took):.3f} s", "0.2 s", max(took) <= 0.2)]
+
+
+ROWS: Dict[str, Callable[[], List[Row]]] = {
+    "calls": calls, "clients": clients, "states": states, "spawns": spawns, "paused": paused}
+
+
+def main(names: List[str]) -> int:
+    if names[:1] == ["--client"]:
+        client(int(names[1]), float(names[2]))
+        return 0
+    if any(name not in ROWS for name in names):
+        print(__doc__, file=sys.stderr)
+        return 2
+    with master():
+        import rospy
+        rospy.init_node("bench", anonymous=True, disable_rostime=True, disable_signals=True)
+        print(f"{'what':<72} {'measured':<38} {'bar':<18} met")
+        for name in names or ROWS:
+            for what, figure, bar, good in ROWS[name]():
+                print(f"{what:<72} {figure:<38} {bar:<18} {'yes' if good else 'NO'}", flush=True)
+        rospy.signal_shutdown("done")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
