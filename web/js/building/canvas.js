@@ -1,0 +1,300 @@
+/**
+ * The sheet on which the plan is drawn. What did not change, told by identity, is not touched, so
+ * that an edit costs what it changes and not what the building holds.
+ */
+import {metres} from './check.js';
+import {segmentWords} from './draw_tools.js';
+import {distance, labelPoint, polar} from './geometry.js';
+import {handlesOf, openingDistances} from './hit.js';
+import {itemOf, outerLength, placeOf, wallLength, wallYaw} from './plan.js';
+import {roomsOf} from './rooms.js';
+import {
+  SCALE, floorPath, onSheet, openingPaths, pathOf, set, stairsPaths, svg, wallPath,
+} from './svg.js';
+
+const ORDER = ['floors', 'stairs', 'walls', 'windows', 'doors'];
+
+/** How an item is drawn: attributes of the parts of its group. */
+const LOOKS = {
+  floors: (item) => [['frame', floorPath(item), item.color]],
+  walls: (item) => [['frame', wallPath(item), item.color]],
+  stairs: (item) => {
+    const {frame, lines, arrow} = stairsPaths(item);
+    return [['frame', frame, item.color], ['lines', lines], ['arrow', arrow]];
+  },
+  windows: (item, level) => sign('windows', item, level),
+  doors: (item, level) => sign('doors', item, level),
+};
+
+function sign(kind, item, level) {
+  const {frame, lines} = openingPaths(kind, item, level);
+  return [['frame', frame], ['lines', lines]];
+}
+
+export class Canvas {
+  /** @param {import('./session.js').Session} session */
+  constructor(session) {
+    this.session = session;
+    this.image = svg('image', {class: 'plan-image', preserveAspectRatio: 'none'});
+    this.layers = Object.fromEntries(ORDER.map((kind) => [kind, svg('g', {class: `layer ${kind}`})]));
+    this.draft = svg('g', {class: 'draft'});
+    this.labels = svg('g', {class: 'labels'});
+    this.handles = svg('g', {class: 'handles'});
+    this.features = svg('g', {}, ...ORDER.map((kind) => this.layers[kind]), this.draft,
+      this.handles, this.labels);
+    this.world = svg('g', {}, this.image, this.axes(), this.features);
+    this.minor = gridPattern('building-grid-minor', SCALE / 10, 'minor');
+    this.major = gridPattern('building-grid-major', SCALE, 'major');
+    this.element = svg('svg', {class: 'plan-sheet', role: 'img', 'aria-label': 'Plan of the building',
+      tabindex: 0},
+    svg('defs', {}, this.minor, this.major),
+    svg('rect', {class: 'sheet', width: '100%', height: '100%'}),
+    svg('rect', {class: 'grid', width: '100%', height: '100%', fill: 'url(#building-grid-minor)'}),
+    svg('rect', {class: 'grid', width: '100%', height: '100%', fill: 'url(#building-grid-major)'}),
+    this.world);
+  }
+
+  /** Pixels of the screen for one of the sheet, and where the origin stands on the screen. */
+  view = {zoom: 1, x: 300, y: 250};
+  #drawn = new Map();
+  #labelled = '';
+
+  axes() {
+    return svg('g', {class: 'axes'}, svg('path', {class: 'x', d: 'M0 0H40'}),
+      svg('path', {class: 'y', d: 'M0 0V-40'}));
+  }
+
+  /** Metres of the plan for a point of the window. */
+  toPlan(clientX, clientY) {
+    const box = this.element.getBoundingClientRect();
+    return [(clientX - box.left - this.view.x) / this.view.zoom / SCALE,
+      -(clientY - box.top - this.view.y) / this.view.zoom / SCALE];
+  }
+
+  /** A point of the plan in the window. */
+  toClient(point) {
+    const box = this.element.getBoundingClientRect();
+    const [x, y] = onSheet(point);
+    return [box.left + this.view.x + x * this.view.zoom, box.top + this.view.y + y * this.view.zoom];
+  }
+
+  /** Metres that a few pixels of the screen are. */
+  get tolerance() { return 6 / this.view.zoom / SCALE; }
+
+  zoomAt(clientX, clientY, factor) {
+    const box = this.element.getBoundingClientRect();
+    const zoom = Math.min(Math.max(this.view.zoom * factor, 0.05), 10);
+    const by = zoom / this.view.zoom;
+    const [x, y] = [clientX - box.left, clientY - box.top];
+    this.view = {zoom, x: x - (x - this.view.x) * by, y: y - (y - this.view.y) * by};
+    this.place();
+  }
+
+  pan(dx, dy) {
+    this.view = {...this.view, x: this.view.x + dx, y: this.view.y + dy};
+    this.place();
+  }
+
+  /** Shows all of the level, or the origin of an empty one. */
+  fit() {
+    const box = this.element.getBoundingClientRect();
+    const extent = extentOf(this.session.level);
+    if (!box.width) return;
+    if (!extent) {
+      this.view = {zoom: 1, x: box.width / 2, y: box.height / 2};
+    } else {
+      const [x0, y0, x1, y1] = extent;
+      const zoom = Math.min(box.width / ((x1 - x0 + 2) * SCALE), box.height / ((y1 - y0 + 2) * SCALE), 1.5);
+      this.view = {zoom, x: box.width / 2 - (x0 + x1) / 2 * SCALE * zoom,
+        y: box.height / 2 + (y0 + y1) / 2 * SCALE * zoom};
+    }
+    this.place();
+  }
+
+  /** Puts the sheet where the view says, and tells what hangs on the zoom. */
+  place() {
+    const {zoom, x, y} = this.view;
+    set(this.world, {transform: `translate(${x} ${y}) scale(${zoom})`});
+    for (const [pattern, size] of [[this.minor, SCALE / 10], [this.major, SCALE]]) {
+      set(pattern, {patternTransform: `translate(${x} ${y}) scale(${zoom})`});
+      pattern.firstChild.setAttribute('stroke-width', String(1 / zoom));
+      pattern.toggleAttribute('data-dense', size * zoom < 5);
+    }
+    this.element.style.setProperty('--unit', String(1 / zoom));
+    this.#labelled = '';
+    this.draw();
+    this.onplace?.();
+  }
+
+  draw() {
+    const {session} = this;
+    set(this.features, {class: session.shown.features ? null : 'hidden'});
+    this.#drawImage();
+    const faulty = new Map();
+    for (const fault of session.faults()) {
+      if (fault.at !== session.at) continue;
+      for (const {kind, id} of fault.refs) {
+        if (faulty.get(`${kind}${id}`) !== 'error') faulty.set(`${kind}${id}`, fault.severity);
+      }
+    }
+    const seen = new Set();
+    const walls = new Map(session.level.walls.map((wall) => [wall.id, wall]));
+    for (const kind of ORDER) {
+      for (const item of session.level[kind]) {
+        const key = `${kind}${item.id}`;
+        seen.add(key);
+        const state = `${session.isSelected({kind, id: item.id}) ? 'selected ' : ''}${faulty.get(key) ?? ''}`;
+        this.#drawItem(key, kind, item, state, walls.get(item.wall) ?? null);
+      }
+    }
+    for (const [key, {element}] of this.#drawn) {
+      if (seen.has(key)) continue;
+      element.remove();
+      this.#drawn.delete(key);
+    }
+    this.#drawDraft();
+    this.#drawHandles();
+    this.#drawLabels();
+  }
+
+  #drawItem(key, kind, item, state, wall) {
+    let known = this.#drawn.get(key);
+    if (!known) {
+      known = {element: svg('g', {'data-key': key}), item: null, state: null, wall: null};
+      this.layers[kind].append(known.element);
+      this.#drawn.set(key, known);
+    }
+    if (known.item !== item || known.wall !== wall) {
+      const parts = LOOKS[kind](item, this.session.level);
+      while (known.element.childNodes.length < parts.length) known.element.append(svg('path'));
+      parts.forEach(([name, d, fill], at) => set(known.element.childNodes[at],
+        {class: name, d, fill: fill ?? null, 'data-texture': item.texture || null}));
+    }
+    if (known.state !== state) set(known.element, {class: state});
+    Object.assign(known, {item, state, wall});
+  }
+
+  #drawImage() {
+    const {image} = this.session.level;
+    const shown = image?.data && this.session.shown.image;
+    this.image.toggleAttribute('hidden', !shown);
+    this.image.style.display = shown ? '' : 'none';
+    if (!shown || (this.imageOf === image)) return;
+    this.imageOf = image;
+    const source = new Image();
+    source.onload = () => {
+      const factor = SCALE / image.resolution;
+      const [width, height] = [source.naturalWidth * factor, source.naturalHeight * factor];
+      set(this.image, {href: image.data, width, height, x: -width / 2, y: -height / 2});
+    };
+    source.src = image.data;
+  }
+
+  #drawDraft() {
+    const {segment, mark, opening, stairs, polygon, box, measure} = this.session.draft;
+    const parts = [];
+    const line = (d, name = '') => parts.push(svg('path', {d, class: name}));
+    if (segment) line(wallPath(segment), 'wall');
+    if (opening) {
+      const {frame, lines} = openingPaths(opening.kind, opening.item, this.session.level);
+      line(frame + lines, opening.fault ? 'bad' : 'opening');
+    }
+    if (stairs) {
+      const {frame, lines, arrow} = stairsPaths(stairs);
+      line(frame + lines + arrow, 'stairs');
+    }
+    if (polygon) line(pathOf(polygon.points, Boolean(polygon.closed)), 'polygon');
+    if (box) line(pathOf([box[0], [box[1][0], box[0][1]], box[1], [box[0][0], box[1][1]]]), 'box');
+    if (measure) line(pathOf(measure, false), 'measure');
+    if (mark) parts.push(dot(mark, 'mark', 8 / this.view.zoom));
+    this.draft.replaceChildren(...parts);
+  }
+
+  #drawHandles() {
+    const {session} = this;
+    const only = session.selection.length === 1 ? session.selection[0] : null;
+    const item = only && itemOf(session.plan, session.at, only);
+    const parts = [];
+    if (item) {
+      for (const {part, point} of handlesOf(only.kind, item)) {
+        if (part === 'rotate') {
+          parts.push(svg('path', {class: 'stem', d: pathOf([item.position, point], false)}));
+        }
+        parts.push(dot(point, part === 'rotate' ? 'rotate' : 'grip', 5 / this.view.zoom));
+      }
+    }
+    this.handles.replaceChildren(...parts);
+  }
+
+  #drawLabels() {
+    const {session} = this;
+    const words = [];
+    for (const room of roomsOf(session.level.walls)) {
+      words.push([labelPoint(room.outline), `${room.area.toFixed(2)} m²`, 'area']);
+    }
+    const {segment, measure, opening, polygon} = session.draft;
+    if (segment) words.push([polar(segment.end, Math.PI / 4, 0.3), segmentWords(segment), 'live']);
+    if (measure) words.push([measure[1], metres(distance(...measure)), 'live']);
+    if (polygon && !polygon.closed && polygon.points.length > 1) {
+      words.push([polygon.points.at(-1), `${distance(...polygon.points.slice(-2)).toFixed(2)} m`, 'live']);
+    }
+    if (opening?.item.wall !== null && opening) words.push(...openingWords(opening.item, session.level));
+    for (const ref of session.selection.slice(0, 40)) {
+      const item = itemOf(session.plan, session.at, ref);
+      if (ref.kind === 'walls' && item) words.push(wallWord(item));
+      else if (item && item.wall !== undefined && item.wall !== null) {
+        words.push(...openingWords(item, session.level));
+      } else if (ref.kind === 'stairs' && item) {
+        words.push([item.position, `${item.width.toFixed(2)} × ${item.depth.toFixed(2)} m`, '']);
+      }
+    }
+    const now = JSON.stringify(words);
+    if (now === this.#labelled) return;
+    this.#labelled = now;
+    const size = 12 / this.view.zoom;
+    this.labels.replaceChildren(...words.map(([point, text, name]) => {
+      const [x, y] = onSheet(point);
+      return svg('text', {x, y, class: name, 'font-size': size, text});
+    }));
+  }
+}
+
+function wallWord(wall) {
+  const yaw = wallYaw(wall);
+  const middle = polar(wall.start, yaw, wallLength(wall) / 2);
+  return [polar(middle, yaw + Math.PI / 2, 0.25), `${outerLength(wall).toFixed(2)} m`, 'length'];
+}
+
+/** The distances from an opening to both ends of its wall. */
+function openingWords(item, level) {
+  const {wall} = placeOf(item, level);
+  if (!wall) return [];
+  const {start, end, yaw} = openingDistances(item, wall);
+  const word = (along, value) => [polar(polar(wall.start, yaw, along), yaw - Math.PI / 2, 0.25),
+    `${value.toFixed(2)} m`, 'length'];
+  return [word(start / 2, start), word(wallLength(wall) - end / 2, end)];
+}
+
+function dot(point, name, r) {
+  const [cx, cy] = onSheet(point);
+  return svg('circle', {cx, cy, r, class: name});
+}
+
+function gridPattern(id, size, name) {
+  return svg('pattern', {id, width: size, height: size, patternUnits: 'userSpaceOnUse', class: name},
+    svg('path', {d: `M${size} 0H0V${size}`}));
+}
+
+/** x from, y from, x to, y to of what a level holds; null for nothing. */
+export function extentOf(level) {
+  const points = [
+    ...level.walls.flatMap(({start, end}) => [start, end]),
+    ...level.floors.flatMap(({outline}) => outline),
+    ...[...level.stairs, ...level.windows, ...level.doors].map((item) =>
+      item.wall === undefined || item.wall === null ? item.position : null).filter(Boolean),
+  ];
+  if (!points.length) return null;
+  const xs = points.map(([x]) => x);
+  const ys = points.map(([, y]) => y);
+  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+}

@@ -1,0 +1,120 @@
+/** What is wrong with a plan, told while it is drawn; the simulator looks again before it builds. */
+import {crossing, isSimple, side} from './geometry.js';
+import {linkName, placeOf, wallLength} from './plan.js';
+import {neighbours} from './rooms.js';
+
+export const SHORTEST = 0.01;
+const SLACK = 1e-6;
+const known = new WeakMap();
+
+/**
+ * @typedef {{severity: 'error'|'warning', message: string, refs: import('./plan.js').Ref[]}} Fault
+ *
+ * The faults of a level; the same level gives the same answer without work.
+ * @returns {Fault[]}
+ */
+export function faultsOf(level) {
+  let found = known.get(level);
+  if (!found) {
+    found = [...wallFaults(level.walls), ...openingFaults(level), ...floorFaults(level)];
+    known.set(level, found);
+  }
+  return found;
+}
+
+const byWalls = new WeakMap();
+
+function wallFaults(walls) {
+  let found = byWalls.get(walls);
+  if (found) return found;
+  found = [];
+  for (const wall of walls) {
+    if (wallLength(wall) < SHORTEST) {
+      found.push(fault('error', 'Wall_%0 has no length', {kind: 'walls', id: wall.id}));
+    }
+  }
+  for (const [i, j] of neighbours(walls)) {
+    const how = meeting(walls[i], walls[j]);
+    if (how) {
+      found.push(fault('warning', `Wall_%0 and Wall_%1 ${how}`,
+        {kind: 'walls', id: walls[i].id}, {kind: 'walls', id: walls[j].id}));
+    }
+  }
+  byWalls.set(walls, found);
+  return found;
+}
+
+/** 'cross', 'overlap', or '' for walls that merely end at one another. */
+export function meeting(a, b) {
+  if (wallLength(a) < SHORTEST || wallLength(b) < SHORTEST) return '';
+  const sides = [side(a.start, a.end, b.start), side(a.start, a.end, b.end)];
+  if (Math.max(...sides.map(Math.abs)) < 1e-4) {
+    const length = wallLength(a);
+    const along = [b.start, b.end].map((point) => ((a.end[0] - a.start[0]) *
+      (point[0] - a.start[0]) + (a.end[1] - a.start[1]) * (point[1] - a.start[1])) / length);
+    const shared = Math.min(Math.max(...along), length) - Math.max(Math.min(...along), 0);
+    return shared > SHORTEST ? 'overlap' : '';
+  }
+  const others = [side(b.start, b.end, a.start), side(b.start, b.end, a.end)];
+  const inside = [sides, others].every((pair) =>
+    Math.min(...pair) < -SHORTEST && Math.max(...pair) > SHORTEST);
+  return inside && crossing(a.start, a.end, b.start, b.end) ? 'cross' : '';
+}
+
+/** Why an opening does not fit into a wall; '' where it does. */
+export function openingFault(opening, wall) {
+  const length = wallLength(wall);
+  const [left, right] = [opening.along - opening.width / 2, opening.along + opening.width / 2];
+  if (opening.width > length + SLACK) {
+    return `is ${metres(opening.width)} wide, the wall only ${metres(length)} long`;
+  }
+  if (left < -SLACK || right > length + SLACK) return 'reaches beyond the end of the wall';
+  if (opening.elevation + opening.height > wall.height + SLACK) {
+    return `ends at ${metres(opening.elevation + opening.height)}, above the wall's ${metres(wall.height)}`;
+  }
+  return '';
+}
+
+/** True when two openings of one wall share more than an edge. */
+export const overlap = (a, b) => a.wall !== null && a.wall === b.wall &&
+  Math.abs(a.along - b.along) < (a.width + b.width) / 2 - SLACK &&
+  a.elevation + a.height > b.elevation + SLACK && b.elevation + b.height > a.elevation + SLACK;
+
+/** Every opening of a level, with its ref. */
+export const openingsOf = (level) => ['windows', 'doors'].flatMap((kind) =>
+  level[kind].map((item) => ({ref: {kind, id: item.id}, item})));
+
+function openingFaults(level) {
+  const found = [];
+  const byWall = new Map();
+  for (const entry of openingsOf(level)) {
+    const {wall} = placeOf(entry.item, level);
+    if (!wall) continue;
+    const why = openingFault(entry.item, wall);
+    if (why) found.push({severity: 'error', message: `${linkName(entry.ref)} ${why}`, refs: [entry.ref]});
+    const others = byWall.get(wall.id) ?? [];
+    for (const other of others) {
+      if (overlap(entry.item, other.item)) {
+        found.push({severity: 'error', refs: [other.ref, entry.ref],
+          message: `${linkName(other.ref)} and ${linkName(entry.ref)} overlap`});
+      }
+    }
+    byWall.set(wall.id, [...others, entry]);
+  }
+  return found;
+}
+
+function floorFaults(level) {
+  return level.floors.filter((floor) => !isSimple(floor.outline)).map(({id}) =>
+    fault('error', 'the edges of Floor_%0 cross', {kind: 'floors', id}));
+}
+
+function fault(severity, words, ...refs) {
+  return {severity, refs, message: words.replace(/%(\d)/g, (_, at) => refs[at].id)};
+}
+
+export const metres = (value) => `${Math.round(value * 1000) / 1000} m`;
+
+/** Free openings that stand near nothing are no fault, but worth a word. */
+export const freeOpenings = (level) => openingsOf(level).filter(({item}) => item.wall === null);
+

@@ -1,0 +1,318 @@
+/**
+ * Tools that put new things into the plan. A tool gets what the mouse does in metres of the plan:
+ * `press`, `move`, `release`, `double`, `typed` (a length) and `cancel` (Esc, right button), and shows
+ * what it is about to do in `session.draft`.
+ *
+ * @typedef {{point: import('./geometry.js').Point, shift: boolean, alt: boolean, ctrl: boolean,
+ *            tolerance: number}} Mouse
+ */
+import {openingFault, overlap, openingsOf} from './check.js';
+import {direction, distance, inPolygon, isSimple, polar, same, tidyPoint} from './geometry.js';
+import {wallNear} from './hit.js';
+import {
+  DEFAULTS, GROUND_FLOOR_THICKNESS, add, attached, detached, outerLength, withLevel,
+} from './plan.js';
+import {roomsOf} from './rooms.js';
+import {snapEnd, snapPolar, snapStart} from './snap.js';
+
+export class WallTool {
+  name = 'wall';
+  hint = 'Click where the wall starts. Shift: no snapping.';
+  #from = null;
+
+  constructor(session) { this.session = session; }
+
+  press(mouse) {
+    const {session} = this;
+    if (!this.#from) {
+      this.#from = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
+      this.#say();
+    } else {
+      this.#put(this.#end(mouse).point);
+    }
+    this.move(mouse);
+  }
+
+  move(mouse) {
+    const {session} = this;
+    if (!this.#from) {
+      const point = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
+      session.draft = {mark: point};
+    } else {
+      const {point, on} = this.#end(mouse);
+      const {thickness} = DEFAULTS.walls;
+      session.draft = {segment: {start: this.#from, end: point, thickness, on},
+        mark: on === 'end' ? point : null};
+      this.aim = direction(this.#from, point);
+    }
+    session.changed();
+  }
+
+  release() {}
+
+  /** The second click of a double click has already put the wall. */
+  double() { this.cancel(); }
+
+  /** A typed outer length, in the direction of the mouse. */
+  typed(length) {
+    if (!this.#from || !(length > 0)) return;
+    const inner = Math.max(length - DEFAULTS.walls.thickness, 0.01);
+    this.#put(tidyPoint(polar(this.#from, this.aim ?? 0, inner)));
+  }
+
+  cancel() {
+    const busy = this.#from !== null;
+    this.#from = null;
+    this.session.draft = {};
+    this.session.say('');
+    return busy;
+  }
+
+  #end(mouse) {
+    return snapEnd(this.#from, mouse.point, {
+      walls: this.session.level.walls, thickness: DEFAULTS.walls.thickness, free: mouse.shift});
+  }
+
+  #put(end) {
+    const {session} = this;
+    if (distance(this.#from, end) < 0.01) {
+      session.say('A wall needs a length: move on before the next click.');
+      return;
+    }
+    const {plan} = add(session.history.plan, session.at, 'walls', {start: this.#from, end});
+    session.commit(plan, 'wall');
+    this.#from = end;
+    session.draft = {};
+    this.#say();
+  }
+
+  #say() {
+    this.session.say('Click where it ends; the next wall starts there. Type a length and Enter. '
+      + 'Double click, right click or Esc ends the chain.');
+  }
+}
+
+/** Puts windows and doors into walls, or to stand free. */
+export class OpeningTool {
+  #kind;
+
+  constructor(session, kind) {
+    this.session = session;
+    this.#kind = kind;
+    this.name = kind === 'windows' ? 'window' : 'door';
+    this.hint = `Move over a wall and click to put the ${this.name} there.`;
+  }
+
+  press(mouse) {
+    const {session} = this;
+    const {opening, fault} = this.#at(mouse.point);
+    if (fault) {
+      session.say(`The ${this.name} ${fault}.`);
+      return;
+    }
+    const {id: _, ...fields} = opening;
+    const {plan, ref} = add(session.history.plan, session.at, this.#kind, fields);
+    session.commit(plan, this.name);
+    session.endTool();
+    session.select([ref]);
+  }
+
+  move(mouse) {
+    const {opening, fault} = this.#at(mouse.point);
+    this.session.draft = {opening: {kind: this.#kind, item: opening, fault}};
+    this.session.changed();
+  }
+
+  release() {}
+  double() {}
+  typed() {}
+
+  cancel() {
+    this.session.draft = {};
+    return false;
+  }
+
+  #at(point) {
+    const {level} = this.session;
+    const fresh = {id: -1, ...DEFAULTS[this.#kind]};
+    const near = wallNear(level, point);
+    if (!near) return {opening: detached(fresh, point, 0), fault: ''};
+    const opening = attached(fresh, near.wall, near.along);
+    const other = openingsOf(level).find(({item}) => overlap(item, opening));
+    return {opening, fault: openingFault(opening, near.wall) || (other ? 'overlaps another' : '')};
+  }
+}
+
+export class StairsTool {
+  name = 'stairs';
+  hint = 'Click to put the stairs; turn and resize them by their handles.';
+
+  constructor(session) { this.session = session; }
+
+  press(mouse) {
+    const {session} = this;
+    const {plan, ref} = add(session.history.plan, session.at, 'stairs', this.#at(mouse));
+    session.commit(plan, 'stairs');
+    session.endTool();
+    session.select([ref]);
+  }
+
+  move(mouse) {
+    this.session.draft = {stairs: {...DEFAULTS.stairs, ...this.#at(mouse)}};
+    this.session.changed();
+  }
+
+  release() {}
+  double() {}
+  typed() {}
+
+  cancel() {
+    this.session.draft = {};
+    return false;
+  }
+
+  #at(mouse) {
+    return {position: tidyPoint(mouse.point), height: this.session.level.height};
+  }
+}
+
+/** Floors: a click in a closed room fills it; clicks elsewhere draw corner after corner. */
+export class FloorTool {
+  name = 'floor';
+  hint = 'Click in a room to fill it, or click the corners of a floor. Alt: corners in a room, too.';
+  #points = [];
+
+  constructor(session) { this.session = session; }
+
+  press(mouse) {
+    const room = !this.#points.length && !mouse.alt && this.#room(mouse.point);
+    if (room) {
+      this.#put(room.outline, 'floor of a room');
+      return;
+    }
+    const point = this.#snapped(mouse);
+    if (this.#points.length >= 3 && same(point, this.#points[0])) {
+      this.#close();
+      return;
+    }
+    if (this.#points.length && same(point, this.#points[this.#points.length - 1])) return;
+    this.#points.push(point);
+    this.session.say('Click the next corner; the first one, Enter or a double click closes the floor.');
+    this.move(mouse);
+  }
+
+  move(mouse) {
+    const {session} = this;
+    const room = !this.#points.length && !mouse.alt && this.#room(mouse.point);
+    session.draft = room ? {polygon: {points: room.outline, closed: true}}
+      : {polygon: {points: [...this.#points, this.#snapped(mouse)]}};
+    session.changed();
+  }
+
+  release() {}
+
+  double() {
+    if (this.#points.length >= 3) this.#close();
+  }
+
+  typed(length) {
+    if (length === null) this.double();
+  }
+
+  cancel() {
+    const busy = this.#points.length > 0;
+    this.#points = [];
+    this.session.draft = {};
+    this.session.say('');
+    return busy;
+  }
+
+  #room(point) {
+    return roomsOf(this.session.level.walls).find((room) => inPolygon(point, room.outline));
+  }
+
+  #snapped(mouse) {
+    if (mouse.shift) return tidyPoint(mouse.point);
+    const first = this.#points[0];
+    if (this.#points.length >= 3 && distance(first, mouse.point) < 0.3) return first;
+    const end = snapStart(mouse.point, {walls: this.session.level.walls});
+    const last = this.#points[this.#points.length - 1];
+    if (!last || !same(end, tidyPoint(mouse.point))) return end;
+    return snapPolar(last, mouse.point, 0);
+  }
+
+  #close() {
+    const points = this.#points;
+    if (!isSimple(points)) {
+      this.session.say('The edges of the floor cross; Esc starts over.');
+      return;
+    }
+    this.#points = [];
+    this.#put(points, 'floor');
+  }
+
+  #put(outline, label) {
+    const {session} = this;
+    const thickness = session.at === 0 ? GROUND_FLOOR_THICKNESS : DEFAULTS.floors.thickness;
+    const {plan, ref} = add(session.history.plan, session.at, 'floors', {outline, thickness});
+    session.commit(plan, label);
+    session.endTool();
+    session.select([ref]);
+  }
+}
+
+/** A line over a known length of the floor plan; `done(metres)` gets what it measures at present. */
+export class MeasureTool {
+  name = 'measure';
+  hint = 'Draw a line over a length that you know: press at one end, let go at the other.';
+  #from = null;
+
+  constructor(session, done) {
+    this.session = session;
+    this.done = done;
+  }
+
+  press(mouse) {
+    if (this.#from) this.#finish(mouse);
+    else this.#from = mouse.point;
+  }
+
+  move(mouse) {
+    this.session.draft = this.#from ? {measure: [this.#from, mouse.point]} : {};
+    this.session.changed();
+  }
+
+  /** A drag ends it; after a click the second click does. */
+  release(mouse) {
+    if (this.#from && distance(this.#from, mouse.point) > 2 * mouse.tolerance) this.#finish(mouse);
+  }
+
+  double() {}
+  typed() {}
+
+  cancel() {
+    const busy = this.#from !== null;
+    this.#from = null;
+    this.session.draft = {};
+    return busy;
+  }
+
+  #finish(mouse) {
+    const length = distance(this.#from, mouse.point);
+    this.#from = null;
+    if (length > 1e-3) this.done(length);
+  }
+}
+
+/** The resolution after a line of `drawn` metres turned out to be `real` metres long. */
+export const rescaled = (image, drawn, real) =>
+  ({...image, resolution: image.resolution * drawn / real});
+
+export const withImage = (plan, at, image) => withLevel(plan, at, {image});
+
+/** Labels of a wall being drawn: outer length, and its angle in degrees. */
+export function segmentWords({start, end, thickness}) {
+  const degrees = Math.round((direction(start, end) * 180 / Math.PI + 360) % 360 * 10) / 10;
+  return `${outerLength({start, end, thickness}).toFixed(2)} m  ${degrees % 360}°`;
+}
+

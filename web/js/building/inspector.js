@@ -1,0 +1,139 @@
+/** Inspectors as windows: Cancel, Apply and OK over the fields of `forms.js`. */
+import {Dialog, labelled} from '../panels/dialog.js';
+import {h} from '../panels/dom.js';
+import {
+  ROOF_FIELDS, applied, fieldFault, fieldsOf, levelApplied, levelFields, levelValues, roofApplied,
+  roofValues, valuesOf,
+} from './forms.js';
+import {itemOf, linkName} from './plan.js';
+import {NAMES} from './session.js';
+
+export const SWATCHES = ['#ffffff', '#c2a9a0', '#ebce9d', '#fe7905', '#ffc34e', '#6fcbac'];
+export const TEXTURES = [['Wood', 'Gazebo/Wood'], ['Tiles', 'Gazebo/CeilingTiled'], ['Bricks', 'Gazebo/Bricks']];
+
+const shown = (value) => typeof value === 'number' ? String(Math.round(value * 1000) / 1000) : value ?? '';
+
+/** The inspector of an item. */
+export function inspectItem(session, ref) {
+  const {at} = session;
+  const item = itemOf(session.plan, at, ref);
+  if (!item) return Promise.resolve();
+  const titles = {walls: 'Wall', windows: 'Window', doors: 'Door', stairs: 'Stairs', floors: 'Floor'};
+  return inspect({
+    title: `${titles[ref.kind]} Inspector: ${linkName(ref)}`, fields: fieldsOf(ref.kind, item),
+    values: () => valuesOf(ref.kind, itemOf(session.plan, at, ref) ?? item, session.plan.levels[at]),
+    apply(values, before) {
+      const {plan, fault} = applied(session.history.plan, at, ref, values, before);
+      if (fault) return fault;
+      session.commit(plan, `edit ${NAMES[ref.kind]}`);
+      return '';
+    },
+  });
+}
+
+/** The inspector of the level being drawn. */
+export function inspectLevel(session) {
+  const {at} = session;
+  return inspect({
+    title: 'Level Inspector', fields: levelFields(session.plan, at),
+    values: () => levelValues(session.plan, at),
+    apply(values) {
+      session.commit(levelApplied(session.history.plan, at, values), 'edit level');
+      return '';
+    },
+  });
+}
+
+export function inspectRoof(session) {
+  return inspect({
+    title: 'Roof', fields: ROOF_FIELDS, values: () => roofValues(session.plan),
+    apply(values) {
+      session.commit(roofApplied(session.history.plan, values), 'roof');
+      return '';
+    },
+  });
+}
+
+/**
+ * @param {{title: string, fields: import('./forms.js').Field[], values: () => any,
+ *          apply: (values: any, before: any) => string}} form  `apply` says what is wrong, or ''
+ */
+function inspect({title, fields, values, apply}) {
+  let before = values();
+  const inputs = fields.map((field) => ({field, ...INPUTS[field.type](field)}));
+  const show = () => inputs.forEach(({field, put}) => put(before[field.name]));
+  show();
+  const take = () => {
+    const now = {...before};
+    for (const {field, get} of inputs) {
+      const value = get(before[field.name]);
+      const fault = fieldFault(field, value);
+      if (fault) {
+        dialog.say(fault);
+        return false;
+      }
+      now[field.name] = value;
+    }
+    const fault = apply(now, before);
+    dialog.say(fault);
+    if (fault) return false;
+    before = values();
+    show();
+    return true;
+  };
+  const dialog = new Dialog({
+    title, name: 'inspector', modal: false,
+    content: inputs.map(({field, element}) => labelled(field.label, element)),
+    buttons: [{title: 'Cancel'}, {title: 'Apply', run: () => { take(); return false; }},
+      {title: 'OK', primary: true, run: () => take() && 'ok'}],
+  });
+  return dialog.open();
+}
+
+/** By type of a field: its element, and how a value is put in and taken out. */
+const INPUTS = {
+  number: (field) => numeric(field),
+  integer: (field) => numeric(field),
+  text(field) {
+    const element = h('input', {type: 'text', 'aria-label': field.label, maxlength: 100});
+    return {element, put: (value) => { element.value = value; }, get: () => element.value};
+  },
+  choice(field) {
+    const element = h('select', {'aria-label': field.label},
+      ...field.choices.map(([value, text]) => h('option', {value, text})));
+    return {element, put: (value) => { element.value = value; }, get: () => element.value};
+  },
+  color(field) {
+    const picker = h('input', {type: 'color', 'aria-label': field.label});
+    const swatches = SWATCHES.map((color) => h('button', {type: 'button', class: 'swatch', title: color,
+      style: `background: ${color}`, onclick: () => { picker.value = color; }}));
+    return {element: h('span', {class: 'row'}, picker, ...swatches),
+      put: (value) => { picker.value = value; }, get: () => picker.value};
+  },
+  texture(field) {
+    const element = h('select', {'aria-label': field.label}, h('option', {value: '', text: 'None'}),
+      ...TEXTURES.map(([text, value]) => h('option', {value, text})));
+    return {
+      element, get: () => element.value,
+      put(value) {
+        if (value && ![...element.options].some((option) => option.value === value)) {
+          element.append(h('option', {value, text: value}));
+        }
+        element.value = value;
+      },
+    };
+  },
+};
+
+/** What was not touched keeps the digits that the field does not show. */
+function numeric(field) {
+  const element = h('input', {type: 'number', class: 'number', 'aria-label': field.label,
+    step: field.type === 'integer' ? 1 : 'any', min: field.min, max: field.max});
+  return {
+    element,
+    put: (value) => { element.value = shown(value); },
+    get: (before) => element.value === shown(before) ? before : element.value.trim() === ''
+      ? NaN : Number(element.value),
+  };
+}
+

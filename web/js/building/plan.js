@@ -1,0 +1,321 @@
+/**
+ * The plan of a building and what can be done to it. Plans are never changed: every function gives a
+ * new one that shares what stayed the same, so that history costs nothing and the canvas sees by
+ * identity what it must draw again.
+ *
+ * The shape of a plan is that of the plan file: metres and radians, colours as #rrggbb.
+ *
+ * @typedef {import('./geometry.js').Point} Point
+ * @typedef {'walls'|'windows'|'doors'|'stairs'|'floors'} Kind
+ * @typedef {{kind: Kind, id: number}} Ref
+ */
+import {direction, distance, minus, plus, polar, same, tidy, tidyPoint} from './geometry.js';
+import {outlineOf} from './rooms.js';
+
+export const FORMAT = 1;
+export const WHITE = '#ffffff';
+
+/** From the list of a level to the name of its counter. */
+export const COUNTERS = Object.freeze({
+  walls: 'wall', windows: 'window', doors: 'door', stairs: 'stairs', floors: 'floor',
+});
+export const KINDS = Object.freeze(Object.keys(COUNTERS));
+
+const LOOK = {color: WHITE, texture: ''};
+const OPENING = {depth: 0.17, wall: null, along: 0, position: [0, 0], yaw: 0};
+
+/** What is not said of a new item. */
+export const DEFAULTS = Object.freeze({
+  walls: {thickness: 0.15, height: 2.5, ...LOOK},
+  windows: {width: 0.8, height: 0.8, elevation: 0.5, ...OPENING},
+  doors: {width: 0.9, height: 2, elevation: 0, ...OPENING},
+  stairs: {yaw: 0, width: 1, depth: 3.5, height: 2.5, steps: 15, ...LOOK},
+  floors: {holes: [], thickness: 0.1, fit: 'none', ...LOOK},
+});
+
+/** A floor on the ground is thin, so that robots can drive in through the doors. */
+export const GROUND_FLOOR_THICKNESS = 0.01;
+
+const emptyLevel = (number) => ({
+  name: `Level ${number}`, height: 2.5, walls: [], windows: [], doors: [], stairs: [], floors: [],
+  image: null,
+});
+
+export const emptyPlan = (name = 'Untitled') => ({
+  format: FORMAT, name, levels: [emptyLevel(1)], roof: null,
+  next: {wall: 0, window: 0, door: 0, stairs: 0, floor: 0},
+});
+
+export const isEmpty = (plan) =>
+  !plan.roof && plan.levels.every((level) => !level.image && KINDS.every((kind) => !level[kind].length));
+
+// ---- looking things up
+
+/** @returns {any} the item, or undefined */
+export const itemOf = (plan, at, {kind, id}) =>
+  plan.levels[at]?.[kind].find((item) => item.id === id);
+
+/** What the link of an item is called in the model. */
+export const linkName = ({kind, id}) =>
+  `${{walls: 'Wall', windows: 'Window', doors: 'Door', stairs: 'Stairs', floors: 'Floor'}[kind]}_${id}`;
+
+/** The item that a link of the model is made from: {level, ref}, or null. */
+export function itemOfLink(plan, link) {
+  const [, word, id] = /^(Wall|Window|Door|Stairs|Floor)_(\d+)$/.exec(link) ?? [];
+  const kind = {Wall: 'walls', Window: 'windows', Door: 'doors', Stairs: 'stairs', Floor: 'floors'}[word];
+  if (!kind) return null;
+  const level = plan.levels.findIndex((one) => one[kind].some((item) => item.id === Number(id)));
+  return level < 0 ? null : {level, ref: {kind, id: Number(id)}};
+}
+
+export const wallLength = (wall) => distance(wall.start, wall.end);
+export const wallYaw = (wall) => direction(wall.start, wall.end);
+/** From edge to edge, as the wall is written and labelled: corners overlap. */
+export const outerLength = (wall) => wallLength(wall) + wall.thickness;
+
+/** Where an opening is and how it is turned: that of its wall, or its own. */
+export function placeOf(opening, level) {
+  const wall = opening.wall === null ? null : level.walls.find(({id}) => id === opening.wall);
+  if (!wall) return {point: opening.position, yaw: opening.yaw, wall: null};
+  return {point: polar(wall.start, wallYaw(wall), opening.along), yaw: wallYaw(wall), wall};
+}
+
+/** The height of each level's base above the ground. */
+export function bases(plan) {
+  let z = 0;
+  return plan.levels.map((level) => {
+    const base = z;
+    z += level.height;
+    return base;
+  });
+}
+
+// ---- changing lists
+
+export function withLevel(plan, at, changes) {
+  return {...plan, levels: plan.levels.map((level, n) => n === at ? {...level, ...changes} : level)};
+}
+
+/** Changes one item. */
+export function update(plan, at, {kind, id}, changes) {
+  const level = plan.levels[at];
+  const list = level[kind].map((item) => item.id === id ? {...item, ...changes} : item);
+  return refit(withLevel(plan, at, {[kind]: list}), at, kind);
+}
+
+/**
+ * Adds an item; what is not given has its default.
+ * @returns {{plan: any, ref: Ref}}
+ */
+export function add(plan, at, kind, fields) {
+  const counter = COUNTERS[kind];
+  const id = plan.next[counter];
+  const item = {id, ...DEFAULTS[kind], ...fields};
+  const grown = withLevel(plan, at, {[kind]: [...plan.levels[at][kind], item]});
+  const next = {...plan.next, [counter]: id + 1};
+  return {plan: refit({...grown, next}, at, kind), ref: {kind, id}};
+}
+
+/** Takes items away, the openings of walls with them. */
+export function remove(plan, at, refs) {
+  const level = plan.levels[at];
+  const gone = (kind, id) => refs.some((ref) => ref.kind === kind && ref.id === id);
+  const changes = {};
+  for (const kind of KINDS) {
+    const left = level[kind].filter((item) => !gone(kind, item.id) &&
+      !(item.wall !== undefined && item.wall !== null && gone('walls', item.wall)));
+    if (left.length !== level[kind].length) changes[kind] = left;
+  }
+  return refit(withLevel(plan, at, changes), at, 'walls');
+}
+
+/** Floors that follow the walls get their new outline. */
+function refit(plan, at, kind) {
+  const level = plan.levels[at];
+  if (kind !== 'walls' || !level.floors.some((floor) => floor.fit === 'walls')) return plan;
+  const outline = outlineOf(level.walls);
+  if (!outline) return plan;
+  const floors = level.floors.map((floor) => floor.fit === 'walls' ? {...floor, outline} : floor);
+  return withLevel(plan, at, {floors});
+}
+
+// ---- walls
+
+/** Changes the ends of several walls at once; openings keep their distance from the end that stays. */
+function setEnds(plan, at, ends) {
+  const level = plan.levels[at];
+  const shift = new Map();
+  const walls = level.walls.map((wall) => {
+    const moved = ends.get(wall.id);
+    if (!moved) return wall;
+    const made = {...wall, ...moved};
+    const stays = !moved.start || (moved.end && same(minus(moved.start, wall.start), minus(moved.end, wall.end)));
+    if (!stays) shift.set(wall.id, wallLength(made) - wallLength(wall));
+    return made;
+  });
+  const slid = (list) => !list.some(({wall}) => shift.get(wall)) ? list : list.map((opening) => {
+    const by = shift.get(opening.wall);
+    return by ? {...opening, along: tidy(opening.along + by)} : opening;
+  });
+  const changes = {walls, windows: slid(level.windows), doors: slid(level.doors)};
+  return refit(withLevel(plan, at, changes), at, 'walls');
+}
+
+/** The ends of walls that lie on a point: [wall, 'start'|'end']. */
+export function endsAt(level, point) {
+  return level.walls.flatMap((wall) => ['start', 'end']
+    .filter((end) => same(wall[end], point)).map((end) => [wall, end]));
+}
+
+/**
+ * Moves the end of a wall, and the ends linked with it unless `alone`.
+ * @param {'start'|'end'} end
+ */
+export function moveEnd(plan, at, id, end, point, {alone = false} = {}) {
+  const level = plan.levels[at];
+  const wall = level.walls.find((one) => one.id === id);
+  const ends = new Map([[id, {[end]: tidyPoint(point)}]]);
+  if (!alone) {
+    for (const [other, its] of endsAt(level, wall[end])) {
+      ends.set(other.id, {...ends.get(other.id), [its]: tidyPoint(point)});
+    }
+  }
+  return setEnds(plan, at, ends);
+}
+
+/** Moves walls as they are; what is linked with them is stretched. */
+export function moveWalls(plan, at, ids, by) {
+  const level = plan.levels[at];
+  const ends = new Map();
+  for (const wall of level.walls.filter(({id}) => ids.includes(id))) {
+    for (const end of ['start', 'end']) {
+      for (const [other, its] of endsAt(level, wall[end])) {
+        ends.set(other.id, {...ends.get(other.id), [its]: tidyPoint(plus(wall[end], by))});
+      }
+    }
+  }
+  return setEnds(plan, at, ends);
+}
+
+/** Gives a wall an outer length, by moving its end. */
+export function setOuterLength(plan, at, id, length) {
+  const wall = plan.levels[at].walls.find((one) => one.id === id);
+  const inner = Math.max(length - wall.thickness, 0.01);
+  return moveEnd(plan, at, id, 'end', polar(wall.start, wallYaw(wall), inner));
+}
+
+/** Moves items; walls stretch what is linked, openings in walls slide along them. */
+export function moveItems(plan, at, refs, by) {
+  const walls = refs.filter(({kind}) => kind === 'walls').map(({id}) => id);
+  let made = walls.length ? moveWalls(plan, at, walls, by) : plan;
+  for (const ref of refs) {
+    const item = itemOf(plan, at, ref);
+    if (!item || ref.kind === 'walls') continue;
+    if (ref.kind === 'floors') {
+      const shifted = (loop) => loop.map((point) => tidyPoint(plus(point, by)));
+      made = update(made, at, ref,
+        {outline: shifted(item.outline), holes: item.holes.map(shifted), fit: 'none'});
+    } else if (item.wall === undefined || item.wall === null) {
+      made = update(made, at, ref, {position: tidyPoint(plus(item.position, by))});
+    }
+  }
+  return made;
+}
+
+// ---- openings
+
+/** Puts an opening into a wall, as near to `along` as it fits. */
+export function attached(opening, wall, along) {
+  const half = opening.width / 2;
+  const length = wallLength(wall);
+  const fitting = length < opening.width ? length / 2 : Math.min(Math.max(along, half), length - half);
+  return {...opening, wall: wall.id, along: tidy(fitting)};
+}
+
+/** Takes an opening out of its wall to stand free. */
+export const detached = (opening, point, yaw) =>
+  ({...opening, wall: null, along: 0, position: tidyPoint(point), yaw});
+
+// ---- levels
+
+/** Adds a level on top: a copy of the walls, and a floor. @returns {any} null without walls */
+export function addLevel(plan) {
+  const at = plan.levels.length - 1;
+  const below = plan.levels[at];
+  if (!below.walls.length) return null;
+  const height = Math.max(...below.walls.map((wall) => wall.height));
+  let made = withLevel(plan, at, {height});
+  made = {...made, levels: [...made.levels, emptyLevel(plan.levels.length + 1)]};
+  for (const {id: _, ...wall} of below.walls) made = add(made, at + 1, 'walls', wall).plan;
+  return add(made, at + 1, 'floors', {outline: outlineOf(below.walls), fit: 'walls'}).plan;
+}
+
+/** Takes a level away with all in it. @returns {any} null for the last one */
+export function removeLevel(plan, at) {
+  if (plan.levels.length < 2) return null;
+  return {...plan, levels: plan.levels.filter((_, n) => n !== at)};
+}
+
+/** Makes a level higher or lower; walls and stairs as high as it was go along. */
+export function setLevelHeight(plan, at, height) {
+  const level = plan.levels[at];
+  const grown = (item) => Math.abs(item.height - level.height) < 1e-6 ? {...item, height} : item;
+  return withLevel(plan, at, {height, walls: level.walls.map(grown), stairs: level.stairs.map(grown)});
+}
+
+// ---- copies
+
+/** What is selected, apart from the plan. */
+export function copied(plan, at, refs) {
+  return refs.map((ref) => ({kind: ref.kind, item: itemOf(plan, at, ref)})).filter(({item}) => item);
+}
+
+/**
+ * Adds copies, moved by a vector; openings of copied walls go into the copies, others stand free.
+ * @returns {{plan: any, refs: Ref[]}}
+ */
+export function pasted(plan, at, clips, by) {
+  const walls = new Map();
+  const refs = [];
+  let made = plan;
+  const put = (kind, fields) => {
+    const grown = add(made, at, kind, fields);
+    made = grown.plan;
+    refs.push(grown.ref);
+    return grown.ref.id;
+  };
+  const shifted = (point) => tidyPoint(plus(point, by));
+  for (const {kind, item: {id, ...fields}} of clips.filter((clip) => clip.kind === 'walls')) {
+    walls.set(id, put(kind, {...fields, start: shifted(fields.start), end: shifted(fields.end)}));
+  }
+  for (const {kind, item: {id: _, ...fields}, place} of clips) {
+    if (kind === 'walls') continue;
+    if (kind === 'floors') {
+      put(kind, {...fields, outline: fields.outline.map(shifted),
+        holes: fields.holes.map((hole) => hole.map(shifted)), fit: 'none'});
+    } else if (walls.has(fields.wall)) {
+      put(kind, {...fields, wall: walls.get(fields.wall)});
+    } else if (place) {
+      put(kind, {...detached(fields, shifted(place.point), place.yaw)});
+    } else {
+      put(kind, {...fields, position: shifted(fields.position)});
+    }
+  }
+  return {plan: made, refs};
+}
+
+/** As `copied`, with the openings of copied walls and the places of those whose walls stay behind. */
+export function clipboardOf(plan, at, refs) {
+  const level = plan.levels[at];
+  const walls = new Set(refs.filter(({kind}) => kind === 'walls').map(({id}) => id));
+  const more = ['windows', 'doors'].flatMap((kind) => level[kind]
+    .filter((item) => walls.has(item.wall)).map(({id}) => ({kind, id})));
+  const all = [...refs.filter((ref) => !more.some((one) => one.kind === ref.kind && one.id === ref.id)), ...more];
+  return copied(plan, at, all).map((clip) => ['windows', 'doors'].includes(clip.kind) &&
+    clip.item.wall !== null && !walls.has(clip.item.wall)
+    ? {...clip, place: placeOf(clip.item, level)} : clip);
+}
+
+/** The plan without pictures: what a preview needs. */
+export const withoutImages = (plan) =>
+  ({...plan, levels: plan.levels.map((level) => level.image ? {...level, image: null} : level)});

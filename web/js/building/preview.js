@@ -1,0 +1,80 @@
+/** The building in the 3D view while it is drawn, and its place in the world afterwards. */
+import {isEmpty, withoutImages} from './plan.js';
+
+const PAUSE = 120;
+
+export class Preview {
+  /**
+   * @param {{store: any, session: import('./session.js').Session,
+   *          request: (type: string, fields: any) => Promise<any>, onIssues: (issues: any[]) => void}} parts
+   */
+  constructor({store, session, request, onIssues}) {
+    this.store = store;
+    this.session = session;
+    this.request = request;
+    this.onIssues = onIssues;
+    session.addEventListener('change', this.#changed);
+    this.#changed();
+  }
+
+  #shown = null;
+  #timer = 0;
+  #asking = false;
+  #ended = false;
+
+  #changed = () => {
+    if (this.session.plan === this.#shown || this.#timer || this.#ended) return;
+    this.#timer = setTimeout(() => {
+      this.#timer = 0;
+      this.#ask();
+    }, PAUSE);
+  };
+
+  /** One request at a time; what came in between is asked for afterwards. */
+  async #ask() {
+    if (this.#asking || this.#ended) return;
+    const {plan} = this.session;
+    this.#shown = plan;
+    if (isEmpty(plan)) {
+      this.store.setPreview?.(null);
+      this.onIssues([]);
+      return;
+    }
+    this.#asking = true;
+    try {
+      const {model, issues = []} = await this.request('building_sdf', {plan: withoutImages(plan)});
+      if (!this.#ended) this.store.setPreview?.(model);
+      this.onIssues(issues);
+    } catch (fault) {
+      // The last picture stays: a plan with a fault is not shown, and is told beside the canvas.
+      this.onIssues(fault.issues ?? [{severity: 'error', message: fault.message}]);
+    } finally {
+      this.#asking = false;
+      this.#changed();
+    }
+  }
+
+  end() {
+    this.#ended = true;
+    clearTimeout(this.#timer);
+    this.session.removeEventListener('change', this.#changed);
+    this.store.setPreview?.(null);
+  }
+}
+
+/**
+ * The operations that put a building into the world. A building that was opened again replaces the
+ * model it was opened for, and stays as far from where it was drawn as that model was.
+ *
+ * @param {any} store
+ * @param {{model: any, sdf: string}} building  as `building_sdf` answers
+ * @param {{name: string, pose: number[]}|null} before  the model when the plan was opened
+ */
+export function placingOps(store, {model, sdf}, before) {
+  const insert = (pose) => ({kind: 'insert', name: model.name, sdf, pose});
+  if (!before || !store.model(before.name)) return [insert([...model.pose])];
+  const now = store.worldPose(before.name);
+  const turned = now.slice(3).some((value, at) => Math.abs(value - before.pose[3 + at]) > 1e-6);
+  const shifted = model.pose.map((value, at) => at < 3 ? value + now[at] - before.pose[at] : value);
+  return [{kind: 'delete', names: [before.name]}, insert(turned ? [...now] : shifted)];
+}

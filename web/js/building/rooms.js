@@ -1,0 +1,187 @@
+/** Closed rooms between walls, and the outline of all walls, by the faces of a plane graph. */
+import {crossing, distance, inPolygon, minus, plus, same, side, signedArea} from './geometry.js';
+
+const known = new WeakMap();
+
+/**
+ * @typedef {Object} Room
+ * @property {import('./geometry.js').Point[]} outline  middle lines of its walls, counter-clockwise
+ * @property {import('./geometry.js').Point[]} inside   the faces of its walls
+ * @property {import('./geometry.js').Point[][]} holes  what stands free in it
+ * @property {number} area  m2 between the faces of the walls
+ *
+ * The rooms of a list of walls; the same list gives the same answer without work.
+ * @param {any[]} walls
+ * @returns {Room[]}
+ */
+export const roomsOf = (walls) => facesOf(walls).rooms;
+
+/** The outer outline of the walls that enclose most; their bounding box where nothing is closed. */
+export function outlineOf(walls) {
+  if (!walls.length) return null;
+  const {outer} = facesOf(walls);
+  if (outer.length) return outer.reduce((a, b) => signedArea(b) > signedArea(a) ? b : a);
+  const xs = walls.flatMap(({start, end}) => [start[0], end[0]]);
+  const ys = walls.flatMap(({start, end}) => [start[1], end[1]]);
+  const half = walls[0].thickness / 2;
+  const [x0, x1] = [Math.min(...xs) - half, Math.max(...xs) + half];
+  const [y0, y1] = [Math.min(...ys) - half, Math.max(...ys) + half];
+  return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+}
+
+function facesOf(walls) {
+  let found = known.get(walls);
+  if (!found) known.set(walls, found = faces(walls));
+  return found;
+}
+
+/** Pairs of walls that come near each other, as places in the list. */
+export function* neighbours(walls) {
+  const boxes = walls.map(({start, end}, at) => ({
+    at, x0: Math.min(start[0], end[0]) - 1e-3, x1: Math.max(start[0], end[0]) + 1e-3,
+    y0: Math.min(start[1], end[1]) - 1e-3, y1: Math.max(start[1], end[1]) + 1e-3,
+  })).sort((a, b) => a.x0 - b.x0);
+  for (let i = 0; i < boxes.length; i++) {
+    const a = boxes[i];
+    for (let j = i + 1; j < boxes.length && boxes[j].x0 <= a.x1; j++) {
+      const b = boxes[j];
+      if (b.y0 <= a.y1 && a.y0 <= b.y1) yield [a.at, b.at];
+    }
+  }
+}
+
+function faces(walls) {
+  const graph = prune(graphOf(walls));
+  const loops = loopsOf(graph);
+  const inner = loops.filter(({points}) => signedArea(points) > 1e-6);
+  const outer = loops.filter(({points}) => signedArea(points) < -1e-6)
+    .map(({points}) => straightened([...points].reverse()));
+  const rooms = inner.map(({points, halves}) => {
+    const inside = inset(points, halves);
+    return {outline: straightened(points), inside, holes: [], area: signedArea(inside)};
+  });
+  for (const loop of outer) {
+    const holder = rooms.filter((room) => signedArea(room.outline) > signedArea(loop) + 1e-6 &&
+      loop.every((point) => inPolygon(point, room.outline)))
+      .sort((a, b) => signedArea(a.outline) - signedArea(b.outline))[0];
+    if (!holder) continue;
+    holder.holes.push(loop);
+    holder.area -= signedArea(loop);
+  }
+  return {rooms, outer};
+}
+
+/** Corners by number, and for each corner its neighbours with the half thickness of the wall. */
+function graphOf(walls) {
+  const cuts = walls.map(({start, end}) => [start, end]);
+  for (const [i, j] of neighbours(walls)) {
+    for (const point of meetings(walls[i], walls[j])) {
+      cuts[i].push(point);
+      cuts[j].push(point);
+    }
+  }
+  const corners = [];
+  const cells = new Map();
+  const cornerOf = (point) => {
+    const [column, row] = [Math.round(point[0] * 100), Math.round(point[1] * 100)];
+    for (let x = column - 1; x <= column + 1; x++) {
+      for (let y = row - 1; y <= row + 1; y++) {
+        const near = cells.get(`${x},${y}`)?.find((at) => same(corners[at].point, point));
+        if (near !== undefined) return near;
+      }
+    }
+    const key = `${column},${row}`;
+    if (!cells.has(key)) cells.set(key, []);
+    cells.get(key).push(corners.length);
+    corners.push({point, edges: new Map()});
+    return corners.length - 1;
+  };
+  walls.forEach((wall, at) => {
+    const along = cuts[at].map((point) => ({point, at: distance(wall.start, point)}))
+      .sort((a, b) => a.at - b.at).map(({point}) => cornerOf(point));
+    for (let n = 0; n + 1 < along.length; n++) {
+      const [a, b] = [along[n], along[n + 1]];
+      if (a === b) continue;
+      corners[a].edges.set(b, wall.thickness / 2);
+      corners[b].edges.set(a, wall.thickness / 2);
+    }
+  });
+  return corners;
+}
+
+/** The points that two walls have in common. */
+function meetings(a, b) {
+  const found = [];
+  const on = (wall, point) => Math.abs(side(wall.start, wall.end, point)) < 1e-4 &&
+    distance(wall.start, point) + distance(point, wall.end) < distance(wall.start, wall.end) + 1e-4;
+  for (const point of [b.start, b.end]) if (on(a, point)) found.push(point);
+  for (const point of [a.start, a.end]) if (on(b, point)) found.push(point);
+  if (found.length) return found;
+  const point = crossing(a.start, a.end, b.start, b.end);
+  return point && on(a, point) && on(b, point) ? [point] : [];
+}
+
+/** Takes away what ends blind: it encloses nothing. */
+function prune(corners) {
+  const ends = corners.map((_, at) => at).filter((at) => corners[at].edges.size === 1);
+  while (ends.length) {
+    const at = ends.pop();
+    for (const next of corners[at].edges.keys()) {
+      corners[next].edges.delete(at);
+      if (corners[next].edges.size === 1) ends.push(next);
+    }
+    corners[at].edges.clear();
+  }
+  return corners;
+}
+
+/** All faces: at each corner the next edge to the right is taken. */
+function loopsOf(corners) {
+  const turns = corners.map(({point, edges}) => [...edges.keys()].sort((a, b) => {
+    const [p, q] = [minus(corners[a].point, point), minus(corners[b].point, point)];
+    return Math.atan2(p[1], p[0]) - Math.atan2(q[1], q[0]);
+  }));
+  const seen = new Set();
+  const loops = [];
+  corners.forEach((_, first) => {
+    for (const second of turns[first]) {
+      if (seen.has(`${first}>${second}`)) continue;
+      const points = [];
+      const halves = [];
+      let [from, to] = [first, second];
+      while (!seen.has(`${from}>${to}`)) {
+        seen.add(`${from}>${to}`);
+        points.push(corners[from].point);
+        halves.push(corners[from].edges.get(to));
+        const around = turns[to];
+        const next = around[(around.indexOf(from) - 1 + around.length) % around.length];
+        [from, to] = [to, next];
+      }
+      loops.push({points, halves});
+    }
+  });
+  return loops;
+}
+
+/** The loop moved inwards by half of each wall. */
+function inset(points, halves) {
+  const count = points.length;
+  const lines = points.map((a, at) => {
+    const b = points[(at + 1) % count];
+    const length = distance(a, b);
+    const off = [-(b[1] - a[1]) / length * halves[at], (b[0] - a[0]) / length * halves[at]];
+    return [plus(a, off), plus(b, off)];
+  });
+  const loop = lines.map((line, at) => {
+    const before = lines[(at - 1 + count) % count];
+    return crossing(before[0], before[1], line[0], line[1]) ?? line[0];
+  });
+  return signedArea(loop) > 0 ? loop : points;
+}
+
+/** Without the corners at which nothing turns. */
+function straightened(loop) {
+  const left = loop.filter((point, at) => Math.abs(side(loop.at(at - 1),
+    loop[(at + 1) % loop.length], point)) > 1e-4);
+  return left.length >= 3 ? left : loop;
+}

@@ -1,0 +1,223 @@
+/** Selecting, moving, stretching and turning, and painting. */
+import {openingFault, openingsOf, overlap} from './check.js';
+import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './geometry.js';
+import {hitOf, itemsWithin, wallNear} from './hit.js';
+import {
+  attached, detached, itemOf, moveEnd, moveItems, placeOf, update, wallYaw,
+} from './plan.js';
+import {NAMES} from './session.js';
+import {SNAP_ANGLE, snapPolar} from './snap.js';
+
+const QUARTER = Math.PI / 2;
+
+export class SelectTool {
+  name = 'select';
+  hint = 'Click to select, drag to move, double click for the inspector.';
+  /** @type {{ref: import('./plan.js').Ref, part: string, from: any, plan: any, moved: boolean}|null} */
+  #drag = null;
+  #box = null;
+
+  constructor(session) { this.session = session; }
+
+  press(mouse) {
+    const {session} = this;
+    const hit = hitOf(session.plan, session.at, mouse.point,
+      {tolerance: mouse.tolerance, selection: session.selection});
+    if (!hit) {
+      this.#box = mouse.point;
+      if (!mouse.ctrl) session.select([]);
+      return;
+    }
+    if (mouse.ctrl) {
+      session.select(session.isSelected(hit.ref)
+        ? session.selection.filter(({kind, id}) => kind !== hit.ref.kind || id !== hit.ref.id)
+        : [...session.selection, hit.ref]);
+      return;
+    }
+    if (!session.isSelected(hit.ref)) session.select([hit.ref]);
+    this.#drag = {...hit, from: mouse.point, plan: session.history.plan, moved: false};
+  }
+
+  move(mouse) {
+    const {session} = this;
+    if (this.#box) {
+      session.draft = {box: [this.#box, mouse.point]};
+      session.changed();
+      return;
+    }
+    const drag = this.#drag;
+    if (!drag) {
+      this.hovered = hitOf(session.plan, session.at, mouse.point,
+        {tolerance: mouse.tolerance, selection: session.selection});
+      return;
+    }
+    if (!drag.moved && distance(drag.from, mouse.point) < mouse.tolerance / 2) return;
+    drag.moved = true;
+    session.preview(dragged(drag, mouse, session));
+  }
+
+  release(mouse) {
+    const {session} = this;
+    if (this.#box) {
+      const found = itemsWithin(session.level, this.#box, mouse.point);
+      if (found.length) session.select(mouse.ctrl ? [...session.selection, ...found] : found);
+      this.#box = null;
+      session.draft = {};
+      session.changed();
+      return;
+    }
+    const drag = this.#drag;
+    this.#drag = null;
+    if (!drag?.moved) return;
+    const plan = dragged(drag, mouse, session);
+    const fault = drag.part === 'body' ? openingTrouble(plan, session.at, drag.ref) : '';
+    if (fault) {
+      session.preview(null);
+      session.say(`Not there: the ${NAMES[drag.ref.kind]} ${fault}.`);
+      return;
+    }
+    session.commit(plan, `${VERBS[drag.part] ?? 'stretch'} ${NAMES[drag.ref.kind]}`);
+  }
+
+  double() {}
+  typed() {}
+
+  /** Esc: first the drag, then the selection. */
+  cancel() {
+    const {session} = this;
+    const busy = Boolean(this.#drag?.moved || this.#box);
+    this.#drag = null;
+    this.#box = null;
+    session.draft = {};
+    if (busy) session.preview(null);
+    return busy;
+  }
+}
+
+const VERBS = {body: 'move', rotate: 'turn'};
+
+/** The plan after a drag, from the plan before it. */
+export function dragged({ref, part, from, plan}, mouse, {at, selection}) {
+  const item = itemOf(plan, at, ref);
+  if (!item) return plan;
+  const by = minus(mouse.point, from);
+  if (part === 'start' || part === 'end') return draggedEnd(plan, at, ref, item, part, mouse);
+  if (part === 'rotate') return draggedTurn(plan, at, ref, item, mouse);
+  if (part.startsWith('corner')) return draggedCorner(plan, at, ref, item, Number(part.slice(6)), mouse);
+  if (part.startsWith('vertex')) {
+    const outline = item.outline.map((point, n) =>
+      n === Number(part.slice(6)) ? tidyPoint(mouse.point) : point);
+    return update(plan, at, ref, {outline, fit: 'none'});
+  }
+  const alone = selection.length < 2;
+  if (alone && item.wall !== undefined) return draggedOpening(plan, at, ref, item, by, mouse);
+  return moveItems(plan, at, alone ? [ref] : selection, by);
+}
+
+/** 15 degrees and 0.25 m about the other end; no foreign ends. Alt leaves linked walls behind. */
+function draggedEnd(plan, at, ref, wall, end, mouse) {
+  const other = wall[end === 'start' ? 'end' : 'start'];
+  const point = mouse.shift ? mouse.point : snapPolar(other, mouse.point, wall.thickness);
+  if (distance(other, point) < 0.01) return plan;
+  return moveEnd(plan, at, ref.id, end, point, {alone: mouse.alt});
+}
+
+function draggedTurn(plan, at, ref, item, mouse) {
+  const angle = Math.atan2(mouse.point[1] - item.position[1], mouse.point[0] - item.position[0]) - QUARTER;
+  const step = ref.kind === 'stairs' ? QUARTER : SNAP_ANGLE;
+  const yaw = mouse.shift ? angle : Math.round(angle / step) * step;
+  return update(plan, at, ref, {yaw: Math.round(Math.atan2(Math.sin(yaw), Math.cos(yaw)) * 1e9) / 1e9 + 0});
+}
+
+/** The opposite corner stays. */
+function draggedCorner(plan, at, ref, stairs, corner, mouse) {
+  const signs = [[-1, -1], [1, -1], [1, 1], [-1, 1]][corner];
+  const fixed = fromLocal([-signs[0] * stairs.width / 2, -signs[1] * stairs.depth / 2],
+    stairs.position, stairs.yaw);
+  const [x, y] = toLocal(mouse.point, fixed, stairs.yaw);
+  const width = Math.max(tidy(x * signs[0]), 0.1);
+  const depth = Math.max(tidy(y * signs[1]), 0.1);
+  const position = fromLocal([signs[0] * width / 2, signs[1] * depth / 2], fixed, stairs.yaw);
+  return update(plan, at, ref, {width, depth, position: tidyPoint(position)});
+}
+
+/** Along its wall; out of it beyond 0.3 m; into another wall that is near. */
+function draggedOpening(plan, at, ref, opening, by, mouse) {
+  const level = plan.levels[at];
+  const {point, yaw} = placeOf(opening, level);
+  const wanted = [point[0] + by[0], point[1] + by[1]];
+  const near = wallNear(level, opening.wall === null ? wanted : mouse.point);
+  if (!near) return update(plan, at, ref, detached(opening, wanted, yaw));
+  const own = near.wall.id === opening.wall;
+  const along = own ? opening.along + alongBy(near.wall, by) : near.along;
+  return update(plan, at, ref, attached(opening, near.wall, along));
+}
+
+function alongBy(wall, by) {
+  const yaw = wallYaw(wall);
+  return by[0] * Math.cos(yaw) + by[1] * Math.sin(yaw);
+}
+
+/** Why an opening cannot stay where it is, '' when it can. */
+export function openingTrouble(plan, at, ref) {
+  const item = itemOf(plan, at, ref);
+  if (!item || item.wall === undefined || item.wall === null) return '';
+  const level = plan.levels[at];
+  const wall = level.walls.find(({id}) => id === item.wall);
+  const other = openingsOf(level).find((one) => one.item !== item && overlap(one.item, item));
+  return openingFault(item, wall) || (other ? 'overlaps another' : '');
+}
+
+/** Paints the wall, stairs or floor that is clicked, here or in the 3D view, once. */
+export class PaintTool {
+  name = 'paint';
+  hint = 'Click a wall, floor or stairs, here or in the 3D view, to paint it.';
+
+  /** @param {any} session @param {{color?: string, texture?: string}} look */
+  constructor(session, look) {
+    this.session = session;
+    this.look = look;
+  }
+
+  press(mouse) {
+    const {session} = this;
+    const target = this.#target(mouse);
+    if (target) this.paint(session.at, target);
+  }
+
+  move(mouse) { this.hover(this.session.at, this.#target(mouse)); }
+
+  /** Shows what painting would do. @param {import('./plan.js').Ref|null} ref */
+  hover(at, ref) {
+    const key = ref ? `${at}${ref.kind}${ref.id}` : '';
+    if (key === this.hovered) return;
+    this.hovered = key;
+    const {session} = this;
+    session.preview(ref ? update(session.history.plan, at, ref, this.look) : null);
+  }
+
+  paint(at, ref) {
+    const {session} = this;
+    session.commit(update(session.history.plan, at, ref, this.look),
+      `${this.look.texture ? 'texture' : 'colour'} of ${NAMES[ref.kind]}`);
+    session.endTool();
+  }
+
+  release() {}
+  double() {}
+  typed() {}
+
+  cancel() {
+    this.session.preview(null);
+    return false;
+  }
+
+  #target(mouse) {
+    const {session} = this;
+    const ref = hitOf(session.history.plan, session.at, mouse.point, {tolerance: mouse.tolerance})?.ref;
+    return ref && paintable(ref) ? ref : null;
+  }
+}
+
+export const paintable = ({kind}) => ['walls', 'stairs', 'floors'].includes(kind);
+

@@ -1,0 +1,54 @@
+/** Where the end of a wall goes while it is drawn or dragged. */
+import {direction, distance, polar, tidyPoint} from './geometry.js';
+
+export const SNAP_ANGLE = Math.PI / 12;
+export const SNAP_LENGTH = 0.25;
+/** Metres within which an end is drawn to another one, and an opening to a wall. */
+export const REACH = 0.3;
+
+/**
+ * The nearest end of a wall within reach, or null.
+ * @param {any[]} walls
+ * @param {import('./geometry.js').Point} point
+ * @param {(wall: any, end: 'start'|'end') => boolean} [wanted]
+ */
+export function nearEnd(walls, point, wanted = () => true) {
+  let best = null;
+  let least = REACH;
+  for (const wall of walls) {
+    for (const end of ['start', 'end']) {
+      const away = distance(wall[end], point);
+      if (away <= least && wanted(wall, end)) {
+        least = away;
+        best = wall[end];
+      }
+    }
+  }
+  return best;
+}
+
+/**
+ * The end of a wall that starts at `from`: on another end, else at a multiple of 15 degrees with an
+ * outer length (thickness and all) of a multiple of 0.25 m; `free` takes the point as it is.
+ *
+ * @returns {{point: import('./geometry.js').Point, on: 'end'|'grid'|'free'}}
+ */
+export function snapEnd(from, point, {walls = [], thickness = 0.15, free = false} = {}) {
+  if (free) return {point: tidyPoint(point), on: 'free'};
+  const end = nearEnd(walls, point, (wall, name) => distance(wall[name], from) > 1e-4);
+  if (end) return {point: end, on: 'end'};
+  return {point: snapPolar(from, point, thickness), on: 'grid'};
+}
+
+/** As `snapEnd` without foreign ends. */
+export function snapPolar(from, point, thickness) {
+  const angle = Math.round(direction(from, point) / SNAP_ANGLE) * SNAP_ANGLE;
+  const steps = Math.round((distance(from, point) + thickness) / SNAP_LENGTH);
+  const length = steps * SNAP_LENGTH - thickness;
+  return length < 0.05 ? tidyPoint(from) : tidyPoint(polar(from, angle, length));
+}
+
+/** The start of a wall: on another end, else as it is. */
+export function snapStart(point, {walls = [], free = false} = {}) {
+  return (!free && nearEnd(walls, point)) || tidyPoint(point);
+}
