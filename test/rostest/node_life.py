@@ -149,18 +149,23 @@ class NodeLife(unittest.TestCase):
             self.assertEqual(program.ended(), 2)
             self.assertIn("usage: gzserver", program.text)
 
-    def test_the_client_says_in_one_line_where_the_interface_is(self):
+    def test_the_client_says_where_the_editor_is_and_ends_with_the_server(self):
         client = executable("gazebo_ros", "gzclient")
-        with Program([client, "--verbose", "__name:=gazebo_gui", "__log:=x.log"]) as program:
-            self.assertEqual(program.ended(), 0)
-            self.assertEqual(program.text.count("\n"), 1)
-            self.assertIn("/gazebo", program.text)
+        with Program([self.server, "-u", self.world(WORLD.format(""))],
+                     ROS_NAMESPACE="/shown") as server:
+            self.assertEqual(support.Gazebo("/shown/gazebo").names(), [])
+            with Program([client, "--verbose", "__name:=gazebo_gui", "__log:=x.log"],
+                         ROS_NAMESPACE="/shown") as program:
+                wait_for(lambda: "http://127.0.0.1:" in program.text, "the address")
+                server.interrupt()
+                self.assertEqual(program.ended(), 0, program.text)
+        rospy.delete_param("/shown")
 
-    def test_gazebo_is_server_and_client_in_one(self):
+    def test_gazebo_is_server_and_editor_in_one(self):
         both = executable("gazebo_ros", "gazebo")
         with Program([both, "-u", self.world(WORLD.format("")), "__name:=second"]) as program:
             self.assertEqual(support.Gazebo("/second").names(), [])
-            self.assertIn("gzclient", program.text)
+            wait_for(lambda: "http://127.0.0.1:" in program.text, "the address")
             program.interrupt()
             self.assertEqual(program.ended(), 0)
         rospy.delete_param("/second")

@@ -6,15 +6,15 @@ import json
 import os
 import sys
 from dataclasses import asdict
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
-from ..description.advice import advice, links_of, thin_mesh
 from ..description.flatten import flattened
 from ..description.model import Link, Model
-from ..description.shapes import Mesh, MeshTable, mesh_key
+from ..description.shapes import MeshTable
 from ..description.validate import Fault
 from ..description.world import Actor, Light, World
 from ..errors import InputError, Issue, Severity, error, errors_of
+from ..formats.advise import findings
 from ..formats.load import read_any
 from ..formats.meshes import collision_meshes
 from ..formats.source import Log
@@ -80,23 +80,12 @@ def check(file: str, resolver: Resolver) -> Tuple[Optional[Loaded], List[Issue]]
         return None, fault.issues
     models = _models(loaded)
     issues = list(issues)
-    findings = list(advice(models))
+    meshes: Dict[str, MeshTable] = {}
     for model in models:
-        meshes, faults = collision_meshes(model)
+        meshes[model.name], faults = collision_meshes(model)
         issues += faults
-        findings += _thin_meshes(model, meshes)
-    issues += [_placed(finding, models, root, path) for finding in findings]
+    issues += [_placed(finding, models, root, path) for finding in findings(models, meshes)]
     return loaded, issues
-
-
-def _thin_meshes(model: Model, meshes: MeshTable) -> Iterator[Fault]:
-    for name, link, _pose, _static in links_of(model):
-        for collision in link.collisions:
-            shape = collision.geometry
-            data = meshes.get(mesh_key(shape)) if isinstance(shape, Mesh) else None
-            if data is not None:
-                extents = data.vertices.max(axis=0) - data.vertices.min(axis=0)
-                yield from thin_mesh(collision, name, [float(edge) for edge in extents])
 
 
 def _document(file: str) -> Tuple[str, Union[str, bytes]]:

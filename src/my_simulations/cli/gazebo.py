@@ -1,21 +1,46 @@
-"""`gazebo`: server and client in one; the server stays in the foreground."""
+"""`gazebo`: server and editor in one; with a ROS master as a node, without one on its own."""
 from __future__ import annotations
 
 import sys
+import threading
 from typing import List, Optional
 
-from . import gzclient, gzserver
+from ..ros import master
+from . import gzserver
 
 
 def main(argv: Optional[List[str]] = None) -> int:
-    """Run the server with the client's line before it.
+    """Run a world with its editor until a signal ends it.
 
     Returns:
         As `gzserver`.
     """
     words = sys.argv if argv is None else argv
-    gzclient.main()
-    return gzserver.main(words, program="gazebo")
+    if master.fault_of(master.uri(words), "/gazebo"):
+        from . import standalone
+
+        return standalone.main(words, "gazebo")
+    threading.Thread(target=_show, args=(words,), daemon=True).start()
+    return gzserver.main(words, program="gazebo", gui=True)
+
+
+def _show(words: List[str]) -> None:
+    """Show the editor's address as soon as the node has one."""
+    import time
+
+    from .browser import show
+
+    name, uri = master.node_name(words, "gazebo"), master.uri(words)
+    until = time.monotonic() + 60.0
+    while time.monotonic() < until:
+        try:
+            found = master.call(uri, "getParam", name, f"{name}/my_simulations/editor_url")
+        except OSError:
+            return
+        if isinstance(found, str) and master.living_node(uri, name) is not None:
+            show(found, "gazebo")
+            return
+        time.sleep(0.25)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,8 @@ import os
 import signal
 import sys
 import threading
-from typing import Any, Callable, List, Optional, Sequence
+from collections import deque
+from typing import TYPE_CHECKING, Any, Callable, Deque, List, Optional, Sequence
 
 from ..errors import CommandError, InputError, Issue, error
 from . import master
@@ -19,6 +20,9 @@ from .lean import import_genpy
 from .options import ServerOptions
 from .profile import StartProfile
 
+if TYPE_CHECKING:
+    from .editing import EditorDoor, StartEditor
+
 NODE = "gazebo"
 END_SECONDS = 3.0
 """Longest orderly end; a thread that is stuck in a network call does not keep the process."""
@@ -26,6 +30,8 @@ END_SECONDS = 3.0
 UPKEEP_SECONDS = 0.5
 CLOCK_QUEUE = 1000
 """Messages a subscriber to `/clock` may be behind by: a second in real time."""
+
+RECENT_ISSUES = 100
 
 OK, FAILED = 0, 1
 
@@ -38,14 +44,25 @@ class IssueLog:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._kept: List[Issue] = []
+        self._recent: Deque[Issue] = deque(maxlen=RECENT_ISSUES)
         self._sink: Optional[Callable[[Issue], None]] = None
+        self._also: Optional[Callable[[Issue], None]] = None
 
     def __call__(self, issue: Issue) -> None:
         with self._lock:
-            sink = self._sink
+            sink, also = self._sink, self._also
+            self._recent.append(issue)
             if sink is None:
                 self._kept.append(issue)
-        if sink is not None:
+        for hears in (sink, also):
+            if hears is not None:
+                hears(issue)
+
+    def also(self, sink: Callable[[Issue], None]) -> None:
+        """Tell one more, from the last `RECENT_ISSUES` on."""
+        with self._lock:
+            self._also, recent = sink, list(self._recent)
+        for issue in recent:
             sink(issue)
 
     def open(self, sink: Callable[[Issue], None]) -> None:
@@ -119,7 +136,8 @@ class Server:
     """Runs the node until a signal, a shutdown request or a fault ends it."""
 
     def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say,
-                 engines: EngineSupply, profile: StartProfile) -> None:
+                 engines: EngineSupply, profile: StartProfile,
+                 start_editor: "Optional[StartEditor]" = None, gui: bool = False) -> None:
         """Take over a start that has begun.
 
         Args:
@@ -128,7 +146,11 @@ class Server:
             say: where words go before rospy can log them.
             engines: holds the engine that was started first of all.
             profile: gets the phases.
+            start_editor: starts the world editor, when somebody wants it.
+            gui: want it at once, whatever the parameters say.
         """
+        self._start_editor, self._gui = start_editor, gui
+        self._door: "Optional[EditorDoor]" = None
         self._options, self._argv, self._say = options, list(argv), say
         self._engines, self._profile = engines, profile
         self._ended = threading.Event()
@@ -237,7 +259,9 @@ class Server:
         self._log.open(log_issue)
         for notice in self._options.notices:
             rospy.loginfo("%s", notice)
-        node = Node(loader.simulator, loader.resolver, self._clock)
+        door = self._make_door(loader)
+        node = Node(loader.simulator, loader.resolver, self._clock,
+                    None if door is None else door.open)
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
@@ -246,10 +270,21 @@ class Server:
             loader.simulator.unpause()
         # What the start has made stays; without this every full collection walks through it again.
         gc.freeze()
+        if door is not None and (self._gui or door.wanted()):
+            door.open_soon()
         self._profile.mark("running")
         for line in self._profile.lines():
             self._say(line)
         return node
+
+    def _make_door(self, loader: WorldLoader) -> "Optional[EditorDoor]":
+        if self._start_editor is None:
+            return None
+        from .editing import EditorDoor
+
+        self._door = EditorDoor(self._start_editor, loader.simulator, loader.resolver,
+                                self._log.also)
+        return self._door
 
     def _refuse(self, fault: InputError) -> int:
         from .node import fail
@@ -263,6 +298,8 @@ class Server:
         watchdog.daemon = True
         watchdog.start()
         self._ended.set()
+        if self._door is not None:
+            self._door.close()
         if node is not None:
             node.stop()
         if loader.simulator is not None:

@@ -1,0 +1,77 @@
+"""A world and its editor without ROS."""
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from typing import Callable, List
+
+from ..errors import CommandError, InputError, Issue, Severity
+from .browser import show
+from .gzserver import start_editor
+
+OK, FAILED = 0, 1
+
+
+def main(words: List[str], program: str) -> int:
+    """Run the world of the command line with its editor until a signal ends it.
+
+    Returns:
+        0 after SIGINT or SIGTERM, 1 when the world or the editor could not be started.
+    """
+    from ..ros.options import parse
+
+    options = parse(words[1:], program)
+    ended = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda _number, _frame: ended.set())
+
+    def say(line: object) -> None:
+        print(f"{program}: {line}", file=sys.stderr, flush=True)
+
+    say("no ROS master answers; this world runs without ROS")
+    for notice in options.notices:
+        say(notice)
+    from ..engine.process import ProcessEngine
+    from ..resources.resolver import Resolver
+    from ..ros.engines import EngineSupply
+    from ..ros.loading import load_world
+    from ..simulator.simulator import Simulator
+
+    heard: List[Issue] = []
+    shown: List[Callable[[Issue], None]] = []
+
+    def log(issue: Issue) -> None:
+        heard.append(issue)
+        del heard[:-100]
+        for tell in shown:
+            tell(issue)
+        if options.verbose or issue.severity is not Severity.NOTE:
+            say(issue)
+
+    engines = EngineSupply(ProcessEngine)
+    try:
+        resolver = Resolver.from_environment()
+        world, meshes = load_world(options.world, resolver, log)
+        simulator = Simulator(world, engine_factory=engines, paused=options.paused, log=log,
+                              meshes=meshes)
+        simulator.start()
+    except InputError as fault:
+        for issue in fault.issues:
+            say(issue)
+        engines.close()
+        return FAILED
+    try:
+        editor = start_editor(simulator, resolver, {"log": lambda issue: say(issue)})
+        for issue in list(heard):
+            editor.tell(issue)
+        shown.append(editor.tell)
+        show(editor.url, program)
+        ended.wait()
+        editor.stop()
+        return OK
+    except CommandError as fault:
+        say(fault)
+        return FAILED
+    finally:
+        simulator.close()
