@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Iterator, List, Optional, Tuple
 
 import pytest
+from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Geometry, Plane, Sphere, Surface
@@ -126,6 +127,27 @@ class Lab:
 
     def joint(self, model_id: int, name: str = "hinge") -> Tuple[float, float]:
         return tuple(self.backend._readout.joints[self.joint_rows[model_id, name]].tolist())
+
+
+_LAWS = pytest.StashKey[Laws]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.stash[_LAWS] = Laws()
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    lines = terminalreporter.config.stash[_LAWS].report()
+    if lines:
+        terminalreporter.section("laws: the worst case of each")
+        for line in lines:
+            terminalreporter.write_line(line)
+
+
+@pytest.fixture
+def laws(request: pytest.FixtureRequest) -> Laws:
+    """Where measurements are compared with laws and noted."""
+    return request.config.stash[_LAWS]
 
 
 @pytest.fixture

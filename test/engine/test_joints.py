@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from closed_forms import pendulum
 from conftest import Lab, arm, box, inertial_of_box
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Mimic, Model
@@ -23,37 +24,11 @@ from my_simulations.geometry import (
     Pose,
     Twist,
     compose,
-    dot,
     quat_from_rpy,
-    rotate,
     transform,
-    twist_at,
 )
 
 Y = (0.0, 1.0, 0.0)
-
-
-def _reference_pendulum(angle: float, inertia: float, torque: float, seconds: float) -> float:
-    """The angle after `seconds` by Runge-Kutta 4: I a'' = torque cos a."""
-    rate, h = 0.0, 1e-4
-    for _ in range(round(seconds / h)):
-        def f(a: float, w: float):
-            return w, torque * math.cos(a) / inertia
-        k1 = f(angle, rate)
-        k2 = f(angle + h / 2 * k1[0], rate + h / 2 * k1[1])
-        k3 = f(angle + h / 2 * k2[0], rate + h / 2 * k2[1])
-        k4 = f(angle + h * k3[0], rate + h * k3[1])
-        angle += h / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0])
-        rate += h / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1])
-    return angle
-
-
-def test_a_horizontal_pendulum_swings_as_a_runge_kutta_reference(lab: Lab):
-    # No hidden motor, no hidden damping, the inertia of the file.
-    model = lab.load(arm("revolute", JointAxis(Y), mass=2.0, moment=0.3))
-    lab.seconds(5)
-    expected = _reference_pendulum(0.0, 2.0 + 0.3, 2.0 * 9.8, 5.0)
-    assert lab.joint(model)[0] == pytest.approx(expected, abs=0.005)
 
 
 def test_the_link_follows_the_joint(lab: Lab):
@@ -72,9 +47,7 @@ def test_joint_damping_decays_exponentially_and_never_diverges(lab: Lab, damping
     model = lab.load(arm("revolute", JointAxis(Y, damping=damping), mass=1.0, moment=0.0 + 1e-6))
     lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.0, 1.0),)))
     lab.steps(100)
-    # Implicit Euler: (1 + dt d / I) ** -n, which tends to exp(-d t / I).
-    expected = (1 + 1e-3 * damping) ** -100
-    assert lab.joint(model)[1] == pytest.approx(expected, rel=0.02, abs=1e-6)
+    assert lab.joint(model)[1] == pytest.approx(math.exp(-0.1 * damping), rel=0.02, abs=1e-6)
 
 
 def test_a_spring_swings_with_its_own_period(lab: Lab):
@@ -83,20 +56,6 @@ def test_a_spring_swings_with_its_own_period(lab: Lab):
     lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.1, 0.0),)))
     lab.steps(round(1000 * math.pi))  # half a period: 2 pi sqrt(10 / 40) / 2 = pi / 2 twice
     assert lab.joint(model)[0] == pytest.approx(0.1, abs=2e-3)
-
-
-@pytest.mark.parametrize("mass", [0.001, 1.0, 1000.0])
-def test_a_prismatic_limit_holds_the_weight(lab: Lab, mass: float):
-    model = lab.load(arm("prismatic", JointAxis((0, 0, 1), lower=-0.2, upper=0.1), mass=mass,
-                         moment=1e-3 * mass))
-    lab.seconds(2)
-    assert lab.joint(model)[0] == pytest.approx(-0.2, abs=1e-3)
-
-
-def test_a_revolute_limit_holds_the_weight(lab: Lab):
-    model = lab.load(arm("revolute", JointAxis(Y, lower=-1.0, upper=0.5), mass=3.0))
-    lab.seconds(3)
-    assert lab.joint(model)[0] == pytest.approx(0.5, abs=2e-3)
 
 
 def test_joint_rates_are_not_clamped(lab: Lab):
@@ -307,7 +266,7 @@ def test_a_ball_joint_swings_as_a_pendulum_in_any_direction(lab: Lab):
                            joints=[Joint("socket", "ball", "world", "bob")]),
                      (0, 0, 0), quat_from_rpy(0, 0, 0.7))
     lab.seconds(1)
-    angle = _reference_pendulum(0.0, 1.001, 9.8, 1.0)
+    angle, _ = pendulum(0.0, 0.0, 1.001, 9.8, 0.0, 1.0)
     x, y, z = transform(lab.pose(model, "bob"), (1, 0, 0))
     flat = math.cos(angle)
     assert (x, y, z) == pytest.approx(
@@ -424,51 +383,6 @@ def test_efforts_stay_within_the_limits_of_their_axis(lab: Lab):
     assert 0.5 < lab.joint(slow)[1] < 0.52
 
 
-@pytest.mark.parametrize("mass", [0.001, 1.0, 1000.0])
-@pytest.mark.parametrize("share", [0.1, 1.0, 10.0])
-def test_a_damper_up_to_ten_masses_a_step_is_stable_at_any_mass(lab: Lab, mass: float,
-                                                               share: float):
-    damping = share * mass / 1e-3
-    model = lab.load(arm("prismatic", JointAxis((0, 0, 1), damping=damping), mass=mass))
-    lab.seconds(1)
-    # It falls at the speed at which the damper carries the weight.
-    assert lab.joint(model)[1] == pytest.approx(-9.8 * mass / damping, rel=0.02)
-
-
-@pytest.mark.parametrize("mass", [0.001, 1.0, 1000.0])
-def test_a_spring_carries_the_weight_at_its_closed_form_at_any_mass(lab: Lab, mass: float):
-    stiffness = 400.0 * mass   # 20 rad/s
-    model = lab.load(arm("prismatic", JointAxis((0, 0, 1), spring_stiffness=stiffness,
-                                                damping=20.0 * mass), mass=mass))
-    lab.seconds(2)
-    assert lab.joint(model)[0] == pytest.approx(-9.8 * mass / stiffness, rel=0.02)
-
-
-def test_a_double_pendulum_keeps_its_energy(lab: Lab):
-    def bob(name: str, x: float) -> Link:
-        return Link(name, Pose((x, 0, 0)), Inertial(1, Pose((1, 0, 0)), 1e-3, 0, 0, 1e-3, 0, 1e-3))
-
-    model = lab.load(Model("double", links=[bob("a", 0.0), bob("b", 1.0)], joints=[
-        Joint("upper", "revolute", "world", "a", axis=JointAxis(Y)),
-        Joint("lower", "revolute", "a", "b", axis=JointAxis(Y))]))
-
-    def energy() -> float:
-        total = 0.0
-        for name in "ab":
-            pose, twist = lab.pose(model, name), lab.twist(model, name)
-            bob_at = transform(pose, (1, 0, 0))
-            speed = twist_at(twist, rotate(pose.orientation, (1, 0, 0))).linear
-            total += (dot(speed, speed) + 1e-3 * dot(twist.angular, twist.angular)) / 2
-            total += 9.8 * bob_at[2]
-        return total
-
-    start = energy()
-    # The whole swing moves 2 * 9.8 * 3 J about; a first-order integrator at 1 ms keeps 1 % of it.
-    for _ in range(100):
-        lab.steps(100)
-        assert energy() == pytest.approx(start, abs=0.01 * 58.8)
-
-
 @pytest.mark.parametrize("dt", [0.001, 0.004])
 def test_velocity_decay_of_an_articulated_link_takes_its_share_off_in_every_step(lab: Lab,
                                                                                 dt: float):
@@ -496,3 +410,16 @@ def test_velocity_decay_slows_a_free_articulated_body_as_a_rigid_one(lab: Lab):
                                                       rel=1e-4)
     lab.remove(jointed)
     assert lab.backend._decay.idle
+
+
+@pytest.mark.filterwarnings("ignore:overflow")
+def test_a_spring_works_again_after_an_effort_beyond_all_numbers(lab: Lab):
+    axis = JointAxis((0, 0, 1), spring_stiffness=0.05, damping=0.02)
+    model = lab.load(arm("prismatic", axis, mass=1e-3, moment=1e-6))
+    row = lab.joint_rows[model, "hinge"]
+    lab.apply(AddLoads((Load(1, row, 10, 20, effort=1e308),)))
+    lab.steps(30)
+    assert abs(lab.joint(model)[0]) > 1e3
+    lab.apply(SetJoints(((row, 0.0, 0.0),)))
+    lab.seconds(5)
+    assert lab.joint(model)[0] == pytest.approx(-9.8e-3 / 0.05, rel=0.02)

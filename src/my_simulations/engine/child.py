@@ -16,10 +16,13 @@ def command(module: str, *arguments: str) -> List[str]:
 
 
 def environment() -> Dict[str, str]:
-    """The environment in which another interpreter finds this package first."""
+    """The environment in which another interpreter finds this package first.
+
+    Its matrices are small: threads for them would cost more than they bring.
+    """
     root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    return {"OPENBLAS_NUM_THREADS": "1", **os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 
 def die_with_parent() -> None:

@@ -387,6 +387,7 @@ class BulletBackend:
         for axis in body.axes:
             pybullet.resetJointState(body.uid, axis.index,
                                      float(self._readout.joints[axis.row, 0]), 0.0)
+        self._forces.disturbed(body)
         name = self._models[body.model_id].model.name
         self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "
                                   "was put back where it was, at rest", body.model_id))

@@ -8,48 +8,13 @@ from typing import Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
-from ...description.model import JointAxis
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
 from ..api import Load
 from ..plan import BASE
 from .bodies import Axis, Body, Part
+from .implicit import ImplicitAxes
 
 _NOTHING = (0.0, 0.0, 0.0)
-_TRUST = 0.5  # share of the newest look at what else accelerates an axis
-
-
-class Damper:
-    """Spring and damper of one axis, integrated implicitly so that no stiffness diverges.
-
-    With the effective inertia I of the axis and the acceleration a that everything else gives it,
-    implicit Euler is w' = (w + dt (a - k (q - r) / I)) / (1 + dt d / I + dt^2 k / I); the torque
-    is I ((w' - w) / dt - a). What a was is seen in the steps before.
-    """
-
-    def __init__(self, uid: int, index: int, inertia: float, spec: JointAxis) -> None:
-        self._joint = uid, index
-        self._inertia = inertia
-        self._spec = spec
-        self._other = 0.0
-        self._before: Optional[Tuple[float, float]] = None  # rate, own acceleration
-
-    def disturbed(self) -> None:
-        """The joint was set: its last change of rate says nothing."""
-        self._before = None
-
-    def torque(self, dt: float) -> float:
-        """The torque of this step, N m or N."""
-        position, rate = pybullet.getJointState(*self._joint)[:2]
-        if self._before is not None:
-            seen = (rate - self._before[0]) / dt - self._before[1]
-            self._other += _TRUST * (seen - self._other)
-        stiffness, damping = self._spec.spring_stiffness, self._spec.damping
-        pull = stiffness * (position - self._spec.spring_reference) / self._inertia
-        divisor = 1.0 + dt * (damping + dt * stiffness) / self._inertia
-        wanted = (rate + dt * (self._other - pull)) / divisor
-        own = (wanted - rate) / dt - self._other
-        self._before = rate, own
-        return self._inertia * own
 
 
 class Forces:
@@ -62,7 +27,7 @@ class Forces:
         self._parts: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
-        self._dampers: Dict[int, Damper] = {}
+        self._implicit: Dict[int, ImplicitAxes] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
 
@@ -82,28 +47,27 @@ class Forces:
         if effort >= 0.0 or rate >= 0.0:
             self._limits[row] = (effort, rate)
 
-    def set_damper(self, row: int, damper: Optional[Damper]) -> None:
-        """Let this spring or damper, or none, act on the axis of `row`."""
-        self._dampers.pop(row, None)
-        if damper is not None:
-            self._dampers[row] = damper
+    def set_implicit(self, body: Body, axes: Optional[ImplicitAxes]) -> None:
+        """Let these springs and dampers, or none, act on the axes of a body."""
+        self._implicit.pop(body.uid, None)
+        if axes is not None:
+            self._implicit[body.uid] = axes
 
     def disturbed(self, body: Body) -> None:
         """A body was put somewhere, or its joints were set."""
         self._placed.add(body.uid)
-        for axis in body.axes:
-            if axis.row in self._dampers:
-                self._dampers[axis.row].disturbed()
+        if body.uid in self._implicit:
+            self._implicit[body.uid].disturbed()
 
     def forget(self, body: Body) -> None:
         """Drop a body and every load on it."""
         self._placed.discard(body.uid)
+        self._implicit.pop(body.uid, None)
         for part in body.parts:
             self._parts.pop(part.row, None)
             self._weightless.pop(part.row, None)
         for axis in body.axes:
             self._axes.pop(axis.row, None)
-            self._dampers.pop(axis.row, None)
             self._limits.pop(axis.row, None)
         rows = {part.row for part in body.parts}
         axes = {axis.row for axis in body.axes}
@@ -132,7 +96,7 @@ class Forces:
     @property
     def idle(self) -> bool:
         """True when a step needs nothing from here, now or later."""
-        return not (self._loads or self._weightless or self._dampers)
+        return not (self._loads or self._weightless or self._implicit)
 
     @property
     def loaded_links(self) -> Set[int]:
@@ -149,8 +113,8 @@ class Forces:
                     self._push(load, dt)
                 else:
                     efforts[load.row] = efforts.get(load.row, 0.0) + self._allowed(load)
-        for row, damper in self._dampers.items():
-            efforts[row] = efforts.get(row, 0.0) + damper.torque(dt)
+        for implicit in self._implicit.values():
+            implicit.add_to(efforts)
         for row, effort in efforts.items():
             body, axis = self._axes[row]
             pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.TORQUE_CONTROL,

@@ -1,26 +1,28 @@
 """Joint axes: limits, friction, damping, and no hidden motors."""
 from __future__ import annotations
 
-from typing import List
+from typing import List, Tuple
 
-import numpy as np
 import pybullet
 
 from ...description.model import INFINITE, JointAxis, Model
 from .bodies import Axis, Body
-from .forces import Damper, Forces
+from .forces import Forces
+from .implicit import ImplicitAxes, mobility
 
 _LIMIT_FORCE = 1e6         # N or N m a kilogram: holds 1000 kg at its stop (100 a kg falls through)
-_EXPLICIT_DAMPING = 0.05   # d dt / I up to which PyBullet's explicit damping is exact enough
+_EXPLICIT_DAMPING = 0.01   # d dt / I up to which PyBullet's explicit damping is exact enough
 
 
 def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
     """Give every axis of a body the limits, friction, damping and spring of the description."""
     specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
     mass = sum(part.mass for part in body.parts)
-    inertias = effective_inertias(body) if body.axes else []
+    eases = (mobility(body, [axis.index for axis in body.axes]).diagonal().tolist()
+             if body.axes else [])
     _free(body)
-    for axis, inertia in zip(body.axes, inertias):
+    implicit: List[Tuple[Axis, JointAxis]] = []
+    for axis, ease in zip(body.axes, eases):
         spec = specs[axis.name][axis.number] or JointAxis()
         # createMultiBody leaves a velocity motor on every axis; as a brake it is the friction.
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
@@ -28,11 +30,14 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
                                        force=max(0.0, spec.friction))
         _limit(body, axis, spec, mass)
         forces.set_limits(axis.row, spec.effort, spec.velocity)
-        implicit = spec.spring_stiffness or spec.damping * dt > _EXPLICIT_DAMPING * inertia
-        forces.set_damper(axis.row, Damper(body.uid, axis.index, inertia, spec)
-                          if implicit else None)
+        explicit = not spec.spring_stiffness and spec.damping * dt * ease <= _EXPLICIT_DAMPING
+        if not explicit:
+            implicit.append((axis, spec))
         pybullet.changeDynamics(body.uid, axis.index,
-                                jointDamping=0.0 if implicit else spec.damping)
+                                jointDamping=spec.damping if explicit else 0.0)
+    forces.set_implicit(body, ImplicitAxes(
+        body, [axis for axis, _ in implicit], [spec for _, spec in implicit], dt)
+        if implicit else None)
 
 
 def _free(body: Body) -> None:
@@ -57,16 +62,3 @@ def _limit(body: Body, axis: Axis, spec: JointAxis, mass: float) -> None:
     pybullet.changeDynamics(body.uid, axis.index, jointLowerLimit=max(lower, -1e6),
                             jointUpperLimit=min(upper, 1e6),
                             jointLimitForce=_LIMIT_FORCE * max(1.0, mass))
-
-
-def effective_inertias(body: Body) -> List[float]:
-    """The inertia each axis feels in the present configuration, the others free: 1 / (M^-1)_ii.
-
-    kg m^2 or kg, in the order of `body.axes`.
-    """
-    positions = [pybullet.getJointState(body.uid, axis.index)[0] for axis in body.axes]
-    mass = np.array(pybullet.calculateMassMatrix(body.uid, positions))
-    freedom = mass.shape[0] - len(body.axes)
-    inverse = np.linalg.pinv(mass)
-    return [max(1e-9, float(1.0 / inverse[freedom + n, freedom + n]))
-            for n in range(len(body.axes))]

@@ -1,0 +1,136 @@
+"""Springs and dampers of joint axes, integrated so that no stiffness diverges.
+
+Bullet's joint damping is explicit: it is wrong above a tenth of I / dt and diverges above 2 I / dt,
+and an explicit spring does so above 4 I / dt^2. For the axes of one body, with the mobility matrix
+A (what acceleration a torque gives, all else free), dampers D, springs K at reference r, and the
+acceleration a that everything else gives them, the rates after the step are
+
+    (1 + dt F A (D + s dt K)) w' = w + dt F (a - A K (q - r)),  F = (e^x - 1) / x,  x = dt A_ii D_i
+
+which for one axis is the exact decay of a damper. Springs that are soft against the step (s near 0)
+act on the position before the step, as the rest of the integrator does, and keep their energy;
+stiff ones (s = 1) on the one after it. The torques that make it so are A^-1 ((w' - w) / dt - a).
+Efforts that are known count as known; of the rest of a, the steps before tell.
+"""
+from __future__ import annotations
+
+import math
+from typing import Dict, List, Optional
+
+import numpy as np
+import pybullet
+
+from ...description.model import JointAxis
+from .bodies import Axis, Body
+
+_TRUST = 0.5       # share of the newest look at what else accelerates the axes
+_FAR = 0.05        # rad or m: axes that have moved so far may have another mobility
+_EVERY = 100       # steps after which it is looked at anyway, for what other axes did
+_STIFF = 10.0      # s is this times the spring's (w dt)^2, at most 1
+_MOST_DECAYS = 50.0
+
+
+class ImplicitAxes:
+    """The springs and dampers of some axes of one body."""
+
+    def __init__(self, body: Body, axes: List[Axis], specs: List[JointAxis], dt: float) -> None:
+        self._body = body
+        self._dt = dt
+        self._rows = [axis.row for axis in axes]
+        self._indices = [axis.index for axis in axes]
+        self._damping = np.array([spec.damping for spec in specs])
+        self._stiffness = np.array([spec.spring_stiffness for spec in specs])
+        self._reference = np.array([spec.spring_reference for spec in specs])
+        self._others = 1.0 - _TRUST, _TRUST / dt, _TRUST
+        self._prepared_at: Optional[List[float]] = None
+        self._age = 0
+        self.disturbed()
+
+    def disturbed(self) -> None:
+        """The joints were set: what was seen of them says nothing any more."""
+        self._other = [0.0] * len(self._rows)
+        self._rates: Optional[List[float]] = None
+        self._given: List[float] = []
+
+    def add_to(self, efforts: Dict[int, float]) -> None:
+        """Add the efforts of the next step, N m or N by row, to those that act anyway."""
+        states = pybullet.getJointStates(self._body.uid, self._indices)
+        positions, rates = [state[0] for state in states], [state[1] for state in states]
+        if self._rates is not None:
+            # What accelerated the axes besides us: (w - w_before) / dt - given, smoothed.
+            kept, per_rate, trust = self._others
+            self._other = [kept * other + per_rate * (rate - before) - trust * given
+                           for other, rate, before, given in zip(
+                               self._other, rates, self._rates, self._given)]
+        self._prepare_again(positions)
+        known = [efforts.get(row, 0.0) for row in self._rows]
+        answer = (self._answer @ np.array(rates + positions + self._other + known)
+                  + self._at_rest).tolist()
+        if not math.isfinite(sum(answer)):
+            self.disturbed()
+            return
+        self._rates, self._given = rates, answer[len(rates):]
+        for row, before, effort in zip(self._rows, known, answer):
+            efforts[row] = before + effort
+
+    def _prepare_again(self, positions: List[float]) -> None:
+        """Look at the mobility when it may have changed."""
+        self._age += 1
+        before = self._prepared_at
+        if before is None or self._age >= _EVERY or any(
+                abs(now - then) > _FAR for now, then in zip(positions, before)):
+            self._prepared_at, self._age = positions, 0
+            self._prepare()
+
+    def _prepare(self) -> None:
+        """The efforts, and what accelerations they and the known ones give, are linear.
+
+        In rates, positions, other accelerations and known efforts: `_answer`, and `_at_rest`.
+        """
+        dt, count = self._dt, len(self._rows)
+        ease = mobility(self._body, self._indices)
+        one = np.eye(count)
+        decays = np.minimum(dt * np.diag(ease) * self._damping, _MOST_DECAYS)
+        spread = np.where(decays > 1e-9, np.expm1(decays) / np.maximum(decays, 1e-9), 1.0)
+        stiff = float(np.abs(ease * self._stiffness).sum(axis=1).max()) * dt * dt
+        share = min(1.0, _STIFF * stiff)
+        keep = np.linalg.inv(one + dt * spread[:, None] * ease * (
+            self._damping + share * dt * self._stiffness))
+        gain = keep * spread                      # of a dt in w'
+        pull = -(gain @ (ease * self._stiffness))  # own acceleration by position
+        own = np.hstack([(keep - one) / dt, pull, gain - one, (gain - one) @ ease])
+        given = own.copy()
+        given[:, 3 * count:] += ease
+        inertia = _inverse(ease)
+        self._answer = np.vstack([inertia @ own, given])
+        self._at_rest = np.concatenate([inertia @ (-pull @ self._reference),
+                                        -pull @ self._reference])
+
+
+def mobility(body: Body, indices: List[int]) -> np.ndarray:
+    """The acceleration of each joint for an effort on each, all other freedoms left free.
+
+    (n, n), 1/kg or 1/(kg m^2), in the present configuration. Ball joints count as not turned.
+    """
+    positions: List[float] = []
+    places: Dict[int, int] = {}
+    for index in range(pybullet.getNumJoints(body.uid)):
+        kind = pybullet.getJointInfo(body.uid, index)[2]
+        if kind in (pybullet.JOINT_REVOLUTE, pybullet.JOINT_PRISMATIC):
+            places[index] = len(positions)
+            positions.append(pybullet.getJointState(body.uid, index)[0])
+        elif kind == pybullet.JOINT_SPHERICAL:
+            positions += [0.0, 0.0, 0.0]
+    mass = np.array(pybullet.calculateMassMatrix(body.uid, positions))
+    if not np.isfinite(mass).all():  # it has diverged, and is put back at the next look
+        return np.eye(len(indices))
+    base = mass.shape[0] - len(positions)
+    chosen = [base + places[index] for index in indices]
+    return _inverse(mass)[np.ix_(chosen, chosen)]
+
+
+def _inverse(matrix: np.ndarray) -> np.ndarray:
+    try:
+        return np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:  # a freedom without mass
+        return np.linalg.pinv(matrix)
