@@ -58,6 +58,23 @@ def test_a_box_that_touches_the_ground_or_floats_is_fine(found, pose):
     assert found(GROUND, solid("b", pose)) == []
 
 
+def test_a_box_in_the_ground_that_is_held_to_the_world_is_fine(found):
+    held = solid("b", "0 0 0 0 0 0").replace("</model>", (
+        '<joint name="j" type="{}"><parent>world</parent><child>l</child><axis><limit>'
+        "<lower>0</lower><upper>{}</upper></limit></axis></joint></model>"))
+    for kind, upper in (("fixed", 1), ("revolute", 0)):
+        assert found(GROUND, held.format(kind, upper)) == []
+    assert [one.code for one in found(GROUND, held.format("prismatic", 1))] == ["starts-inside"]
+
+
+def test_odd_inertia_is_told_once_for_a_model(found):
+    one = solid("b", "0 0 5 0 0 0", moment=50)
+    link = one[one.index("<link"):one.index("</model>")]
+    two = one.replace("</model>", link.replace('"l"', '"k"') + "</model>")
+    (issue,) = found(two)
+    assert issue.code == "inertia-odd" and "1 more" in issue.message
+
+
 @pytest.mark.parametrize("pose, depth", [("0 0 0.4 0 0 0", "100"), ("0 0 0.5 0.785398 0 0", "207"),
                                          ("0 0 -3 0 0 0", "3.5e+03")])
 def test_a_box_in_the_ground_is_reported(found, pose, depth):

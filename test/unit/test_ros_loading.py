@@ -35,6 +35,20 @@ def test_a_collision_whose_mesh_is_broken_stays_without_a_mesh_and_the_rest_load
                for issue in issues)
 
 
+def test_what_is_rarely_meant_is_told_with_the_world(tmp_path):
+    (tmp_path / "w.world").write_text(WORLD.replace("broken.stl", "flat.stl").replace(
+        "</world>", "<model name='in'><link name='l'><collision name='c'><geometry><sphere><radius>"
+        "0.2</radius></sphere></geometry></collision></link></model></world>"))
+    (tmp_path / "flat.stl").write_text(
+        "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nendsolid s\n")
+    issues = []
+    load_world("w.world", Resolver(resource_paths=[str(tmp_path)]), issues.append)
+    assert {(one.code, one.severity) for one in issues} == {
+        (code, Severity.WARNING) for code in ("inertia-odd", "starts-inside", "shape-thin")}
+    assert {one.file for one in issues} == {str(tmp_path / "w.world")}
+
+
 def test_issues_wait_until_there_is_a_log():
     log, heard = IssueLog(), []
     log(warning("early", "before the node"))

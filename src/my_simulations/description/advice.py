@@ -6,11 +6,11 @@ exact shape is not known here, is never reported.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Iterator, List, Optional, Sequence, Tuple
+from dataclasses import dataclass, replace
+from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
-from .model import Inertial, Link, Model
+from .model import WORLD, Inertial, Link, Model
 from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
 from .validate import Fault, Severity
 
@@ -20,15 +20,24 @@ _TOO_LARGE = 10.0
 _TOO_SMALL = 0.01
 
 
-def advice(models: Sequence[Model]) -> Iterator[Fault]:
-    """Findings about models that stand in one world; each names its model and link."""
+def advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
+    """Findings about models that stand in one world; each names its model and link.
+
+    With `only`, those that have to do with the model of that name.
+    """
     for model in models:
+        if only not in ("", model.name):
+            continue
+        odd: List[Fault] = []
         for name, link, _pose, static in links_of(model):
             for collision in link.collisions:
                 yield from _thin(collision, name)
             if not static:
-                yield from _odd_inertia(link, name)
-    yield from _overlaps(models)
+                odd += _odd_inertia(link, name)
+        if odd:
+            more = f" (so it is with {len(odd) - 1} more of its links)" if len(odd) > 1 else ""
+            yield replace(odd[0], message=odd[0].message + more)
+    yield from _overlaps(models, only)
 
 
 def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
@@ -37,10 +46,25 @@ def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
     name = f"{scope}{model.name}::"
     base = compose(above, model.pose)
     static = static or model.static
+    held = _held(model) if model.joints else set()
     for link in model.links:
-        yield name + link.name, link, compose(base, link.pose), static or link.kinematic
+        still = static or link.kinematic or link.name in held
+        yield name + link.name, link, compose(base, link.pose), still
     for inner in model.models:
         yield from links_of(inner, base, name, static)
+
+
+def _held(model: Model) -> Set[str]:
+    """Links that rigid joints hold to the world."""
+    rigid = [joint for joint in model.joints if joint.type == "fixed" or (
+        joint.axis is not None and joint.axis.lower == joint.axis.upper and joint.axis2 is None)]
+    held: Set[str] = {WORLD}
+    while True:
+        more = {joint.child for joint in rigid if joint.parent in held} | {
+            joint.parent for joint in rigid if joint.child in held and joint.child != WORLD}
+        if more <= held:
+            return held - {WORLD}
+        held |= more
 
 
 def half_extents(geometry: Geometry) -> Optional[Vec3]:
@@ -146,7 +170,7 @@ class _Core:
     collision: Collision
 
 
-def _overlaps(models: Sequence[Model]) -> Iterator[Fault]:
+def _overlaps(models: Sequence[Model], only: str) -> Iterator[Fault]:
     """Pairs of different models, one of which moves, that start inside each other."""
     cores: List[_Core] = []
     planes: List[Tuple[str, Pose, Plane]] = []
@@ -165,8 +189,8 @@ def _overlaps(models: Sequence[Model]) -> Iterator[Fault]:
                     cores.append(_Core(model.name, name, *core, static, collision))
                 if not static:
                     movers.append((name, collision, at))
-    yield from _in_planes(planes, movers)
-    yield from _in_each_other(cores)
+    yield from _in_planes(planes, movers, only)
+    yield from _in_each_other(cores, only)
 
 
 def _core(geometry: Geometry, pose: Pose) -> Optional[Tuple[Vec3, Vec3]]:
@@ -201,13 +225,16 @@ def _is_along_axes(pose: Pose) -> bool:
 
 
 def _in_planes(planes: Sequence[Tuple[str, Pose, Plane]],
-               movers: Sequence[Tuple[str, Collision, Pose]]) -> Iterator[Fault]:
+               movers: Sequence[Tuple[str, Collision, Pose]], only: str) -> Iterator[Fault]:
     for ground, at, plane in planes:
         normal = rotate(at.orientation, scale(plane.normal, 1 / norm(plane.normal)))
         level = dot(normal, at.position)
         for name, collision, pose in movers:
+            owners = (name.split("::")[0], ground.split("::")[0])
+            if owners[0] == owners[1] or (only and only not in owners):
+                continue
             depth = level - dot(normal, pose.position) + _support(collision.geometry, pose, normal)
-            if name.split("::")[0] != ground.split("::")[0] and depth > DEEPEST_M:
+            if depth > DEEPEST_M:
                 yield _inside(name, ground, depth, collision)
 
 
@@ -228,7 +255,7 @@ def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
     return abs(n[0]) * half[0] + abs(n[1]) * half[1] + abs(n[2]) * half[2]
 
 
-def _in_each_other(cores: List[_Core]) -> Iterator[Fault]:
+def _in_each_other(cores: List[_Core], only: str) -> Iterator[Fault]:
     """Sorted along x, each is compared with those that begin before it ends."""
     cores = sorted(cores, key=lambda core: core.low[0])
     for n, one in enumerate(cores):
@@ -236,6 +263,8 @@ def _in_each_other(cores: List[_Core]) -> Iterator[Fault]:
             if other.low[0] > one.high[0] - DEEPEST_M:
                 break
             if one.model == other.model or (one.static and other.static):
+                continue
+            if only and only not in (one.model, other.model):
                 continue
             depth = min(min(one.high[i], other.high[i]) - max(one.low[i], other.low[i])
                         for i in range(3))

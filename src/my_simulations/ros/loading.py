@@ -32,6 +32,7 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0,
     Raises:
         InputError: there is no usable world.
     """
+    from ..formats.advise import advised
     from ..formats.load import read_world
     from ..formats.state import apply_state
 
@@ -45,7 +46,10 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0,
     for issue in issues:
         log(issue)
     world = apply_state(world)
-    return world, _meshes(world.models, log)
+    meshes = _meshes(world.models, log)
+    for issue in advised(world.models, meshes, path):
+        log(issue)
+    return world, meshes
 
 
 def _meshes(models: List[Model], log: Log) -> Dict[str, MeshTable]:

@@ -11,6 +11,7 @@ from ..formats.load import read_entity
 from ..formats.meshes import collision_meshes
 from ..geometry import IDENTITY, Pose, compose
 from ..resources.resolver import Resolver
+from ..simulator.arrival import arrival_advice
 from ..simulator.simulator import Simulator
 from .convert import LENGTH, pose_from_message, within
 from .document import REPLACE_ATTRIBUTE, asks_to_replace, checked_name, named, root_of
@@ -88,6 +89,7 @@ class ModelServices:
         within(where.position, LENGTH, "m", "the model's position")
         with in_gazebos_words("", NO_FRAME):
             self._simulator.spawn(model, where, frame, meshes, replace)
+        self._report(arrival_advice(self._simulator, model.name, meshes))
         warnings = f" ({len(issues)} remarks in the log)" if issues else ""
         return f"Successfully spawned entity{warnings}"
 

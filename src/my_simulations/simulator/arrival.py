@@ -1,0 +1,22 @@
+"""What is to be said about a model that has just been put into a running world."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import List, Optional
+
+from ..description.shapes import MeshTable
+from ..errors import Issue
+from ..formats.advise import advised
+from .simulator import Simulator
+
+NEIGHBOURS = 64
+"""In a world of more models the others are not looked at: a request is not held up for advice."""
+
+
+def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable]) -> List[Issue]:
+    """Warnings about odd inertia, shapes without thickness, and what it stands inside of."""
+    entities, snapshot = simulator.moment()
+    few = len(entities) <= NEIGHBOURS
+    models = [replace(entity.model, pose=entity.state(snapshot)[0]) for entity in entities
+              if few or entity.model.name == name]
+    return advised(models, {name: meshes or {}}, only=name)

@@ -1,0 +1,72 @@
+"""Advice about a model that was put into a running world."""
+from __future__ import annotations
+
+import pytest
+
+from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.shapes import Box, Collision, Plane
+from my_simulations.description.world import World
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.formats.advise import MOST, advised
+from my_simulations.geometry import Pose
+from my_simulations.simulator import arrival
+from my_simulations.simulator.arrival import arrival_advice
+from my_simulations.simulator.simulator import Simulator
+
+
+def cube(name, height, size=1.0, moment=0.17):
+    inertial = Inertial(1.0, ixx=moment, iyy=moment, izz=moment)
+    return Model(name, Pose((0, 0, height)), links=[
+        Link("l", inertial=inertial, collisions=[Collision("c", Box((size,) * 3))])])
+
+
+GROUND = Model("ground", static=True, links=[Link("l", collisions=[Collision("c", Plane())])])
+
+
+@pytest.fixture
+def sim():
+    made = Simulator(World(models=[GROUND, cube("deep", 0.2), cube("high", 5.0)]), paused=True,
+                     engine_factory=lambda: InlineEngine(KinematicBackend),
+                     log=lambda issue: pytest.fail(str(issue)))
+    made.start()
+    yield made
+    made.close()
+
+
+def said(sim, model):
+    sim.spawn(model, model.pose)
+    return [(one.code, one.message) for one in arrival_advice(sim, model.name, {})]
+
+
+def test_a_model_that_stands_alone_needs_no_advice(sim):
+    assert said(sim, cube("new", 2.0)) == []
+
+
+def test_a_model_inside_others_is_told_with_them_and_them_alone(sim):
+    found = said(sim, cube("new", 4.5))
+    assert [code for code, _ in found] == ["starts-inside"]
+    assert "new::l" in found[0][1] and "high::l" in found[0][1]
+    (ground,) = said(sim, cube("low", -30.0))
+    assert "ground::l" in ground[1]
+
+
+def test_others_count_where_they_are_now(sim):
+    sim.set_model_state("high", Pose((9, 0, 5)), sim.model_state("high")[1])
+    assert said(sim, cube("new", 4.5)) == []
+
+
+def test_its_own_oddities_are_told(sim):
+    assert [code for code, _ in said(sim, cube("new", 9.0, moment=20.0))] == ["inertia-odd"]
+
+
+def test_in_a_crowd_only_the_model_itself_is_looked_at(sim, monkeypatch):
+    monkeypatch.setattr(arrival, "NEIGHBOURS", 2)
+    assert said(sim, cube("new", 4.5)) == []
+    assert [code for code, _ in said(sim, cube("odd", 4.5, moment=20.0))] == ["inertia-odd"]
+
+
+def test_a_pile_is_told_of_up_to_a_number_of_findings():
+    pile = advised([cube(f"c{n}", 3.0) for n in range(9)], {}, "w.world")
+    assert len(pile) == MOST + 1 and pile[-1].code == "advice-many"
+    assert "check_model w.world" in pile[-1].hint
