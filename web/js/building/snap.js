@@ -5,6 +5,8 @@ export const SNAP_ANGLE = Math.PI / 12;
 export const SNAP_LENGTH = 0.25;
 /** Metres within which an end is drawn to another one, and an opening to a wall. */
 export const REACH = 0.3;
+/** Metres within which a click is one on the spot: the second of a double click draws no wall. */
+export const SPOT = 0.12;
 
 /**
  * The nearest end of a wall within reach, or null.
@@ -40,8 +42,9 @@ export function snapEnd(from, point, {walls = [], thickness = 0.15, free = false
   return {point: snapPolar(from, point, thickness), on: 'grid'};
 }
 
-/** As `snapEnd` without foreign ends. */
+/** As `snapEnd` without foreign ends; `from` itself for a point on the spot. */
 export function snapPolar(from, point, thickness) {
+  if (distance(from, point) < SPOT) return tidyPoint(from);
   const angle = Math.round(direction(from, point) / SNAP_ANGLE) * SNAP_ANGLE;
   const steps = Math.round((distance(from, point) + thickness) / SNAP_LENGTH);
   const length = steps * SNAP_LENGTH - thickness;
