@@ -314,5 +314,6 @@ test('after an edit of 500 walls and 200 openings little is computed again', () 
   drag(session, [x + 1, y + 0.02], [x + 1, y + 0.52]);
   const kept = session.level.walls.filter((wall, at) => wall === before.walls[at]).length;
   assert.ok(kept >= 500 && kept < 512, `${kept} walls kept`);
-  assert.equal(session.level.doors, before.doors);
+  const doorsKept = session.level.doors.filter((door, at) => door === before.doors[at]).length;
+  assert.ok(doorsKept >= 195, `${doorsKept} doors kept`);
 });
