@@ -4,7 +4,7 @@ import random
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, TiffImagePlugin
 
 from my_simulations.description.shapes import Heightmap, ImageMap, Polyline
 from my_simulations.errors import InputError
@@ -162,3 +162,59 @@ def test_16_bit_images_keep_their_levels(tmp_path):
     Image.fromarray(np.array([[0, 65535], [32768, 0]], dtype=np.uint16)).save(path)
     mesh = solid_mesh(Heightmap("deep.png", str(path), (1, 1, 1), (0, 0, 0), 1))
     assert sorted(mesh.vertices[:, 2].tolist()) == pytest.approx([0, 0, 32768 / 65535, 1])
+
+
+def elevation_model(tmp_path, heights, geographic=False, no_data=None, dtype=np.float32):
+    tags = TiffImagePlugin.ImageFileDirectory_v2()
+    tags.tagtype.update({33550: 12, 33922: 12, 34735: 3, 42113: 2})
+    tags[33550] = (0.5, 0.25, 0.0) if not geographic else (0.001, 0.001, 0.0)
+    tags[33922] = (0.0, 0.0, 0.0, 10.0, 60.0, 0.0)
+    tags[34735] = (1, 1, 0, 1, 1024, 0, 1, 2 if geographic else 1)
+    if no_data is not None:
+        tags[42113] = str(no_data)
+    path = tmp_path / "dem.tif"
+    Image.fromarray(np.array(heights, dtype=dtype)).save(path, tiffinfo=tags)
+    return str(path)
+
+
+@pytest.mark.parametrize("size, bottom, top", [
+    ((4, 4, 10), -20.0, -10.0), ((4, 4, 1), -20.0, -19.0), ((4, 4, -10), 10.0, 20.0),
+])
+def test_the_lowest_point_of_an_elevation_model_lies_at_its_height_and_size_scales_the_rest(
+        tmp_path, size, bottom, top):
+    path = elevation_model(tmp_path, [[-20, 30], [5, 5]])
+    mesh = solid_mesh(Heightmap(path, path, size, (0, 0, 3), 1))
+    heights = mesh.vertices[:, 2] - 3
+    assert (heights.min(), heights.max()) == pytest.approx((bottom, top))
+    north_west = mesh.vertices[(mesh.vertices[:, 0] < 0) & (mesh.vertices[:, 1] > 0)][0]
+    assert north_west[2] - 3 == pytest.approx(bottom if size[2] > 0 else top)
+
+
+@pytest.mark.parametrize("geographic, extent", [
+    (False, (1.5, 0.5)), (True, (0.003 * 111194.93 * math.cos(math.radians(60)), 0.002 * 111194.93))
+])
+def test_without_a_size_an_elevation_model_is_as_large_as_the_land(tmp_path, geographic, extent):
+    path = elevation_model(tmp_path, [[100, 200, 300], [150, 150, 150]], geographic)
+    mesh = solid_mesh(Heightmap(path, path))
+    spread = mesh.vertices.max(axis=0) - mesh.vertices.min(axis=0)
+    assert spread[:2] == pytest.approx(extent, rel=1e-6)
+    assert (mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()) == (100, 300)
+
+
+@pytest.mark.parametrize("no_data", [-9999, "nan"])
+def test_pixels_without_a_height_are_as_low_as_the_lowest(tmp_path, no_data):
+    path = elevation_model(tmp_path, [[float(no_data), 8], [2, 5]], no_data=no_data)
+    mesh = solid_mesh(Heightmap(path, path))
+    assert sorted(set(mesh.vertices[:, 2].tolist()))[0] == 2
+
+
+def test_an_elevation_model_of_whole_numbers_is_read_in_metres(tmp_path):
+    path = elevation_model(tmp_path, [[10, 20], [30, 1040]], dtype=np.uint16)
+    mesh = solid_mesh(Heightmap(path, path))
+    assert (mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()) == (10, 1040)
+
+
+def test_an_elevation_model_without_any_height_is_refused(tmp_path):
+    path = elevation_model(tmp_path, [[7, 7], [7, 7]], no_data=7)
+    with pytest.raises(InputError, match="holds no height"):
+        solid_mesh(Heightmap(path, path))

@@ -7,7 +7,8 @@ from typing import Any, Dict, List, Sequence, Tuple, Union
 
 from ..description.shapes import Heightmap, ImageMap, MeshData, Polyline
 from ..errors import InputError, error
-from .images import grey_levels
+from ..geometry import Vec3
+from .images import Elevations, elevations, grey_levels
 from .polygons import Point, convex_pieces, oriented, signed_area, triangulated
 
 Solid = Union[Heightmap, ImageMap, Polyline]
@@ -60,14 +61,20 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
              position: Tuple[float, float, float], sampling: int) -> MeshData:
     """Black lies at `position`, white `size[2]` above it; the image's top row lies at +y.
 
-    A negative height turns the levels round. Source: SDF spec, heightmap, and Gazebo behaviour.
+    A negative height turns the levels round. Of an elevation model the lowest point lies at its own
+    height above `position` and the highest `size[2]` above that; without a size both extent and
+    heights are the real ones. Source: SDF spec, heightmap, and Gazebo behaviour.
     """
     import numpy as np
 
-    levels = grey_levels(path)
+    model = elevations(path)
+    levels = grey_levels(path) if model is None else model.heights
     if min(levels.shape) < 2:
         raise _fault("solid-empty", "a terrain needs an image of at least 2 by 2 pixels", path)
-    levels = 1.0 - levels if size[2] < 0 else levels
+    if model is not None:
+        levels, size = _to_scale(model, size)
+    elif size[2] < 0:
+        levels = 1.0 - levels
     levels = _refined(_thinned(levels), sampling)[::-1]
     rows, columns = levels.shape
     x = np.linspace(-size[0] / 2, size[0] / 2, columns)
@@ -79,6 +86,17 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
     triangles = np.concatenate([np.stack(corner, axis=-1).reshape(-1, 3)
                                 for corner in ((a, b, d), (a, d, c))])
     return _data(grid.reshape(-1, 3) + np.array(position), triangles)
+
+
+def _to_scale(model: Elevations, size: Vec3) -> Tuple[Any, Vec3]:
+    """Heights as the collision has them, in metres, and the extent with a height of 1."""
+    low, high = float(model.heights.min()), float(model.heights.max())
+    if size == Heightmap().size:
+        x, y = model.extent or (float(model.heights.shape[1]), float(model.heights.shape[0]))
+        return model.heights, (x, y, 1.0)
+    factor = abs(size[2]) / (high - low) if high > low else 1.0
+    heights = low + (model.heights - low) * factor
+    return (-heights if size[2] < 0 else heights), (size[0], size[1], 1.0)
 
 
 def _thinned(levels: Any) -> Any:
