@@ -23,7 +23,7 @@ from my_simulations.description.shapes import (
     Surface,
     mesh_key,
 )
-from my_simulations.engine.api import FOREVER, AddLoads, Load, SetModelState
+from my_simulations.engine.api import FOREVER, AddLoads, Load, SetJoints, SetModelState
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
 G = 9.8
@@ -86,6 +86,56 @@ def test_pairs_have_the_smaller_friction_all_in_one_world(lab: Lab, laws: Laws, 
                   lab.pose(body).position[0] - start, 4 / (2 * mu * G), rel=0.03)
     for plate in plates:
         assert abs(lab.pose(plate).position[0]) < 0.01
+
+
+def _foot(mu: float) -> Model:
+    """A foot joined to the world: it slides along x, and down onto what is below."""
+    foot = _flat(mu).links[0]
+    carriage = Link("carriage", inertial=replace(foot.inertial, mass=0.01))
+    return Model("foot", links=[carriage, foot], joints=[
+        Joint("rail", "prismatic", "world", "carriage", axis=JointAxis((1, 0, 0))),
+        Joint("drop", "prismatic", "carriage", "link", axis=JointAxis((0, 0, 1)))])
+
+
+def test_a_foot_of_a_body_joined_to_the_world_has_the_smaller_friction(lab: Lab, laws: Laws):
+    lab.load(_floor(0.3), (0, 0, -0.1))
+    foot = lab.load(_foot(0.5), (0, 0, 0.05))
+    lab.steps(300)
+    start = lab.pose(foot).position[0]
+    lab.apply(SetJoints(((lab.joint_rows[foot, "rail"], start, 2.0),)))
+    lab.seconds(1.5)
+    laws.near("friction of articulated bodies on the ground: way to a stop, m",
+              lab.pose(foot).position[0] - start, 4 * 1.01 / (2 * 0.3 * G), rel=0.03)
+
+
+def test_boxes_side_by_side_keep_the_friction_of_what_carries_them(lab: Lab, laws: Laws):
+    # A ring of contacts: the ground and two boxes that touch; what carries counts.
+    lab.load(ground(100.0))
+    left = lab.load(_flat(0.5, "left"), (0, 0, 0.05))
+    right = lab.load(_flat(0.5, "right"), (1.0, 0, 0.05))
+    lab.steps(300)
+    start = lab.pose(left).position[0]
+    for model in (left, right):
+        lab.push(model, (2, 0, 0))
+    lab.seconds(1.5)
+    laws.near("friction of boxes side by side: way to a stop, m",
+              lab.pose(left).position[0] - start, 4 / (2 * 0.5 * G), rel=0.03)
+    assert lab.backend.events() == []
+
+
+def test_friction_that_fits_no_ring_of_contacts_is_told_once(lab: Lab):
+    # A plank with one end on a block and a foot at the other: all three pairs carry.
+    lab.load(ground(100.0))
+    lab.load(_flat(0.5, "block", mass=5.0), (0.8, 0, 0.05))
+    slippery = Surface(mu=0.5)
+    lab.load(Model("plank", links=[Link(
+        "link", inertial=Inertial(5, Pose(), 1, 0, 0, 1, 0, 1), collisions=[
+            Collision("long", Box((2.2, 1, 0.1)), surface=slippery),
+            Collision("foot", Box((0.2, 1, 0.1)), Pose((-1.0, 0, -0.1)), surface=slippery)])]),
+        (0, 0, 0.15))
+    lab.seconds(2)
+    (told,) = lab.backend.events()
+    assert told.kind == "log" and "touches others in a ring" in told.message
 
 
 def test_a_tower_of_slippery_boxes_still_stands(lab: Lab):

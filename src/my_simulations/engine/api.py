@@ -332,7 +332,7 @@ class Event:
     """Something the engine reports by itself.
 
     `kind`: `horizon` (reached), `diverged` (a model's state became non-finite and it was put back
-    where it last was finite, at rest), `log`.
+    where it last was finite, at rest), `log` (what is only approximately so).
     """
 
     kind: str

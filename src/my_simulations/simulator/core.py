@@ -15,6 +15,7 @@ from ..engine.api import (
     Batch,
     Command,
     Engine,
+    Event,
     Hold,
     Load,
     LoadModel,
@@ -28,7 +29,7 @@ from ..engine.api import (
 )
 from ..engine.ring import JOINTS, LINKS
 from ..engine.rows import axis_rows
-from ..errors import CommandError, Issue, Severity, error
+from ..errors import CommandError, Issue, Severity, error, warning
 from ..formats.meshes import without_missing_meshes
 from ..geometry import Pose, Vec3, compose, normalised
 from .connections import Connections
@@ -75,10 +76,15 @@ class WorldCore(WorldViews):
         is no engine.
         """
         self._fill()
-        self._supervisor.engine.on_event(lambda event: self._log(
-            error("state-diverged", event.message)) if event.kind == "diverged" else None)
+        self._supervisor.engine.on_event(self._hear)
         if self._runs:
             self._call(Run(self._horizon))
+
+    def _hear(self, event: Event) -> None:
+        if event.kind == "diverged":
+            self._log(error("state-diverged", event.message))
+        elif event.kind == "log":
+            self._log(warning("physics-approximate", event.message))
 
     def _fill(self) -> None:
         """Settings, clock and models of the world, into an empty engine."""

@@ -74,7 +74,7 @@ class BulletBackend:
         self._readout = Readout(self._on_diverged)
         self._waker = Waker(self._bodies, self._readout.touch)
         self._forces = Forces(self._waker.around)
-        self._friction = FrictionBalance()
+        self._friction = FrictionBalance(self._on_misfit)
         self._spin = SpinKeeper()
         self._holds = Holds(self._waker.around)
         self._ties = Ties()
@@ -376,6 +376,12 @@ class BulletBackend:
 
     def _clear_loads(self, command: ClearLoads) -> None:
         self._forces.clear(command.load_ids)
+
+    def _on_misfit(self, uid: int, share: float) -> None:
+        body = self._bodies[uid]
+        self._events.append(Event(
+            "log", f"model '{self._models[body.model_id].model.name}' touches others in a ring, "
+            f"for which no friction fits all pairs: it is {100 * share:.0f} % off", body.model_id))
 
     def _on_diverged(self, body: Body) -> None:
         """Put a body whose state is no number back where it last was one, at rest."""
