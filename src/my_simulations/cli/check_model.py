@@ -18,7 +18,7 @@ from ..formats.advise import findings
 from ..formats.load import read_any
 from ..formats.meshes import collision_meshes
 from ..formats.source import Log
-from ..formats.xmltext import parse
+from ..formats.xmltext import content, parse
 from ..resources.downloads import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
@@ -99,8 +99,7 @@ def _document(file: str) -> Tuple[str, Union[str, bytes]]:
     if path.endswith(".xacro"):
         return path, run_xacro(path, XACRO_SECONDS)
     try:
-        with open(path, "rb") as stream:
-            return path, stream.read()
+        return path, content(path)
     except OSError as fault:
         raise InputError([error("file-unreadable", f"cannot be read: {fault.strerror or fault}",
                                 file=path)]) from None

@@ -15,7 +15,7 @@ from .sdf_scene import read_actor
 from .sdf_versions import upgrade
 from .sdf_world import read_world_element
 from .source import Level, Log, Source
-from .xmltext import LARGEST, parse
+from .xmltext import content, parse
 
 Text = Union[str, bytes]
 Entity = Union[Model, Light]
@@ -154,8 +154,7 @@ def _refuse_xacro(root: Any, source: Source) -> None:
 
 def _content(path: str) -> bytes:
     try:
-        with open(path, "rb") as stream:
-            return stream.read(LARGEST + 1)  # the parser refuses what is larger
+        return content(path)
     except OSError as fault:
         code = "file-not-found" if isinstance(fault, FileNotFoundError) else "file-unreadable"
         raise InputError(

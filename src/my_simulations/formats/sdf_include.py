@@ -16,7 +16,7 @@ from .sdf_tables import INCLUDE
 from .sdf_versions import upgrade
 from .source import Level, Source
 from .tables import fill
-from .xmltext import LARGEST, parse
+from .xmltext import content, parse
 
 _DEEPEST = 20
 _MOST = 20000
@@ -125,9 +125,7 @@ def _root(path: str, inner: Source, element: Any, source: Source) -> Optional[An
         return source.parsed[path]
     root: Optional[Any] = None
     try:
-        with open(path, "rb") as stream:
-            data = stream.read(LARGEST + 1)  # the parser refuses what is larger
-        root = parse(data, path, source.log)
+        root = parse(content(path), path, source.log)
         if root.tag in ("sdf", "gazebo"):
             root = upgrade(root, inner)
         elif root.tag != "robot":

@@ -7,6 +7,7 @@ DTD loaded, no network used, and depth is bounded.
 from __future__ import annotations
 
 import functools
+import os
 import re
 from typing import Any, Union
 
@@ -26,6 +27,19 @@ _MOST_TAGS = 2000000
 _LONG_TAG = re.compile(rb"<[^<]{8000,}")
 
 
+def content(path: str) -> bytes:
+    """The bytes of a document's file; what is larger than `LARGEST` is not read.
+
+    Raises:
+        InputError: it is too large.
+        OSError: it cannot be read.
+    """
+    with open(path, "rb") as stream:
+        if os.fstat(stream.fileno()).st_size > LARGEST:
+            raise _too_large(path)
+        return stream.read(LARGEST + 1)  # a pipe has no size; `parse` looks again
+
+
 def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
     """The root element of a document.
 
@@ -39,9 +53,11 @@ def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
     """
     from lxml import etree
 
+    if len(text) > LARGEST:
+        raise _too_large(file)
     data = text.encode("utf-8", "replace") if isinstance(text, str) else text
     if len(data) > LARGEST:
-        raise _fault("xml-too-large", f"the document is larger than {LARGEST >> 20} MB", file)
+        raise _too_large(file)
     if not data.strip(b" \t\r\n\0"):
         raise _fault("xml-empty", "the document is empty", file)
     _refuse_entities(data, file)
@@ -60,6 +76,10 @@ def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
 def _fault(code: str, message: str, file: str, line: int = 0, column: int = 0,
            hint: str = "") -> InputError:
     return InputError([error(code, message, file=file, line=line, column=column, hint=hint)])
+
+
+def _too_large(file: str) -> InputError:
+    return _fault("xml-too-large", f"the document is larger than {LARGEST >> 20} MB", file)
 
 
 def _refuse_entities(data: bytes, file: str) -> None:
