@@ -1,5 +1,5 @@
 /** From the document's numbers to three's objects. */
-import {Color, Matrix4, Quaternion, SRGBColorSpace, Vector3} from 'three';
+import {Color, LinearSRGBColorSpace, Matrix4, Quaternion, SRGBColorSpace, Vector3} from 'three';
 
 const position = new Vector3();
 const turn = new Quaternion();
@@ -18,7 +18,8 @@ export const colorOf = (rgba, fallback = [1, 1, 1]) => {
   return new Color().setRGB(r, g, b, SRGBColorSpace);
 };
 
-export const vectorOf = ([x, y, z]) => new Vector3(x, y, z);
+/** A colour of light: a part of full strength in each channel. @returns {Color} */
+export const lightColorOf = ([r, g, b]) => new Color().setRGB(r, g, b, LinearSRGBColorSpace);
 
 /** Puts a three object where a pose says. */
 export function place(object, pose) {

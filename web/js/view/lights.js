@@ -3,7 +3,7 @@ import {
   BufferAttribute, BufferGeometry, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, PointLight, Quaternion, SphereGeometry, SpotLight, Vector3,
 } from 'three';
-import {colorOf, place} from './convert.js';
+import {lightColorOf, place} from './convert.js';
 
 /** three's lamps are physical: what falls on a white wall is divided by pi there. */
 const STRENGTH = Math.PI;
@@ -75,7 +75,7 @@ export function dimming({constant, linear, quadratic, range}) {
 }
 
 function lampOf(light) {
-  const color = colorOf(light.diffuse);
+  const color = lightColorOf(light.diffuse);
   if (light.type === 'directional') return new DirectionalLight(color, STRENGTH);
   const {decay, strength} = dimming(light);
   if (light.type === 'point') {
@@ -150,9 +150,9 @@ export class Lights {
     }
     this.#entries.clear();
     const {lights, scene: settings} = this.#store.document;
-    this.#ambient.color.copy(colorOf(settings.ambient));
+    this.#ambient.color.copy(lightColorOf(settings.ambient));
     this.#ambient.groundColor.copy(this.#ambient.color).multiplyScalar(0.6);
-    this.#ambient.intensity = STRENGTH * 1.15;
+    this.#ambient.intensity = STRENGTH;
     let shadows = 0;
     for (const light of lights) {
       const lamp = lampOf(light);

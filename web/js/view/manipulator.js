@@ -21,6 +21,12 @@ const LABELS = {translate: 'translate', rotate: 'rotate'};
  * @property {string} how           axis and frame in force; a change begins the drag anew
  */
 
+/** Whether a drag has left everything as it was: that is no step of the history. */
+function isNothing(grasp, {poses, factors}) {
+  if (factors) return factors.every((factor) => factor === 1);
+  return !grasp.sent && poses[grasp.name].every((part, i) => Math.abs(part - grasp.first[i]) < 1e-9);
+}
+
 export class Manipulator {
   #store;
   #actions;
@@ -142,7 +148,7 @@ export class Manipulator {
     const result = this.#result;
     this.#grasp = this.#result = this.#lastEvent = null;
     if (!grasp) return;
-    if (!result) {
+    if (!result || isNothing(grasp, result)) {
       this.#end(grasp, false);
       return;
     }

@@ -19,17 +19,18 @@ async function bytes(url) {
 }
 
 const text = async (url) => new TextDecoder().decode(await bytes(url));
+/** three turns a scene unless its file says that y is up. */
+const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
+
 const folder = (url) => url.slice(0, url.lastIndexOf('/') + 1);
 
 async function readCollada(url, manager) {
   const [{ColladaLoader}, content] = await Promise.all([
     import('three/addons/loaders/ColladaLoader.js'), text(url)]);
   const loader = new ColladaLoader(manager);
-  const read = loader.parse(content, folder(url));
+  // Gazebo takes coordinates as Z up whatever the file says (public issue 1305), the unit it heeds.
+  const read = loader.parse(content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>'), folder(url));
   if (!read) throw new Error(`${url} is not COLLADA`);
-  // Gazebo takes coordinates as Z up whatever the file says (public issue 1305), the unit it heeds:
-  // three put the rotation here, and the unit into the scale, which stays.
-  read.scene.quaternion.identity();
   return read.scene;
 }
 

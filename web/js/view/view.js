@@ -1,4 +1,5 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
+import {Vector3} from 'three';
 import {subtract} from '../pose.js';
 import {Batches} from './batches.js';
 import {CameraRig} from './camera.js';
@@ -68,6 +69,7 @@ class View {
   #preview = null;
   #thumbnails = new Map();
   #shifted = [];
+  #pictured = false;
   #connection;
 
   constructor(element, {store, actions, connection, watches}) {
@@ -125,12 +127,20 @@ class View {
     this.#rig.onMoved = () => this.#manipulator.update();
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onBeforeDraw = (now) => {
+      this.#markFirstPicture();
       const moving = this.#rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();
       return moving;
     };
     this.#store.addEventListener('preview', () => this.#showPreview());
+  }
+
+  /** For the benchmark: when the world could be seen, since the page was asked for. */
+  #markFirstPicture() {
+    if (!this.#store.document || this.#pictured) return;
+    this.#pictured = true;
+    performance.mark('first-picture');
   }
 
   /** Far-away lights throw shadows about the middle of the picture. */
@@ -173,6 +183,16 @@ class View {
   bounds(name) {
     const box = this.#models.bounds(name);
     return box && {min: box.min.toArray(), max: box.max.toArray()};
+  }
+
+  /** Where the middle of an entity is in the page, px, for tests. @returns {number[]|null} */
+  pixelOf(name) {
+    const centre = this.#centre(name);
+    if (!centre) return null;
+    const {camera, canvas} = this.#stage;
+    const at = new Vector3(...centre).project(camera);
+    const box = canvas.getBoundingClientRect();
+    return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height];
   }
 
   /** Shows models elsewhere without moving them; null ends that. */

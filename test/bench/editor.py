@@ -1,0 +1,324 @@
+#!/usr/bin/env python3
+"""Prints what the world editor costs. Run it in a shell that has sourced the workspace.
+
+usage: editor.py [ROW …]   rows: page idle frames moving release (default: all)
+
+The browser is a headless Chromium and draws with the processor, as on a machine without a graphics card.
+Nothing here fails on a slow machine.
+"""
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import statistics
+import sys
+import tempfile
+import threading
+import time
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
+
+sys.path.insert(0, __file__.rsplit("/", 1)[0])
+import scenes
+from server import Server, children, master, processor, wait
+
+Row = Tuple[str, str, str, bool]
+EMPTY = scenes.world("boxes", 0, True, 1000.0)
+CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+SHAPES = ("<box><size>.5 .5 .5</size></box>", "<sphere><radius>.3</radius></sphere>",
+          "<cylinder><radius>.3</radius><length>.5</length></cylinder>")
+
+
+def drifting(count: int, rate: float) -> str:
+    """Bodies that never rest and never meet: they sink slowly from high above."""
+    models = []
+    for n in range(count):
+        shape = f"<geometry>{SHAPES[n % len(SHAPES)]}</geometry>"
+        models.append(
+            f"<model name='m{n}'><allow_auto_disable>0</allow_auto_disable>"
+            f"<pose>{n % 32 - 16} {n // 32 - 16} 200 0 0 0</pose><link name='link'>"
+            f"<collision name='c'>{shape}</collision><visual name='v'>{shape}</visual>"
+            "</link></model>")
+    return f"""<?xml version='1.0'?><sdf version='1.6'><world name='default'>
+      <gravity>0 0 -0.001</gravity><physics type='ode'><max_step_size>0.001</max_step_size>
+      <real_time_update_rate>{rate}</real_time_update_rate></physics>
+      <include><uri>model://sun</uri></include><gui><camera name='user_camera'>
+      <pose>-30 -30 215 0 0.3 0.785</pose></camera></gui>{"".join(models)}</world></sdf>"""
+
+
+def editor_url() -> str:
+    """Ask the running node for its editor's address."""
+    import rospy
+    from my_simulations_msgs.srv import OpenEditor
+
+    rospy.wait_for_service("/gazebo/open_editor", 30)
+    return str(rospy.ServiceProxy("/gazebo/open_editor", OpenEditor)().url)
+
+
+@contextlib.contextmanager
+def browser() -> Iterator[Any]:
+    """A headless Chromium's page of a lab's screen."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=[
+            "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"])
+        try:
+            yield chromium.new_page(viewport={"width": 1366, "height": 768})
+        finally:
+            chromium.close()
+
+
+def opened(page: Any, url: str) -> float:
+    """Load the editor; ms from the request to the first picture of the world."""
+    page.goto(url)
+    found: List[float] = []
+
+    def pictured() -> bool:
+        found.extend(page.evaluate(
+            "performance.getEntriesByName('first-picture').map(mark => mark.startTime)"))
+        return bool(found)
+
+    wait(pictured, 60, "picture")
+    return found[0]
+
+
+def chromium_pids() -> List[int]:
+    """The processes of the browser that this program started."""
+    found = []
+    for pid in children(os.getpid()):
+        with contextlib.suppress(OSError), open(f"/proc/{pid}/cmdline", "rb") as stream:
+            if b"chromium" in stream.read().split(b"\0", 1)[0]:
+                found.append(pid)
+    return found
+
+
+def page_load() -> List[Row]:
+    took = []
+    with Server(EMPTY):
+        url = editor_url()
+        for _ in range(4):
+            with browser() as page:
+                took.append(opened(page, url) / 1e3)
+    # The first one also finds the server's files cold.
+    middle = statistics.median(took)
+    return [("page load to first picture, empty world", f"{middle:.2f} s, first {took[0]:.2f} s",
+             "2 s", middle <= 2)]
+
+
+def share(pids: List[int], seconds: float) -> float:
+    """Per cent of one core that some processes take."""
+    before, since = processor(pids), time.perf_counter()
+    time.sleep(seconds)  # the thing measured, not a wait for something
+    return (processor(pids) - before) / (time.perf_counter() - since) * 100
+
+
+def idle() -> List[Row]:
+    import rospy
+    from std_srvs.srv import Empty
+
+    with Server(EMPTY) as server, browser() as page:
+        opened(page, editor_url())
+        rospy.ServiceProxy("/gazebo/pause_physics", Empty)()
+        time.sleep(4.0)  # let start-up work end
+        node = server.pids()
+        page_share = share(chromium_pids(), 10.0)
+        with_page = share(node, 10.0)
+        page.close()
+        time.sleep(1.0)
+        alone = share(node, 10.0)
+    return [("idle page, paused world: the browser", f"{page_share:.1f} %", "2 %", page_share < 2),
+            ("idle page, paused world: the node",
+             f"{with_page:.1f} % ({alone:.1f} % without a page)", "2 %", with_page < 2)]
+
+
+def sim_speed(seconds: float) -> float:
+    """Simulated seconds in a second of wall time."""
+    import rospy
+    from gazebo_msgs.srv import GetWorldProperties
+
+    rospy.wait_for_service("/gazebo/get_world_properties", 30)
+    ask = rospy.ServiceProxy("/gazebo/get_world_properties", GetWorldProperties)
+    began, sim = time.perf_counter(), ask().sim_time
+    time.sleep(seconds)
+    return float((ask().sim_time - sim) / (time.perf_counter() - began))
+
+
+async def _listen(url: str, seconds: float) -> Tuple[int, int]:
+    """Be a page that only listens; frames and bytes of them in some seconds."""
+    import aiohttp
+
+    frames = size = 0
+    async with aiohttp.ClientSession() as session:
+        async with session.ws_connect(url + "ws", max_msg_size=0) as socket:
+            await socket.send_json({"type": "hello", "id": 1, "version": 1})
+            until = time.perf_counter() + seconds
+            while time.perf_counter() < until:
+                message = await socket.receive(timeout=5)
+                if message.type == aiohttp.WSMsgType.BINARY:
+                    frames, size = frames + 1, size + len(message.data)
+    return frames, size
+
+
+def listening(url: str, seconds: float) -> Any:
+    """The same in a process of its own, so that it does not slow us."""
+    import concurrent.futures
+
+    pool = concurrent.futures.ProcessPoolExecutor(1)
+    future = pool.submit(_listen_main, url, seconds)
+    pool.shutdown(wait=False)
+    return future
+
+
+def _listen_main(url: str, seconds: float) -> Tuple[int, int]:
+    return asyncio.run(_listen(url, seconds))
+
+
+def frames() -> List[Row]:
+    with Server(drifting(1000, 0.0)):
+        url = editor_url()
+        speeds: Dict[bool, List[float]] = {False: [], True: []}
+        count = size = 0
+        for _ in range(3):
+            speeds[False].append(sim_speed(4.0))
+            future = listening(url, 6.0)
+            time.sleep(1.0)
+            speeds[True].append(sim_speed(4.0))
+            count, size = future.result()
+    without, with_page = (statistics.median(speeds[key]) for key in (False, True))
+    cost = (1 - with_page / without) * 100
+    rate = size / 6.0 / 1e6
+    return [("1000 moving bodies: cost of frames", f"{cost:.1f} % of {without:.2f} real time",
+             "10 %", cost <= 10),
+            ("1000 moving bodies: bandwidth", f"{rate:.2f} MB/s, {count / 6.0:.0f} frames/s",
+             "1.2 MB/s", rate <= 1.2)]
+
+
+WATCH = """() => { window.tasks = []; new PerformanceObserver((list) => {
+  for (const entry of list.getEntries()) window.tasks.push(entry.duration);
+}).observe({type: 'longtask', buffered: false});
+window.late = []; window.addEventListener('pointermove', (event) =>
+  window.late.push(performance.now() - event.timeStamp), {capture: true}); }"""
+
+
+def moving() -> List[Row]:
+    with Server(drifting(1000, 1000.0)), browser() as page:
+        opened(page, editor_url())
+        time.sleep(3.0)
+        page.evaluate(WATCH)
+        rates = []
+        for n in range(24):
+            page.mouse.move(500 + 10 * n, 400)
+            time.sleep(0.25)
+            rates.append(page.evaluate("window.editor.view.fps"))
+        tasks = page.evaluate("window.tasks")
+        late = page.evaluate("window.late")
+    longest = max(tasks, default=0.0)
+    return [("1000 moving bodies, software GL: pictures",
+             f"{statistics.median(rates):.0f} /s", "-", True),
+            ("1000 moving bodies, software GL: longest handler",
+             f"{longest:.0f} ms" if longest else "none over 50 ms", "100 ms", longest <= 100),
+            ("1000 moving bodies, software GL: mouse heard after",
+             f"{statistics.median(late):.0f} ms median, {max(late):.0f} ms most", "100 ms",
+             max(late) <= 100)]
+
+
+SPY = """() => { const {connection} = window.editor;
+const ask = connection.request.bind(connection);
+connection.request = (type, fields) => {
+  if (type === 'edit') window.target = fields.op.poses?.dragged;
+  return ask(type, fields); };
+window.addEventListener('pointerup', () => {
+  window.released = performance.timeOrigin + performance.now(); }, {capture: true}); }"""
+
+
+class Poller:
+    """Asks where a model is, all the time, in a thread."""
+
+    def __init__(self, name: str) -> None:
+        import rospy
+        from gazebo_msgs.srv import GetModelState
+
+        self.seen: List[Tuple[float, float, float]] = []
+        self._ask = rospy.ServiceProxy("/gazebo/get_model_state", GetModelState, persistent=True)
+        self._name = name
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self) -> None:
+        while not self._stop.wait(0.001):
+            place = self._ask(self._name, "").pose.position
+            self.seen.append((time.time(), place.x, place.y))
+
+    def reached(self, target: List[float], since: float) -> Optional[float]:
+        """Seconds from `since` to the first answer that says `target`."""
+        for when, x, y in list(self.seen):
+            if when >= since and abs(x - target[0]) + abs(y - target[1]) < 1e-5:
+                return when - since
+        return None
+
+    def close(self) -> None:
+        self._stop.set()
+        self._thread.join()
+
+
+def release() -> List[Row]:
+    took = []
+    with Server(EMPTY), browser() as page:
+        opened(page, editor_url())
+        page.evaluate("window.editor.actions.edit({kind: 'insert', shape: 'box', name: 'dragged', "
+                      "pose: [0, 0, 0.5, 0, 0, 0, 1]})")
+        wait(lambda: page.evaluate("Boolean(window.editor.store.model('dragged'))"), 10, "box")
+        page.evaluate("window.editor.actions.pause(), window.editor.actions.translateMode(), null")
+        page.evaluate(SPY)
+        poller = Poller("dragged")
+        try:
+            for n in range(15):
+                took.append(_drag(page, poller, 1 if n % 2 else -1))
+        finally:
+            poller.close()
+    middle = statistics.median(took) * 1e3
+    return [("mouse release to get_model_state", f"{middle:.0f} ms median, "
+             f"{max(took) * 1e3:.0f} ms most", "50 ms", middle <= 50)]
+
+
+def _drag(page: Any, poller: Poller, way: int) -> float:
+    """Drag the box by its body; s from the release to the first answer with the new pose."""
+    x, y = page.evaluate("window.editor.view.pixelOf('dragged')")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for step in range(1, 9):
+        page.mouse.move(x + way * 12 * step, y)
+    page.evaluate("window.target = null")
+    page.mouse.up()
+    wait(lambda: page.evaluate("window.target"), 10, "end of the drag")
+    target, released = page.evaluate("[window.target, window.released / 1e3]")
+    wait(lambda: poller.reached(target, released) is not None, 10, "pose")
+    return float(poller.reached(target, released) or 0.0)
+
+
+ROWS: Dict[str, Callable[[], List[Row]]] = {
+    "page": page_load, "idle": idle, "frames": frames, "moving": moving, "release": release}
+
+
+def main(names: List[str]) -> int:
+    unknown = [name for name in names if name not in ROWS]
+    if unknown:
+        print(__doc__, file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory() as home, master():
+        # Its own home: no thumbnails, autosaves or added folders of the user's.
+        os.environ["HOME"] = home
+        import rospy
+        rospy.init_node("bench", anonymous=True, disable_rostime=True, disable_signals=True)
+        print(f"{'what':<56} {'measured':<40} {'bar':<10} met")
+        for name in names or ROWS:
+            for what, figure, bar, good in ROWS[name]():
+                print(f"{what:<56} {figure:<40} {bar:<10} {'yes' if good else 'NO'}", flush=True)
+        rospy.signal_shutdown("done")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
