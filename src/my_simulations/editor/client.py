@@ -4,14 +4,16 @@ from __future__ import annotations
 import asyncio
 import json
 from collections import deque
-from typing import Any, Deque, Dict, Optional, Set
+from typing import Any, Deque, Dict, Set, Union
 
 from aiohttp import web
 
 from .frames import SentPoses
 
 _MOST_WAITING = 64 << 20
-"""Characters; a browser that is so far behind is cut off and starts anew."""
+"""Bytes, or so; a browser that is so far behind is cut off and starts anew."""
+
+_FULL = 1 << 20
 
 
 def encoded(message: Dict[str, Any]) -> str:
@@ -38,30 +40,29 @@ class Client:
         self.topics: Set[str] = set()
         self.replay: Any = None
         self._socket = socket
-        self._texts: Deque[str] = deque()
+        self._queue: Deque[Union[str, bytes]] = deque()
         self._waiting = 0
-        self._frame: Optional[bytes] = None
         self._sending = False
         self._news = asyncio.Event()
 
     @property
     def free(self) -> bool:
-        """Whether a frame would go out at once."""
-        return self._frame is None and not self._sending and not self._texts
+        """Whether a frame would go out at once; else better send a newer one later."""
+        return not self._queue and not self._sending
+
+    @property
+    def full(self) -> bool:
+        """Whether what comes many times a second had better be left out."""
+        return self._waiting > _FULL
 
     def post(self, message: Dict[str, Any]) -> None:
         """Queue a message."""
-        self.post_text(encoded(message))
+        self.append(encoded(message))
 
-    def post_text(self, text: str) -> None:
-        """Queue a message that is text already."""
-        self._texts.append(text)
-        self._waiting += len(text)
-        self._news.set()
-
-    def offer(self, frame: bytes) -> None:
-        """Send poses next; call only while `free`."""
-        self._frame = frame
+    def append(self, data: Union[str, bytes]) -> None:
+        """Queue a message that is text already, or a frame."""
+        self._queue.append(data)
+        self._waiting += len(data)
         self._news.set()
 
     async def pump(self) -> None:
@@ -71,17 +72,16 @@ class Client:
             self._news.clear()
             self._sending = True
             try:
-                while self._texts or self._frame is not None:
+                while self._queue:
                     if self._waiting > _MOST_WAITING:
                         await self._socket.close(code=1013, message=b"too slow")
                         return
-                    if self._texts:
-                        text = self._texts.popleft()
-                        self._waiting -= len(text)
-                        await self._socket.send_str(text)
+                    data = self._queue.popleft()
+                    self._waiting -= len(data)
+                    if isinstance(data, str):
+                        await self._socket.send_str(data)
                     else:
-                        frame, self._frame = self._frame, None
-                        await self._socket.send_bytes(frame or b"")
+                        await self._socket.send_bytes(data)
             except (ConnectionError, RuntimeError):
                 return  # it went away; its reader hears of that too
             finally:

@@ -29,6 +29,11 @@ class RealTime:
         """Wall time without pauses, nanoseconds, as of the last reading."""
         return self._real_ns
 
+    @property
+    def factor(self) -> float:
+        """Sim time by wall time, over the last readings; 0 while paused."""
+        return self._factor()
+
     def read(self) -> Dict[str, Any]:
         """The push `stats` as of now."""
         now, sim_ns, paused = time.monotonic_ns(), self._simulator.sim_ns(), self._simulator.paused

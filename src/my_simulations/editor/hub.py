@@ -59,11 +59,15 @@ class Hub:
 
     def push(self, message: Dict[str, Any], to: Optional[Iterable[Client]] = None) -> None:
         """Send a message to clients, all by default."""
-        if self._check:
-            self.protocol.check_push(message)
+        self.check([message])
         text = encoded(message)
         for client in list(self.clients.values()) if to is None else to:
-            client.post_text(text)
+            client.append(text)
+
+    def check(self, messages: Iterable[Dict[str, Any]]) -> None:
+        """Hold pushes to the protocol where that was asked for. Raises ProtocolFault."""
+        for message in messages if self._check else ():
+            self.protocol.check_push(message)
 
     def push_soon(self, message: Dict[str, Any]) -> None:
         """As `push` to all; safe from any thread."""
@@ -99,13 +103,22 @@ class Hub:
         if self._mirror.revision < 0:
             await self._look()
         world = await self._loop.run_in_executor(self._writer, self._whole)
-        client.post_text(world)
+        client.append(world)
         client.sent.forget()
         client.live = True
         self._sequence = -1
         self.push(self.clock.read(), [client])
         for issue in list(self._issues) if new else ():
             self.push({"type": "issue", "issue": issue_document(issue)}, [client])
+        self._nudged.set()
+
+    async def whole(self) -> Dict[str, Any]:
+        """The push `world`, of now."""
+        return await self._loop.run_in_executor(self._writer, self._mirror.whole)
+
+    def again(self) -> None:
+        """Let the next tick come with all poses, moved or not."""
+        self._sequence = -1
         self._nudged.set()
 
     def listen(self, more: int) -> None:
@@ -132,6 +145,13 @@ class Hub:
                 await self._tick()
             except CommandError as fault:
                 self._tell(error("editor-view", str(fault)))
+                await asyncio.sleep(1.0)
+            except Exception as defect:
+                # Whatever is wrong with one look at the world, the next one may go well.
+                self._tell(error("editor-defect", "the editor failed to follow the world: "
+                                 f"{type(defect).__name__}: {defect}"))
+                self._loop.call_exception_handler(
+                    {"message": "the editor failed to follow the world", "exception": defect})
                 await asyncio.sleep(1.0)
             await self._pause(started + period)
 
@@ -181,8 +201,7 @@ class Hub:
 
     def _whole(self) -> str:
         message = self._mirror.whole()
-        if self._check:
-            self.protocol.check_push(message)
+        self.check([message])
         return encoded(message)
 
     def _read(self) -> Optional[Poses]:
@@ -215,4 +234,4 @@ class Hub:
             if poses is not None and client.free:
                 frame = client.sent.frame(LIVE, self._mirror.revision, poses)
                 if frame:
-                    client.offer(frame)
+                    client.append(frame)

@@ -32,20 +32,26 @@ class Pages:
 
     Args:
         options: where things lie.
+        page: the page's folder.
         documents: knows what may be served.
         upload_bytes: the largest upload.
         export: the bytes and the file name of a download; raises CommandError for none.
     """
 
-    def __init__(self, options: EditorOptions, documents: Documents, upload_bytes: int,
-                 export: Export) -> None:
-        self.web = options.web or os.path.join(own_directory(), "web")
-        self._modules = node_modules(self.web)
+    def __init__(self, options: EditorOptions, page: str, documents: Documents,
+                 upload_bytes: int, export: Export) -> None:
+        self.web = page
+        self._modules = node_modules(page)
         self._documents = documents
         self._upload_bytes = upload_bytes
         self._export = export
         self._thumbs = os.path.join(options.cache_dir, "thumbnails")
         self._uploads = os.path.join(os.path.dirname(options.data_dir), "uploads")
+
+    @staticmethod
+    def own_folder() -> str:
+        """The page of this package."""
+        return os.path.join(own_directory(), "web")
 
     def routes(self) -> List[web.RouteDef]:
         """For the application."""

@@ -51,7 +51,7 @@ class Requests:
             "edit": self._edit, "copy": self._copy, "undo": self._undo, "redo": self._redo,
             "play": self._play, "pause": self._pause, "step": self._step, "save": self._save,
             "open": self._open, "new": self._new, "autosave": self._restore,
-            "drag_end": self._drag_end,
+            "drag_end": self._drag_end, "folders": self._folders,
         }
         return {"hello": Route(self._hello, None), "drag": Route(self._drag, None),
                 **{kind: Route(handler, self.thread) for kind, handler in handlers.items()}}
@@ -159,6 +159,9 @@ class Requests:
 
     def _new(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return self._filed(self._files.new, message)
+
+    def _folders(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._files.folders(message)
 
     def _filed(self, handler: Callable[[Dict[str, Any]], Dict[str, Any]],
                message: Dict[str, Any]) -> Dict[str, Any]:

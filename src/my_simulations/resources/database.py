@@ -62,6 +62,17 @@ class ModelDatabase:
         self._listed = None
         self._failed.clear()
 
+    def give(self, seconds: float) -> None:
+        """Let downloads take so long from the next `begin` on."""
+        self._seconds = seconds
+
+    def names(self) -> Set[str]:
+        """What the database lists. Raises NotProvided."""
+        try:
+            return set(self._names())
+        except (HttpFault, OSError) as fault:
+            raise NotProvided(f"{self.uri}: {fault}") from fault
+
     def provide(self, name: str) -> str:
         """The folder of a model, downloaded with what it depends on when it is not there.
 

@@ -5,7 +5,7 @@ import threading
 from typing import Dict, List, Optional, Tuple
 
 from ..description.model import Link, Model
-from ..engine.ring import BELL, DEMAND_NS, RingReader, Snapshot
+from ..engine.ring import BELL, DEMAND_NS, LINK_WIDTH, RingReader, Snapshot
 from ..errors import CommandError
 from ..geometry import IDENTITY, Pose, Twist, compose
 from .frames import relative
@@ -102,7 +102,12 @@ class WorldViews:
     def moment(self) -> Tuple[List[Entity], Snapshot]:
         """Everything there is, in load order, and where it is, of one moment."""
         with self._lock:
-            return self._registry.entities(), self._snapshot()
+            entities, snapshot = self._registry.entities(), self._snapshot()
+        # One that is being deleted may have left the engine, and its rows the table, already.
+        rows = len(snapshot.links) // LINK_WIDTH
+        return [entity for entity in entities
+                if entity.first_link_row + len(entity.link_names) <= rows
+                or not entity.link_names], snapshot
 
     def states(self) -> States:
         """The states of everything, for the topics; the same object while nothing changes."""

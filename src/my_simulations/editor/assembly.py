@@ -1,0 +1,138 @@
+"""All parts of one editor, put together in its event loop."""
+from __future__ import annotations
+
+import asyncio
+import os
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable, Dict, List, Tuple
+
+from aiohttp import web
+
+from ..errors import Issue, Severity, error
+from ..resources.resolver import Resolver
+from ..simulator.history import History
+from ..simulator.simulator import Simulator
+from .autosave import Autosave
+from .building_requests import BuildingRequests
+from .client import Client
+from .document import Documents
+from .faults import Refusal
+from .guard import Guard
+from .hub import Hub
+from .library import Library
+from .library_requests import LibraryRequests
+from .options import EditorOptions
+from .pages import Pages
+from .protocol import Protocol
+from .replay import Logs
+from .requests import Requests
+from .sockets import Route, Sockets
+from .watching import Watching
+from .worlds import WorldFiles
+
+_AUTOSAVE_S = 1.0
+
+
+class Assembly:
+    """Made and used in the loop, but for `tell`.
+
+    Attributes:
+        application: serves pages and sockets.
+
+    Raises:
+        CommandError: the page is not installed.
+    """
+
+    def __init__(self, simulator: Simulator, resolver: Resolver, options: EditorOptions,
+                 guard: Guard) -> None:
+        self._options = options
+        documents = Documents(resolver)
+        self._history = History(simulator)
+        self._files = WorldFiles(simulator, resolver, self._history, options.save_roots,
+                                 self.tell_all)
+        self._autosave = Autosave(self._files, self._history,
+                                  os.path.join(options.cache_dir, "autosave"), self.tell_all)
+        web_folder = options.web or Pages.own_folder()
+        protocol = Protocol.from_folder(web_folder)
+        pages = Pages(options, web_folder, documents, protocol.limits["upload_bytes"],
+                      self._export)
+        self.hub = Hub(simulator, documents, protocol, options.check_outgoing)
+        self._pool = ThreadPoolExecutor(4, "editor requests")
+        library = Library(resolver, documents.served, options.config_dir, self._downloading)
+        self._requests = Requests(self.hub, resolver, self._history, self._files,
+                                  self._autosave, self.tell_all)
+        self._models = LibraryRequests(self.hub, resolver, library, self._pool, self.tell_all)
+        self._logs = Logs(self.hub, options.data_dir, self.tell_all)
+        routes: Dict[str, Route] = {
+            **self._requests.routes(), **self._models.routes(), **self._logs.routes(),
+            **Watching(self.hub).routes(),
+            **BuildingRequests(self.hub, library, self._pool, options.save_roots).routes(),
+        }
+        sockets = Sockets(self.hub, routes, self._leave, options.check_outgoing)
+        self.application = web.Application(middlewares=[guard.middleware],
+                                           client_max_size=protocol.limits["upload_bytes"])
+        self.application.add_routes([web.get("/ws", sockets.serve), *pages.routes()])
+        self._tasks: "List[asyncio.Future[Any]]" = []
+
+    def start(self) -> None:
+        """Begin to look after the world."""
+        works: List[Callable[[], Any]] = [self.hub.run, self._keep, self._models.watch]
+        self._tasks = [asyncio.ensure_future(work()) for work in works]
+        for task in self._tasks:
+            task.add_done_callback(self._ended)
+
+    async def close(self, reason: str, runner: web.AppRunner) -> None:
+        """Say farewell, end what runs, keep unsaved edits."""
+        self.hub.push({"type": "shutdown", "reason": reason})
+        await asyncio.sleep(0.05)  # the farewell goes out
+        for task in self._tasks:
+            task.cancel()
+        self._logs.close()
+        await runner.cleanup()
+        self._pool.shutdown(wait=False)
+        self._requests.thread.shutdown(wait=True)
+        self._autosave.keep()
+
+    def tell(self, issue: Issue) -> None:
+        """Show an issue on all pages; safe from any thread."""
+        self.hub.tell(issue)
+
+    def tell_all(self, issue: Issue) -> None:
+        """An issue of the editor's own work: to the pages, and to who started the server."""
+        self.hub.tell(issue)
+        if issue.severity is not Severity.NOTE:
+            self._options.log(issue)
+
+    async def _keep(self) -> None:
+        """Write the autosave whenever there is something new."""
+        loop = asyncio.get_running_loop()
+        while True:
+            started = loop.time()
+            await loop.run_in_executor(self._pool, self._autosave.keep)
+            # A world that takes long to write is written less often.
+            await asyncio.sleep(_AUTOSAVE_S + 10.0 * (loop.time() - started))
+
+    def _ended(self, task: "asyncio.Future[Any]") -> None:
+        """A task that ends by itself is a defect; whoever started the server must hear of it."""
+        if not task.cancelled():
+            defect = task.exception()
+            self.tell_all(error("editor-defect", "a part of the editor has ended: "
+                                f"{type(defect).__name__}: {defect}"))
+            asyncio.get_running_loop().call_exception_handler(
+                {"message": "a part of the editor has ended", "exception": defect})
+
+    def _leave(self, client: Client) -> None:
+        self._requests.leave(client)
+        self._logs.leave(client)
+
+    def _downloading(self, name: str, done: int, expected: int) -> None:
+        self.hub.push_soon({"type": "download", "name": name, "done": done,
+                            "expected": expected})
+
+    def _export(self, name: str) -> Tuple[bytes, str]:
+        """The download of that name: the world as it is, or a log."""
+        if name.endswith((".world", ".sdf")):
+            return self._files.text(), name
+        if name.endswith(".log"):
+            return self._logs.data(name[:-len(".log")]), name
+        raise Refusal("not-found", f"there is nothing to download called {name!r}")

@@ -1,0 +1,60 @@
+"""The requests of the building editor."""
+from __future__ import annotations
+
+from concurrent.futures import Executor
+from typing import Any, Callable, Dict, List, Optional
+
+from ..building import requests as building
+from ..building.folder import default_folder
+from ..description.flatten import flattened
+from ..errors import Issue
+from .client import Client
+from .faults import issue_document
+from .hub import Hub
+from .library import Library
+from .sockets import Route
+
+
+class BuildingRequests:
+    """`building_…`; a saved building is a model of the library at once."""
+
+    def __init__(self, hub: Hub, library: Library, pool: Executor,
+                 roots: Optional[List[str]]) -> None:
+        self._hub = hub
+        self._library = library
+        self._pool = pool
+        self._roots = roots or []
+
+    def routes(self) -> Dict[str, Route]:
+        """By type of request."""
+        handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
+            "building_sdf": self._sdf, "building_save": self._save, "building_load": self._load,
+            "building_list": self._list,
+        }
+        return {kind: Route(handler, self._pool) for kind, handler in handlers.items()}
+
+    def _sdf(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        model, text, issues = building.building_sdf(message["plan"])
+        return {"model": self._hub.documents.model(flattened(model), model.pose), "sdf": text,
+                "issues": _told(issues)}
+
+    def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        done = building.building_save(message["plan"], message["name"],
+                                      message.get("options") or {}, self._roots)
+        folder = done["path"].rpartition("/")[0]
+        self._library.add(folder)
+        return {**done, "issues": _told(done["issues"])}
+
+    def _load(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        done = building.building_load(message["name"], self._places())
+        return {**done, "issues": _told(done["issues"])}
+
+    def _list(self, _client: Client, _message: Dict[str, Any]) -> List[Dict[str, str]]:
+        return building.building_list(self._places())
+
+    def _places(self) -> List[str]:
+        return [*self._roots, default_folder(), *self._library.added]
+
+
+def _told(issues: List[Issue]) -> List[Dict[str, Any]]:
+    return [issue_document(issue) for issue in issues]
