@@ -82,6 +82,15 @@ test('ends within 0.3 m draw the end of a wall, but never its own start', () => 
   assert.deepEqual(snapStart([3.9, 5.8], {walls: there, free: true}), [3.9, 5.8]);
 });
 
+test('a wall ends on the middle line of a wall in its way, and starts on one under the mouse', () => {
+  const there = walls([[4, -5], [4, 5]]);
+  assert.deepEqual(snapEnd([0, 0], [3.75, 0.1], {walls: there}), {point: [4, 0], on: 'wall'});
+  assert.equal(snapEnd([0, 0], [3.6, 0.1], {walls: there}).on, 'grid');
+  assert.equal(snapEnd([4, 0], [4.2, 1], {walls: there}).on, 'grid');
+  assert.deepEqual(snapStart([4.08, 1.234], {walls: there}), [4, 1.234]);
+  assert.deepEqual(snapStart([4.3, 1], {walls: there}), [4.3, 1]);
+});
+
 test('polygons that cross themselves are told', () => {
   assert.equal(isSimple([[0, 0], [1, 0], [1, 1], [0, 1]]), true);
   assert.equal(isSimple([[0, 0], [1, 1], [1, 0], [0, 1]]), false);

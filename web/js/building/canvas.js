@@ -36,11 +36,12 @@ export class Canvas {
   constructor(session) {
     this.session = session;
     this.image = svg('image', {class: 'plan-image', preserveAspectRatio: 'none'});
+    this.below = svg('g', {class: 'below'});
     this.layers = Object.fromEntries(ORDER.map((kind) => [kind, svg('g', {class: `layer ${kind}`})]));
     this.draft = svg('g', {class: 'draft'});
     this.labels = svg('g', {class: 'labels'});
     this.handles = svg('g', {class: 'handles'});
-    this.features = svg('g', {}, ...ORDER.map((kind) => this.layers[kind]), this.draft,
+    this.features = svg('g', {}, this.below, ...ORDER.map((kind) => this.layers[kind]), this.draft,
       this.handles, this.labels);
     this.world = svg('g', {}, this.image, this.axes(), this.features);
     this.minor = gridPattern('building-grid-minor', SCALE / 10, 'minor');
@@ -58,6 +59,7 @@ export class Canvas {
   view = {zoom: 1, x: 300, y: 250};
   #drawn = new Map();
   #labelled = '';
+  #under = null;
 
   axes() {
     return svg('g', {class: 'axes'}, svg('path', {class: 'x', d: 'M0 0H40'}),
@@ -152,6 +154,7 @@ export class Canvas {
       element.remove();
       this.#drawn.delete(key);
     }
+    this.#drawBelow();
     this.#drawDraft();
     this.#drawHandles();
     this.#drawLabels();
@@ -172,6 +175,22 @@ export class Canvas {
     }
     if (known.state !== state) set(known.element, {class: state});
     Object.assign(known, {item, state, wall});
+  }
+
+  /** The level below, faintly: its walls, and the stairs that cut through the floor. */
+  #drawBelow() {
+    const {session} = this;
+    const below = session.plan.levels[session.at - 1] ?? null;
+    if (this.#under === below) return;
+    this.#under = below;
+    const parts = below ? [
+      svg('path', {class: 'walls', d: below.walls.map(wallPath).join('')}),
+      ...below.stairs.map((stairs) => {
+        const {frame, lines} = stairsPaths(stairs);
+        return svg('path', {class: 'hole', d: frame + lines});
+      }),
+    ] : [];
+    this.below.replaceChildren(...parts);
   }
 
   #drawImage() {

@@ -42,7 +42,7 @@ export class WallTool {
       const {point, on} = this.#end(mouse);
       const {thickness} = DEFAULTS.walls;
       session.draft = {segment: {start: this.#from, end: point, thickness, on},
-        mark: on === 'end' ? point : null};
+        mark: on === 'end' || on === 'wall' ? point : null};
       this.aim = direction(this.#from, point);
     }
     session.changed();

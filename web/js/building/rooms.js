@@ -81,21 +81,7 @@ function graphOf(walls) {
     }
   }
   const corners = [];
-  const cells = new Map();
-  const cornerOf = (point) => {
-    const [column, row] = [Math.round(point[0] * 100), Math.round(point[1] * 100)];
-    for (let x = column - 1; x <= column + 1; x++) {
-      for (let y = row - 1; y <= row + 1; y++) {
-        const near = cells.get(`${x},${y}`)?.find((at) => same(corners[at].point, point));
-        if (near !== undefined) return near;
-      }
-    }
-    const key = `${column},${row}`;
-    if (!cells.has(key)) cells.set(key, []);
-    cells.get(key).push(corners.length);
-    corners.push({point, edges: new Map()});
-    return corners.length - 1;
-  };
+  const cornerOf = numbering(corners);
   walls.forEach((wall, at) => {
     const along = cuts[at].map((point) => ({point, at: distance(wall.start, point)}))
       .sort((a, b) => a.at - b.at).map(({point}) => cornerOf(point));
@@ -107,6 +93,28 @@ function graphOf(walls) {
     }
   });
   return corners;
+}
+
+/** Gives points numbers, and those that are one the same; found by cells of 1 cm. */
+function numbering(corners) {
+  const cells = new Map();
+  const cellOf = (column, row) => column * 4194304 + row;
+  return (point) => {
+    const [x, y] = [point[0] * 100, point[1] * 100];
+    // What lies within a tenth of a millimetre of the next cell may be known there.
+    for (let column = Math.floor(x - 0.02); column <= Math.floor(x + 0.02); column++) {
+      for (let row = Math.floor(y - 0.02); row <= Math.floor(y + 0.02); row++) {
+        for (const at of cells.get(cellOf(column, row)) ?? []) {
+          if (same(corners[at].point, point)) return at;
+        }
+      }
+    }
+    const cell = cellOf(Math.floor(x), Math.floor(y));
+    if (cells.has(cell)) cells.get(cell).push(corners.length);
+    else cells.set(cell, [corners.length]);
+    corners.push({point, edges: new Map()});
+    return corners.length - 1;
+  };
 }
 
 /** The points that two walls have in common. */
@@ -142,15 +150,16 @@ function loopsOf(corners) {
     return Math.atan2(p[1], p[0]) - Math.atan2(q[1], q[0]);
   }));
   const seen = new Set();
+  const step = (from, to) => from * corners.length + to;
   const loops = [];
   corners.forEach((_, first) => {
     for (const second of turns[first]) {
-      if (seen.has(`${first}>${second}`)) continue;
+      if (seen.has(step(first, second))) continue;
       const points = [];
       const halves = [];
       let [from, to] = [first, second];
-      while (!seen.has(`${from}>${to}`)) {
-        seen.add(`${from}>${to}`);
+      while (!seen.has(step(from, to))) {
+        seen.add(step(from, to));
         points.push(corners[from].point);
         halves.push(corners[from].edges.get(to));
         const around = turns[to];

@@ -1,5 +1,5 @@
 /** Where the end of a wall goes while it is drawn or dragged. */
-import {direction, distance, polar, tidyPoint} from './geometry.js';
+import {crossing, direction, distance, nearest, polar, tidyPoint} from './geometry.js';
 
 export const SNAP_ANGLE = Math.PI / 12;
 export const SNAP_LENGTH = 0.25;
@@ -30,15 +30,18 @@ export function nearEnd(walls, point, wanted = () => true) {
 }
 
 /**
- * The end of a wall that starts at `from`: on another end, else at a multiple of 15 degrees with an
- * outer length (thickness and all) of a multiple of 0.25 m; `free` takes the point as it is.
+ * The end of a wall that starts at `from`: on another end, else at a multiple of 15 degrees, on a wall
+ * in the way or with an outer length (thickness and all) of a multiple of 0.25 m; `free` takes the
+ * point as it is.
  *
- * @returns {{point: import('./geometry.js').Point, on: 'end'|'grid'|'free'}}
+ * @returns {{point: import('./geometry.js').Point, on: 'end'|'wall'|'grid'|'free'}}
  */
 export function snapEnd(from, point, {walls = [], thickness = 0.15, free = false} = {}) {
   if (free) return {point: tidyPoint(point), on: 'free'};
   const end = nearEnd(walls, point, (wall, name) => distance(wall[name], from) > 1e-4);
   if (end) return {point: end, on: 'end'};
+  const met = onWall(from, point, walls);
+  if (met) return {point: tidyPoint(met), on: 'wall'};
   return {point: snapPolar(from, point, thickness), on: 'grid'};
 }
 
@@ -51,7 +54,31 @@ export function snapPolar(from, point, thickness) {
   return length < 0.05 ? tidyPoint(from) : tidyPoint(polar(from, angle, length));
 }
 
-/** The start of a wall: on another end, else as it is. */
+/** Where the ray of 15 degrees meets a wall within reach of the mouse, so that rooms close. */
+function onWall(from, point, walls) {
+  if (distance(from, point) < SPOT) return null;
+  const ahead = polar(from, Math.round(direction(from, point) / SNAP_ANGLE) * SNAP_ANGLE, 1);
+  let best = null;
+  let least = REACH;
+  for (const wall of walls) {
+    if (nearest(from, wall.start, wall.end).distance < 1e-3) continue;
+    const met = crossing(from, ahead, wall.start, wall.end);
+    if (!met || nearest(met, wall.start, wall.end).distance > 1e-6) continue;
+    const away = distance(met, point);
+    if (away < least) {
+      least = away;
+      best = met;
+    }
+  }
+  return best;
+}
+
+/** The start of a wall: on another end, else in the middle of a wall that is there, else as it is. */
 export function snapStart(point, {walls = [], free = false} = {}) {
-  return (!free && nearEnd(walls, point)) || tidyPoint(point);
+  if (free) return tidyPoint(point);
+  const end = nearEnd(walls, point);
+  if (end) return end;
+  const under = walls.map((wall) => ({wall, ...nearest(point, wall.start, wall.end)}))
+    .find(({wall, distance: away}) => away <= wall.thickness / 2 + 0.02);
+  return tidyPoint(under?.point ?? point);
 }
