@@ -1,8 +1,8 @@
 """State logs: what moved and what changed, in one file, to be looked at again later.
 
 A file begins with `MAGIC`; each record is a kind (u8), a sim time (f64, s), a size (u32) and so
-many bytes: a world document (JSON), all poses, or those that moved. Little endian. A file that was cut
-off by a crash is good up to its last whole record.
+many bytes: a world document (JSON), all poses, or those that moved. Little endian. A file that was
+cut off by a crash is good up to its last whole record.
 """
 from __future__ import annotations
 
