@@ -166,6 +166,12 @@ def test_a_joint_of_the_world_stands_in_the_frame_of_its_child(ends, at, positio
     assert one.axis.xyz == pytest.approx(axis)
 
 
+def test_the_axis_of_a_joint_of_an_old_world_is_in_world_coordinates():
+    (one,) = two_models('<joint name="j" type="revolute"><parent>a::l</parent><child>b::l</child>'
+                        "<axis><xyz>1 0 0</xyz></axis></joint>", version="1.2").joints
+    assert one.axis.xyz == pytest.approx((0, -1, 0))
+
+
 def test_joints_between_models_are_written_as_the_worlds_own():
     world = two_models(joint("k", "world", "a::l"), joint("j", "a::l", "l"))
     copy, issues = read_world_text(write_world(world), Resolver())

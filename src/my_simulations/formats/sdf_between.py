@@ -64,7 +64,8 @@ class Between:
 
     def _pose(self, name: str, one: Pending) -> Pose:
         scoped = one.scoped(name)
-        if name == WORLD:
+        # Joints of the world were there before 1.2, too, with axes "in the model frame" by default.
+        if name == WORLD or scoped == "__model__":
             return IDENTITY
         return self._frames.pose(scoped if scoped in self._frames else name)
 
