@@ -40,14 +40,26 @@ export class WorldTab {
     this.update = onceAFrame(() => this.#update());
     for (const event of ['document', 'entity']) this.store.addEventListener(event, this.update);
     this.store.addEventListener('selection', () => this.#followSelection());
+    let paused = null;
+    this.store.addEventListener('stats', () => {
+      if (this.store.stats.paused === paused) return;
+      paused = this.store.stats.paused;
+      this.tree.draw();
+    });
     this.update();
   }
 
   #filter;
   #open = new Set(['models', 'lights', ...remembered.get('open-rows', [])]);
   #row = null;
+  /** A selected name whose row has not come yet: what was just inserted. */
+  #awaited = null;
 
   #update() {
+    if (this.#awaited && rowOf(this.store.document, this.#awaited)) {
+      this.#followSelection();
+      return;
+    }
     const rows = worldRows(this.store.document, this.#open, this.#filter.value);
     this.tree.show(rows, this.#selectedRows());
     this.#row = rows.find((row) => row.id === this.#row?.id) ?? this.#row;
@@ -93,6 +105,7 @@ export class WorldTab {
   #followSelection() {
     const last = this.store.selection[this.store.selection.length - 1];
     const found = last && rowOf(this.store.document, last);
+    this.#awaited = found ? null : last ?? null;
     if (found && this.#row?.id !== found.id) {
       found.opens.forEach((id) => this.#open.add(id));
       const rows = worldRows(this.store.document, this.#open, this.#filter.value);

@@ -3,7 +3,7 @@
  *
  * The server answers `folders {path}` with {path, parent, roots, folders, files}.
  */
-import {Dialog, ask, labelled} from '../dialog.js';
+import {Dialog, ask, faultText, labelled} from '../dialog.js';
 import {fill, h, roving} from '../dom.js';
 import {bytesText} from '../format.js';
 import {icon} from '../icons.js';
@@ -12,9 +12,9 @@ const ENDINGS = /\.(world|sdf|xml)$/i;
 
 /** The list of one folder, with its way up and the allowed roots above it. */
 class FolderList {
-  constructor(request, {onFile, onOpen}) {
+  constructor(request, {onFile, onOpen, onFault}) {
     this.request = request;
-    this.handlers = {onFile, onOpen};
+    this.handlers = {onFile, onOpen, onFault};
     this.listing = null;
     this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
     this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
@@ -27,7 +27,13 @@ class FolderList {
   #rove;
 
   async go(path) {
-    this.listing = await this.request('folders', path ? {path} : {});
+    try {
+      this.listing = await this.request('folders', path ? {path} : {});
+    } catch (fault) {
+      this.handlers.onFault(fault);
+      return;
+    }
+    this.handlers.onFault(null);
     this.#show();
   }
 
@@ -38,7 +44,7 @@ class FolderList {
     fill(this.roots, ...roots.map((root) => h('button', {
       type: 'button', class: 'plain wide', title: root, onclick: () => this.go(root),
       'aria-pressed': String(path === root || path.startsWith(`${root}/`)),
-    }, icon('folder', 15), h('span', {text: baseName(root) || root}))));
+    }, icon('folder', 15), h('span', {class: 'label', text: root.split('/').slice(-2).join('/')}))));
     const rows = [];
     if (parent) rows.push(this.#row('..', 'up', '', () => this.go(parent)));
     for (const folder of folders) {
@@ -101,6 +107,7 @@ export async function saveAsDialog({store, request}) {
       name.value = file;
       dialog.submit();
     },
+    onFault: (fault) => dialog.say(fault ? faultText(fault) : ''),
   });
   const save = async () => {
     const wanted = name.value.trim();
@@ -108,7 +115,7 @@ export async function saveAsDialog({store, request}) {
       dialog.say('Give the file a name.');
       return false;
     }
-    const path = wanted.startsWith('/') ? withEnding(wanted)
+    const path = wanted.startsWith('/') || !folders.listing ? withEnding(wanted)
       : joined(folders.listing.path, withEnding(wanted));
     return saveTo(request, path);
   };
@@ -117,8 +124,8 @@ export async function saveAsDialog({store, request}) {
     content: [labelled('File name', name), folders.element],
     buttons: [{title: 'Cancel'}, {title: 'Save', primary: true, run: save}],
   });
-  await folders.go();
   const opened = dialog.open();
+  await folders.go();
   name.setSelectionRange(0, name.value.replace(ENDINGS, '').length);
   return opened;
 }
@@ -157,6 +164,7 @@ export async function openDialog({store, request}) {
       name.value = file;
       dialog.submit();
     },
+    onFault: (fault) => dialog.say(fault ? faultText(fault) : ''),
   });
   const open = async () => {
     const wanted = name.value.trim();
@@ -164,7 +172,8 @@ export async function openDialog({store, request}) {
       dialog.say('Choose a file.');
       return false;
     }
-    const path = wanted.startsWith('/') ? wanted : joined(folders.listing.path, wanted);
+    const path = wanted.startsWith('/') || !folders.listing ? wanted
+      : joined(folders.listing.path, wanted);
     await request('open', {path, discard: true});
     return path;
   };
@@ -173,8 +182,9 @@ export async function openDialog({store, request}) {
     content: [labelled('File name', name), folders.element],
     buttons: [{title: 'Cancel'}, {title: 'Open', primary: true, run: open}],
   });
+  const opened = dialog.open();
   await folders.go();
-  return dialog.open();
+  return opened;
 }
 
 /**

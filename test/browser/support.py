@@ -1,0 +1,222 @@
+"""A real node and a real Chromium, and a person's hands on mouse and keyboard."""
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+import xmlrpc.client
+from unittest import mock
+
+from playwright.sync_api import sync_playwright
+
+SECONDS = 30.0
+WIDTH, HEIGHT = 1366, 768
+"""A small laptop's screen."""
+
+
+def wait_for(condition, what, seconds=SECONDS):
+    """The first true value of `condition()`; an AssertionError that says `what` is missing."""
+    until = time.monotonic() + seconds
+    while True:
+        found = condition()
+        if found:
+            return found
+        assert time.monotonic() < until, f"{what} did not happen within {seconds} s"
+        time.sleep(0.02)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Node:
+    """`roslaunch` of a world on a master of its own, with a home folder of its own."""
+
+    def __init__(self, folder, world, *arguments):
+        self.home = str(folder)
+        self.worlds = os.path.join(self.home, "my_simulations", "worlds")
+        os.makedirs(self.worlds, exist_ok=True)
+        port = free_port()
+        self.master = f"http://127.0.0.1:{port}"
+        environment = {name: value for name, value in os.environ.items()
+                       if name not in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+                       and not name.startswith("XDG_")}
+        environment.update(HOME=self.home, ROS_MASTER_URI=self.master, ROS_HOSTNAME="127.0.0.1",
+                           ROS_HOME=os.path.join(self.home, ".ros"))
+        self.log = open(os.path.join(self.home, "roslaunch.log"), "a+", encoding="utf-8")
+        self.process = subprocess.Popen(
+            ["roslaunch", "-p", str(port), "gazebo_ros", "empty_world.launch", "gui:=true",
+             "paused:=true", f"world_name:={world}", *arguments],
+            env=environment, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
+        self.url = wait_for(self._editor_url, "the editor's address")
+
+    def _editor_url(self):
+        assert self.process.poll() is None, self.said()
+        try:
+            code, _, url = xmlrpc.client.ServerProxy(self.master).getParam(
+                "/test", "/gazebo/my_simulations/editor_url")
+        except OSError:
+            return None
+        return url if code == 1 else None
+
+    def said(self):
+        self.log.seek(0)
+        return self.log.read()
+
+    def ask(self, service, service_class, **fields):
+        """Calls a service of /gazebo the way any client does."""
+        import rospy
+
+        # Each node has a master of its own; rospy asks the one of the environment at each call.
+        with mock.patch.dict(os.environ, ROS_MASTER_URI=self.master):
+            return rospy.ServiceProxy(f"/gazebo/{service}", service_class)(**fields)
+
+    def close(self):
+        for number, seconds in ((signal.SIGINT, 15.0), (signal.SIGKILL, 5.0)):
+            if self.process.poll() is None:
+                os.killpg(self.process.pid, number)
+                try:
+                    self.process.wait(seconds)
+                except subprocess.TimeoutExpired:
+                    continue
+        self.log.close()
+
+
+class Browser:
+    """Chromium without a screen; WebGL is computed."""
+
+    def __init__(self):
+        self._playwright = sync_playwright().start()
+        binary = shutil.which("chromium") or shutil.which("chromium-browser")
+        self._browser = self._playwright.chromium.launch(
+            executable_path=binary,
+            args=["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+
+    def open(self, url, **options):
+        return Editor(self._browser, url, **options)
+
+    def close(self):
+        self._browser.close()
+        self._playwright.stop()
+
+
+class Editor:
+    """One page with the editor; `faults` are errors of its scripts."""
+
+    def __init__(self, browser, url, size=(WIDTH, HEIGHT), color_scheme="dark"):
+        self.context = browser.new_context(viewport={"width": size[0], "height": size[1]},
+                                           color_scheme=color_scheme, accept_downloads=True)
+        self.page = self.context.new_page()
+        self.faults = []
+        self.page.on("pageerror", lambda fault: self.faults.append(str(fault)))
+        self.page.goto(url)
+        self.until("Boolean(window.editor && editor.store.document && editor.view)", "the world")
+        self.until("editor.view.fps > 0", "the first picture")
+
+    def close(self):
+        self.context.close()
+
+    def get(self, expression):
+        return self.page.evaluate(expression)
+
+    def until(self, expression, what):
+        return wait_for(lambda: self.get(expression), what)
+
+    # -- what a person sees ------------------------------------------------------------------------
+
+    def names(self):
+        return self.get("editor.store.document.models.map((model) => model.name)")
+
+    def model(self, name):
+        """The model's document, with its pose as the simulator last told it."""
+        return self.get(f"(() => {{ const store = editor.store; const model = "
+                        f"store.model({name!r}); return model && "
+                        f"{{...model, pose: store.worldPose({name!r})}}; }})()")
+
+    def button(self, name):
+        return self.page.get_by_role("button", name=name, exact=True)
+
+    def row(self, name):
+        return self.page.get_by_role("treeitem", name=name, exact=True)
+
+    def field(self, name):
+        return self.page.get_by_role("textbox", name=name, exact=True)
+
+    # -- hands -------------------------------------------------------------------------------------
+
+    def pixel(self, point):
+        """Where a point of the world is on the page, seen from the first view (5, -5, 2)."""
+        box = self.page.locator("#view").bounding_box()
+        x, y = projected(point, box["width"], box["height"])
+        return box["x"] + x, box["y"] + y
+
+    def click(self, point, **options):
+        self.page.mouse.click(*self.pixel(point), **options)
+
+    def place(self, tool, point):
+        """Takes a tool of the bar and clicks where its thing shall stand; returns the new name."""
+        before = set(self.names())
+        lights = set(self.get("editor.store.document.lights.map((light) => light.name)"))
+        self.button(tool).click()
+        x, y = self.pixel(point)
+        self.page.mouse.move(x - 40, y - 25)
+        self.page.mouse.move(x, y, steps=5)
+        self.page.mouse.click(x, y)
+        return wait_for(lambda: next(iter(
+            (set(self.names()) - before) |
+            (set(self.get("editor.store.document.lights.map((light) => light.name)")) - lights)),
+            None), f"the new {tool}")
+
+    def drag(self, start, end, keys=()):
+        """Presses at a point of the world, moves to another in small steps, lets go."""
+        self.page.mouse.move(*self.pixel(start))
+        for key in keys:
+            self.page.keyboard.down(key)
+        self.page.mouse.down()
+        (x0, y0), (x1, y1) = self.pixel(start), self.pixel(end)
+        for step in range(1, 13):
+            self.page.mouse.move(x0 + (x1 - x0) * step / 12, y0 + (y1 - y0) * step / 12)
+        self.page.mouse.up()
+        for key in keys:
+            self.page.keyboard.up(key)
+
+
+EYE = (5.0, -5.0, 2.0)
+ACROSS = math.radians(60.0)
+
+
+def projected(point, width, height):
+    """A point's pixel in a view that looks from `EYE` at the origin, 60 degrees wide, x right."""
+    forward = _unit([-part for part in EYE])
+    right = _unit(_cross(forward, (0.0, 0.0, 1.0)))
+    up = _cross(right, forward)
+    ray = [part - eye for part, eye in zip(point, EYE)]
+    depth = _dot(ray, forward)
+    assert depth > 0.1, f"{point} lies behind the camera"
+    scale = width / 2.0 / math.tan(ACROSS / 2.0) / depth
+    return width / 2.0 + scale * _dot(ray, right), height / 2.0 - scale * _dot(ray, up)
+
+
+def _dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def _cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _unit(a):
+    length = math.sqrt(_dot(a, a))
+    return tuple(part / length for part in a)
+
+
+def yaw_of(pose):
+    """Turn about z of a pose of seven numbers, in degrees."""
+    x, y, z, w = pose[3:]
+    return math.degrees(math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))

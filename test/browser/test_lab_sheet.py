@@ -1,0 +1,149 @@
+"""The lab sheet's second half, as a person does it: a world built by hand, saved, loaded again."""
+from __future__ import annotations
+
+import math
+import os
+
+from gazebo_msgs.srv import GetModelState, GetWorldProperties
+from pytest import approx
+from support import wait_for, yaw_of
+
+HALF_UP = 0.5
+WHOLE = 1e-6
+
+
+def on_ground(x, y):
+    return (x, y, 0.0)
+
+
+def at_centre(model):
+    return tuple(model["pose"][:3])
+
+
+def off_the_handles(centre):
+    """A point of a unit box's face towards -y, left of the arrows and below them."""
+    return (centre[0] - 0.25, centre[1] - 0.5, centre[2] - 0.2)
+
+
+def test_a_world_built_by_mouse_is_the_same_in_a_fresh_node(launch, browser):
+    node = launch("worlds/empty.world")
+    editor = browser.open(node.url)
+    insert_the_three_shapes(editor)
+    move_the_box_to_whole_metres(editor)
+    turn_the_box_by_45_degrees(editor)
+    scale_the_cylinder(editor)
+    delete_the_sphere_and_bring_it_back(editor)
+    path = save_as(editor, node, "built_by_hand")
+    built = {name: editor.model(name) for name in editor.names()}
+    assert editor.faults == []
+    editor.close()
+    node.close()
+
+    fresh = launch(path)
+    assert set(fresh.ask("get_world_properties", GetWorldProperties).model_names) == set(built)
+    for name, model in built.items():
+        state = fresh.ask("get_model_state", GetModelState, model_name=name)
+        assert state.success, name
+        position, turn = state.pose.position, state.pose.orientation
+        assert [position.x, position.y, position.z] == approx(model["pose"][:3], abs=1e-5), name
+        assert [turn.x, turn.y, turn.z, turn.w] == approx(model["pose"][3:], abs=1e-5), name
+    again = browser.open(fresh.url)
+    for name, model in built.items():
+        loaded = again.model(name)["links"][0]
+        for part in ("collisions", "visuals"):
+            assert [one["geometry"] for one in loaded[part]] == \
+                [one["geometry"] for one in model["links"][0][part]], name
+        assert loaded["inertial"] == model["links"][0]["inertial"], name
+    assert again.faults == []
+    again.close()
+
+
+def insert_the_three_shapes(editor):
+    for tool, place in (("Box", (-0.4, -1.6)), ("Sphere", (1.7, 0.4)), ("Cylinder", (-1.0, 1.5))):
+        name = editor.place(tool, on_ground(*place))
+        assert name == f"unit_{tool.lower()}"
+        x, y, z = editor.model(name)["pose"][:3]
+        assert (x, y) == approx(place, abs=0.02)
+        assert z == approx(HALF_UP)
+    assert editor.get("editor.store.mode") == "select"
+
+
+def move_the_box_to_whole_metres(editor):
+    box = at_centre(editor.model("unit_box"))
+    editor.click(box)
+    editor.until("editor.store.selection.join() === 'unit_box'", "the selection of the box")
+    editor.page.keyboard.press("t")
+    # Taken by the body it goes along the ground; Ctrl draws it to whole metres near by.
+    grip = off_the_handles(box)
+    editor.drag(grip, (grip[0] + 1.3, grip[1] - 0.5, grip[2]), keys=["Control"])
+    wait_for(lambda: abs(editor.model("unit_box")["pose"][0] - 1.0) < WHOLE, "x at a whole metre")
+    x, y, z = editor.model("unit_box")["pose"][:3]
+    assert (x, y) == approx((1.0, -2.0), abs=WHOLE)
+    assert z == approx(HALF_UP)
+    assert editor.get("editor.store.history.undo[0]").lower().startswith("translate")
+
+
+def turn_the_box_by_45_degrees(editor):
+    box = at_centre(editor.model("unit_box"))
+    editor.page.keyboard.press("r")
+    grip = off_the_handles(box)
+    editor.drag(grip, (grip[0] + 0.9, grip[1] + 0.2, grip[2]), keys=["z", "Control"])
+    turned = wait_for(lambda: abs(yaw_of(editor.model("unit_box")["pose"])) > 1.0 and
+                      yaw_of(editor.model("unit_box")["pose"]), "the turn")
+    assert turned / 45.0 == approx(round(turned / 45.0), abs=1e-4)
+    assert at_centre(editor.model("unit_box")) == approx(box, abs=WHOLE)
+
+
+def scale_the_cylinder(editor):
+    cylinder = editor.model("unit_cylinder")
+    centre = at_centre(cylinder)
+    editor.page.keyboard.press("Escape")
+    editor.click(centre)
+    editor.page.keyboard.press("s")
+    grip = (centre[0] - 0.3, centre[1] - 0.4, centre[2] - 0.2)
+    editor.drag(grip, (grip[0], grip[1], grip[2] + 0.5), keys=["z"])
+    before = cylinder["links"][0]["collisions"][0]["geometry"]
+    wait_for(lambda: geometry(editor, "unit_cylinder")["length"] > 1.05, "the longer cylinder")
+    after = geometry(editor, "unit_cylinder")
+    assert after["radius"] == approx(before["radius"])
+    visual = editor.model("unit_cylinder")["links"][0]["visuals"][0]["geometry"]
+    assert visual["length"] == approx(after["length"])
+
+
+def geometry(editor, name):
+    return editor.model(name)["links"][0]["collisions"][0]["geometry"]
+
+
+def delete_the_sphere_and_bring_it_back(editor):
+    pose = editor.model("unit_sphere")["pose"]
+    editor.page.keyboard.press("Escape")
+    editor.click(at_centre(editor.model("unit_sphere")), button="right")
+    editor.page.get_by_role("menuitem", name="Delete").click()
+    wait_for(lambda: "unit_sphere" not in editor.names(), "the sphere's end")
+    editor.page.keyboard.press("Control+z")
+    wait_for(lambda: "unit_sphere" in editor.names(), "the sphere's return")
+    assert editor.model("unit_sphere")["pose"] == approx(pose, abs=1e-6)
+
+
+def save_as(editor, node, name):
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    dialog.get_by_role("button", name="my_simulations/worlds").click()
+    wait_for(lambda: dialog.get_by_label("Folder").text_content() == node.worlds, "the folder")
+    dialog.get_by_role("textbox", name="File name").fill(name)
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    path = os.path.join(node.worlds, f"{name}.world")
+    wait_for(lambda: os.path.isfile(path), "the file")
+    editor.until("!editor.store.history.dirty", "the end of what is unsaved")
+    return path
+
+
+def test_the_middle_of_the_drawn_view_is_where_a_person_points(launch, browser):
+    """The tests' own idea of the camera is the page's: a click on the ground lands there."""
+    node = launch("worlds/empty.world")
+    editor = browser.open(node.url)
+    for place in ((0.0, 0.0), (2.0, 1.0), (-3.0, 2.0)):
+        name = editor.place("Box", on_ground(*place))
+        x, y = editor.model(name)["pose"][:2]
+        assert math.hypot(x - place[0], y - place[1]) < 0.02
+    editor.close()
