@@ -50,6 +50,11 @@ class Row:
     meaning: str = ""
 
     @property
+    def late(self) -> bool:
+        """Offered once the world runs, for a short start (dynamic_reconfigure is so in Gazebo)."""
+        return self.extension or self.handler.split(".")[0] == "reconfigure"
+
+    @property
     def graph_name(self) -> str:
         """The name as rospy wants it: private unless absolute."""
         return self.name if self.name.startswith("/") else f"~{self.name}"

@@ -13,7 +13,9 @@ from ..geometry import Pose, is_finite
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 from .editor import Open
+from .interface import Row, rows
 from .log import log_issue
+from .world import WorldServices
 
 ROSOUT_SECONDS = 1.0
 """How long a node that is about to end waits for /rosout to hear why."""
@@ -41,65 +43,76 @@ class Node:
         self._metrics: Optional[Any] = None
         self._reconfigure: Optional[Any] = None
         self._parameters = _private_parameters()
+        self._network = _flag(self._parameters, "enable_ros_network", True)
+        self._extensions = _flag(self._parameters, "extensions", True)
         self._engine_pid = 0
 
     def advertise(self) -> None:
         """Offer topics, services and parameters."""
         from .connections import take_side_by_side
         from .publishers import Publishers
+        from .registration import register
 
-        network = _flag(self._parameters, "enable_ros_network", True)
-        extensions = _flag(self._parameters, "extensions", True)
         if _flag(self._parameters, "lockstep", False):
             self._simulator.set_lockstep(True)
         self._publishers = Publishers(
-            self._simulator, self._clock, states=network,
+            self._simulator, self._clock, states=self._network,
             clock_hz=_number(self._parameters, "pub_clock_frequency", 0.0),
             states_hz=_number(self._parameters, "model_states_rate", 0.0))
         take_side_by_side()
-        if network:
-            self._advertise_api(extensions)
+        if self._network:
+            self._registered = register(self._rows(late=False), self._faces())
         rospy.set_param("~world_base_name", base_name(self._simulator.world.file))
-        rospy.set_param("~my_simulations/version", __version__)
         self._keep_engine_pid()
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
 
-    def _advertise_api(self, extensions: bool) -> None:
-        from .interface import rows
+    def advertise_late(self) -> None:
+        """Offer what the start does not wait for; call it once the world runs."""
+        rospy.set_param("~my_simulations/version", __version__)
+        if not self._network:
+            return
         from .registration import register
 
-        if extensions:
+        if self._extensions:
             from .metrics import Metrics
 
             self._metrics = Metrics(self._simulator)
-        faces = self._faces()
+            self._metrics.start()
+        faces = self._late_faces()
         self._reconfigure = faces["reconfigure"]
-        self._registered = register(rows(extensions=extensions), faces)
+        self._registered += register(self._rows(late=True), faces)
+
+    def _rows(self, late: bool) -> List[Row]:
+        return [row for row in rows(extensions=self._extensions) if row.late == late]
 
     def _faces(self) -> Dict[str, Any]:
         """Who handles what, by the first half of the table's handlers."""
-        from .editor import EditorService
         from .joints import JointServices
         from .lights import LightServices
         from .links import LinkServices
         from .loads import LoadServices
         from .models import ModelServices
-        from .saving import SaveService
         from .states import StateServices
-        from .stepping import SteppingService
-        from .world import WorldServices
 
         simulator = self._simulator
         return {
-            "editor": EditorService(self._open_editor), "joints": JointServices(simulator),
-            "lights": LightServices(simulator), "links": LinkServices(simulator),
-            "loads": LoadServices(simulator),
+            "joints": JointServices(simulator), "lights": LightServices(simulator),
+            "links": LinkServices(simulator), "loads": LoadServices(simulator),
             "models": ModelServices(simulator, self._resolver, log_issue),
-            "reconfigure": _reconfigure(simulator),
+            "states": StateServices(simulator), "world": WorldServices(simulator),
+        }
+
+    def _late_faces(self) -> Dict[str, Any]:
+        from .editor import EditorService
+        from .saving import SaveService
+        from .stepping import SteppingService
+
+        simulator = self._simulator
+        return {
+            "editor": EditorService(self._open_editor), "reconfigure": _reconfigure(simulator),
             "saving": SaveService(simulator, self._resolver),
-            "states": StateServices(simulator), "stepping": SteppingService(simulator),
-            "world": WorldServices(simulator),
+            "stepping": SteppingService(simulator), "world": WorldServices(simulator),
         }
 
     def keep_up(self) -> None:
@@ -121,10 +134,9 @@ class Node:
             self._engine_pid = pid
 
     def start_publishing(self) -> None:
-        """Begin to publish `/clock`, the states and the metrics."""
-        for publishers in (self._publishers, self._metrics):
-            if publishers is not None:
-                publishers.start()
+        """Begin to publish `/clock` and the states."""
+        if self._publishers is not None:
+            self._publishers.start()
 
     def spawn_robot(self) -> None:
         """Spawn the parameter `robot_description` when `~spawn_robot` says so.

@@ -268,11 +268,13 @@ class Server:
         node.spawn_robot()
         if not self._options.paused:
             loader.simulator.unpause()
+        self._profile.mark("running")
+        node.advertise_late()
         # What the start has made stays; without this every full collection walks through it again.
         gc.freeze()
         if door is not None and (self._gui or door.wanted()):
             door.open_soon()
-        self._profile.mark("running")
+        self._profile.mark("all offered")
         for line in self._profile.lines():
             self._say(line)
         return node
@@ -313,4 +315,4 @@ class Server:
 
 def _import_faces() -> None:
     """Import the services and topics while `rospy.init_node` sleeps on its registration."""
-    from . import joints, loads, metrics, models, publishers, states, world  # noqa: F401
+    from . import joints, lights, links, loads, models, publishers, states, world  # noqa: F401
