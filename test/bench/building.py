@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""Prints what a large building costs. Run it in a shell with the workspace, on a quiet machine.
+
+usage: building.py      500 walls with 200 openings: plan to SDF, and the speed with 20 boxes
+                        awake in it beside bare PyBullet with the same bodies
+
+Nothing here fails on a slow machine.
+"""
+from __future__ import annotations
+
+import json
+import multiprocessing
+import statistics
+import sys
+import time
+from typing import Any, List, Tuple
+
+sys.path.insert(0, __file__.rsplit("/", 1)[0])
+import scenes
+from bench import Clock, Row
+from server import Server, master, wait
+
+ROWS, COLUMNS, OPENINGS, BOXES = 25, 10, 200, 20
+SDF_SECONDS, SHARE = 0.5, 0.85
+
+
+def plan() -> Any:
+    """The plan's JSON, as the page sends it."""
+    from my_simulations.building.plan import Level, Opening, Plan, Wall
+    from my_simulations.building.plan_json import plan_to_json
+
+    level = Level("Level 1")
+    for row in range(ROWS):
+        for column in range(COLUMNS):
+            x, y = 4.0 * column, 4.0 * row
+            for end in ((x + 4.0, y), (x, y + 4.0)):
+                level.walls.append(Wall(len(level.walls), (x, y), end))
+    for number in range(OPENINGS):
+        of = level.windows if number % 2 else level.doors
+        height, elevation = (0.8, 0.5) if number % 2 else (2.0, 0.0)
+        of.append(Opening(number, 0.8, height, elevation, wall=number, along=2.0))
+    return json.loads(json.dumps(plan_to_json(Plan("large", [level]))))
+
+
+def places() -> List[Tuple[float, float, float]]:
+    """One box in each of some rooms."""
+    return [(2.0 + 4.0 * (n % COLUMNS), 2.0 + 4.0 * (n // COLUMNS), 0.5) for n in range(BOXES)]
+
+
+def sdf_text() -> str:
+    """The model element of the building."""
+    from my_simulations.building.requests import building_sdf
+
+    text = building_sdf(plan())[1]
+    return text[text.index("<model"):text.rindex("</sdf>")]
+
+
+def convert() -> Row:
+    from my_simulations.building.requests import building_sdf
+
+    tree = plan()
+    took = []
+    for _ in range(5):
+        began = time.perf_counter()
+        building_sdf(tree)
+        took.append(time.perf_counter() - began)
+    middle = statistics.median(took)
+    return (f"{2 * ROWS * COLUMNS} walls, {OPENINGS} openings to SDF, median / first",
+            f"{middle:.2f} / {took[0]:.2f} s", f"{SDF_SECONDS} s", middle <= SDF_SECONDS)
+
+
+def bare(seconds: float = 4.0) -> float:
+    """Real-time factor of PyBullet alone, in a process of its own."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        return float(pool.apply(_bare, (seconds,)))
+
+
+def _bare(seconds: float) -> float:
+    import pybullet
+
+    from my_simulations.building.convert import building_model
+    from my_simulations.building.plan_json import plan_from_json
+    from my_simulations.geometry import compose
+
+    pybullet.connect(pybullet.DIRECT)
+    pybullet.setGravity(0, 0, -9.8)
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=0.001, numSolverIterations=50, numSubSteps=0,
+                                       contactERP=0.01)
+    pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE),
+                             useMaximalCoordinates=1)
+    model = building_model(plan_from_json(plan()))
+    for link in model.links:
+        pose = compose(model.pose, link.pose)
+        shape = pybullet.createCollisionShapeArray(
+            shapeTypes=[pybullet.GEOM_BOX] * len(link.collisions),
+            halfExtents=[[size / 2 for size in part.geometry.size] for part in link.collisions],
+            collisionFramePositions=[part.pose.position for part in link.collisions],
+            collisionFrameOrientations=[part.pose.orientation for part in link.collisions])
+        pybullet.createMultiBody(0, shape, -1, pose.position, pose.orientation,
+                                 useMaximalCoordinates=1)
+    for at in places():
+        box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[0.5] * 3)
+        body = pybullet.createMultiBody(1.0, box, -1, at, useMaximalCoordinates=1)
+        pybullet.changeDynamics(body, -1, linearDamping=0, angularDamping=0, lateralFriction=1.0)
+        pybullet.changeDynamics(body, -1, contactProcessingThreshold=0.0)
+        pybullet.changeDynamics(body, -1,
+                                activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+    for _ in range(300):
+        pybullet.stepSimulation()
+    steps, started = 0, time.perf_counter()
+    while time.perf_counter() - started < seconds:
+        for _ in range(20):
+            pybullet.stepSimulation()
+        steps += 20
+    return 0.001 * steps / (time.perf_counter() - started)
+
+
+def ours(seconds: float = 4.0) -> float:
+    """Real-time factor of the node at full speed, with /clock subscribed."""
+    import rospy
+
+    boxes = "".join(
+        f"<model name='b{n}'><pose>{x} {y} {z} 0 0 0</pose>"
+        f"<allow_auto_disable>false</allow_auto_disable>{scenes.box_link()}</model>"
+        for n, (x, y, z) in enumerate(places()))
+    world = scenes.world("boxes", 0, False, 0.0)
+    world = world.replace("</world>", f"{boxes}{sdf_text()}</world>").replace(
+        "<real_time_update_rate>0.0<", "<real_time_update_rate>0<")
+    clock = Clock()
+    with Server(world):
+        rospy.wait_for_service("/gazebo/get_world_properties", 60)
+        wait(lambda: clock.sim > 0.3, 120, "settled world")
+        sim, since = clock.sim, time.perf_counter()
+        time.sleep(seconds)  # the time over which the speed is measured
+        factor = (clock.sim - sim) / (time.perf_counter() - since)
+    clock.close()
+    return factor
+
+
+def speed() -> Row:
+    before = bare()
+    mine = ours()
+    alone = statistics.mean([before, bare()])
+    return ("the world made from it, 20 boxes awake", f"{mine:.2f} = {mine / alone:.2f} of bare"
+            f" {alone:.2f}", f"{SHARE} of bare", mine / alone >= SHARE)
+
+
+def main() -> None:
+    import rospy
+
+    rows = [convert()]
+    with master():
+        rospy.init_node("bench", disable_rostime=True)
+        rows.append(speed())
+    for what, found, wanted, good in rows:
+        print(f"{'ok ' if good else 'LOW'} {what:58} {found:34} {wanted}")
+
+
+if __name__ == "__main__":
+    main()
