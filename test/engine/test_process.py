@@ -13,7 +13,7 @@ import pytest
 from conftest import arm, ball, box, ground
 
 from my_simulations.description.model import Inertial, JointAxis, Link, Model
-from my_simulations.description.shapes import Collision, Mesh, MeshData, mesh_key
+from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import InitialState, Physics, World
 from my_simulations.engine.api import FOREVER, Load
 from my_simulations.engine.process import ProcessEngine
@@ -162,8 +162,13 @@ def test_the_same_world_and_commands_give_the_same_bits_in_another_process_and_a
         sim = start(paused=True)
         for n in range(9):
             sim.spawn(box(f"b{n}"), Pose((0.03 * n, 0.0, 0.5 + n)))
+        for n in range(3):   # slippery, in a ring of contacts
+            sim.spawn(box(f"s{n}", surface=Surface(mu=0.4)), Pose((5.0 + n, 0.0, 0.5)))
+        sim.spawn(arm("revolute", JointAxis((0, 1, 0), spring_stiffness=30.0, damping=2.0)),
+                  Pose((0, 6, 2)))
         sim.spawn(ball("hitter"), Pose((-4, 0, 3)))
         sim.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
+        sim.set_model_state("s0", Pose((5, 0, 0.5)), Twist((1, 0.5, 0)))
         return sim
 
     first, second = build(), build()
@@ -171,6 +176,7 @@ def test_the_same_world_and_commands_give_the_same_bits_in_another_process_and_a
     assert _run(second) == expected
     first.reset_simulation()
     first.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
+    first.set_model_state("s0", Pose((5, 0, 0.5)), Twist((1, 0.5, 0)))
     assert _run(first) == expected
 
 
