@@ -221,7 +221,7 @@ export class FakeSimulator {
 
   #target(target) {
     if (!target) return this.document;
-    const [owner, part, item] = target.split('::');
+    const [owner, part, item] = target.replace(/::(collision|visual):/, '::').split('::');
     const entity = this.#find(owner);
     if (!part) return entity;
     const link = entity.links.find((one) => one.name === part) ??

@@ -94,8 +94,8 @@ test('paths begin at the target of the operation', () => {
   assert.ok(physics.some((section) => section.fields.some((field) => field.path === 'gravity')));
   const link = sectionsOf(document, row(rows, 'link:a::link')).sections;
   const paths = link.flatMap((section) => section.fields.map((field) => `${section.target} ${field.path}`));
-  for (const wanted of ['a::link inertial.mass', 'a::link::collision geometry.size',
-    'a::link::collision surface.mu', 'a::link::visual material.diffuse', 'a::link gravity']) {
+  for (const wanted of ['a::link inertial.mass', 'a::link::collision:collision geometry.size',
+    'a::link::collision:collision surface.mu', 'a::link::visual:visual material.diffuse', 'a::link gravity']) {
     assert.ok(paths.includes(wanted), wanted);
   }
 });

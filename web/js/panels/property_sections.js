@@ -106,17 +106,20 @@ function linkSections(world, row) {
       field.path === 'pose' && canonical ? {...field, hint: 'in the model'} : field))),
     section('Inertial', target, link.inertial, table.INERTIAL, 'inertial.'),
   ];
+  // A collision and a visual may share a name: the target says which is meant.
   for (const collision of link.collisions ?? []) {
-    sections.push(section(`Collision ${collision.name}`, `${target}::${collision.name}`, collision,
+    const exact = `${target}::collision:${collision.name}`;
+    sections.push(section(`Collision ${collision.name}`, exact, collision,
       [...table.COLLISION, ...geometryFields(collision.geometry)]));
-    sections.push(section(`Surface of ${collision.name}`, `${target}::${collision.name}`,
-      collision.surface, table.SURFACE, 'surface.'));
+    sections.push(section(`Surface of ${collision.name}`, exact, collision.surface, table.SURFACE,
+      'surface.'));
   }
   for (const visual of link.visuals ?? []) {
-    sections.push(section(`Visual ${visual.name}`, `${target}::${visual.name}`, visual,
+    const exact = `${target}::visual:${visual.name}`;
+    sections.push(section(`Visual ${visual.name}`, exact, visual,
       [...table.VISUAL, ...geometryFields(visual.geometry)]));
-    sections.push(section(`Material of ${visual.name}`, `${target}::${visual.name}`,
-      visual.material, table.MATERIAL, 'material.'));
+    sections.push(section(`Material of ${visual.name}`, exact, visual.material, table.MATERIAL,
+      'material.'));
   }
   return sections;
 }
