@@ -7,7 +7,7 @@ import pytest
 
 from my_simulations.cli import move_object, spawn_object
 from my_simulations.cli.object_client import full_name, plain_words
-from my_simulations.cli.object_documents import load, locate, run_xacro
+from my_simulations.cli.object_documents import Documents, locate, run_xacro
 from my_simulations.cli.progress import Progress, bar
 from my_simulations.cli.remove_object import chosen_models
 from my_simulations.cli.upload_objects import transferable, world_name
@@ -174,9 +174,11 @@ def test_an_objects_document_comes_from_its_package(tmp_path):
     def find(name):
         return str(tmp_path) if name == "somewhere" else None
 
-    assert load(placed("somewhere/ball.urdf"), find, 5.0) == ("<robot name='b'/>", False)
-    assert load(placed("somewhere/box.sdf"), find, 5.0) == ("<sdf/>", True)
-    assert load(placed("somewhere/odd.sdf"), find, 5.0)[1] is False
+    objects = [placed(f"somewhere/{file}") for file in ("ball.urdf", "box.sdf", "odd.sdf")]
+    with Documents(objects, find, 5.0) as documents:
+        assert documents.of(objects[0]) == ("<robot name='b'/>", False)
+        assert documents.of(objects[1]) == ("<sdf/>", True)
+        assert documents.of(objects[2])[1] is False
     with pytest.raises(InputError) as caught:
         locate(placed("somewhere/none.urdf"), find)
     assert caught.value.issues[0].code == "object-file-missing"
@@ -197,6 +199,21 @@ def test_xacro_runs_and_its_faults_are_input_errors(tmp_path):
     issue = caught.value.issues[0]
     assert (issue.code, issue.file) == ("xacro-failed", str(bad))
     assert "missing" in issue.message
+
+
+def test_the_file_of_many_objects_goes_through_xacro_once_and_its_fault_meets_each(tmp_path):
+    ns = "xmlns:xacro='http://www.ros.org/wiki/xacro'"
+    good, bad = tmp_path / "good.xacro", tmp_path / "bad.xacro"
+    good.write_text(f"<robot name='a' {ns}/>")
+    bad.write_text(f"<robot name='${{missing}}' {ns}/>")
+    objects = [placed(f"somewhere/{file.name}") for file in (good, bad, good, bad)]
+    with Documents(objects, lambda name: str(tmp_path), 20.0) as documents:
+        first = documents.of(objects[0])
+        good.write_text("")
+        assert documents.of(objects[2]) == first
+        for wrong in (objects[1], objects[3]):
+            with pytest.raises(InputError):
+                documents.of(wrong)
 
 
 def test_a_module_named_xacro_in_the_current_folder_is_not_run(tmp_path, monkeypatch):

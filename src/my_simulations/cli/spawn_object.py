@@ -9,7 +9,7 @@ from ..objects.document import marked_for_replacement
 from ..objects.listing import PlacedObject
 from ..objects.selection import select
 from . import object_client as client
-from .object_documents import load, package_finder
+from .object_documents import Documents, package_finder
 from .progress import Progress
 
 NAME = "spawn_object.py"
@@ -67,21 +67,21 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
 
 def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeout: float) -> int:
     """Spawns one after the other; how many failed."""
-    find = package_finder()
     there = set(simulator.model_names())
     progress = Progress(len(objects))
     wrong = 0
-    for placed in objects:
-        progress.start(placed.name)
-        try:
-            xml, sdf = load(placed, find, timeout)
-            progress.done(_spawn_one(placed, xml, sdf, simulator, there))
-        except InputError as fault:
-            wrong += 1
-            progress.failed("\n".join(map(str, fault.issues)))
-        except client.ToolError as fault:
-            wrong += 1
-            progress.failed(f"{NAME}: {placed.name} was not spawned: {fault}")
+    with Documents(objects, package_finder(), timeout) as documents:
+        for placed in objects:
+            progress.start(placed.name)
+            try:
+                xml, sdf = documents.of(placed)
+                progress.done(_spawn_one(placed, xml, sdf, simulator, there))
+            except InputError as fault:
+                wrong += 1
+                progress.failed("\n".join(map(str, fault.issues)))
+            except client.ToolError as fault:
+                wrong += 1
+                progress.failed(f"{NAME}: {placed.name} was not spawned: {fault}")
     progress.end(f"{NAME}: {len(objects) - wrong} of {len(objects)} objects spawned")
     return wrong
 
