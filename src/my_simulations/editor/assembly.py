@@ -88,6 +88,8 @@ class Assembly:
         for task in self._tasks:
             task.cancel()
         self._logs.close()
+        clients = list(self.hub.clients.values())
+        await asyncio.gather(*(client.close() for client in clients), return_exceptions=True)
         await runner.cleanup()
         self._pool.shutdown(wait=False)
         self._requests.thread.shutdown(wait=True)

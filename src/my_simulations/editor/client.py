@@ -65,6 +65,10 @@ class Client:
         self._waiting += len(data)
         self._news.set()
 
+    async def close(self) -> None:
+        """End the connection."""
+        await self._socket.close(code=1001, message=b"the server ends")
+
     async def pump(self) -> None:
         """Send what is queued until the connection ends."""
         while not self._socket.closed:

@@ -65,14 +65,19 @@ class Protocol:
         """All kinds of operations."""
         return list(self._data["operations"])
 
-    def parse(self, text: str) -> Dict[str, Any]:
-        """A client's text frame as a checked message. Raises ProtocolFault."""
+    @staticmethod
+    def parse(text: str) -> Dict[str, Any]:
+        """A client's text frame as an object with a `type`. Raises ProtocolFault."""
         try:
             message = json.loads(text, parse_constant=_refuse_constant)
         except (ValueError, RecursionError) as fault:
             raise ProtocolFault(f"the message is not JSON: {fault}") from None
         if not isinstance(message, dict) or not isinstance(message.get("type"), str):
             raise ProtocolFault("a message is an object with a text `type`")
+        return message
+
+    def check_message(self, message: Dict[str, Any]) -> None:
+        """Raises ProtocolFault for a message of a client that the protocol does not know."""
         kind = message["type"]
         if kind in self._data["notices"]:
             self._fields(message, self._data["notices"][kind], kind, ("type", "id"))
@@ -82,7 +87,6 @@ class Protocol:
             self._fields(message, self._data["requests"][kind]["fields"], kind, ("type", "id"))
         else:
             raise ProtocolFault(f"there is no request {kind!r}")
-        return message
 
     def check_operation(self, op: Any) -> str:
         """The kind of an operation whose fields are right. Raises ProtocolFault."""

@@ -75,7 +75,9 @@ class Sockets:
         number: Any = None
         try:
             message = self._hub.protocol.parse(text)
-            number = message.get("id")
+            found = message.get("id")
+            number = found if isinstance(found, (int, float)) else None
+            self._hub.protocol.check_message(message)
             value = await self._answer(client, message)
             if number is not None:
                 if self._check:

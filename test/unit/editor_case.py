@@ -1,0 +1,179 @@
+"""An editor's server on a world without physics, and browsers without a screen."""
+from __future__ import annotations
+
+import asyncio
+import json
+import struct
+
+import aiohttp
+
+from my_simulations import editor
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.shapes import Box, Collision, Visual
+from my_simulations.description.world import Light, World
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.geometry import Pose
+from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.simulator import Simulator
+
+DEADLINE = 10.0
+HEAD = struct.Struct("<IIQddII")
+RECORD = struct.Struct("<I7f")
+
+
+def box(name, position=(0.0, 0.0, 0.5), **changes):
+    inertial = Inertial(1.0, ixx=1 / 6, iyy=1 / 6, izz=1 / 6)
+    link = Link("link", inertial=inertial, collisions=[Collision("collision", Box())],
+                visuals=[Visual("visual", Box())])
+    return Model(name, Pose(position), links=[link], **changes)
+
+
+def arm(name):
+    made = Model(name, links=[
+        Link("base", inertial=Inertial(1.0), collisions=[Collision("c", Box())]),
+        Link("tip", Pose((0.0, 0.0, 1.0)), Inertial(1.0), [Collision("c", Box())])])
+    made.joints.append(Joint("hinge", "revolute", "base", "tip", axis=JointAxis()))
+    return made
+
+
+class Case:
+    """One world and its editor, with folders of its own below `folder`."""
+
+    def __init__(self, folder, models=(), lights=(), paused=True, resolver=None, **options):
+        self.folder = folder
+        self.worlds = folder / "worlds"
+        self.worlds.mkdir(exist_ok=True)
+        self.issues = []
+        self.engine = InlineEngine(KinematicBackend)
+        world = World(models=list(models), lights=list(lights))
+        self.sim = Simulator(world, engine_factory=lambda: self.engine, paused=paused,
+                             log=self.issues.append)
+        self.sim.start()
+        self.options = editor.EditorOptions(**{
+            "port": 0, "save_roots": [str(self.worlds)], "config_dir": str(folder / "config"),
+            "cache_dir": str(folder / "cache"), "data_dir": str(folder / "data" / "log"),
+            "check_outgoing": True, "log": self.issues.append, **options})
+        self.resolver = resolver or Resolver.from_environment()
+        self.server = editor.start(self.sim, self.resolver, self.options)
+        self.url = self.server.url
+
+    def close(self):
+        self.server.stop()
+        self.sim.close()
+
+    def browse(self, scenario, **options):
+        """Run a coroutine with one browser that has the world."""
+        async def run():
+            async with aiohttp.ClientSession() as session:
+                browser = await Browser.open(session, self.url, **options)
+                return await asyncio.wait_for(scenario(browser), 3 * DEADLINE)
+
+        return asyncio.run(run())
+
+
+class Refused(Exception):
+    """A request was refused; `code` is that of the first issue."""
+
+    def __init__(self, issues):
+        super().__init__(issues[0]["message"])
+        self.issues = issues
+        self.code = issues[0]["code"]
+
+
+class Browser:
+    """Keeps what a page would: the document, the poses, and all pushes."""
+
+    def __init__(self, session, socket):
+        self.session = session
+        self.socket = socket
+        self.pushes = []
+        self.frames = []
+        self.poses = {}
+        self.document = None
+        self.news = asyncio.Condition()
+        self._replies = {}
+        self._number = 0
+        self._reader = asyncio.ensure_future(self._read())
+
+    @classmethod
+    async def open(cls, session, url, hello=True, **headers):
+        socket = await session.ws_connect(url.split("?")[0] + "ws", max_msg_size=0,
+                                          headers=headers or None)
+        browser = cls(session, socket)
+        if hello:
+            await browser.ask("hello", version=1)
+            await browser.until(lambda: browser.document is not None)
+        return browser
+
+    async def ask(self, kind, **fields):
+        """The answer's value; raises Refused."""
+        self._number += 1
+        number = self._number
+        self._replies[number] = asyncio.get_running_loop().create_future()
+        await self.socket.send_json({"type": kind, "id": number, **fields})
+        reply = await asyncio.wait_for(self._replies[number], DEADLINE)
+        if not reply["ok"]:
+            raise Refused(reply["issues"])
+        return reply["value"]
+
+    async def edit(self, kind, **fields):
+        return await self.ask("edit", op={"kind": kind, **fields})
+
+    async def tell(self, kind, **fields):
+        """Send a notice."""
+        await self.socket.send_json({"type": kind, **fields})
+
+    async def until(self, condition):
+        """Wait until something that was received makes a condition true."""
+        async with self.news:
+            await asyncio.wait_for(self.news.wait_for(condition), DEADLINE)
+
+    def last(self, kind):
+        return next((push for push in reversed(self.pushes) if push["type"] == kind), None)
+
+    def model(self, name):
+        return next((one for one in self.document["models"] if one["name"] == name), None)
+
+    def light(self, name):
+        return next((one for one in self.document["lights"] if one["name"] == name), None)
+
+    def link_pose(self, model, link=0):
+        """Position of a link in the last frames that told of it."""
+        known = self.poses.get(self.model(model)["links"][link]["id"])
+        return None if known is None else known[:3]
+
+    async def _read(self):
+        async for message in self.socket:
+            async with self.news:
+                if message.type == aiohttp.WSMsgType.BINARY:
+                    self._frame(message.data)
+                else:
+                    self._text(json.loads(message.data))
+                self.news.notify_all()
+
+    def _frame(self, data):
+        kind, revision, step, sim, real, count, _ = HEAD.unpack_from(data)
+        assert len(data) == HEAD.size + count * RECORD.size
+        self.frames.append((kind, revision, sim, count))
+        for n in range(count):
+            known, *pose = RECORD.unpack_from(data, HEAD.size + n * RECORD.size)
+            self.poses[known] = pose
+
+    def _text(self, message):
+        if message["type"] == "reply":
+            self._replies.pop(message["id"]).set_result(message)
+            return
+        self.pushes.append(message)
+        if message["type"] == "world":
+            self.document, self.poses = message["document"], {}
+        elif message["type"] == "change":
+            self.document.update(message.get("world", {}))
+            for kind in ("models", "lights"):
+                for name, value in message.get(kind, {}).items():
+                    kept = [one for one in self.document[kind] if one["name"] != name]
+                    self.document[kind] = kept + ([value] if value else [])
+
+
+def sun():
+    return Light("sun", "directional", Pose((0.0, 0.0, 10.0)))
