@@ -1,0 +1,313 @@
+"""What a page does to the world: each operation, its undo and redo, and what is refused."""
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+from editor_case import Case, Refused, arm, box, sun
+
+from my_simulations.description.compare import differences
+from my_simulations.geometry import STILL, Pose
+
+
+@pytest.fixture
+def case(tmp_path):
+    made = []
+
+    def make(*models, **options):
+        made.append(Case(tmp_path, models, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def state(sim):
+    """Descriptions and poses of everything."""
+    return ({name: (sim.model(name), sim.model_state(name)[0]) for name in sim.model_names()},
+            {light.name: light for light in sim.lights()}, sim.physics, sim.gravity,
+            {name: getattr(sim.world, name) for name in (
+                "scene", "gui_camera", "wind", "atmosphere", "magnetic_field",
+                "spherical_coordinates")})
+
+
+def same(a, b):
+    assert list(sorted(a[0])) == list(sorted(b[0]))
+    for name in a[0]:
+        assert not differences(a[0][name], b[0][name], 1e-12)
+    assert not differences(list(a[1:2]), list(b[1:2]))
+    assert a[2:] == b[2:]
+
+
+POSE = [1.0, 2.0, 3.0, 0.0, 0.0, 0.7071067811865476, 0.7071067811865476]
+
+EDITS = {
+    "insert a shape": {"kind": "insert", "shape": "cylinder", "pose": POSE},
+    "insert scaled": {"kind": "insert", "shape": "box", "scale": [2, 1, 1]},
+    "insert from the library": {"kind": "insert", "uri": "model://table", "pose": POSE},
+    "insert text": {"kind": "insert", "sdf": "<sdf version='1.7'><model name='t'><static>1</static>"
+                                             "<link name='l'/></model></sdf>"},
+    "insert a light": {"kind": "insert_light", "light": {"type": "spot", "pose": POSE}},
+    "delete several": {"kind": "delete", "names": ["a", "arm", "sun"]},
+    "move": {"kind": "move", "poses": {"a": POSE, "sun": POSE, "arm": POSE}, "label": "align"},
+    "scale": {"kind": "scale", "name": "a", "scale": [2.0, 1.0, 3.0]},
+    "rename a model": {"kind": "rename", "name": "a", "to": "crate"},
+    "rename a light": {"kind": "rename", "name": "sun", "to": "moon"},
+    "set a mass": {"kind": "set", "target": "a::link", "path": "inertial.mass", "value": 5.0},
+    "set a size": {"kind": "set", "target": "a::link::collision", "path": "geometry.size",
+                   "value": [1, 2, 3]},
+    "set a shape": {"kind": "set", "target": "a::link::visual", "path": "geometry",
+                    "value": {"type": "sphere", "radius": 2}},
+    "set friction": {"kind": "set", "target": "a::link::collision", "path": "surface.mu",
+                     "value": 0.1},
+    "set a colour": {"kind": "set", "target": "a::link::visual", "path": "material.diffuse",
+                     "value": [1, 0, 0, 1]},
+    "set a material": {"kind": "set", "target": "a::link::visual", "path": "material.name",
+                       "value": "Gazebo/Red"},
+    "set static": {"kind": "set", "target": "a", "path": "static", "value": True},
+    "set wind on": {"kind": "set", "target": "a", "path": "enable_wind", "value": True},
+    "set a pose": {"kind": "set", "target": "a", "path": "pose", "value": POSE},
+    "set a light": {"kind": "set", "target": "sun", "path": "range", "value": 3},
+    "set a limit": {"kind": "set", "target": "arm::hinge", "path": "axis.upper", "value": 0.5},
+    "set an axis": {"kind": "set", "target": "arm::hinge", "path": "axis.xyz",
+                    "value": [1, 0, 0]},
+    "set gravity": {"kind": "set", "target": "", "path": "gravity", "value": [0, 0, -1.6]},
+    "set the solver": {"kind": "set", "target": "", "path": "physics.ode.iters", "value": 20},
+    "set fog": {"kind": "set", "target": "", "path": "scene.fog.density", "value": 0.1},
+    "set the sky": {"kind": "set", "target": "", "path": "scene.sky", "value": {"time": 8}},
+    "set the camera": {"kind": "set", "target": "", "path": "gui_camera.pose", "value": POSE},
+    "set the wind": {"kind": "set", "target": "", "path": "wind.linear_velocity",
+                     "value": [1, 0, 0]},
+    "put a joint": {"kind": "joint", "joint": "arm::hinge", "mode": "position", "value": 0.3},
+    "turn a joint": {"kind": "joint", "joint": "arm::hinge", "mode": "velocity", "value": 1.0},
+    "reset poses": {"kind": "reset", "what": "poses"},
+    "reset the world": {"kind": "reset", "what": "world"},
+    "several as one": {"kind": "group", "label": "Two things", "ops": [
+        {"kind": "insert", "shape": "box"}, {"kind": "rename", "name": "unit_box", "to": "b"}]},
+}
+
+
+@pytest.mark.parametrize("op", EDITS.values(), ids=[name.replace(" ", "_") for name in EDITS])
+def test_an_edit_is_one_step_that_can_be_undone_and_done_again(case, op):
+    made = case(box("a"), arm("arm"), lights=[sun()])
+    made.sim.set_model_state("a", Pose((0.0, 5.0, 0.5)), STILL)
+
+    async def edit(browser):
+        before = state(made.sim), made.sim.joint_states("arm::hinge")
+        await browser.ask("edit", op=op)
+        after = state(made.sim)
+        labels = browser.last("history")["undo"]
+        assert len(labels) == 1 and labels[0]
+        assert browser.last("history")["dirty"]
+        await browser.ask("undo")
+        same(state(made.sim), before[0])
+        assert made.sim.joint_states("arm::hinge") == before[1]
+        assert browser.last("history")["undo"] == []
+        assert not browser.last("history")["dirty"]
+        await browser.ask("redo")
+        same(state(made.sim), after)
+        # What the page was told is what a page that comes now is told.
+        await browser.until(lambda: {one["name"] for one in browser.document["models"]}
+                            == set(made.sim.model_names()))
+
+    made.browse(edit)
+
+
+REFUSED = {
+    "unknown_model": {"kind": "delete", "names": ["a", "nix"]},
+    "nothing_to_delete": {"kind": "delete", "names": []},
+    "taken_name": {"kind": "rename", "name": "a", "to": "arm"},
+    "empty_name": {"kind": "rename", "name": "a", "to": " "},
+    "scoped_name": {"kind": "rename", "name": "a", "to": "x::y"},
+    "unknown_uri": {"kind": "insert", "uri": "model://no_such_model_anywhere"},
+    "two_sources": {"kind": "insert", "shape": "box", "uri": "model://table"},
+    "text_that_is_no_sdf": {"kind": "insert", "sdf": "<nix/>"},
+    "scale_of_zero": {"kind": "scale", "name": "a", "scale": [0, 1, 1]},
+    "scale_of_links": {"kind": "scale", "name": "arm", "scale": [2, 1, 1]},
+    "mass_of_zero": {"kind": "set", "target": "a::link", "path": "inertial.mass", "value": 0},
+    "mass_as_text": {"kind": "set", "target": "a::link", "path": "inertial.mass", "value": "1"},
+    "size_of_zero": {"kind": "set", "target": "a::link::collision", "path": "geometry.size",
+                     "value": [0, 1, 1]},
+    "unknown_property": {"kind": "set", "target": "a", "path": "colour", "value": 1},
+    "hidden_property": {"kind": "set", "target": "a", "path": "extra", "value": []},
+    "private_property": {"kind": "set", "target": "a", "path": "__class__", "value": 1},
+    "links_as_a_property": {"kind": "set", "target": "a", "path": "links", "value": []},
+    "path_of_a_file": {"kind": "set", "target": "a::link::visual", "path": "geometry",
+                       "value": {"type": "mesh", "uri": "model://no_such_model/x.dae"}},
+    "unknown_shape": {"kind": "set", "target": "a::link::visual", "path": "geometry",
+                      "value": {"type": "torus"}},
+    "axis_without_direction": {"kind": "set", "target": "arm::hinge", "path": "axis.xyz",
+                               "value": [0, 0, 0]},
+    "step_size_of_zero": {"kind": "set", "target": "", "path": "physics.max_step_size",
+                          "value": 0},
+    "unknown_operation": {"kind": "explode"},
+    "more_fields": {"kind": "delete", "names": ["a"], "now": True},
+    "steps_of_zero": {"kind": "wrench", "link": "a::link", "force": [1, 0, 0],
+                      "torque": [0, 0, 0], "steps": 0 - 1},
+    "unknown_joint": {"kind": "joint", "joint": "a::hinge", "mode": "force", "value": 1},
+    "empty_group": {"kind": "group", "ops": []},
+    "group_with_a_bad_end": {"kind": "group", "ops": [
+        {"kind": "insert", "shape": "box"}, {"kind": "delete", "names": ["a"]},
+        {"kind": "delete", "names": ["nix"]}]},
+}
+
+
+@pytest.mark.parametrize("op", REFUSED.values(), ids=REFUSED)
+def test_a_bad_edit_is_refused_with_a_reason_and_changes_nothing(case, op):
+    made = case(box("a"), arm("arm"), lights=[sun()])
+
+    async def edit(browser):
+        before = state(made.sim)
+        with pytest.raises(Refused) as refused:
+            await browser.ask("edit", op=op)
+        assert str(refused.value)
+        same(state(made.sim), before)
+        assert browser.last("history")["undo"] == []
+
+    made.browse(edit)
+
+
+def test_names_are_made_unique_as_gazebo_makes_them(case):
+    async def insert(browser):
+        names = [(await browser.edit("insert", shape="box"))["name"] for _ in range(3)]
+        assert names == ["unit_box", "unit_box_0", "unit_box_1"]
+        light = {"type": "point"}
+        assert [(await browser.edit("insert_light", light=light))["name"] for _ in range(2)] == [
+            "user_point_light_0", "user_point_light_1"]
+
+    case().browse(insert)
+
+
+def test_a_unit_shape_has_gazebos_size_and_inertia(case):
+    made = case()
+
+    async def insert(browser):
+        for shape in ("box", "sphere", "cylinder"):
+            await browser.edit("insert", shape=shape)
+        moments = {name: made.sim.model(f"unit_{name}").links[0].inertial for name in (
+            "box", "sphere", "cylinder")}
+        assert moments["box"].ixx == pytest.approx(1 / 6)
+        assert moments["sphere"].izz == pytest.approx(0.1)
+        assert moments["cylinder"].ixx == pytest.approx(0.1458, abs=1e-4)
+        assert moments["cylinder"].izz == pytest.approx(0.125)
+        assert made.sim.model_state("unit_box")[0].position == (0.0, 0.0, 0.5)
+        await browser.until(lambda: browser.model("unit_box"))
+        material = browser.model("unit_box")["links"][0]["visuals"][0]["material"]
+        assert material["diffuse"] == [0.7, 0.7, 0.7, 1.0]
+
+    made.browse(insert)
+
+
+def test_a_scale_writes_real_sizes_and_keeps_the_mass(case):
+    made = case(box("a"))
+
+    async def scale(browser):
+        await browser.edit("scale", name="a", scale=[2, 3, 4])
+        link = made.sim.model("a").links[0]
+        assert link.collisions[0].geometry.size == (2, 3, 4) == link.visuals[0].geometry.size
+        assert link.inertial.mass == 1.0
+        assert link.inertial.ixx == pytest.approx((9 + 16) / 12)
+        assert link.inertial.iyy == pytest.approx((4 + 16) / 12)
+        await browser.edit("scale", name="a", scale=[0.5, 1, 1])
+        assert made.sim.model("a").links[0].collisions[0].geometry.size == (1, 3, 4)
+
+    made.browse(scale)
+
+
+def test_what_is_copied_can_be_pasted_together_with_its_places(case):
+    made = case(box("a", (1.0, 0.0, 0.5)), box("b", (3.0, 0.0, 0.5)), lights=[sun()])
+
+    async def paste(browser):
+        text = (await browser.ask("copy", names=["a", "b"]))["text"]
+        assert (await browser.edit("paste", text=text))["names"] == ["a_clone", "b_clone"]
+        assert made.sim.model_state("a_clone")[0].position == (1.0, 0.0, 0.5)
+        names = (await browser.edit("paste", text=text, pose=[0, 7, 0.5, 0, 0, 0, 1]))["names"]
+        assert names == ["a_clone_0", "b_clone_0"]
+        assert made.sim.model_state("b_clone_0")[0].position == pytest.approx((0, 7, 0.5))
+        assert made.sim.model_state("a_clone_0")[0].position == pytest.approx((-2, 7, 0.5))
+        light = (await browser.ask("copy", names=["sun"]))["text"]
+        assert (await browser.edit("paste", text=light))["name"] == "sun_clone"
+        for names in ([], ["nix"]):
+            with pytest.raises(Refused):
+                await browser.ask("copy", names=names)
+
+    made.browse(paste)
+
+
+def test_history_goes_back_and_forth_to_a_chosen_step(case):
+    made = case()
+
+    async def walk(browser):
+        for _ in range(4):
+            await browser.edit("insert", shape="box")
+        assert (await browser.ask("undo", to=2))["label"] == "Insert unit_box_0"
+        assert made.sim.model_names() == ["unit_box"]
+        assert (await browser.ask("redo", to=1))["label"] == "Insert unit_box_1"
+        assert made.sim.model_names() == ["unit_box", "unit_box_0", "unit_box_1"]
+        await browser.edit("insert", shape="sphere")
+        assert browser.last("history")["redo"] == []
+        with pytest.raises(Refused):
+            await browser.ask("redo")
+        with pytest.raises(Refused):
+            await browser.ask("undo", to=99)
+
+    made.browse(walk)
+
+
+def test_a_step_that_cannot_be_undone_any_more_is_told_and_forgotten(case):
+    made = case()
+
+    async def lose(browser):
+        await browser.edit("insert", shape="box")
+        await browser.edit("insert", shape="sphere")
+        made.sim.delete("unit_sphere")
+        with pytest.raises(Refused, match="unit_sphere"):
+            await browser.ask("undo")
+        assert (await browser.ask("undo"))["label"] == "Insert unit_box"
+
+    made.browse(lose)
+
+
+def test_a_force_is_undone_with_what_it_did(case):
+    made = case(box("a"), paused=False)
+
+    async def push(browser):
+        before = made.sim.model_state("a")[0]
+        await browser.edit("wrench", link="a::link", force=[10, 0, 0], torque=[0, 0, 0], steps=5,
+                           point=[0, 0, 0.5])
+        [load] = made.engine.backend.loads.values()
+        assert load.stop - load.start == 5
+        assert load.force == (10, 0, 0) and load.point == pytest.approx((0, 0, 0.5))
+        made.sim.set_model_state("a", Pose((8, 0, 0)), STILL)
+        await browser.ask("undo")
+        assert made.sim.model_state("a")[0] == before
+
+    made.browse(push)
+
+
+def test_names_shared_by_a_collision_and_a_visual_can_be_told_apart(case):
+    model = box("a")
+    model.links[0].visuals[0].name = "collision"
+    made = case(model)
+
+    async def colour(browser):
+        await browser.edit("set", target="a::link::visual:collision", path="pose",
+                           value=[0, 0, 1, 0, 0, 0, 1])
+        link = made.sim.model("a").links[0]
+        assert link.visuals[0].pose.position == (0, 0, 1)
+        assert link.collisions[0].pose.position == (0, 0, 0)
+        await browser.edit("set", target="a::link::collision", path="transparency", value=0.5)
+        assert made.sim.model("a").links[0].visuals[0].transparency == 0.5
+
+    made.browse(colour)
+
+
+def test_edits_of_one_browser_are_carried_out_in_their_order(case):
+    made = case()
+
+    async def many(browser):
+        await asyncio.gather(*(browser.edit("insert", shape="box") for _ in range(30)))
+        assert made.sim.model_names() == ["unit_box"] + [f"unit_box_{n}" for n in range(29)]
+
+    made.browse(many)
