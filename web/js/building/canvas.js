@@ -97,13 +97,13 @@ export class Canvas {
     this.place();
   }
 
-  /** Shows all of the level, or the origin of an empty one. */
+  /** Shows all of the level, or some metres round the origin of an empty one. */
   fit() {
     const box = this.element.getBoundingClientRect();
     const extent = extentOf(this.session.level);
     if (!box.width) return;
     if (!extent) {
-      this.view = {zoom: 1, x: box.width / 2, y: box.height / 2};
+      this.view = {zoom: Math.min(1, box.height / (6 * SCALE)), x: box.width / 2, y: box.height / 2};
     } else {
       const [x0, y0, x1, y1] = extent;
       const zoom = Math.min(box.width / ((x1 - x0 + 2) * SCALE), box.height / ((y1 - y0 + 2) * SCALE), 1.5);

@@ -1,0 +1,185 @@
+"""A house drawn by mouse: saved, put into the world, loaded in a fresh node, and driven through."""
+from __future__ import annotations
+
+import os
+
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import GetModelState, GetWorldProperties, SetModelState, SpawnModel
+from geometry_msgs.msg import Pose
+from my_simulations_msgs.srv import SaveWorld
+from pytest import approx
+from std_srvs.srv import Empty
+from support import wait_for
+
+BALL = """<sdf version="1.6"><model name="ball"><link name="link">
+  <inertial><mass>1</mass><inertia><ixx>0.016</ixx><iyy>0.016</iyy><izz>0.016</izz></inertia></inertial>
+  <collision name="c"><geometry><sphere><radius>0.2</radius></sphere></geometry></collision>
+  <visual name="v"><geometry><sphere><radius>0.2</radius></sphere></geometry></visual>
+</link></model></sdf>"""
+
+INNER = 2 * 0.075
+"""What the walls on both sides take from a room."""
+
+
+class Sheet:
+    """The building editor's sheet under a person's hands; points in metres of the plan."""
+
+    def __init__(self, editor):
+        self.editor, self.page = editor, editor.page
+
+    def open(self):
+        self.page.keyboard.press("Control+b")
+        self.editor.until("Boolean(document.querySelector('.plan-sheet'))", "the building editor")
+        wait_for(lambda: self.page.locator("[data-tool=wall]").is_visible(), "the palette")
+
+    def pixel(self, point):
+        """The scale bar, the axes and the 100 px a metre are what a person goes by."""
+        box = self.page.locator(".axes .x").evaluate(
+            "(line) => { const to = line.getScreenCTM(); return [to.e, to.f, to.a * 100]; }")
+        return box[0] + point[0] * box[2], box[1] - point[1] * box[2]
+
+    def wheel(self, notches):
+        """Turns the mouse wheel over the origin; away from oneself is nearer."""
+        self.page.mouse.move(*self.pixel((0.0, 0.0)))
+        for _ in range(abs(notches)):
+            self.page.mouse.wheel(0, -100 if notches > 0 else 100)
+
+    def tool(self, name):
+        self.page.click(f"[data-tool={name}]")
+
+    def click(self, *points, count=1):
+        for point in points:
+            x, y = self.pixel(point)
+            self.page.mouse.move(x - 6, y - 4)
+            self.page.mouse.move(x, y)
+            self.page.mouse.click(x, y, click_count=count)
+
+    def items(self, kind):
+        return self.page.locator(f".plan-sheet .layer.{kind} > g").count()
+
+    def shows(self, **counts):
+        """Waits until the sheet has so many items of some kinds: it is drawn once a frame."""
+        wait_for(lambda: all(self.items(kind) == count for kind, count in counts.items()),
+                 f"a sheet with {counts}")
+
+    def texts(self):
+        return self.page.locator(".plan-sheet .labels text").all_text_contents()
+
+
+def draw_two_rooms(sheet):
+    sheet.wheel(-2)
+    sheet.tool("wall")
+    # Near to where they shall be: angles, lengths and ends are snapped to.
+    sheet.click((-3.0, -2.0), (2.9, -1.95), (2.8, 1.8), (-3.05, 1.9), (-2.9, -1.9))
+    sheet.page.keyboard.press("Escape")
+    sheet.click((0.0, -2.0), (0.03, 1.7))
+    sheet.page.mouse.click(*sheet.pixel((1.0, 1.0)), button="right")
+    sheet.page.keyboard.press("Escape")
+    sheet.shows(walls=5)
+    areas = sorted(float(text.split()[0]) for text in sheet.texts() if "m²" in text)
+    height = 3.85 - INNER
+    assert areas == approx([(2.85 - INNER) * height, (3.0 - INNER) * height], abs=0.011)
+
+
+def add_features(sheet):
+    sheet.tool("door")
+    sheet.click((0.05, 0.0))
+    sheet.tool("window")
+    sheet.click((-1.5, -2.1))
+    sheet.tool("stairs")
+    sheet.click((1.7, 0.0))
+    sheet.shows(doors=1, windows=1, stairs=1)
+
+
+def add_level(sheet):
+    sheet.page.get_by_role("button", name="Add level", exact=True).click()
+    sheet.shows(floors=1, walls=5, doors=0, windows=0, stairs=0)
+
+
+def save_as(sheet, name):
+    sheet.page.keyboard.press("Control+s")
+    dialog = sheet.page.get_by_role("dialog")
+    dialog.get_by_role("textbox").first.fill(name)
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    wait_for(lambda: sheet.page.get_by_role("dialog").count() == 0, "the end of saving")
+
+
+def test_a_house_drawn_by_mouse_stands_in_a_fresh_node(launch, browser):
+    node = launch("worlds/empty.world")
+    editor = browser.open(node.url)
+    sheet = Sheet(editor)
+    sheet.open()
+    draw_two_rooms(sheet)
+    add_features(sheet)
+    add_level(sheet)
+    editor.until("editor.store.preview?.links.length === 12", "the house in the 3D view")
+    save_as(sheet, "Two Rooms")
+    folder = os.path.join(node.home, "building_editor_models", "Two_Rooms")
+    assert {"model.config", "model.sdf", "building.json"} <= set(os.listdir(folder))
+    editor.page.keyboard.press("Control+b")
+    wait_for(lambda: "Two_Rooms" in editor.names(), "the house in the world")
+    assert editor.get("editor.store.preview") is None
+    assert len(editor.model("Two_Rooms")["links"]) == 11 + 1
+    world = node.ask("save_world", SaveWorld, path="house.world", overwrite=True, inline=True)
+    assert world.success, world.status_message
+    assert editor.faults == []
+    editor.close()
+    node.close()
+
+    fresh = launch(world.path)
+    names = fresh.ask("get_world_properties", GetWorldProperties).model_names
+    assert "Two_Rooms" in names
+    fresh.ask("unpause_physics", Empty)
+    assert roll(fresh, "through", (-1.5, 0.0)) > 0.5
+    assert roll(fresh, "against", (-1.5, 1.2)) == approx(-0.075 - 0.2, abs=0.02)
+    open_again(browser, fresh)
+
+
+def roll(node, name, start):
+    """Rolls a ball along x towards the inner wall; where it is when it rests or is through."""
+    pose = Pose()
+    pose.position.x, pose.position.y, pose.position.z = (*start, 0.2)
+    answer = node.ask("spawn_sdf_model", SpawnModel, model_name=name, model_xml=BALL,
+                      initial_pose=pose)
+    assert answer.success, answer.status_message
+    state = ModelState(model_name=name, pose=pose)
+    state.twist.linear.x, state.twist.angular.y = 2.0, 10.0
+    node.ask("set_model_state", SetModelState, model_state=state)
+    seen = []
+
+    def ended():
+        seen.append(node.ask("get_model_state", GetModelState, model_name=name))
+        x, speed = seen[-1].pose.position.x, seen[-1].twist.linear.x
+        return x > 0.5 or (x > start[0] + 0.5 and abs(speed) < 0.05)
+
+    wait_for(ended, f"the way of the ball {name}")
+    return seen[-1].pose.position.x
+
+
+def open_again(browser, node):
+    """The saved house is drawn further, and takes its own place in the world."""
+    editor = browser.open(node.url)
+    sheet = Sheet(editor)
+    sheet.open()
+    editor.page.keyboard.press("Control+o")
+    editor.page.get_by_role("option", name="Two_Rooms").dblclick()
+    sheet.shows(walls=5)
+    sheet.shows(doors=1, windows=1, stairs=1)
+    sheet.tool("window")
+    sheet.click((-1.5, 1.85))
+    sheet.shows(windows=2)
+    editor.page.keyboard.press("Control+s")
+    wait_for(lambda: "Saved in" in editor.page.locator(".building-hint").inner_text(), "saving")
+    before = editor.names()
+    editor.page.keyboard.press("Control+b")
+    editor.until("!document.querySelector('.plan-sheet')", "leaving")
+    wait_for(lambda: len(wall_parts(editor)) == 4, "the new window in the world")
+    assert sorted(editor.names()) == sorted(before)
+    assert editor.faults == []
+    editor.close()
+
+
+def wall_parts(editor):
+    """The collisions of the wall that got the second window."""
+    model = editor.model("Two_Rooms")
+    return next(link for link in model["links"] if link["name"] == "Wall_2")["collisions"]
