@@ -45,6 +45,16 @@ def test_a_writer_that_dies_in_the_middle_leaves_the_previous_snapshot():
     assert reader.read().links[0] == 2.0
 
 
+def test_links_of_earlier_snapshots_are_there_until_they_are_overwritten():
+    writer, reader = _pair()
+    for step in range(1, ring.SLOTS + 2):
+        writer.write(step, CLOCK, _links([float(step)] * 13), b"")
+    assert reader.earlier_links(1) is None
+    for step in range(2, ring.SLOTS + 2):
+        assert reader.earlier_links(step) == (step, _links([float(step)] * 13))
+    assert reader.earlier_links(ring.SLOTS + 2) is None
+
+
 def test_an_overwritten_snapshot_is_not_returned():
     writer, reader = _pair()
     for step in range(ring.SLOTS + 1):

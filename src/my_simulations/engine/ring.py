@@ -219,6 +219,17 @@ class RingReader:
             if self._is_whole(slot, sequence):
                 return sequence, links
 
+    def earlier_links(self, sequence: int) -> "Optional[tuple[int, bytes]]":
+        """Step and used link rows of an earlier snapshot; None once it is overwritten."""
+        slot = self.memory.slot(sequence)
+        if not self._is_whole(slot, sequence):
+            return None
+        step = self.words[slot + SLOT_STEP]
+        at = (slot + HEAD_WORDS) * 8
+        size = self.words[slot + USED_LINKS] * LINK_WIDTH * 8
+        links = bytes(self.memory.buffer[at:at + size])
+        return (step, links) if self._is_whole(slot, sequence) else None
+
     def read(self, sequence: Optional[int] = None) -> Optional[Snapshot]:
         """A copy of snapshot `sequence` (default the newest); None once it is overwritten."""
         while True:

@@ -42,6 +42,7 @@ from .ring import (
 _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 0.5            # heartbeat while paused
+_MAKE_UP_S = 0.05        # of read-outs that somebody waits for, after a delay
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
 _HEAVY_S = 0.0003        # a late world with steps like this lets clients that ask in a row go first
@@ -261,7 +262,8 @@ class Runner:
         demanded = demand > 0 and (now - self._demanded_at) * 1e9 >= demand - 2e5
         if demanded or self._allowance > 0.0:
             if demanded:
-                self._demanded_at = now
+                # From when it was due: steps that are made up after a delay are shown, too.
+                self._demanded_at = max(self._demanded_at + demand * 1e-9, now - _MAKE_UP_S)
             self._write()
             self._allowance -= time.perf_counter() - now
             self._report_events()

@@ -29,7 +29,10 @@ FEW_STEPS = 2
 PAUSED_LOOK_SECONDS = 0.05
 """Between two looks at a world that does not step."""
 
-STATES_QUEUE = 10
+STATES_QUEUE = 50
+
+PASSED_BY = 12
+"""Snapshots that a late look goes back; the ring holds four more."""
 
 
 class _PackedClock(Clock):
@@ -118,6 +121,7 @@ class Publishers:
         self._wake = threading.Event()
         self._stop = threading.Event()
         self._demand = (-1.0, False)
+        self._sent = (-1, 0, 0)  # revision, sequence and step of the newest states that went out
         self._clock_message = _PackedClock()
         self._clock = clock
         self._clock.impl.add_subscriber_listener(Arrivals(self._wake.set))
@@ -195,9 +199,31 @@ class Publishers:
             due = [channel for channel in self._channels
                    if channel.wanted and channel.is_due(step, sim_ns, self._standing)]
             if due:
-                states = self._simulator.raw_states()
+                layout, sequence, links = self._simulator.raw_states()
+                for earlier in self._passed_by(layout.revision, sequence, len(links)):
+                    for channel in due:
+                        channel.send(layout, *earlier)
                 for channel in due:
-                    channel.send(*states)
+                    channel.send(layout, sequence, links)
+                self._sent = (layout.revision, sequence, step)
+
+    def _passed_by(self, revision: int, sequence: int, size: int) -> List[Tuple[int, bytes]]:
+        """States of the steps since the last message, but for the newest: number and rows.
+
+        Only where every step is to be told, in a world that has not changed otherwise, and where
+        this thread came a little late; the ring forgets the rest.
+        """
+        known, last, step = self._sent
+        if self._states_hz or revision != known or sequence - last > PASSED_BY:
+            return []
+        found: List[Tuple[int, bytes]] = []
+        for number in range(last + 1, sequence):
+            earlier = self._simulator.ring.earlier_links(number)
+            # Commands are followed by a snapshot of the same step.
+            if earlier is not None and earlier[0] > step and len(earlier[1]) == size:
+                step = earlier[0]
+                found.append((number, earlier[1]))
+        return found
 
     def _standing(self) -> Optional[Tuple[int, int]]:
         """What a world that stands still looks like; None while it runs."""

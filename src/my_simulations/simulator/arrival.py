@@ -7,6 +7,7 @@ from typing import List, Optional
 from ..description.shapes import MeshTable
 from ..errors import Issue
 from ..formats.advise import advised
+from .registry import UnknownEntity
 from .simulator import Simulator
 
 NEIGHBOURS = 64
@@ -15,8 +16,12 @@ NEIGHBOURS = 64
 
 def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable]) -> List[Issue]:
     """Warnings about odd inertia, shapes without thickness, and what it stands inside of."""
-    entities, snapshot = simulator.moment()
-    few = len(entities) <= NEIGHBOURS
-    models = [replace(entity.model, pose=entity.state(snapshot)[0]) for entity in entities
-              if few or entity.model.name == name]
+    if len(simulator.model_names()) > NEIGHBOURS:
+        try:
+            models = [replace(simulator.model(name), pose=simulator.model_state(name)[0])]
+        except UnknownEntity:
+            return []  # somebody has taken it out meanwhile
+    else:
+        entities, snapshot = simulator.moment()
+        models = [replace(entity.model, pose=entity.state(snapshot)[0]) for entity in entities]
     return advised(models, {name: meshes or {}}, only=name)
