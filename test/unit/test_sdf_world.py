@@ -196,8 +196,16 @@ def test_what_is_not_simulated_is_kept_without_a_warning():
             '<state world_name="w"/>', '<actor name="man"/>']
     world, issues = world_of("".join(kept) + '<plugin name="p" filename="f"/>')
     assert world.extra == kept and errors(issues) == [] and warnings(issues) == []
-    assert codes(issues) == ["not-simulated"]  # the actor
+    assert codes(issues) == ["not-simulated"] * 2  # the plugin and the actor
     assert [plugin.name for plugin in world.plugins] == ["p"]
+
+
+def test_plugins_are_told_once_for_each_library():
+    plugin = '<plugin name="{}" filename="lib{}.so"/>'
+    model = '<model name="{}"><link name="l"/>' + plugin.format("p", "one") + "</model>"
+    world, issues = world_of(model.format("a") + model.format("b") + plugin.format("q", "two")
+                             + plugin.format("r", "one"))
+    assert sorted(issue.message.split()[1] for issue in issues) == ["libone.so>", "libtwo.so>"]
 
 
 def test_only_the_first_of_several_worlds_is_read():

@@ -218,7 +218,7 @@ MODEL = Table("model", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
-    "frame": Part("1.5", kept=True), "plugin": Part(use=KEPT),
+    "frame": Part("1.5", kept=True), "plugin": Part(use=KEPT, told=True),
     **_kept("enable_wind"), **_told("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
@@ -228,7 +228,7 @@ INCLUDE = Table("include", Model, {
     "name": Value("name", TEXT),
     "pose": Value("pose", POSE, FATAL),
     "static": Value("static", BOOL),
-    "plugin": Part(use=KEPT),
+    "plugin": Part(use=KEPT, told=True),
     "placement_frame": Part("1.8"),
 }, known_attributes=("merge",))
 
@@ -274,7 +274,7 @@ PHYSICS = Table("physics", Physics, {
 WORLD = Table("world", World, {
     "gravity": Value("gravity", VECTOR3, since="1.6"),
     "physics": Part(), "light": Part(use=SHOWN), "model": Part(), "include": Part(),
-    "plugin": Part(use=KEPT),
+    "plugin": Part(use=KEPT, told=True),
     "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
     "state": Part(kept=True), "joint": Part("1.10"),
     "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),

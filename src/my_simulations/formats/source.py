@@ -15,6 +15,10 @@ _LAST_LINE = 65535
 """libxml2 counts no further; an element that seems to stand there may stand anywhere below."""
 
 
+_TOLD_APART_BY = {"sensor": "type", "plugin": "filename"}
+"""Attributes that make elements of one name different things."""
+
+
 class Level(enum.Enum):
     """What a broken value or element does to what it belongs to."""
 
@@ -95,8 +99,9 @@ class Source:
 
     def tell_unused(self, element: Any) -> None:
         """Say, once for each kind, that elements of this kind are kept and do nothing here."""
-        kind = f"{element.tag} {element.get('type') or ''}".strip() if (
-            element.tag == "sensor") else str(element.tag)
+        told_apart_by = _TOLD_APART_BY.get(element.tag)
+        which = (element.get(told_apart_by) or "") if told_apart_by else ""
+        kind = f"{element.tag} {which}".strip()
         if kind in self.log.told:
             return
         self.log.told.add(kind)

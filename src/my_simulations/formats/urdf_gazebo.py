@@ -45,6 +45,8 @@ class Extensions:
         for block in self._by_reference.get("", ()):
             found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
             self.joints += found.get("joint", [])
+            for child in found.get("plugin", ()):
+                self._source.tell_unused(child)
             model.plugins += [
                 PluginSpec(child.get("name", ""), child.get("filename", ""), to_xml(child))
                 for child in found.get("plugin", ())

@@ -6,7 +6,7 @@ from typing import Any, Callable, List, Optional
 
 from ..description.model import Model
 from ..description.world import Light
-from ..errors import CommandError, InputError, Issue, errors_of
+from ..errors import CommandError, InputError, Issue, Severity, errors_of
 from ..formats.load import read_entity
 from ..formats.meshes import collision_meshes
 from ..geometry import IDENTITY, Pose, compose
@@ -90,7 +90,8 @@ class ModelServices:
         with in_gazebos_words("", NO_FRAME):
             self._simulator.spawn(model, where, frame, meshes, replace)
         self._report(arrival_advice(self._simulator, model.name, meshes))
-        warnings = f" ({len(issues)} remarks in the log)" if issues else ""
+        remarks = sum(issue.severity is not Severity.NOTE for issue in issues)
+        warnings = f" ({remarks} remarks in the log)" if remarks else ""
         return f"Successfully spawned entity{warnings}"
 
     def _spawn_light(self, light: Light, name: Optional[str], initial: Pose, frame: str) -> str:
