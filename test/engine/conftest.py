@@ -1,7 +1,10 @@
 """A PyBullet backend to test against, and short ways to build models."""
 from __future__ import annotations
 
+import os
 from typing import Iterator, List, Optional, Tuple
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as in the engine's own process
 
 import pytest
 from laws import Laws

@@ -126,10 +126,9 @@ class BulletBackend:
                 self._friction.balance()
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
-            free = self._spin.before(step)
+            free = self._spin.before(step, dt)
             one()
-            if free:
-                self._spin.after(free, self._forces.loaded_links, dt)
+            self._spin.after(free, self._forces.loaded_links, dt)
             self._holds.apply()
 
     def read(self) -> bool:
@@ -341,6 +340,7 @@ class BulletBackend:
         if body.moves and (body.rigid or body.base is not None):
             bodies.launch(body, target, _carried(lead, target, wanted, twist))
         self._holds.moved(body)
+        self._spin.moved(body)
         self._readout.touch(body)
 
     def _set_joints(self, command: SetJoints) -> None:
@@ -354,6 +354,7 @@ class BulletBackend:
             self._waker.around([body])
             pybullet.resetJointState(body.uid, axis.index, position, rate)
             self._forces.disturbed(body)
+            self._spin.moved(body)
             self._readout.touch(body)
 
     def _set_axes(self, command: SetAxes) -> None:
@@ -394,6 +395,7 @@ class BulletBackend:
             pybullet.resetJointState(body.uid, axis.index,
                                      float(self._readout.joints[axis.row, 0]), 0.0)
         self._forces.disturbed(body)
+        self._spin.moved(body)
         name = self._models[body.model_id].model.name
         self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "
                                   "was put back where it was, at rest", body.model_id))

@@ -15,6 +15,7 @@ import pybullet
 
 from ...geometry import Quat, Vec3, conjugate, multiply, normalised, rotate
 from .bodies import Body
+from .tumble import TumbleKeeper
 
 _EVERY = 16        # steps between two looks for fast bodies
 _FAST = 1.0        # rad/s
@@ -25,12 +26,13 @@ Free = Tuple[int, Quat, Vec3]
 
 
 class SpinKeeper:
-    """Corrects the angular velocity of free, fast, asymmetric rigid bodies after each step."""
+    """Corrects free, fast bodies after each step: asymmetric rigid ones, and articulated ones."""
 
     def __init__(self) -> None:
         self._moments: Dict[int, Vec3] = {}
         self._bodies: Dict[int, Body] = {}
         self._fast: List[int] = []
+        self._trees = TumbleKeeper()
 
     def add(self, body: Body) -> None:
         """Know a body; only rigid, moving ones with different moments matter."""
@@ -38,28 +40,36 @@ class SpinKeeper:
         if body.rigid and body.moves and max(moments) - min(moments) > _ROUND * max(moments):
             self._moments[body.uid] = moments
             self._bodies[body.uid] = body
+        self._trees.add(body)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._moments.pop(body.uid, None)
         self._bodies.pop(body.uid, None)
         self._fast = [uid for uid in self._fast if uid != body.uid]
+        self._trees.forget(body)
 
     def clear(self) -> None:
         """All bodies are gone."""
         self._moments.clear()
         self._bodies.clear()
         self._fast.clear()
+        self._trees.clear()
 
     @property
     def idle(self) -> bool:
         """True when no body can need it."""
-        return not self._moments
+        return not self._moments and self._trees.idle
 
-    def before(self, step: int) -> List[Free]:
-        """The fast bodies before the step that begins at count `step`."""
+    def moved(self, body: Body) -> None:
+        """A body was put somewhere, or given another velocity."""
+        self._trees.moved(body)
+
+    def before(self, step: int, dt: float) -> List[Free]:
+        """The fast rigid bodies before the step that begins at count `step`."""
         if step % _EVERY == 0:
             self._fast = [uid for uid in self._moments if _is_fast(uid)]
+            self._trees.mend(dt)
         return [self._free(uid) for uid in self._fast]
 
     def after(self, free: List[Free], loaded: Set[int], dt: float) -> None:
@@ -67,6 +77,7 @@ class SpinKeeper:
 
         `loaded`: rows of links that a load acted on.
         """
+        self._trees.after(loaded)
         for uid, turn, momentum in free:
             body = self._bodies[uid]
             if (body.ties or body.parts[0].row in loaded
