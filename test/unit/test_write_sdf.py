@@ -176,6 +176,17 @@ def test_a_joint_may_be_called_as_a_link_which_sdf_1_7_forbids():
     assert etree.fromstring(write_world(World(models=[arm]))).get("version") == "1.6"
 
 
+@pytest.mark.parametrize("path", sorted(ROOT.glob("world/**/*.world")), ids=lambda p: p.name)
+def test_each_thing_of_a_world_can_be_copied_as_text_and_pasted(path):
+    world, _ = read_world(str(path), Resolver.from_environment())
+    for thing in (*world.models, *world.lights):
+        text = write_entity(thing)
+        copy, issues = read_entity(text.decode(), Resolver.from_environment())
+        assert not errors_of(issues) and type(copy) is type(thing)
+        assert differences(thing, copy, CLOSE) == []
+        assert write_entity(copy) == text
+
+
 def test_plain_angles_stay_plain():
     text = written(Model("m", Pose((0, 0, 0), quat_from_rpy(0, 0, 0.4)), static=True))
     assert text.findtext("model/pose") == "0 0 0 0 0 0.4"
