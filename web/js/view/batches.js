@@ -5,6 +5,8 @@
 import {InstancedMesh, Matrix4, Mesh, DynamicDrawUsage} from 'three';
 
 const HANDFUL = 4;
+/** From here on a geometry's plainer form will do, where it has one. */
+const CROWD = 64;
 
 /**
  * One thing drawn; also what picking looks at.
@@ -66,7 +68,9 @@ class Batch {
   #grow() {
     this.#drop();
     const capacity = Math.max(16, 2 * this.items.length);
-    const mesh = new InstancedMesh(this.sample.geometry, this.sample.material, capacity);
+    const {geometry, material} = this.sample;
+    const plainer = this.items.length > CROWD ? geometry.userData.plainer : null;
+    const mesh = new InstancedMesh(plainer ?? geometry, material, capacity);
     mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     mesh.count = this.items.length;
     // Its bounds would have to follow every body at every frame.

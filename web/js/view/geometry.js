@@ -22,11 +22,14 @@ function upright(geometry) {
 /** Sizes are put into matrices, so that all boxes share one geometry, and so on. */
 const UNIT = {
   box: new BoxGeometry(1, 1, 1),
-  sphere: upright(new SphereGeometry(1, 32, 20)),
+  sphere: upright(new SphereGeometry(1, 32, 16)),
   cylinder: upright(new CylinderGeometry(1, 1, 1, 32)),
   cone: upright(new ConeGeometry(1, 1, 32)),
   plane: new PlaneGeometry(1, 1),
 };
+/** What many of a kind are drawn with: one by one they are small on the screen. */
+UNIT.sphere.userData.plainer = upright(new SphereGeometry(1, 16, 10));
+UNIT.cylinder.userData.plainer = upright(new CylinderGeometry(1, 1, 1, 16));
 
 const scaled = (geometry, x, y, z) => [{geometry, matrix: new Matrix4().makeScale(x, y, z)}];
 

@@ -1,13 +1,16 @@
 /** three materials for the document's, one object for each appearance, so that they are shared. */
 import {
-  CanvasTexture, DoubleSide, FrontSide, MeshBasicMaterial, MeshPhongMaterial, RepeatWrapping,
-  SRGBColorSpace, TextureLoader,
+  CanvasTexture, DoubleSide, FrontSide, MeshBasicMaterial, MeshLambertMaterial, MeshPhongMaterial,
+  RepeatWrapping, SRGBColorSpace, TextureLoader,
 } from 'three';
 import {colorOf} from './convert.js';
 import {patternCanvas} from './textures.js';
 
 /** Grey of what has no material (Gazebo/Grey and Gazebo/White for meshes look alike with light). */
 const GREY = [0.7, 0.7, 0.7, 1];
+const DULL = [0, 0, 0, 1];
+/** Highlights weaker than this are not worth their computing. */
+const DULLEST = 0.02;
 
 /**
  * @typedef {object} Variant
@@ -70,9 +73,12 @@ export class Materials {
       polygonOffset: pushed, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
     };
     if (material?.lighting === false) return new MeshBasicMaterial(common);
-    return new MeshPhongMaterial({...common, shininess: 30,
-      specular: colorOf(material?.specular, [0.05, 0.05, 0.05]),
-      emissive: colorOf(material?.emissive, [0, 0, 0])});
+    const emissive = colorOf(material?.emissive, [0, 0, 0]);
+    const specular = material?.specular ?? DULL;
+    if (Math.max(...specular.slice(0, 3)) <= DULLEST) {
+      return new MeshLambertMaterial({...common, emissive});
+    }
+    return new MeshPhongMaterial({...common, shininess: 30, specular: colorOf(specular), emissive});
   }
 
   #map(texture) {

@@ -7,12 +7,30 @@ import {
   WebGLRenderTarget,
 } from 'three';
 
-/** Frames slower than this (ms) make the next ones coarser, faster than the other finer. */
+/** Pictures that take longer (ms) make the next ones coarser, quicker than the other finer. */
 const SLOW = 45;
-const FAST = 18;
-const COARSEST = 0.5;
+const FAST = 15;
+const COARSEST = 0.4;
+/** Milliseconds between new shadows while pictures are slow. */
+const SLOW_SHADOWS = 300;
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
+/**
+ * A processor that draws in place of a graphics card pays for smooth edges with every picture: there
+ * moving pictures are coarse, and those at rest are drawn larger than they are shown.
+ */
+const QUALITY = {card: {start: 1, best: 1}, processor: {start: 0.7, best: 1.5}};
 /** Milliseconds of rest before the full picture. */
 const REST = 250;
+
+/** The name of what draws. @throws {NoWebGL} */
+function driver() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) throw new NoWebGL('no WebGL 2');
+  const names = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return name;
+}
 
 /** Thrown where the browser offers no WebGL. */
 export class NoWebGL extends Error {}
@@ -33,12 +51,19 @@ export class Stage {
   #element;
   #wanted = 0;
   #quality = 1;
+  #best = 1;
   #times = [];
   #restTimer = null;
   #lost = false;
-  #last = 0;
+  #fence = null;
+  #begun = 0;
+  #shadowed = -SLOW_SHADOWS;
+  #drawn = false;
+  #recent = [];
+  #next = null;
   #resizes;
   #shadowsWanted = true;
+  #size = [0, 0];
 
   /**
    * @param {HTMLElement} element  the canvas is put into it and follows its size
@@ -50,8 +75,10 @@ export class Stage {
     this.canvas.className = 'view-canvas';
     Object.assign(this.canvas.style, {position: 'absolute', inset: '0', width: '100%',
       height: '100%', display: 'block', touchAction: 'none'});
+    const software = SOFTWARE.test(driver());
+    ({start: this.#quality, best: this.#best} = QUALITY[software ? 'processor' : 'card']);
     try {
-      this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true,
+      this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: !software,
         powerPreference: 'high-performance'});
     } catch (error) {
       throw new NoWebGL(String(error.message ?? error));
@@ -67,6 +94,7 @@ export class Stage {
     });
     this.canvas.addEventListener('webglcontextrestored', () => {
       this.#lost = false;
+      this.#fence = null;
       this.shadowsChanged();
     });
     element.prepend(this.canvas);
@@ -93,7 +121,7 @@ export class Stage {
 
   /** Draws at once and gives the picture as a PNG. @returns {Promise<Blob>} */
   picture() {
-    this.#setQuality(1);
+    this.#setQuality(this.#best);
     this.#draw(performance.now());
     return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
   }
@@ -127,31 +155,59 @@ export class Stage {
   #frame(time) {
     this.#wanted = 0;
     if (this.#lost) return;
-    const gap = time - this.#last;
-    this.#last = time;
-    if (gap < 500) this.#adapt(gap);
+    // Pictures that wait behind others would only make the mouse feel late.
+    if (this.#isDrawing()) {
+      this.invalidate();
+      return;
+    }
+    if (this.#next !== null) {
+      this.#setQuality(this.#next);
+      this.#next = null;
+    }
     if (this.#draw(time)) this.invalidate();
     this.#count(time);
+    this.#watchRest();
+  }
+
+  #watchRest() {
     clearTimeout(this.#restTimer);
     this.#restTimer = setTimeout(() => this.#rest(), REST);
   }
 
-  /** Between the frames of a run of them: the time that one takes, whoever is slow. */
-  #adapt(gap) {
-    this.#times.push(gap);
-    if (this.#times.length < 8) return;
-    const typical = this.#times.sort((a, b) => a - b)[4];
+  /** Whether the last picture is still being made; once it is not, how long that took is noted. */
+  #isDrawing() {
+    if (!this.#fence) return false;
+    const gl = this.renderer.getContext();
+    const done = gl.getSyncParameter(this.#fence, gl.SYNC_STATUS) === gl.SIGNALED;
+    if (!done && performance.now() - this.#begun < 2000) return true;
+    gl.deleteSync(this.#fence);
+    this.#fence = null;
+    this.#adapt(performance.now() - this.#begun);
+    return false;
+  }
+
+  #adapt(took) {
+    this.#times.push(took);
+    if (this.#times.length < 4) return;
+    const typical = this.#times.sort((a, b) => a - b)[1];
     this.#times = [];
     if (typical > SLOW) this.#setQuality(Math.max(this.#quality * 0.75, COARSEST));
     else if (typical < FAST) this.#setQuality(Math.min(this.#quality * 1.25, 1));
   }
 
   #rest() {
-    this.#times = [];
+    if (this.#wanted) {
+      this.#watchRest();
+      return;
+    }
     this.fps = 0;
-    if (this.#quality === 1 && !this.#shadowsWanted) return;
-    this.#setQuality(1);
+    this.#recent = [];
+    if (this.#quality === this.#best && !this.#shadowsWanted) return;
+    const before = this.#quality;
+    this.#setQuality(this.#best);
     this.#draw(performance.now());
+    // What comes next begins as coarse as the last movement ended.
+    this.#next = before;
   }
 
   #setQuality(quality) {
@@ -162,10 +218,22 @@ export class Stage {
 
   /** @returns {boolean} whether another picture is wanted */
   #draw(time) {
+    const {renderer} = this;
     const more = this.onBeforeDraw(time);
-    this.renderer.shadowMap.needsUpdate = this.#shadowsWanted;
-    this.#shadowsWanted = false;
-    this.renderer.render(this.scene, this.camera);
+    const shadows = this.#shadowsWanted &&
+      (this.#quality >= 1 || time - this.#shadowed > SLOW_SHADOWS);
+    renderer.shadowMap.needsUpdate = shadows;
+    if (shadows) {
+      this.#shadowsWanted = false;
+      this.#shadowed = time;
+    }
+    renderer.render(this.scene, this.camera);
+    const gl = renderer.getContext();
+    if (!this.#fence) {
+      this.#fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      this.#begun = performance.now();
+    }
+    this.#drawn = true;
     return more;
   }
 
@@ -174,13 +242,15 @@ export class Stage {
     this.#recent.push(time);
     this.fps = this.#recent.length;
   }
-  #recent = [];
 
   #resize() {
+    const {width, height} = this;
+    if (width === this.#size[0] && height === this.#size[1]) return;
+    this.#size = [width, height];
     this.#applySize();
     this.onResize();
     // At once: an emptied canvas would flicker until the next turn.
-    if (!this.#lost) this.#draw(performance.now());
+    if (this.#drawn && !this.#lost) this.#draw(performance.now());
   }
 
   #applySize() {
