@@ -119,8 +119,9 @@ class Library:
 
     def add(self, path: str) -> None:
         """One more folder of models, kept for later sessions. Raises CommandError."""
-        folder = os.path.realpath(os.path.expanduser(path.strip()))
-        if "\0" in path or not os.path.isdir(folder):
+        wanted = os.path.expanduser(path.strip())
+        folder = os.path.realpath(wanted.replace("\0", ""))
+        if "\0" in path or not os.path.isabs(wanted) or not os.path.isdir(folder):
             raise CommandError(f"there is no folder {path!r}")
         if folder == os.sep or any(folder == one or folder.startswith(one + os.sep)
                                    for one in _FORBIDDEN):

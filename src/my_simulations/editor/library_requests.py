@@ -37,6 +37,7 @@ class LibraryRequests:
         self._pool = pool
         self._tell = tell
         self._asked = False
+        self._told: Optional[Any] = None
 
     def routes(self) -> Dict[str, Route]:
         """By type of request."""
@@ -49,24 +50,26 @@ class LibraryRequests:
     async def watch(self) -> None:
         """Push the library whenever it has changed, once somebody has asked for it."""
         loop = asyncio.get_running_loop()
-        told: Optional[Any] = None
         while True:
             await asyncio.sleep(_LOOK_S)
             if not self._asked or not self._hub.clients:
                 continue
             signature = await loop.run_in_executor(self._pool, self._library.signature)
-            if told is not None and signature != told:
+            if signature != self._told:
                 self._hub.push(await loop.run_in_executor(self._pool, self._push))
-            told = signature
 
     def _push(self) -> Dict[str, Any]:
-        return {"type": "library", "locations": self._library.locations()}
+        return {"type": "library", **self._locations()}
+
+    def _locations(self) -> Dict[str, Any]:
+        self._told = self._library.signature()  # first: what changes meanwhile is told again
+        return {"locations": self._library.locations()}
 
     def _list(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if not self._asked:
             self._asked = True
             self._pool.submit(self._fetch)
-        return {"locations": self._library.locations()}
+        return self._locations()
 
     def _fetch(self) -> None:
         self._library.fetch_list()
@@ -74,11 +77,11 @@ class LibraryRequests:
 
     def _add(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         self._library.add(message["path"])
-        return {"locations": self._library.locations()}
+        return self._locations()
 
     def _remove(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         self._library.remove(message["path"])
-        return {"locations": self._library.locations()}
+        return self._locations()
 
     def _get(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         uri = message["uri"]

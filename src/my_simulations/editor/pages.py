@@ -21,7 +21,7 @@ _SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL 
 _THUMB = re.compile(r"[0-9a-f]{16,64}\Z")
 _THUMB_BYTES = 2 << 20
 _PNG = b"\x89PNG\r\n\x1a\n"
-_UPLOAD = re.compile(r"[\w][\w .()+-]{0,120}\Z")
+_NAME = re.compile(r"[\w][\w .()+-]{0,120}\Z")
 _UPLOADED = SERVED | {".sdf", ".urdf", ".world", ".xml"}
 
 Export = Callable[[str], "tuple[bytes, str]"]
@@ -125,7 +125,7 @@ class Pages:
     async def _put_upload(self, request: web.Request) -> web.StreamResponse:
         name = request.match_info["name"]
         stem, extension = os.path.splitext(name)
-        if not _UPLOAD.match(name) or extension.lower() not in _UPLOADED:
+        if not _NAME.match(name) or extension.lower() not in _UPLOADED:
             raise web.HTTPBadRequest(text=f"{name!r} is not a file that models use\n")
         data = await _body(request, self._upload_bytes)
         number, path = 0, os.path.join(self._uploads, name)
@@ -139,6 +139,8 @@ class Pages:
     async def _download(self, request: web.Request) -> web.StreamResponse:
         import asyncio
 
+        if not _NAME.match(request.match_info["name"]):
+            raise web.HTTPNotFound
         loop = asyncio.get_running_loop()
         try:
             data, name = await loop.run_in_executor(None, self._export,

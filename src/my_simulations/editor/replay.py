@@ -4,8 +4,8 @@ from __future__ import annotations
 import asyncio
 import os
 import re
-import time
 from concurrent.futures import ThreadPoolExecutor
+from time import strftime
 from typing import Any, Callable, Dict, List, Optional
 
 from ..errors import CommandError, Issue, warning
@@ -82,18 +82,18 @@ class Logs:
             self._end(replay)
             client.replay = None
 
-    def close(self) -> None:
-        """Finish what is being recorded."""
-        if self._writer is not None:
-            self._writer.close()
-            self._writer = None
+    def close(self, time: Optional[float] = None) -> None:
+        """Finish what is being recorded; nothing has moved until `time`."""
+        writer, self._writer = self._writer, None
+        if writer is not None:
+            writer.close(time)
 
     # -- recording -------------------------------------------------------------------------------
 
     async def _start(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is not None:
             raise Refusal("recording", f"the log {self._name!r} is being recorded already")
-        name = message.get("name") or time.strftime("%Y-%m-%dT%H.%M.%S")
+        name = message.get("name") or strftime("%Y-%m-%dT%H.%M.%S")
         path = self._path(name)
         if os.path.lexists(path):
             raise Refusal("exists", f"there is a log {name!r} already")
@@ -105,7 +105,7 @@ class Logs:
     async def _stop(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is None:
             raise CommandError("nothing is being recorded")
-        self.close()
+        self.close(self._hub.simulator.sim_ns() * 1e-9)
         self._hub.listen(-1)
         self._hub.push(self.state())
         return {"name": self._name}

@@ -60,8 +60,11 @@ class LogWriter:
         self.begin = time if self.begin is None else self.begin
         self.end = time
 
-    def close(self) -> None:
-        """Nothing more comes."""
+    def close(self, time: Optional[float] = None) -> None:
+        """Nothing more comes; what was last stayed so until `time`."""
+        if time is not None and self.begin is not None and time > self.end:
+            self._write(MOVED, time, b"")
+            self.end = time
         self._file.close()
 
     def _write(self, kind: int, time: float, data: bytes) -> None:

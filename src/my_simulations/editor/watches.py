@@ -41,12 +41,15 @@ class Watches:
     def __init__(self, simulator: Simulator, clock: RealTime) -> None:
         self._world = simulator
         self._clock = clock
+        self._step, self._time = 0, 0.0
 
     def pushes(self, topics: Iterable[str]) -> Dict[str, Dict[str, Any]]:
         """The push of each topic, now."""
         entities, snapshot = self._world.moment()
         names = {entity.model.name: entity for entity in entities}
-        time = snapshot.sim_ns * 1e-9
+        # The snapshot may be older than the clock: while nothing moves, none is written.
+        self._step, clock = self._world.ring.clock()
+        self._time = time = clock.sim_ns(self._step) * 1e-9
         found = {}
         for topic in topics:
             push: Dict[str, Any] = {"type": "watch", "topic": topic, "time": time}
@@ -71,10 +74,10 @@ class Watches:
 
     def _value(self, variable: str, names: Dict[str, Entity], snapshot: Snapshot) -> float:
         if variable in _WORLD:
-            known = {"sim_time": lambda: snapshot.sim_ns * 1e-9,
+            known = {"sim_time": lambda: self._time,
                      "real_time": lambda: self._clock.real_ns * 1e-9,
                      "real_time_factor": lambda: self._clock.factor,
-                     "iterations": lambda: float(snapshot.step)}
+                     "iterations": lambda: float(self._step)}
             return float(known[variable]())
         owner, _, field = variable.rpartition(".")
         if field in _JOINT:

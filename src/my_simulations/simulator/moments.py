@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
 from ..engine.api import Command, ModelState, SetJoints, SetLinkState, SetModelState
-from ..engine.ring import Snapshot
+from ..engine.ring import Clock, Snapshot
 from ..geometry import Pose, Twist
 from .registry import Entity
 
@@ -29,9 +29,11 @@ class Moment:
     models: Dict[str, Remembered]
 
     @classmethod
-    def of(cls, entities: Sequence[Entity], snapshot: Snapshot) -> "Moment":
-        """The moment of a snapshot."""
-        return cls(snapshot.step, snapshot.sim_ns, {
+    def of(cls, entities: Sequence[Entity], snapshot: Snapshot,
+           now: Tuple[int, Clock]) -> "Moment":
+        """The moment of a snapshot; `now`: the step count, since when nothing may have moved."""
+        step, clock = now
+        return cls(step, clock.sim_ns(step), {
             entity.model.name: Remembered(*entity.state(snapshot), tuple(entity.link_names),
                                           entity.saved(snapshot))
             for entity in entities})

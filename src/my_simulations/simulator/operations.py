@@ -230,6 +230,10 @@ class SetSurrounding:
         return back
 
 
+def _now(world: Simulator) -> Moment:
+    return Moment.of(*world.moment(), world.ring.clock())
+
+
 @dataclass(frozen=True)
 class PutBack:
     """States as they were at a moment."""
@@ -238,7 +242,7 @@ class PutBack:
 
     def apply(self, world: Simulator) -> Operation:
         """Put them back."""
-        back = PutBack(Moment.of(*world.moment()))
+        back = PutBack(_now(world))
         world.put_back(self.moment)
         return back
 
@@ -251,7 +255,7 @@ class Reset:
 
     def apply(self, world: Simulator) -> Operation:
         """Reset it."""
-        back = PutBack(Moment.of(*world.moment()))
+        back = PutBack(_now(world))
         {"time": world.reset_time, "poses": world.reset_world,
          "world": world.reset_simulation}[self.what]()
         return back
@@ -279,7 +283,7 @@ class Push:
         com = next((link.inertial.pose.position for link in model.links if link.name == plain),
                    None)
         pose, _ = world.link_state(self.link)
-        back = Moment.of(*world.moment())
+        back = _now(world)
         if com is None:
             raise CommandError(f"there is no link '{self.link}'")
         lever = ZERO3 if self.point is None else subtract(self.point, com)

@@ -1,0 +1,239 @@
+"""World files from the editor: save, open, new, listing; and edits that survive a crash."""
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from editor_case import Browser, Case, Refused, box
+
+from my_simulations.editor.autosave import process_id
+from my_simulations.formats.load import read_world
+from my_simulations.resources.resolver import Resolver
+
+
+@pytest.fixture
+def case(tmp_path):
+    made = []
+
+    def make(*models, **options):
+        made.append(Case(tmp_path, models, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def test_save_asks_for_a_name_once_and_replaces_its_own_file_later(case):
+    made = case(box("a"))
+
+    async def save(browser):
+        await browser.edit("insert", shape="box")
+        with pytest.raises(Refused) as refused:
+            await browser.ask("save")
+        assert refused.value.code == "path-needed"
+        path = (await browser.ask("save", path="mine"))["path"]
+        assert path == str(made.worlds / "mine.world")
+        await browser.until(lambda: not browser.last("history")["dirty"])
+        assert browser.last("history")["file"] == path
+        await browser.edit("insert", shape="sphere")
+        assert (await browser.ask("save"))["path"] == path
+        world, issues = read_world(path, Resolver())
+        assert [model.name for model in world.models] == ["a", "unit_box", "unit_sphere"]
+        assert not [issue for issue in issues if issue.severity.value == "error"]
+
+    made.browse(save)
+
+
+def test_no_file_is_replaced_without_asking(case):
+    made = case(box("a"))
+    there = made.worlds / "there.world"
+    there.write_text("precious")
+
+    async def save(browser):
+        with pytest.raises(Refused) as refused:
+            await browser.ask("save", path="there.world")
+        assert refused.value.code == "exists"
+        assert there.read_text() == "precious"
+        await browser.ask("save", path="there.world", overwrite=True)
+        assert "<world" in there.read_text()
+
+    made.browse(save)
+
+
+@pytest.mark.parametrize("path", ["../out.world", "/etc/x.world", "x.txt", "a\0.world",
+                                  "link/x.world"])
+def test_nothing_is_written_elsewhere(case, path, tmp_path):
+    made = case(box("a"))
+    os.symlink(tmp_path, made.worlds / "link")
+
+    async def save(browser):
+        with pytest.raises(Refused):
+            await browser.ask("save", path=path, overwrite=True)
+
+    made.browse(save)
+    assert not [name for name in os.listdir(tmp_path) if name.endswith(".world")]
+
+
+def test_a_saved_world_is_opened_as_it_was(case):
+    made = case(box("a", (1.0, 2.0, 0.5)))
+
+    async def run(browser):
+        await browser.ask("save", path="one")
+        await browser.edit("move", poses={"a": [9, 9, 9, 0, 0, 0, 1]})
+        with pytest.raises(Refused) as refused:
+            await browser.ask("open", path="one.world")
+        assert refused.value.code == "unsaved"
+        await browser.ask("open", path="one.world", discard=True)
+        assert made.sim.model_state("a")[0].position == (1.0, 2.0, 0.5)
+        await browser.until(lambda: browser.last("history")["undo"] == []
+                            and not browser.last("history")["dirty"])
+        await browser.ask("new")
+        assert made.sim.model_names() == ["ground_plane"]
+        await browser.until(lambda: browser.last("history")["file"] == "")
+
+    made.browse(run)
+
+
+def test_a_file_that_is_no_world_leaves_the_old_one(case):
+    made = case(box("a"))
+    (made.worlds / "bad.world").write_text("<sdf version='1.7'><world name=")
+
+    async def run(browser):
+        for path in ("bad.world", "missing.world", "/etc/passwd"):
+            with pytest.raises(Refused):
+                await browser.ask("open", path=path)
+        assert made.sim.model_names() == ["a"]
+
+    made.browse(run)
+
+
+def test_folders_and_worlds_are_listed_below_the_roots_only(case, tmp_path):
+    made = case()
+    (made.worlds / "inner").mkdir()
+    (made.worlds / "b.world").write_text("x")
+    (made.worlds / "note.txt").write_text("x")
+    (made.worlds / ".hidden").mkdir()
+
+    async def look(browser):
+        found = await browser.ask("folders")
+        assert [entry["name"] for entry in found["folders"]] == ["inner"]
+        assert [entry["name"] for entry in found["files"]] == ["b.world"]
+        assert found["parent"] is None and found["roots"] == [str(made.worlds)]
+        inner = await browser.ask("folders", path=str(made.worlds / "inner"))
+        assert inner["parent"] == str(made.worlds)
+        for path in (str(tmp_path), "/", str(made.worlds / "inner/../../.."), "~"):
+            with pytest.raises(Refused) as refused:
+                await browser.ask("folders", path=path)
+            assert refused.value.code == "not-allowed"
+
+    made.browse(look)
+
+
+def entries(made):
+    folder = made.folder / "cache" / "autosave"
+    return sorted(folder.glob("*.json")) if folder.exists() else []
+
+
+async def kept(condition):
+    """Wait for the autosave, which comes by itself."""
+    for _ in range(200):
+        if condition():
+            return
+        await asyncio.sleep(0.05)
+    raise AssertionError("the autosave did not come")
+
+
+def of_a_dead_process(made):
+    """The entry as another process would have left it that was killed."""
+    [about] = entries(made)
+    gone = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"],
+                          capture_output=True, text=True, check=True)
+    data = json.loads(about.read_text())
+    data["process"] = f"{gone.stdout.strip()}/1/of-a-boot-that-is-over"
+    about.write_text(json.dumps(data))
+
+
+def test_unsaved_edits_of_a_server_that_was_killed_are_offered_and_restored(case):
+    first = case(box("a"))
+
+    async def edit(browser):
+        await browser.edit("insert", shape="box", pose=[1, 1, 0.5, 0, 0, 0, 1])
+        await kept(lambda: entries(first))
+
+    first.browse(edit)
+    first.close()
+    assert entries(first)  # still dirty: it stays
+    of_a_dead_process(first)
+    second = case(box("a"))
+
+    async def restore(browser):
+        await browser.until(lambda: browser.last("autosave"))
+        assert browser.last("autosave")["found"]
+        await browser.ask("autosave", action="restore")
+        assert second.sim.model_state("unit_box")[0].position == (1, 1, 0.5)
+        await browser.until(lambda: browser.last("history")["dirty"])
+        await browser.until(lambda: not browser.last("autosave")["found"])
+        other = await Browser.open(browser.session, second.url)
+        await other.until(lambda: other.last("history"))
+        assert other.last("autosave") is None
+        assert len(entries(second)) == 1  # the edits are unsaved still, and kept anew
+
+    second.browse(restore)
+
+
+def test_discarded_edits_are_gone(case):
+    first = case(box("a"))
+
+    async def edit(browser):
+        await browser.edit("insert", shape="box")
+        await kept(lambda: entries(first))
+
+    first.browse(edit)
+    first.close()
+    of_a_dead_process(first)
+    second = case(box("a"))
+
+    async def discard(browser):
+        await browser.ask("autosave", action="discard")
+        assert entries(second) == []
+        with pytest.raises(Refused):
+            await browser.ask("autosave", action="restore")
+
+    second.browse(discard)
+
+
+def test_edits_of_a_server_that_lives_are_not_offered_to_others(case):
+    first = case(box("a"))
+
+    async def edit(browser):
+        await browser.edit("insert", shape="box")
+        await kept(lambda: entries(first))
+        second = case(box("a"))
+        other = await Browser.open(browser.session, second.url)
+        await other.until(lambda: other.last("history"))
+        assert other.last("autosave") is None
+
+    first.browse(edit)
+
+
+def test_saving_ends_the_autosave(case):
+    made = case(box("a"))
+
+    async def edit(browser):
+        await browser.edit("insert", shape="box")
+        await kept(lambda: entries(made))
+        await browser.ask("save", path="x")
+        await kept(lambda: not entries(made))
+
+    made.browse(edit)
+
+
+def test_a_process_is_told_from_a_later_one_of_its_number():
+    mine = process_id(os.getpid())
+    assert mine.startswith(f"{os.getpid()}/") and mine == process_id(os.getpid())
+    assert process_id(2 ** 22 + 1) == ""

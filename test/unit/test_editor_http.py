@@ -1,0 +1,214 @@
+"""What the editor's server gives away by HTTP, and to whom."""
+from __future__ import annotations
+
+import asyncio
+import os
+
+import aiohttp
+import pytest
+from editor_case import Browser, Case, box
+
+from my_simulations.description.shapes import Mesh
+from my_simulations.editor.options import is_loopback
+from my_simulations.resources.resolver import Resolver
+
+PNG = b"\x89PNG\r\n\x1a\n" + b"\0" * 32
+
+
+@pytest.fixture
+def case(tmp_path):
+    made = []
+
+    def make(*models, **options):
+        made.append(Case(tmp_path, models, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def request(url, method="GET", **more):
+    """Status, headers and body of one request."""
+    async def run():
+        async with aiohttp.ClientSession() as session:
+            async with session.request(method, url, allow_redirects=False, **more) as response:
+                return response.status, response.headers, await response.read()
+
+    return asyncio.run(run())
+
+
+def raw(url, path):
+    """Status of a request whose path no client would send."""
+    async def run():
+        port = int(url.split(":")[2].split("/")[0])
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+        line = await reader.readline()
+        writer.close()
+        return int(line.split()[1])
+
+    return asyncio.run(run())
+
+
+def test_the_page_comes_with_careful_headers(case):
+    status, headers, body = request(case().url)
+    assert status == 200 and b"<script" in body
+    policy = headers["Content-Security-Policy"]
+    assert "default-src 'self'" in policy and "'unsafe-eval'" not in policy
+    assert "script-src 'self' 'unsafe-inline'" not in policy
+    assert headers["X-Content-Type-Options"] == "nosniff"
+
+
+def test_the_protocol_comes_with_the_page(case):
+    status, _, body = request(case().url + "protocol.json")
+    assert status == 200 and b'"requests"' in body
+
+
+@pytest.mark.parametrize("headers", [
+    {"Host": "evil.example"}, {"Host": "127.0.0.1.evil.example"}, {"Host": ""},
+    {"Origin": "http://evil.example"}, {"Origin": "null"}, {"Origin": "http://127.0.0.1:1"},
+    {"Sec-Fetch-Site": "cross-site"}], ids=str)
+def test_foreign_pages_and_names_are_refused(case, headers):
+    made = case()
+    assert request(made.url + "protocol.json", headers=headers)[0] == 403
+
+    async def socket():
+        async with aiohttp.ClientSession() as session:
+            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+                await session.ws_connect(made.url + "ws", headers=headers)
+            assert refused.value.status == 403
+
+    asyncio.run(socket())
+
+
+def test_our_own_page_may_come_by_any_name_of_this_machine(case):
+    made = case()
+    port = made.url.split(":")[2].strip("/")
+    for name in ("localhost", "127.0.0.1", "[::1]"):
+        headers = {"Host": f"{name}:{port}", "Origin": f"http://{name}:{port}"}
+        assert request(made.url + "protocol.json", headers=headers)[0] == 200
+
+
+def test_other_addresses_need_the_token(case):
+    made = case(host="0.0.0.0", token="secret-token")
+    assert made.url.endswith("/?token=secret-token")
+    base = "http://127.0.0.1:" + made.url.split(":")[2].split("/")[0] + "/"
+    assert request(base)[0] == 403
+    assert request(base + "?token=wrong")[0] == 403
+    status, headers, _ = request(base + "?token=secret-token")
+    assert status == 200 and "HttpOnly" in headers["Set-Cookie"]
+    cookie = headers["Set-Cookie"].split(";")[0]
+    assert request(base + "protocol.json", headers={"Cookie": cookie})[0] == 200
+
+    async def socket():
+        async with aiohttp.ClientSession() as session:
+            with pytest.raises(aiohttp.WSServerHandshakeError):
+                await session.ws_connect(base + "ws")
+            browser = await Browser.open(session, base, Cookie=cookie)
+            assert browser.document
+
+    asyncio.run(socket())
+
+
+def test_a_token_is_made_up_where_none_is_given(case):
+    made = case(host="0.0.0.0")
+    assert len(made.url.partition("token=")[2]) >= 20
+
+
+def test_loopback_addresses_are_known():
+    assert all(map(is_loopback, ("127.0.0.1", "localhost", "::1", "[::1]", "127.9.9.9")))
+    assert not any(map(is_loopback, ("0.0.0.0", "::", "192.168.1.2", "example.org", "")))
+
+
+@pytest.mark.parametrize("path", [
+    "/js/../../package.xml", "/js/..%2f..%2fpackage.xml", "/js/%2e%2e/%2e%2e/package.xml",
+    "/css//etc/passwd", "/three/../../../package.xml", "/resource/x/../../etc/passwd",
+    "/resource//etc/passwd", "/solid/../x.stl", "/thumb/../../x.png", "/export/..%2fx.world",
+    "/js/main.py", "/export/../../x.log", "/ws/x", "/nix"])
+def test_no_path_leads_out(case, path):
+    made = case()
+    assert raw(made.url, path) in (400, 403, 404)
+
+
+def mesh_model(path, name="m"):
+    model = box(name)
+    model.links[0].visuals[0].geometry = Mesh(f"file://{path}", str(path))
+    return model
+
+
+def test_meshes_and_textures_come_from_below_known_folders_only(case, tmp_path):
+    models, secret = tmp_path / "models", tmp_path / "secret"
+    meshes, textures = models / "m 1" / "meshes", models / "m 1" / "materials" / "textures"
+    for folder in (meshes, textures, secret):
+        folder.mkdir(parents=True)
+    for path in (meshes / "a b.dae", secret / "b.dae"):
+        path.write_text("<COLLADA/>")
+    (textures / "Wood.PNG").write_bytes(PNG)
+    (meshes / "notes.txt").write_text("private")
+    os.symlink(secret / "b.dae", meshes / "link.dae")
+    made = case(mesh_model(meshes / "a b.dae", "good"), mesh_model(secret / "b.dae", "bad"),
+                mesh_model(meshes / "link.dae", "link"), resolver=Resolver([str(models)]))
+
+    async def look(browser):
+        shown = {name: browser.model(name)["links"][0]["visuals"][0]["geometry"]
+                 for name in ("good", "bad", "link")}
+        assert shown["good"]["format"] == "dae" and " " not in shown["good"]["url"]
+        for name in ("bad", "link"):
+            assert shown[name]["url"] is None and shown[name]["problem"]
+        return shown["good"]["url"]
+
+    url = made.browse(look)
+    base = made.url.rstrip("/")
+    assert request(base + url)[2] == b"<COLLADA/>"
+    folder = url.rsplit("/", 1)[0]
+    assert request(f"{base}{folder}/wood.png")[2] == PNG  # where Gazebo looks for textures
+    for inside in ("notes.txt", "link.dae", "%2e%2e/%2e%2e/%2e%2e/secret/b.dae", "none.png"):
+        assert request(f"{base}{folder}/{inside}")[0] == 404
+
+
+def test_odd_mesh_files_come_as_stl(case, tmp_path):
+    (tmp_path / "m").mkdir()
+    path = tmp_path / "m" / "t.ply"
+    path.write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                    "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                    "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    made = case(mesh_model(path), resolver=Resolver([str(tmp_path)]))
+
+    async def look(browser):
+        return browser.model("m")["links"][0]["visuals"][0]["geometry"]
+
+    geometry = made.browse(look)
+    assert geometry["format"] == "stl"
+    status, _, body = request(made.url.rstrip("/") + geometry["url"])
+    assert status == 200 and len(body) == 84 + 50
+
+
+def test_thumbnails_are_kept(case):
+    made = case()
+    url = made.url + "thumb/" + "ab" * 16 + ".png"
+    assert request(url)[0] == 404
+    assert request(url, "PUT", data=b"no picture")[0] == 400
+    assert request(url, "PUT", data=PNG)[0] == 204
+    assert request(url)[2] == PNG
+    assert request(url, "PUT", data=PNG * (1 << 17))[0] == 413
+
+
+def test_uploads_get_a_place_of_their_own_and_replace_nothing(case):
+    made = case()
+    first = request(made.url + "upload/a.stl", "PUT", data=b"one")
+    second = request(made.url + "upload/a.stl", "PUT", data=b"two")
+    assert (first[0], second[0]) == (200, 200)
+    folder = made.folder / "data" / "uploads"
+    assert sorted(path.name for path in folder.iterdir()) == ["a.stl", "a_1.stl"]
+    assert (folder / "a.stl").read_bytes() == b"one"
+    for name in ("a.py", ".stl", "..%2fa.stl", "x"):
+        assert request(made.url + "upload/" + name, "PUT", data=b"x")[0] in (400, 404)
+
+
+def test_the_world_can_be_downloaded(case):
+    made = case(box("a"))
+    status, headers, body = request(made.url + "export/mine.world")
+    assert status == 200 and b'<model name="a"' in body
+    assert "mine.world" in headers["Content-Disposition"]
+    assert request(made.url + "export/nix.zip")[0] == 404

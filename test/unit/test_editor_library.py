@@ -1,0 +1,329 @@
+"""The model library, what is watched, and state logs."""
+from __future__ import annotations
+
+import http.server
+import io
+import tarfile
+import threading
+
+import pytest
+from building_plans import two_rooms
+from editor_case import Case, Refused, arm, box
+
+from my_simulations.building.plan_json import plan_to_json
+from my_simulations.editor.state_log import MAGIC, LogReader
+from my_simulations.errors import CommandError
+from my_simulations.geometry import Pose, Twist
+from my_simulations.resources.resolver import Resolver
+
+SDF = ("<sdf version='1.7'><model name='{}'><link name='l'><visual name='v'><geometry>"
+       "<box><size>1 1 1</size></box></geometry></visual></link></model></sdf>")
+
+
+@pytest.fixture
+def case(tmp_path, monkeypatch):
+    made = []
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.delenv("GAZEBO_MODEL_PATH", raising=False)
+
+    def make(*models, **options):
+        made.append(Case(tmp_path, models, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def model_folder(parent, name, title=""):
+    folder = parent / name
+    folder.mkdir(parents=True)
+    (folder / "model.config").write_text(
+        f"<model><name>{title or name}</name><sdf version='1.7'>model.sdf</sdf>"
+        "<description>A &amp; B\n  words</description></model>")
+    (folder / "model.sdf").write_text(SDF.format(name))
+    return folder
+
+
+def location(found, kind):
+    return next((one for one in found["locations"] if one["kind"] == kind), None)
+
+
+def test_models_are_listed_by_location_with_their_titles(case, tmp_path, monkeypatch):
+    model_folder(tmp_path / "paths", "thing", "A thing")
+    (tmp_path / "paths" / "empty").mkdir()
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path / "paths"))
+    made = case()
+
+    async def look(browser):
+        found = await browser.ask("library")
+        assert [one["kind"] for one in found["locations"]] == ["built-in", "home", "environment"]
+        assert "table" in [one["name"] for one in location(found, "built-in")["models"]]
+        [thing] = location(found, "environment")["models"]
+        assert (thing["uri"], thing["title"], thing["description"]) == (
+            "model://thing", "A thing", "A & B words")
+        assert thing["thumb"].startswith("/thumb/")
+        document = await browser.ask("library_get", uri=thing["uri"])
+        assert document["model"]["links"][0]["visuals"][0]["geometry"]["size"] == [1, 1, 1]
+        for uri in ("model://nix", "/etc/passwd", "http://example.org/x"):
+            with pytest.raises(Refused):
+                await browser.ask("library_get", uri=uri)
+
+    made.browse(look)
+
+
+def test_a_folder_can_be_added_and_is_known_the_next_time(case, tmp_path):
+    model_folder(tmp_path / "mine", "thing")
+    made = case(resolver=Resolver())
+
+    async def add(browser):
+        found = await browser.ask("library_add", path=str(tmp_path / "mine"))
+        assert [one["name"] for one in location(found, "added")["models"]] == ["thing"]
+        assert (await browser.edit("insert", uri="model://thing"))["name"] == "thing"
+        for path in ("/", "/etc", str(tmp_path / "nix"), ""):
+            with pytest.raises(Refused):
+                await browser.ask("library_add", path=path)
+
+    made.browse(add)
+
+    async def again(browser):
+        found = await browser.ask("library")
+        assert [one["name"] for one in location(found, "added")["models"]] == ["thing"]
+        found = await browser.ask("library_remove", path=str(tmp_path / "mine"))
+        assert location(found, "added") is None
+
+    case(resolver=Resolver()).browse(again)
+
+
+def test_new_models_show_up_by_themselves(case, tmp_path):
+    home = tmp_path / "home" / ".gazebo" / "models"
+    model_folder(home, "first")
+    made = case()
+
+    async def wait(browser):
+        found = await browser.ask("library")
+        assert [one["name"] for one in location(found, "home")["models"]] == ["first"]
+        await browser.until(lambda: browser.last("library"))
+        model_folder(home, "second")
+        await browser.until(lambda: len(location(browser.last("library"), "home")["models"]) == 2)
+
+    made.browse(wait)
+
+
+@pytest.fixture
+def database():
+    """A model database on a port of its own: one model, `far`."""
+    archive = io.BytesIO()
+    with tarfile.open(fileobj=archive, mode="w:gz") as tar:
+        for name, text in (("model.config", "<model><name>Far</name><sdf>model.sdf</sdf></model>"),
+                           ("model.sdf", SDF.format("far"))):
+            info = tarfile.TarInfo(f"far/{name}")
+            info.size = len(text)
+            tar.addfile(info, io.BytesIO(text.encode()))
+    files = {"/database.config": b"<database><models><uri>file://far</uri></models></database>",
+             "/far/model.tar.gz": archive.getvalue()}
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self):
+            data = files.get(self.path)
+            self.send_response(200 if data else 404)
+            self.send_header("Content-Length", str(len(data or b"")))
+            self.end_headers()
+            self.wfile.write(data or b"")
+
+        def log_message(self, *_arguments):
+            pass
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+def test_a_remote_model_is_downloaded_when_it_is_chosen(case, tmp_path, database, monkeypatch):
+    monkeypatch.setenv("GAZEBO_MODEL_DATABASE_URI", database)
+    made = case()
+
+    async def choose(browser):
+        await browser.ask("library")
+        await browser.until(lambda: browser.last("library")
+                            and location(browser.last("library"), "remote")["models"])
+        [far] = location(browser.last("library"), "remote")["models"]
+        assert (await browser.ask("library_get", uri=far["uri"]))["model"]["name"] == "far"
+        await browser.until(lambda: browser.last("download"))
+        assert (tmp_path / "home" / ".gazebo" / "models" / "far" / "model.sdf").is_file()
+        assert (await browser.edit("insert", uri=far["uri"]))["name"] == "far"
+
+    made.browse(choose)
+
+
+def test_a_database_that_cannot_be_reached_is_told_and_holds_nobody_up(case, monkeypatch):
+    monkeypatch.setenv("GAZEBO_MODEL_DATABASE_URI", "http://127.0.0.1:9/none")
+    made = case()
+
+    async def look(browser):
+        await browser.ask("library")
+        await browser.until(lambda: browser.last("library"))
+        remote = location(browser.last("library"), "remote")
+        assert remote["models"] == [] and "127.0.0.1:9" in remote["problem"]
+
+    made.browse(look)
+
+
+# -- watches --------------------------------------------------------------------------------------
+
+def test_plots_joints_and_contacts_are_sent_while_they_are_watched(case):
+    made = case(box("a"), arm("arm"), paused=False)
+    made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
+
+    def last(browser, topic):
+        return next((push for push in reversed(browser.pushes)
+                     if push["type"] == "watch" and push["topic"] == topic), None)
+
+    async def watch(browser):
+        topics = ["plot:a.x", "plot:a::link.vx", "plot:sim_time", "plot:real_time_factor",
+                  "plot:arm::hinge.position", "joints:arm", "plot:nix.x", "joints:nix",
+                  "plot:iterations", "plot:a.yaw"]
+        await browser.ask("watch", topics=topics)
+        await browser.until(lambda: all(last(browser, topic) for topic in topics))
+        assert last(browser, "plot:a::link.vx")["value"] == 2.0
+        assert last(browser, "plot:arm::hinge.position")["value"] == 0.0
+        assert last(browser, "joints:arm")["joints"] == [
+            {"name": "hinge", "axis": 0, "position": 0.0, "rate": 0.0}]
+        assert last(browser, "plot:nix.x")["problem"] and last(browser, "joints:nix")["problem"]
+        first = last(browser, "plot:a.x")
+        await browser.until(lambda: last(browser, "plot:a.x")["value"] > first["value"])
+        assert last(browser, "plot:a.x")["time"] > first["time"]
+        await browser.ask("watch", topics=[])
+        await browser.ask("folders")
+        count = len(browser.pushes)
+        await browser.until(lambda: browser.last("stats") is not None)
+        assert not [push for push in browser.pushes[count:] if push["type"] == "watch"]
+        for topic in ("nix", "plot:a.colour", "joints:", "plot:"):
+            with pytest.raises(Refused):
+                await browser.ask("watch", topics=[topic])
+
+    made.browse(watch)
+
+
+def test_time_is_plotted_and_recorded_also_while_nothing_moves(case):
+    made = case(box("a"), paused=False)
+
+    async def rest(browser):
+        await browser.ask("log_start", name="rest")
+        await browser.ask("watch", topics=["plot:sim_time"])
+        await browser.until(lambda: browser.last("watch"))
+        first = browser.last("watch")["value"]
+        await browser.until(lambda: browser.last("watch")["value"] > first + 0.3)
+        assert browser.last("watch")["time"] == browser.last("watch")["value"]
+        await browser.ask("log_stop")
+        found = await browser.ask("log_open", name="rest")
+        assert found["end"] - found["begin"] > 0.3
+
+    made.browse(rest)
+
+
+# -- logs -----------------------------------------------------------------------------------------
+
+def record(made, name="flight"):
+    """A log in which `a` flies along x and a box comes in the middle; its path."""
+    made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
+
+    async def fly(browser):
+        assert (await browser.ask("log_start", name=name))["name"] == name
+        start = browser.link_pose("a")[0] if browser.poses else 0.0
+        await browser.until(lambda: browser.poses and browser.link_pose("a")[0] > start + 0.8)
+        await browser.edit("insert", shape="box")
+        await browser.until(lambda: browser.model("unit_box"))
+        await browser.until(lambda: browser.link_pose("a")[0] > start + 1.8)
+        with pytest.raises(Refused) as refused:
+            await browser.ask("log_start")
+        assert refused.value.code == "recording"
+        assert (await browser.ask("log_stop"))["name"] == name
+        assert browser.last("log")["state"] == "idle"
+
+    made.browse(fly)
+    return made.folder / "data" / "log" / name / "state.log"
+
+
+def test_a_log_is_recorded_listed_and_played_to_one_browser(case):
+    made = case(box("a"), paused=False)
+    record(made)
+
+    async def play(browser):
+        [log] = (await browser.ask("log_list"))["logs"]
+        assert log["name"] == "flight" and log["bytes"] > 0
+        found = await browser.ask("log_open", name="flight")
+        assert found["end"] > found["begin"]
+        await browser.until(lambda: browser.frames[-1][0] == 2)
+        assert not browser.model("unit_box")
+        await browser.ask("log_seek", time=found["end"])
+        await browser.until(lambda: browser.model("unit_box") and browser.link_pose("a"))
+        last = browser.link_pose("a")[0]
+        await browser.ask("log_seek", time=found["begin"])
+        await browser.until(lambda: not browser.model("unit_box") and browser.link_pose("a"))
+        first = browser.link_pose("a")[0]
+        assert last - first == pytest.approx(2.0 * (found["end"] - found["begin"]), abs=0.2)
+        await browser.ask("log_play", rate=20.0)
+        await browser.until(lambda: browser.last("log")["state"] == "open"
+                            and browser.last("log")["time"] == found["end"])
+        await browser.ask("log_close")
+        await browser.until(lambda: browser.frames[-1][0] == 1)
+        assert browser.model("unit_box")
+        for request in ("log_seek", "log_play", "log_close"):
+            with pytest.raises(Refused):
+                await browser.ask(request, **{"log_seek": {"time": 0}, "log_play": {"rate": 1},
+                                              "log_close": {}}[request])
+
+    made.browse(play)
+
+
+def test_a_log_that_was_cut_off_is_good_up_to_there(case, tmp_path):
+    made = case(box("a"), paused=False)
+    path = record(made)
+    whole = LogReader(str(path))
+    cut = tmp_path / "cut.log"
+    cut.write_bytes(path.read_bytes()[:-7])
+    part = LogReader(str(cut))
+    assert part.begin == whole.begin and part.end <= whole.end
+    number, poses = part.seek(part.end)
+    assert part.document(number)["models"] and len(poses.ids)
+    for reader in (whole, part):
+        reader.close()
+
+
+@pytest.mark.parametrize("data", [b"", b"nonsense", MAGIC, MAGIC + b"\xff" * 40])
+def test_what_is_no_log_is_refused(tmp_path, data):
+    path = tmp_path / "x.log"
+    path.write_bytes(data)
+    with pytest.raises(CommandError):
+        LogReader(str(path))
+
+
+@pytest.mark.parametrize("name", ["../x", "", ".hidden", "a/b", "none"])
+def test_no_log_is_opened_elsewhere(case, name):
+    async def open_it(browser):
+        with pytest.raises(Refused):
+            await browser.ask("log_open", name=name)
+
+    case().browse(open_it)
+
+
+# -- buildings ------------------------------------------------------------------------------------
+
+def test_a_building_is_saved_into_the_library_and_loaded_again(case):
+    made = case()
+    plan = plan_to_json(two_rooms())
+
+    async def build(browser):
+        shown = await browser.ask("building_sdf", plan=plan)
+        assert shown["model"]["static"] and "Wall_0" in shown["sdf"]
+        saved = await browser.ask("building_save", plan=plan, name="Hut")
+        assert (await browser.edit("insert", uri=saved["uri"]))["name"] == "Hut"
+        assert "Hut" in [one["name"] for one in await browser.ask("building_list")]
+        assert len((await browser.ask("building_load", name="Hut"))["plan"]["levels"]) == 2
+
+    made.browse(build)
