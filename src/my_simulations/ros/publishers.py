@@ -17,7 +17,7 @@ from ..simulator.layout import Layout, Place
 from ..simulator.simulator import Simulator
 from .buffers import StatesBuffer, packed_time
 from .listeners import Arrivals
-from .pacing import StateGate, StepSelector
+from .pacing import StateGate, StepSelector, TokenBucket
 from .registration import publisher
 
 LOOK_SECONDS = 0.001
@@ -32,7 +32,10 @@ PAUSED_LOOK_SECONDS = 0.05
 STATES_QUEUE = 50
 
 PASSED_BY = 12
-"""Snapshots that a late look goes back; the ring holds four more."""
+"""Steps and snapshots that a late look goes back; the ring holds four snapshots more."""
+
+STATES_PER_SECOND = 1000.0
+"""State messages a wall second up to which a late look goes back at all."""
 
 
 class _PackedClock(Clock):
@@ -121,6 +124,7 @@ class Publishers:
         self._wake = threading.Event()
         self._stop = threading.Event()
         self._demand = (-1.0, False)
+        self._spare = TokenBucket(STATES_PER_SECOND, STATES_QUEUE, time.monotonic())
         self._sent = (-1, 0, 0)  # revision, sequence and step of the newest states that went out
         self._clock_message = _PackedClock()
         self._clock = clock
@@ -200,30 +204,36 @@ class Publishers:
                    if channel.wanted and channel.is_due(step, sim_ns, self._standing)]
             if due:
                 layout, sequence, links = self._simulator.raw_states()
-                for earlier in self._passed_by(layout.revision, sequence, len(links)):
+                passed_by = self._passed_by(layout.revision, sequence, step, len(links))
+                for earlier in passed_by:
                     for channel in due:
                         channel.send(layout, *earlier)
+                self._spare.take(1 + len(passed_by))
                 for channel in due:
                     channel.send(layout, sequence, links)
                 self._sent = (layout.revision, sequence, step)
 
-    def _passed_by(self, revision: int, sequence: int, size: int) -> List[Tuple[int, bytes]]:
+    def _passed_by(self, revision: int, sequence: int, step: int,
+                   size: int) -> List[Tuple[int, bytes]]:
         """States of the steps since the last message, but for the newest: number and rows.
 
         Only where every step is to be told, in a world that has not changed otherwise, and where
-        this thread came a little late; the ring forgets the rest.
+        this thread came a little late: the ring forgets the rest.
         """
-        known, last, step = self._sent
-        if self._states_hz or revision != known or sequence - last > PASSED_BY:
+        known, last, before = self._sent
+        missed = min(step - before - 1, PASSED_BY, self._spare.available(time.monotonic()))
+        if self._states_hz or revision != known or missed <= 0:
             return []
-        found: List[Tuple[int, bytes]] = []
-        for number in range(last + 1, sequence):
-            earlier = self._simulator.ring.earlier_links(number)
-            # Commands are followed by a snapshot of the same step.
-            if earlier is not None and earlier[0] > step and len(earlier[1]) == size:
-                step = earlier[0]
-                found.append((number, earlier[1]))
-        return found
+        ring = self._simulator.ring
+        shown: List[Tuple[int, Tuple[int, bytes]]] = []
+        for number in range(max(last, sequence - PASSED_BY), sequence):
+            earlier = ring.earlier_links(number)
+            if earlier is not None and len(earlier[1]) == size:
+                shown.append((earlier[0], (number, earlier[1])))
+        # A step without a snapshot of its own left everything where it was.
+        there = [[state for since, state in shown if since <= at]
+                 for at in range(step - missed, step)]
+        return [states[-1] for states in there if states]
 
     def _standing(self) -> Optional[Tuple[int, int]]:
         """What a world that stands still looks like; None while it runs."""
