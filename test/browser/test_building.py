@@ -6,10 +6,10 @@ import os
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, GetWorldProperties, SetModelState, SpawnModel
 from geometry_msgs.msg import Pose
-from my_simulations_msgs.srv import SaveWorld
 from pytest import approx
 from std_srvs.srv import Empty
 from support import wait_for
+from test_lab_sheet import save_as
 
 BALL = """<sdf version="1.6"><model name="ball"><link name="link">
   <inertial><mass>1</mass><inertia><ixx>0.016</ixx><iyy>0.016</iyy><izz>0.016</izz></inertia></inertial>
@@ -96,7 +96,7 @@ def add_level(sheet):
     sheet.shows(floors=1, walls=5, doors=0, windows=0, stairs=0)
 
 
-def save_as(sheet, name):
+def save_building(sheet, name):
     sheet.page.keyboard.press("Control+s")
     dialog = sheet.page.get_by_role("dialog")
     dialog.get_by_role("textbox").first.fill(name)
@@ -113,20 +113,19 @@ def test_a_house_drawn_by_mouse_stands_in_a_fresh_node(launch, browser):
     add_features(sheet)
     add_level(sheet)
     editor.until("editor.store.preview?.links.length === 12", "the house in the 3D view")
-    save_as(sheet, "Two Rooms")
+    save_building(sheet, "Two Rooms")
     folder = os.path.join(node.home, "building_editor_models", "Two_Rooms")
     assert {"model.config", "model.sdf", "building.json"} <= set(os.listdir(folder))
     editor.page.keyboard.press("Control+b")
     wait_for(lambda: "Two_Rooms" in editor.names(), "the house in the world")
     assert editor.get("editor.store.preview") is None
     assert len(editor.model("Two_Rooms")["links"]) == 11 + 1
-    world = node.ask("save_world", SaveWorld, path="house.world", overwrite=True, inline=True)
-    assert world.success, world.status_message
+    world = save_as(editor, node, "house")
     assert editor.faults == []
     editor.close()
     node.close()
 
-    fresh = launch(world.path)
+    fresh = launch(world)
     names = fresh.ask("get_world_properties", GetWorldProperties).model_names
     assert "Two_Rooms" in names
     fresh.ask("unpause_physics", Empty)
