@@ -79,6 +79,9 @@ class BulletBackend:
         self._holds = Holds(self._waker.around)
         self._ties = Ties()
         self._decay = Decay()
+        # Everything that remembers bodies one by one.
+        self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
+                         self._decay, self._readout)
         self._events: List[Event] = []
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
@@ -231,13 +234,8 @@ class BulletBackend:
         del self._models[command.model_id]
         entry.constraints.remove()
         for body in entry.bodies:
-            self._forces.forget(body)
-            self._friction.forget(body)
-            self._spin.forget(body)
-            self._holds.forget(body)
-            self._ties.forget(body)
-            self._decay.forget(body)
-            self._readout.forget(body)
+            for keeper in self._keepers:
+                keeper.forget(body)
             for uid in body.uids:
                 del self._bodies[uid]
             for part in body.parts:
@@ -252,17 +250,14 @@ class BulletBackend:
                             if row >= 0])
 
     def _clear(self, _: Clear) -> None:
-        for model_id in list(self._models):
-            entry = self._models.pop(model_id)
+        for entry in self._models.values():
             for body in entry.bodies:
                 self._readout.forget(body)
                 self._forces.forget(body)
+        self._models.clear()
         self._forces.clear_all()
-        self._friction.clear()
-        self._spin.clear()
-        self._holds.clear()
-        self._ties.clear()
-        self._decay.clear()
+        for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay):
+            keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         pybullet.resetSimulation()
