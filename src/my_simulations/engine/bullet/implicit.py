@@ -15,7 +15,8 @@ Efforts that are known count as known; of the rest of a, the steps before tell.
 from __future__ import annotations
 
 import math
-from typing import Dict, List, Optional
+from contextlib import contextmanager
+from typing import Dict, Iterator, List, Optional, Sequence
 
 import numpy as np
 import pybullet
@@ -125,8 +126,38 @@ def mobility(body: Body, indices: List[int]) -> np.ndarray:
     if not np.isfinite(mass).all():  # it has diverged, and is put back at the next look
         return np.eye(len(indices))
     base = mass.shape[0] - len(positions)
-    chosen = [base + places[index] for index in indices]
-    return _inverse(mass)[np.ix_(chosen, chosen)]
+    # An axis whose limits are one and the same is welded, and nothing moves it.
+    moving = [n for n, index in enumerate(indices) if index in places]
+    chosen = [base + places[indices[n]] for n in moving]
+    answer = np.zeros((len(indices), len(indices)))
+    answer[np.ix_(moving, moving)] = _inverse(mass)[np.ix_(chosen, chosen)]
+    return answer
+
+
+@contextmanager
+def possible_moments(body: Body) -> Iterator[None]:
+    """Around the first use of `mobility` for a body.
+
+    PyBullet steps bodies with a principal moment above the sum of the others, which files have, but
+    refuses their mass matrix, and what it was told at the first time it keeps: the next possible
+    moments, then.
+    """
+    own: Dict[int, Sequence[float]] = {}
+    for link in range(-1, pybullet.getNumJoints(body.uid)):
+        moments = pybullet.getDynamicsInfo(body.uid, link)[2]
+        if max(moments) > sum(moments) - max(moments):
+            own[link] = moments
+            pybullet.changeDynamics(body.uid, link, localInertiaDiagonal=_possible(moments))
+    yield
+    for link, moments in own.items():
+        pybullet.changeDynamics(body.uid, link, localInertiaDiagonal=moments)
+
+
+def _possible(moments: Sequence[float]) -> List[float]:
+    """The moments with the smaller ones raised until the largest is no more than their sum."""
+    least, middle, largest = sorted(moments)
+    short = max(0.0, largest * 1.001 - least - middle) / 2.0
+    return [moment if moment == largest else moment + short for moment in moments]
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:

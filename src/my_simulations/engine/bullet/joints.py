@@ -8,7 +8,7 @@ import pybullet
 from ...description.model import INFINITE, JointAxis, Model
 from .bodies import Axis, Body
 from .forces import Forces
-from .implicit import ImplicitAxes, mobility
+from .implicit import ImplicitAxes, mobility, possible_moments
 
 _LIMIT_FORCE = 1e6         # N or N m a kilogram: holds 1000 kg at its stop (100 a kg falls through)
 _EXPLICIT_DAMPING = 0.01   # d dt / I up to which PyBullet's explicit damping is exact enough
@@ -18,8 +18,10 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
     """Give every axis of a body the limits, friction, damping and spring of the description."""
     specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
     mass = sum(part.mass for part in body.parts)
-    eases = (mobility(body, [axis.index for axis in body.axes]).diagonal().tolist()
-             if body.axes else [])
+    eases: List[float] = []
+    if body.axes:
+        with possible_moments(body):
+            eases = mobility(body, [axis.index for axis in body.axes]).diagonal().tolist()
     _free(body)
     implicit: List[Tuple[Axis, JointAxis]] = []
     for axis, ease in zip(body.axes, eases):
