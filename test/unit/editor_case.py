@@ -140,7 +140,8 @@ class Browser:
 
     def link_pose(self, model, link=0):
         """Position of a link in the last frames that told of it."""
-        known = self.poses.get(self.model(model)["links"][link]["id"])
+        found = self.model(model)
+        known = self.poses.get(found["links"][link]["id"]) if found else None
         return None if known is None else known[:3]
 
     async def _read(self):
