@@ -6,9 +6,11 @@ fraction of the time.
 from __future__ import annotations
 
 import argparse
+import contextlib
+import signal
 import sys
 import time
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, Severity
 from ..geometry import Pose, Vec3, quat_from_rpy
@@ -202,6 +204,27 @@ class Simulator:
         state = ModelState(model_name=name, pose=pose_message(pose), reference_frame="world")
         self._checked("set_model_state", "SetModelState", model_state=state)
 
+    @contextlib.contextmanager
+    def standing_still(self) -> Iterator[None]:
+        """Lets time stand still meanwhile, where it runs and the simulator is ours.
+
+        For the main thread: SIGTERM becomes a KeyboardInterrupt meanwhile.
+
+        Raises:
+            ToolError: the simulator did not answer.
+        """
+        if not self.replaces or self._call("get_physics_properties", "GetPhysicsProperties").pause:
+            yield
+            return
+        # A request to end must not leave the world as it is meanwhile.
+        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+        try:
+            self._call("pause_physics", "Empty")
+            yield
+        finally:
+            self._call("unpause_physics", "Empty")
+            signal.signal(signal.SIGTERM, before)
+
     def _checked(self, service: str, kind: str, **fields: Any) -> str:
         answer = self._call(service, kind, **fields)
         if not answer.success:
@@ -227,10 +250,11 @@ class Simulator:
 def _service_class(kind: str) -> Any:
     try:
         from gazebo_msgs import srv
+        from std_srvs.srv import Empty
     except ImportError as fault:
         raise ToolError("the ROS package gazebo_msgs is not there; source the workspace's "
                         "devel/setup.bash first") from fault
-    return getattr(srv, kind)
+    return Empty if kind == "Empty" else getattr(srv, kind)
 
 
 def pose_message(pose: Pose) -> Any:
