@@ -3,10 +3,11 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
+from ..description.world import Light
 from ..engine.api import LinkState, ModelState
 from ..engine.ring import Snapshot
 from ..engine.rows import axis_rows
@@ -138,9 +139,13 @@ class Rows:
 
 
 class Registry:
-    """The entities in the order in which they came. Not thread safe: its owner locks."""
+    """The entities in the order in which they came. Not thread safe: its owner locks.
 
-    def __init__(self) -> None:
+    `lights` tells the lights of the world, which are frames too.
+    """
+
+    def __init__(self, lights: Callable[[], List[Light]] = list) -> None:
+        self.lights = lights
         self._entities: Dict[str, Entity] = {}
         self._plain_links: Dict[str, List[Tuple[Entity, int]]] = {}
         self.revision = 0
@@ -220,7 +225,7 @@ class Registry:
     def frame(self, name: str) -> Optional[Anchor]:
         """What a reference frame name means; None for the world frame.
 
-        Entities are searched first (models before links before collisions), then the literals.
+        Entities are searched first (models, links, collisions, lights), then the literals.
         Raises UnknownFrame.
         """
         entity = self._entities.get(name)
@@ -234,6 +239,9 @@ class Registry:
         collision = self._collision(name)
         if collision is not None:
             return collision
+        for light in self.lights():
+            if light.name == name:
+                return Anchor(-1, light.pose)
         if name in WORLD_FRAMES:
             return None
         raise UnknownFrame(f"there is no model, link or frame '{name}'" + self._nearest(name))

@@ -1,0 +1,36 @@
+"""A light is a reference frame as models and links are (Gazebo behaviour)."""
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from my_simulations.description.model import Link, Model
+from my_simulations.description.world import Light, World
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.geometry import STILL, Pose, quat_from_rpy
+from my_simulations.simulator.registry import UnknownFrame
+from my_simulations.simulator.simulator import Simulator
+
+
+@pytest.fixture
+def sim():
+    lamp = Light("lamp", pose=Pose((1.0, 2.0, 3.0), quat_from_rpy(0, 0, math.pi / 2)))
+    made = Simulator(World(models=[Model("box", links=[Link("link")])], lights=[lamp]),
+                     engine_factory=lambda: InlineEngine(KinematicBackend), paused=True, log=print)
+    made.start()
+    yield made
+    made.close()
+
+
+def test_states_are_told_and_set_in_the_frame_of_a_light(sim):
+    sim.set_model_state("box", Pose((1.0, 0.0, 0.0)), STILL, "lamp")
+    assert sim.model_state("box")[0].position == pytest.approx((1.0, 3.0, 3.0))
+    assert sim.link_state("box::link", "lamp")[0].position == pytest.approx((1.0, 0.0, 0.0))
+
+
+def test_a_light_that_is_gone_is_no_frame(sim):
+    sim.delete_light("lamp")
+    with pytest.raises(UnknownFrame):
+        sim.model_state("box", "lamp")
