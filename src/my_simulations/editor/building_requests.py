@@ -8,6 +8,7 @@ from ..building import requests as building
 from ..building.folder import default_folder
 from ..description.flatten import flattened
 from ..errors import Issue
+from ..simulator.saving import default_roots
 from .client import Client
 from .faults import issue_document
 from .hub import Hub
@@ -23,7 +24,7 @@ class BuildingRequests:
         self._hub = hub
         self._library = library
         self._pool = pool
-        self._roots = roots or []
+        self._roots = default_roots() if roots is None else roots
 
     def routes(self) -> Dict[str, Route]:
         """By type of request."""
