@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""The object tools with many objects, and the launch file that spawns one without a list."""
+import os
+import signal
+import sys
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import object_flow_support as flow
+import rospy
+import support
+from object_flow_support import entry
+
+COUNT = 40
+NAMES = [f"thing_{n}" for n in range(COUNT)]
+
+
+def listed(model="my_simulations/objects/ball.urdf"):
+    return {name: entry(model, (n % 8 + 2.0, n // 8 - 2.0, 0.0)) for n, name in enumerate(NAMES)}
+
+
+class ManyObjects(flow.ToolCase, unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gazebo = support.Gazebo()
+
+    def setUp(self):
+        self.gazebo.unpause_physics()
+        self.gazebo.clear()
+        rospy.set_param("/objects", listed())
+
+    def test_many_objects_appear_at_one_moment_and_go_again(self):
+        times = []
+        with flow.tool("spawn_object.py", "all") as program:
+            support.wait_for(lambda: "thing_0" in self.gazebo.names(), "the first object")
+            while True:
+                world = self.gazebo.get_world_properties()
+                if NAMES[-1] in world.model_names or program.process.poll() is not None:
+                    break
+                times.append(world.sim_time)
+            self.assertEqual(program.ended(60), 0, program.text)
+        self.assertGreater(len(times), 1)
+        self.assertEqual(len(set(times)), 1, "time went on between the objects")
+        self.assertEqual(self.gazebo.names(), ["ground_plane", *NAMES])
+        self.assertEqual(program.text.count("spawned at"), COUNT)
+        self.assertFalse(self.gazebo.is_paused())
+        self.run_tool("remove_object.py", "all")
+        self.assertEqual(self.gazebo.names(), ["ground_plane"])
+        self.assertFalse(self.gazebo.is_paused())
+
+    def test_a_paused_world_stays_paused(self):
+        self.gazebo.pause_physics()
+        self.run_tool("spawn_object.py", "all")
+        self.assertTrue(self.gazebo.is_paused())
+        self.run_tool("remove_object.py", "all")
+        self.assertTrue(self.gazebo.is_paused())
+
+    def test_a_tool_that_is_told_to_end_lets_the_world_go_on(self):
+        for request in (signal.SIGINT, signal.SIGTERM):
+            self.gazebo.clear()
+            with flow.tool("spawn_object.py", "all") as program:
+                support.wait_for(lambda: "thing_0" in self.gazebo.names(), "the first object")
+                program.process.send_signal(request)
+                program.ended(60)
+            start = self.gazebo.sim_time()
+            support.wait_for(lambda at=start: self.gazebo.sim_time() > at, "time to go on")
+
+    def test_every_object_of_one_xacro_file_is_spawned(self):
+        rospy.set_param("/objects", listed("my_simulations/objects/crate.urdf.xacro"))
+        text = self.run_tool("spawn_object.py", "all")
+        self.assertEqual(text.count("spawned at"), COUNT)
+
+    def test_a_launch_file_spawns_one_object_of_no_list(self):
+        words = ["roslaunch", "my_simulations", "spawn_object_urdf.launch", "object:=ball",
+                 "object_origin:=-x 1.5 -y -2 -z 0.3"]
+        with support.Program(words) as program:
+            self.assertEqual(program.ended(60), 0, program.text)
+        self.assertIn("ball", self.gazebo.names())
+        at = self.gazebo.get_model_state("ball", "").pose.position
+        self.assertAlmostEqual(at.x, 1.5, 2)
+        self.assertAlmostEqual(at.y, -2.0, 2)
+
+
+if __name__ == "__main__":
+    support.run("object_flow_many")
