@@ -45,7 +45,9 @@ function faultOfFields(fields, value, where) {
 
 function faultOfList(type, count, value, where) {
   if (!Array.isArray(value)) return `${where}: ${value} is no list`;
-  if (count && value.length !== Number(count)) return `${where}: ${value.length} in place of ${count}`;
+  if (count && value.length !== Number(count)) {
+    return `${where}: ${value.length} in place of ${count}`;
+  }
   for (const [index, item] of value.entries()) {
     const problem = fault(type, item, `${where}[${index}]`);
     if (problem) return problem;
@@ -66,7 +68,8 @@ function faultOfMap(type, value, where) {
 export function requestFault(type, fields) {
   const request = protocol.requests[type];
   if (!request) return `no request ${type}`;
-  return fault(request.fields, fields, type) ?? (type === 'edit' ? operationFault(fields.op) : null);
+  return fault(request.fields, fields, type) ??
+    (type === 'edit' ? operationFault(fields.op) : null);
 }
 
 function operationFault({kind, ...fields}) {

@@ -1,8 +1,8 @@
 /**
  * Everything a user can do, as functions: menus, tool bar, keys and context menu call the same.
  *
- * Actions that ask the simulator resolve to `{ok, value, issues}` and never reject; what was refused
- * is also put into the store's issues, unless `quiet` is asked for by a dialog that shows it itself.
+ * Actions that ask the simulator resolve to `{ok, value, issues}` and never reject; what was
+ * refused is also put into the store's issues, unless a dialog that shows it itself asks for `quiet`.
  */
 import {alignMoves} from './align.js';
 import {shapeModel, newLight, SHAPES, LIGHTS} from './inserts.js';
@@ -125,7 +125,7 @@ export function createActions({store, connection}) {
         op: (pose) => ({kind: 'insert_light', light: {...light, pose}}),
       });
     },
-    /** Fetches a model of the library (downloading it when it is remote); it then follows the mouse. */
+    /** Fetches a model of the library, from afar when need be; it then follows the mouse. */
     async insertModel(uri) {
       const outcome = await ask('library_get', {uri});
       if (!outcome.ok) return outcome;
@@ -175,9 +175,10 @@ export function createActions({store, connection}) {
      *          relative?: 'first'|'last'}} choice
      */
     async align(choice) {
-      const poses = alignPoses(choice);
       view?.setPreviewPoses(null);
-      return Object.keys(poses).length ? actions.move(poses, 'align') : NOTHING;
+      const poses = alignPoses(choice);
+      if (!Object.keys(poses).length) return NOTHING;
+      return view.carry(poses, actions.move(poses, 'align'));
     },
 
     // ---- camera
@@ -217,7 +218,7 @@ export function createActions({store, connection}) {
     joint: (fields) => edit({kind: 'joint', ...fields}),
 
     // ---- pictures
-    /** A PNG of the view as it is; downloaded unless `download` is false. @returns {Promise<Blob>} */
+    /** A PNG of the view; downloaded unless `download` is false. @returns {Promise<Blob>} */
     async screenshot({download = true} = {}) {
       if (!view) return null;
       const blob = await view.picture();

@@ -33,7 +33,7 @@ const OPEN = 1;
 const PROTOCOL_VERSION = 1;
 
 /**
- * Emits `open`, `close`, `message` (detail: a pushed JSON object) and `frame` (detail: ArrayBuffer).
+ * Emits `open`, `close`, `message` (detail: a pushed object) and `frame` (detail: ArrayBuffer).
  * Requests made while the line is down fail at once: the page shows that it is, and nothing that a
  * user did long ago reaches a world that has changed since.
  */

@@ -113,7 +113,7 @@ export function roundness(model) {
 
 /**
  * Factors for a drag by `distance` m outwards along one of the model's axes: the face follows the
- * mouse, its opposite goes the other way. Spheres stay round, and so do cylinders (Gazebo behaviour).
+ * mouse, its opposite goes the other way. Spheres and cylinders stay round (Gazebo behaviour).
  * @param {number[]} size   present extent in the model's frame, m
  * @param {0|1|2} axis
  * @param {number} distance m

@@ -1,4 +1,4 @@
-/** What Ctrl does to a drag: positions, turns and sizes stick to round values (Gazebo behaviour). */
+/** What Ctrl does to a drag: positions, turns and sizes stick to round values, as in Gazebo. */
 
 export const METRE = 1;
 export const SENSITIVITY = 0.4;

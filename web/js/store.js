@@ -37,7 +37,7 @@ export class Store extends EventTarget {
   overlays = initialOverlays();
   stats = {sim_ns: 0, real_ns: 0, factor: 0, iterations: 0, paused: true};
   history = {undo: [], redo: [], dirty: false, file: ''};
-  /** What was copied: SDF, and the documents for the ghost. @type {{text: string, items: any[]}|null} */
+  /** What was copied: SDF, and documents for the ghost. @type {{text: string, items: any[]}|null} */
   clipboard = null;
   /** @type {import('./connection.js').Issue[]} */
   issues = [];

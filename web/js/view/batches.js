@@ -133,6 +133,7 @@ export class Batches {
     const batch = this.#batches.get(item.key);
     batch.remove(item);
     if (!batch.items.length) this.#batches.delete(item.key);
+    if (item.geometry.userData.single) item.geometry.dispose();
   }
 
   /** Tells that an item's matrix has changed. @param {Item} item */

@@ -24,12 +24,16 @@ export class CameraRig {
   #walkSpeed = 1;
   #lastWalk = 0;
   #followed = null;
+  #world = null;
 
   constructor({stage, store, models}) {
     this.#stage = stage;
     this.#store = store;
     this.#models = models;
     store.addEventListener('document', () => this.#openWorld());
+    store.addEventListener('entity', ({detail: {kind, value}}) => {
+      if (kind === 'world' && value.gui_camera) this.#takeCamera(value.gui_camera);
+    });
     store.addEventListener('camera', () => this.#applyChoices());
     this.apply();
   }
@@ -178,8 +182,18 @@ export class CameraRig {
     this.#stage.invalidate();
   }
 
+  /** The world's camera was edited. */
+  #takeCamera(camera) {
+    this.#home = views.fromPose(camera.pose);
+    this.fly(this.#home);
+  }
+
+  /** A world that comes again, after a lost line say, is looked at as before. */
   #openWorld() {
-    const camera = this.#store.document.gui_camera;
+    const {gui_camera: camera, file, name} = this.#store.document;
+    const which = JSON.stringify([file, name]);
+    if (which === this.#world) return;
+    this.#world = which;
     this.#home = camera ? views.fromPose(camera.pose) : views.HOME;
     this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
     this.set(this.#home);

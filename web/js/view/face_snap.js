@@ -19,16 +19,18 @@ export class FaceSnap {
   #store;
   #actions;
   #batches;
+  #models;
   #picker;
   #stage;
   #hovered = triangle(0xff2a2a);
   #chosen = triangle(0xff9f1c);
   #first = null;
 
-  constructor({store, actions, batches, picker, stage}) {
+  constructor({store, actions, batches, models, picker, stage}) {
     this.#store = store;
     this.#actions = actions;
     this.#batches = batches;
+    this.#models = models;
     this.#picker = picker;
     this.#stage = stage;
     stage.scene.add(this.#hovered, this.#chosen);
@@ -59,7 +61,7 @@ export class FaceSnap {
     const {model: name, face} = this.#first;
     const pose = snapped(this.#store.worldPose(name), face, hit.face);
     this.#store.setMode('select');
-    await this.#actions.move({[name]: pose}, 'snap');
+    await this.#models.carry({[name]: pose}, this.#actions.move({[name]: pose}, 'snap'));
   }
 
   #under({clientX, clientY}) {

@@ -24,7 +24,8 @@ const LABELS = {translate: 'translate', rotate: 'rotate'};
 /** Whether a drag has left everything as it was: that is no step of the history. */
 function isNothing(grasp, {poses, factors}) {
   if (factors) return factors.every((factor) => factor === 1);
-  return !grasp.sent && poses[grasp.name].every((part, i) => Math.abs(part - grasp.first[i]) < 1e-9);
+  if (grasp.sent) return false;
+  return poses[grasp.name].every((part, i) => Math.abs(part - grasp.first[i]) < 1e-9);
 }
 
 export class Manipulator {

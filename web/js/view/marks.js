@@ -1,7 +1,7 @@
 /** Small things drawn over the world: axes, arrows, boxes of lines. */
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, EdgesGeometry, Group,
-  LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, EdgesGeometry,
+  Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3,
 } from 'three';
 
 const UP = new Vector3(0, 0, 1);

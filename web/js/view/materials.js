@@ -8,6 +8,7 @@ import {patternCanvas} from './textures.js';
 
 /** Grey of what has no material (Gazebo/Grey and Gazebo/White for meshes look alike with light). */
 const GREY = [0.7, 0.7, 0.7, 1];
+const GROUND = 0.8;
 const DULL = [0, 0, 0, 1];
 /** Highlights weaker than this are not worth their computing. */
 const DULLEST = 0.02;
@@ -68,8 +69,10 @@ export class Materials {
       (material?.texture ? [1, 1, 1, 1] : GREY);
     const seen = (diffuse[3] ?? 1) * (1 - (material?.transparency ?? 0)) * opacity;
     const common = {
-      color: colorOf(diffuse), opacity: seen, transparent: seen < 1, depthWrite: seen >= 1,
-      wireframe, side: doubleSided ? DoubleSide : FrontSide, map: this.#map(material?.texture),
+      // A ground of one grey with what stands on it would swallow its outlines.
+      color: colorOf(diffuse).multiplyScalar(pushed ? GROUND : 1),
+      opacity: seen, transparent: seen < 1, depthWrite: seen >= 1, wireframe,
+      side: doubleSided ? DoubleSide : FrontSide, map: this.#map(material?.texture),
       polygonOffset: pushed, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
     };
     if (material?.lighting === false) return new MeshBasicMaterial(common);

@@ -114,6 +114,19 @@ export class Models {
     this.#changed(null);
   }
 
+  /**
+   * Shows models at new places at once, and lets go when the simulator has answered: at the new
+   * places when it agreed, where they were when not.
+   * @param {Record<string, number[]>} poses
+   * @param {Promise<{ok: boolean}>} asked
+   */
+  async carry(poses, asked) {
+    this.hold(poses);
+    const outcome = await asked;
+    this.release(Object.keys(poses), {keep: outcome.ok});
+    return outcome;
+  }
+
   /** Shows a model stretched by factors along its own axes. */
   stretch(name, factors) {
     this.#stretched.set(name, new Matrix4().makeScale(...factors));

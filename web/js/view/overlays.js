@@ -1,4 +1,4 @@
-/** What can be shown of models besides their looks: collisions, joints, masses, frames, contacts. */
+/** What can be shown of models besides their looks: collisions, joints, masses, contacts, … */
 import {
   BoxGeometry, CanvasTexture, DoubleSide, Group, LineBasicMaterial, Matrix4, Mesh,
   MeshBasicMaterial, MeshPhongMaterial, Quaternion, SRGBColorSpace, Vector3,
@@ -205,8 +205,9 @@ export class Overlays {
     if (!contacts.length && !this.#contacts.children.length) return;
     for (const child of this.#contacts.children) if (!child.isMesh) child.geometry.dispose();
     empty(this.#contacts);
-    const shown = contacts.filter(({a, b}) => [a, b].some((name) =>
-      this.#store.overlay('contacts', this.#store.entity(name)?.model?.name ?? name.split('::')[0])));
+    const modelOf = (name) => this.#store.entity(name)?.model?.name ?? name.split('::')[0];
+    const shown = contacts.filter(({a, b}) =>
+      [a, b].some((name) => this.#store.overlay('contacts', modelOf(name))));
     const lines = [];
     for (const {position, normal, depth} of shown) {
       const mark = new Mesh(ball, contactMaterial);

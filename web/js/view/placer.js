@@ -12,6 +12,7 @@ export class Placer {
   #stage;
   #stock;
   #ghost = null;
+  #dispose = () => {};
 
   constructor({store, actions, picker, stage, stock}) {
     this.#store = store;
@@ -57,7 +58,9 @@ export class Placer {
 
   #change() {
     if (this.#ghost) this.#stage.scene.remove(this.#ghost);
+    this.#dispose();
     this.#ghost = null;
+    this.#dispose = () => {};
     const {placing} = this.#store;
     if (placing) {
       this.#ghost = placing.kind === 'light' ? lightIcon(placing.document)
@@ -69,7 +72,8 @@ export class Placer {
   }
 
   #modelGhost(document) {
-    const {group, ready} = soloModel(document, this.#stock, {opacity: 0.75});
+    const {group, ready, dispose} = soloModel(document, this.#stock, {opacity: 0.75});
+    this.#dispose = dispose;
     ready.then(() => this.#stage.shadowsChanged());
     return group;
   }

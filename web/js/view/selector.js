@@ -1,5 +1,10 @@
 /** What clicks select, and where the ray under the mouse meets the world. */
 import {rayPlane, WORLD_AXES} from '../drag_math.js';
+import {add, length, scale, subtract} from '../pose.js';
+
+/** Metres ahead of where nothing is, and to where the ground is taken for near the horizon. */
+const AHEAD = 10;
+const FAR = 30;
 
 export class Selector {
   #store;
@@ -43,11 +48,11 @@ export class Selector {
   /** The point under the mouse: of a body, of the ground, or 10 m ahead. */
   point(event) {
     const hit = this.under(event);
-    if (hit) return hit.point;
+    if (hit && !hit.plane) return hit.point;
     const ray = this.#picker.ray(event.clientX, event.clientY);
-    const ground = rayPlane(ray, [0, 0, 0], WORLD_AXES.z);
-    const near = ground && Math.hypot(...ground.map((part, i) => part - ray.origin[i])) < 200;
-    return near ? ground : ray.origin.map((part, i) => part + 10 * ray.direction[i]);
+    const ground = hit?.point ?? rayPlane(ray, [0, 0, 0], WORLD_AXES.z);
+    const distance = ground ? length(subtract(ground, ray.origin)) : AHEAD;
+    return add(ray.origin, scale(ray.direction, Math.min(distance, FAR)));
   }
 
   click(event) {

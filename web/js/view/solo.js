@@ -7,8 +7,8 @@ import {visualParts} from './geometry.js';
  * @param {any} model  document
  * @param {any} stock  meshes and materials
  * @param {{opacity?: number}} [look]
- * @returns {{group: Group, ready: Promise<void>}} the group's children are the links, named so; its
- *          own pose is left to the caller
+ * @returns {{group: Group, ready: Promise<void>, dispose: () => void}} the group's children are
+ *          the links, named so; its own pose is left to the caller
  */
 export function soloModel(model, stock, look = {}) {
   const group = new Group();
@@ -34,5 +34,8 @@ export function soloModel(model, stock, look = {}) {
       else add(parts);
     }
   }
-  return {group, ready: Promise.all(waits).then(() => {})};
+  const dispose = () => group.traverse(({geometry}) => {
+    if (geometry?.userData.single) geometry.dispose();
+  });
+  return {group, ready: Promise.all(waits).then(() => {}), dispose};
 }

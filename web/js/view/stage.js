@@ -15,8 +15,8 @@ const COARSEST = 0.4;
 const SLOW_SHADOWS = 300;
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
 /**
- * A processor that draws in place of a graphics card pays for smooth edges with every picture: there
- * moving pictures are coarse, and those at rest are drawn larger than they are shown.
+ * A processor that draws in place of a graphics card pays for smooth edges with every picture:
+ * there moving pictures are coarse, and those at rest are drawn larger than they are shown.
  */
 const QUALITY = {card: {start: 1, best: 1}, processor: {start: 0.7, best: 1.5}};
 /** Milliseconds of rest before the full picture. */

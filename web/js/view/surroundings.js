@@ -1,4 +1,4 @@
-/** Background, sky, fog, grid, origin and roads: what the world's scene and the view's flags say. */
+/** Background, sky, fog, grid, origin and roads: what the world and the view's flags say. */
 import {
   BackSide, BufferAttribute, BufferGeometry, Color, Fog, FogExp2, LineBasicMaterial, LineSegments,
   Mesh, ShaderMaterial, SphereGeometry, Vector3,
@@ -70,8 +70,13 @@ void main() {
   if (way.z > 0.01) {
     vec2 at = way.xy / (way.z + 0.12) / size + vec2(drift, 0.0);
     float density = 0.0, part = 0.55;
-    for (int octave = 0; octave < 5; octave++) { density += part * noise(at); at *= 2.1; part *= 0.5; }
-    float cloud = smoothstep(1.0 - cover, 1.15 - 0.3 * cover, density) * smoothstep(0.01, 0.2, way.z);
+    for (int octave = 0; octave < 5; octave++) {
+      density += part * noise(at);
+      at *= 2.1;
+      part *= 0.5;
+    }
+    float cloud = smoothstep(1.0 - cover, 1.15 - 0.3 * cover, density);
+    cloud *= smoothstep(0.01, 0.2, way.z);
     color = mix(color, cloudColor, cloud * 0.85);
   }
   gl_FragColor = vec4(color, 1.0);

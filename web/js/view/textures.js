@@ -51,8 +51,6 @@ function bricks(paint, size) {
       paint.fillStyle = `rgb(${150 * shade}, ${74 * shade}, ${56 * shade})`;
       const x = (column + (row % 2) / 2) * width;
       paint.fillRect(x + 1.5, row * height + 1.5, width - 3, height - 3);
-      // The brick that runs out on the right comes in on the left.
-      if (x + width > size) paint.fillRect(x - size + 1.5, row * height + 1.5, width - 3, height - 3);
     }
   }
 }

@@ -202,6 +202,12 @@ class View {
     if (poses) this.#models.hold(poses);
   }
 
+  /** Shows models elsewhere until the simulator has answered. */
+  carry(poses, asked) {
+    this.setPreviewPoses(null);
+    return this.#models.carry(poses, asked);
+  }
+
   cancelDrag() {
     return this.#manipulator.cancel();
   }
@@ -219,24 +225,24 @@ class View {
 
   #showPreview() {
     const {preview} = this.#store;
-    const before = this.#preview;
-    this.#preview = null;
-    const remove = () => before && this.#stage.scene.remove(before);
-    if (preview) {
-      const {group, ready} = soloModel(preview, this.#stock);
+    if (this.#preview) {
+      this.#stage.scene.remove(this.#preview.group);
+      this.#preview.dispose();
+    }
+    this.#preview = preview ? soloModel(preview, this.#stock) : null;
+    if (this.#preview) {
+      const {group, ready} = this.#preview;
       place(group, preview.pose);
-      this.#preview = group;
       this.#stage.scene.add(group);
       ready.then(() => this.#stage.shadowsChanged());
     }
-    remove();
     this.#stage.shadowsChanged();
   }
 
   /** The link of the preview under a point of the page. @returns {{link: string}|null} */
   previewPick(clientX, clientY) {
     if (!this.#preview) return null;
-    const [hit] = this.#picker.objects([this.#preview], clientX, clientY);
+    const [hit] = this.#picker.objects([this.#preview.group], clientX, clientY);
     return hit ? {link: hit.object.parent.name} : null;
   }
 
