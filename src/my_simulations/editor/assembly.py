@@ -38,6 +38,7 @@ class Assembly:
 
     Attributes:
         application: serves pages and sockets.
+        routes: the handlers of messages, by type.
 
     Raises:
         CommandError: the page is not installed.
@@ -63,12 +64,12 @@ class Assembly:
                                   self._autosave, self.tell_all)
         self._models = LibraryRequests(self.hub, resolver, library, self._pool, self.tell_all)
         self._logs = Logs(self.hub, options.data_dir, self.tell_all)
-        routes: Dict[str, Route] = {
+        self.routes: Dict[str, Route] = {
             **self._requests.routes(), **self._models.routes(), **self._logs.routes(),
             **Watching(self.hub).routes(),
             **BuildingRequests(self.hub, library, self._pool, options.save_roots).routes(),
         }
-        sockets = Sockets(self.hub, routes, self._leave, options.check_outgoing)
+        sockets = Sockets(self.hub, self.routes, self._leave, options.check_outgoing)
         self.application = web.Application(middlewares=[guard.middleware],
                                            client_max_size=protocol.limits["upload_bytes"])
         self.application.add_routes([web.get("/ws", sockets.serve), *pages.routes()])

@@ -1,0 +1,121 @@
+"""What materials look like: Gazebo's names, scripts of models, colours of files."""
+from __future__ import annotations
+
+import pytest
+
+from my_simulations.description.compare import BUILT_IN
+from my_simulations.description.shapes import Material
+from my_simulations.editor.material_script import read_materials
+from my_simulations.editor.material_table import BUILT_IN as TABLE
+from my_simulations.editor.materials import Materials
+from my_simulations.editor.served import ServedFiles
+from my_simulations.resources.resolver import Resolver
+
+SCRIPT = """
+// a comment { with braces }
+material Shop/Base
+{
+  technique
+  {
+    pass
+    {
+      ambient 0.1 0.2 0.3
+      diffuse 0.4 0.5 0.6 0.7 /* alpha
+      over lines */
+      specular 0.1 0.1 0.1 12
+      texture_unit { texture "wood.png"
+        scale 0.5 0.25 }
+    }
+    pass { diffuse 1 1 1 }
+  }
+  technique { pass { diffuse 0 0 0 } }
+}
+material Shop/Clear : Shop/Base
+{ technique { pass { scene_blend alpha_blend
+ lighting off
+ emissive 1 1 1 } } }
+material Broken
+"""
+
+
+def test_the_first_pass_of_the_first_technique_counts():
+    base = read_materials(SCRIPT)["Shop/Base"]
+    assert base.ambient == (0.1, 0.2, 0.3, 1.0)
+    assert base.diffuse == (0.4, 0.5, 0.6, 0.7)
+    assert base.specular == (0.1, 0.1, 0.1, 1.0)
+    assert (base.texture, base.scale) == ("wood.png", (0.5, 0.25))
+
+
+def test_a_material_takes_from_its_parent_what_it_does_not_say():
+    clear = read_materials(SCRIPT)["Shop/Clear"]
+    assert clear.texture == "wood.png" and clear.diffuse == (0.4, 0.5, 0.6, 0.7)
+    assert clear.blend and not clear.lighting and clear.emissive == (1, 1, 1, 1)
+
+
+@pytest.mark.parametrize("text", ["", "}", "{{{{", "material", "material X {", "material X { pass",
+                                  "material X { diffuse a b c }", "\0" * 100, "{" * 100000])
+def test_broken_scripts_end_no_program(text):
+    assert isinstance(read_materials(text), dict)
+
+
+@pytest.fixture
+def shop(tmp_path):
+    """Materials with the script in a model's folder."""
+    scripts = tmp_path / "shop" / "materials" / "scripts"
+    textures = tmp_path / "shop" / "materials" / "textures"
+    scripts.mkdir(parents=True)
+    textures.mkdir()
+    (scripts / "shop.material").write_text(SCRIPT)
+    (textures / "wood.png").write_bytes(b"png")
+    resolver = Resolver([str(tmp_path)])
+    return Materials(resolver, ServedFiles(resolver))
+
+
+URIS = ["model://shop/materials/scripts", "model://shop/materials/textures"]
+
+
+def test_a_script_is_found_with_its_texture(shop):
+    found = shop.document(Material(script_uris=URIS, script_name="Shop/Base"))
+    assert found["texture"]["url"].endswith("/shop/materials/textures/wood.png")
+    assert found["texture"]["scale"] == [0.5, 0.25]
+    assert found["diffuse"] == [0.4, 0.5, 0.6, 1.0] and found["transparency"] == 0.0
+
+
+def test_a_blended_script_is_seen_through(shop):
+    found = shop.document(Material(script_uris=URIS, script_name="Shop/Clear"))
+    assert found["transparency"] == pytest.approx(0.3) and found["lighting"] is False
+
+
+def test_a_name_is_looked_up_in_what_was_read_before(shop):
+    shop.document(Material(script_uris=URIS, script_name="Shop/Base"))
+    found = shop.document(Material(script_uris=[BUILT_IN], script_name="Shop/Base"))
+    assert found["texture"]["url"]
+
+
+def test_colours_of_the_file_override_the_script(shop):
+    red = (1.0, 0.0, 0.0, 0.5)
+    found = shop.document(Material(diffuse=red, script_uris=URIS, script_name="Shop/Base"))
+    assert found["diffuse"] == list(red) and found["transparency"] == 0.5
+    assert found["ambient"] == [0.1, 0.2, 0.3, 1.0]
+
+
+def test_an_unknown_name_is_white_and_no_material_stays_none(shop):
+    assert shop.document(Material(script_name="Nix"))["diffuse"] == [1, 1, 1, 1]
+    assert shop.document(None) is None
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_gazebos_names_are_known_without_a_script(shop, name):
+    found = shop.document(Material(script_uris=[BUILT_IN], script_name=name))
+    assert found["name"] == name and len(found["diffuse"]) == 4
+    assert found["texture"] is None or found["texture"]["pattern"]
+
+
+def test_some_of_gazebos_colours(shop):
+    def shown(name):
+        return shop.document(Material(script_name=name))
+
+    assert shown("Gazebo/Grey")["diffuse"] == [0.7, 0.7, 0.7, 1.0]
+    assert shown("Gazebo/RedGlow")["emissive"] == [1.0, 0.0, 0.0, 1.0]
+    assert shown("Gazebo/BlueTransparent")["transparency"] == 0.5
+    assert shown("Gazebo/Bricks")["texture"]["pattern"] == "bricks"
