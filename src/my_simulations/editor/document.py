@@ -130,7 +130,8 @@ class Documents:
             return {"url": None, "format": None,
                     "problem": f"{mesh.uri} lies outside of all model and resource folders"}
         if url is not None and extension in _LOADED:
-            return {"url": url, "format": _LOADED[extension]}
+            return {"url": url, "format": _LOADED[extension],
+                    "fallback": self.solids.url(mesh)}
         return {"url": self.solids.url(mesh), "format": "stl", "submesh": "", "center": False}
 
 
