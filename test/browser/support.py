@@ -93,10 +93,13 @@ class Browser:
 
     def __init__(self):
         self._playwright = sync_playwright().start()
-        binary = shutil.which("chromium") or shutil.which("chromium-browser")
         self._browser = self._playwright.chromium.launch(
-            executable_path=binary,
+            executable_path=self.binary(),
             args=["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+
+    @staticmethod
+    def binary():
+        return shutil.which("chromium") or shutil.which("chromium-browser")
 
     def open(self, url, **options):
         return Editor(self._browser, url, **options)
@@ -114,10 +117,13 @@ class Editor:
                                            color_scheme=color_scheme, accept_downloads=True)
         self.page = self.context.new_page()
         self.faults = []
+        self.said = []
         self.page.on("pageerror", lambda fault: self.faults.append(str(fault)))
+        self.page.on("console", lambda message: self.said.append(message.text))
         self.page.goto(url)
         self.until("Boolean(window.editor && editor.store.document && editor.view)", "the world")
-        self.until("editor.view.fps > 0", "the first picture")
+        self.until("performance.getEntriesByName('first-picture').length > 0",
+                   "the first picture")
 
     def close(self):
         self.context.close()
@@ -126,7 +132,10 @@ class Editor:
         return self.page.evaluate(expression)
 
     def until(self, expression, what):
-        return wait_for(lambda: self.get(expression), what)
+        try:
+            return wait_for(lambda: self.get(expression), what)
+        except AssertionError as fault:
+            raise AssertionError(f"{fault}; the page said {self.faults + self.said}") from fault
 
     # -- what a person sees ------------------------------------------------------------------------
 
