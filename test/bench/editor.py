@@ -3,7 +3,8 @@
 
 usage: editor.py [ROW …]   rows: page idle frames moving release (default: all)
 
-The browser is a headless Chromium and draws with the processor, as on a machine without a graphics card.
+The browser is a headless Chromium that draws with the processor, as where there is no graphics
+card.
 Nothing here fails on a slow machine.
 """
 from __future__ import annotations
