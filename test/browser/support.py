@@ -93,13 +93,13 @@ class Browser:
 
     def __init__(self):
         self._playwright = sync_playwright().start()
-        self._browser = self._playwright.chromium.launch(
-            executable_path=self.binary(),
-            args=["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+        self._browser = self.launch("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
-    @staticmethod
-    def binary():
-        return shutil.which("chromium") or shutil.which("chromium-browser")
+    def launch(self, *flags):
+        """A Chromium with other flags, for the caller to close."""
+        binary = shutil.which("chromium") or shutil.which("chromium-browser")
+        return self._playwright.chromium.launch(executable_path=binary,
+                                                args=["--no-sandbox", *flags])
 
     def open(self, url, **options):
         return Editor(self._browser, url, **options)
