@@ -235,6 +235,21 @@ def test_what_is_copied_can_be_pasted_together_with_its_places(case):
     made.browse(paste)
 
 
+def test_a_model_with_nested_ones_is_copied_with_them(case):
+    outer = box("outer")
+    outer.models.append(box("inner", (0.0, 0.0, 2.0)))
+    made = case(outer)
+
+    async def paste(browser):
+        text = (await browser.ask("copy", names=["outer"]))["text"]
+        await browser.edit("paste", text=text, pose=[5, 0, 0.5, 0, 0, 0, 1])
+        links = made.sim.model("outer_clone").links
+        assert [link.name for link in links] == ["link", "inner::link"]
+        assert made.sim.link_state("outer_clone::inner::link")[0].position == (5.0, 0.0, 2.5)
+
+    made.browse(paste)
+
+
 def test_history_goes_back_and_forth_to_a_chosen_step(case):
     made = case()
 

@@ -11,7 +11,7 @@ from building_plans import two_rooms
 from editor_case import Case, Refused, arm, box
 
 from my_simulations.building.plan_json import plan_to_json
-from my_simulations.editor.state_log import MAGIC, LogReader
+from my_simulations.editor.state_log import MAGIC, LogReader, LogWriter
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist
 from my_simulations.resources.resolver import Resolver
@@ -279,6 +279,28 @@ def test_a_log_is_recorded_listed_and_played_to_one_browser(case):
                                               "log_close": {}}[request])
 
     made.browse(play)
+
+
+def test_a_full_disk_is_told_when_a_log_is_written(tmp_path):
+    writer = LogWriter(str(tmp_path / "x.log"))
+    writer._file.close()
+    writer._file = open("/dev/full", "wb")
+    with pytest.raises(CommandError, match="x.log"):
+        writer.document(0.0, {"models": ["x" * 100] * 1000})
+        writer.close()
+
+
+def test_no_log_takes_the_place_of_another(case):
+    made = case()
+    (made.folder / "data" / "log" / "old").mkdir(parents=True)
+    (made.folder / "data" / "log" / "old" / "state.log").write_text("precious")
+
+    async def start(browser):
+        with pytest.raises(Refused) as refused:
+            await browser.ask("log_start", name="old")
+        assert refused.value.code == "exists"
+
+    made.browse(start)
 
 
 def test_a_log_that_was_cut_off_is_good_up_to_there(case, tmp_path):

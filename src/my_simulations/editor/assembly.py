@@ -2,13 +2,14 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Dict, List, Tuple
 
 from aiohttp import web
 
-from ..errors import Issue, Severity, error
+from ..errors import CommandError, Issue, Severity, error
 from ..resources.resolver import Resolver
 from ..simulator.history import History
 from ..simulator.simulator import Simulator
@@ -88,7 +89,8 @@ class Assembly:
         await asyncio.sleep(0.05)  # the farewell goes out
         for task in self._tasks:
             task.cancel()
-        self._logs.close()
+        with contextlib.suppress(CommandError):  # nobody is left to be told
+            self._logs.close()
         clients = list(self.hub.clients.values())
         await asyncio.gather(*(client.close() for client in clients), return_exceptions=True)
         await runner.cleanup()

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ..description.model import Model
+from ..description.unflatten import unflattened
 from ..description.world import Light
 from ..errors import CommandError, Issue
 from ..formats.sdf_write import write_world
@@ -92,8 +93,8 @@ class Edits:
         lights: List[Light] = []
         for name in names:
             if self._world.has_model(name):
-                models.append(replace(self._world.model(name),
-                                      pose=self._world.model_state(name)[0]))
+                model = unflattened(self._world.model(name))
+                models.append(replace(model, pose=self._world.model_state(name)[0]))
             else:
                 lights.append(self._world.light(name))
         if not models and not lights:

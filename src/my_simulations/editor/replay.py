@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import re
 from concurrent.futures import ThreadPoolExecutor
@@ -105,9 +106,11 @@ class Logs:
     async def _stop(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is None:
             raise CommandError("nothing is being recorded")
-        self.close(self._hub.simulator.sim_ns() * 1e-9)
-        self._hub.listen(-1)
-        self._hub.push(self.state())
+        try:
+            self.close(self._hub.simulator.sim_ns() * 1e-9)
+        finally:
+            self._hub.listen(-1)
+            self._hub.push(self.state())
         return {"name": self._name}
 
     def _tick(self, poses: Optional[Poses], revision: int) -> None:
@@ -140,7 +143,8 @@ class Logs:
 
     def _fail(self, fault: CommandError) -> None:
         self._tell(warning("log", f"the log {self._name!r} ends here: {fault}"))
-        self.close()
+        with contextlib.suppress(CommandError):  # that is what was told
+            self.close()
         self._hub.listen(-1)
         self._hub.push(self.state())
 

@@ -6,6 +6,7 @@ import errno
 import socket
 import threading
 from concurrent.futures import Future
+from concurrent.futures import TimeoutError as TimeoutError_
 from typing import Optional
 
 from aiohttp import web
@@ -42,7 +43,10 @@ class EditorServer:
         self._started: "Future[None]" = Future()
         self._thread = threading.Thread(target=self._main, name="editor", daemon=True)
         self._thread.start()
-        self._started.result(_START_S)
+        try:
+            self._started.result(_START_S)
+        except TimeoutError_ as slow:
+            raise CommandError(f"the editor did not start within {_START_S:g} s") from slow
         self.url = _url(self._listener, options.host, self._guard.token)
 
     def stop(self, reason: str = "the simulator ends") -> None:

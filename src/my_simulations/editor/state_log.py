@@ -61,11 +61,19 @@ class LogWriter:
         self.end = time
 
     def close(self, time: Optional[float] = None) -> None:
-        """Nothing more comes; what was last stayed so until `time`."""
-        if time is not None and self.begin is not None and time > self.end:
-            self._write(MOVED, time, b"")
-            self.end = time
-        self._file.close()
+        """Nothing more comes; what was last stayed so until `time`.
+
+        Raises CommandError when not all of it could be written.
+        """
+        try:
+            if time is not None and self.begin is not None and time > self.end:
+                self._write(MOVED, time, b"")
+                self.end = time
+        finally:
+            try:
+                self._file.close()
+            except OSError as fault:
+                raise CommandError(f"{self.path} is not whole: {fault.strerror}") from fault
 
     def _write(self, kind: int, time: float, data: bytes) -> None:
         try:
