@@ -3,9 +3,11 @@ from __future__ import annotations
 
 import os
 
+import pytest
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import GetModelState, GetWorldProperties, SetModelState, SpawnModel
 from geometry_msgs.msg import Pose
+from PIL import Image
 from pytest import approx
 from std_srvs.srv import Empty
 from support import wait_for
@@ -182,3 +184,74 @@ def wall_parts(editor):
     """The collisions of the wall that got the second window."""
     model = editor.model("Two_Rooms")
     return next(link for link in model["links"] if link["name"] == "Wall_2")["collisions"]
+
+
+@pytest.fixture
+def drawn(launch, browser):
+    """A page with two rooms drawn in the building editor, and its sheet."""
+    editor = browser.open(launch("worlds/empty.world").url)
+    editor.page.on("dialog", lambda question: question.accept())
+    sheet = Sheet(editor)
+    sheet.open()
+    draw_two_rooms(sheet)
+    yield editor, sheet
+    editor.close()
+
+
+def test_a_wall_is_painted_in_the_3d_view(drawn):
+    editor, sheet = drawn
+    editor.until("editor.store.preview?.links.length === 5", "the rooms in the 3D view")
+    box = editor.page.locator("#view").bounding_box()
+    x, y = box["x"] + box["width"] * 0.35, box["y"] + box["height"] * 0.4
+    picked = wait_for(lambda: editor.get(f"editor.actions.previewPick({x}, {y})"), "a wall there")
+    editor.page.get_by_role("button", name="Colour #fe7905", exact=True).click()
+    editor.page.mouse.move(x - 5, y)
+    editor.page.mouse.move(x, y)
+    shown = ("editor.store.preview.links.find((link) => link.name === "
+             f"'{picked['link']}').visuals[0].material.ambient[2]")
+    wait_for(lambda: editor.get(shown) < 0.1, "the colour before the click")
+    editor.page.mouse.click(x, y)
+    painted = sheet.page.locator(".layer.walls path[fill='#fe7905']")
+    wait_for(lambda: painted.count() == 1, "the painted wall on the sheet")
+    assert editor.get("editor.store.selection.length") == 0
+    editor.page.mouse.move(10, 10)
+    editor.page.get_by_role("menuitem", name="Edit", exact=True).last.click()
+    editor.page.get_by_role("menuitem", name="Undo").first.click()
+    wait_for(lambda: painted.count() == 0, "the wall as it was")
+    assert editor.faults == []
+
+
+def test_a_floor_plan_is_scaled_by_a_line_and_a_file_that_is_none_refused(drawn, tmp_path):
+    editor, sheet = drawn
+    page = editor.page
+    (tmp_path / "none.png").write_bytes(b"MZ no picture")
+    Image.new("RGB", (800, 400), (230, 230, 250)).save(tmp_path / "plan.png")
+    page.click("[data-act=import]")
+    dialog = page.get_by_role("dialog")
+    dialog.locator("input[type=file]").set_input_files(str(tmp_path / "none.png"))
+    dialog.get_by_role("button", name="Import", exact=True).click()
+    wait_for(lambda: "no picture" in dialog.get_by_role("alert").inner_text(), "the refusal")
+    dialog.locator("input[type=file]").set_input_files(str(tmp_path / "plan.png"))
+    dialog.get_by_role("button", name="Import", exact=True).click()
+    width = page.locator(".plan-image")
+    wait_for(lambda: width.get_attribute("width") == "800", "the picture, 8 m wide")
+    page.mouse.move(*sheet.pixel((-2.0, 0.0)))
+    page.mouse.down()
+    page.mouse.move(*sheet.pixel((0.0, 0.0)))
+    page.mouse.move(*sheet.pixel((2.0, 0.0)))
+    page.mouse.up()
+    page.get_by_label("Length in metres").fill("2")
+    page.keyboard.press("Enter")
+    wait_for(lambda: abs(float(width.get_attribute("width")) - 400) < 8, "the picture, 4 m wide")
+    assert editor.faults == []
+
+
+def test_a_plan_that_was_not_saved_is_offered_again(drawn):
+    editor, sheet = drawn
+    wait_for(lambda: editor.get("localStorage.getItem('world-editor.building-draft')"),
+             "the draft")
+    editor.page.reload()
+    editor.until("Boolean(window.editor && editor.store.document)", "the page")
+    sheet.open()
+    editor.page.get_by_role("button", name="Restore", exact=True).click()
+    sheet.shows(walls=5)

@@ -25,17 +25,11 @@ from .folder import (
 from .plan_json import plan_from_json, plan_to_json
 
 
-def building_sdf(plan: Any) -> Tuple[Model, str, List[Issue]]:
-    """The model of a plan, its SDF, and what is odd about the plan."""
+def building_sdf(plan: Any, with_text: bool = True) -> Tuple[Model, str, List[Issue]]:
+    """The model of a plan, its SDF ("" unless `with_text`), and what is odd about the plan."""
     read = plan_from_json(plan)
     model = building_model(read)
-    return model, write_entity(model).decode(), check_plan(read)
-
-
-def building_model_of(plan: Any) -> Tuple[Model, List[Issue]]:
-    """As `building_sdf`, without the text: what the preview needs."""
-    read = plan_from_json(plan)
-    return building_model(read), check_plan(read)
+    return model, write_entity(model).decode() if with_text else "", check_plan(read)
 
 
 def building_save(plan: Any, name: str, options: Mapping[str, Any],

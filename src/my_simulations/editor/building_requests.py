@@ -35,7 +35,9 @@ class BuildingRequests:
         return {kind: Route(handler, self._pool) for kind, handler in handlers.items()}
 
     def _sdf(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        model, text, issues = building.building_sdf(message["plan"])
+        """The model and its SDF; a preview, which needs no text, asks for none."""
+        model, text, issues = building.building_sdf(message["plan"],
+                                                    message.get("text") is not False)
         return {"model": self._hub.documents.model(flattened(model), model.pose), "sdf": text,
                 "issues": _told(issues)}
 

@@ -1,7 +1,9 @@
 /** The building editor: a plan beside the 3D view. */
+import {ask} from '../panels/dialog.js';
 import {fill, h, onceAFrame} from '../panels/dom.js';
 import {mountMenuBar} from '../panels/menubar.js';
 import {Canvas} from './canvas.js';
+import {forgetDraft, keepDraft, leftDraft} from './draft.js';
 import {MeasureTool} from './draw_tools.js';
 import {Files, importImage} from './files.js';
 import {listenToKeys, listenToMouse, listenToView} from './input.js';
@@ -25,6 +27,7 @@ import {isEmpty, withoutImages} from './plan.js';
 export async function mount(element, {store, request, actions}) {
   await styled();
   const session = new Session();
+  const draft = leftDraft();
   session.endTool = () => { session.tool = new SelectTool(session); };
   const canvas = new Canvas(session);
   const files = new Files(session, request);
@@ -81,13 +84,14 @@ export async function mount(element, {store, request, actions}) {
   const ends = [
     listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon}),
     listenToView(document.getElementById('view'), {session, actions}), () => preview.end(),
-    watchSize(sheet, canvas), askBeforeUnload(session),
+    watchSize(sheet, canvas), askBeforeUnload(session), keepDraft(session),
     () => session.removeEventListener('change', drawSoon),
   ];
   const wasRunning = !store.stats?.paused;
   if (wasRunning) await actions.pause?.();
   canvas.fit();
   canvas.element.focus();
+  if (draft) restore(session, draft).then(() => canvas.fit());
 
   let closing = null;
   const close = () => closing ??= finish().finally(() => { closing = null; });
@@ -124,11 +128,23 @@ export async function mount(element, {store, request, actions}) {
 const bound = (files) => Object.fromEntries(['save', 'saveAs', 'open', 'fresh']
   .map((name) => [name, (...given) => files[name](...given)]));
 
+/** Offers what an earlier page left unsaved; it stays unsaved. */
+async function restore(session, {plan, file}) {
+  const answer = await ask('Restore the building?', `There are changes to the plan ${plan.name} that were not saved.`,
+    [{title: 'Discard', value: 'drop', danger: true}, {title: 'Restore', value: 'restore', primary: true}]);
+  if (answer === 'restore') {
+    session.file = file;
+    session.commit(plan, 'restore');
+  } else if (answer === 'drop') {
+    forgetDraft();
+  }
+}
+
 /** The model of an opened building: {name, pose as drawn, plan}, null where the world has none. */
 async function modelOf(session, store, request) {
   const {plan} = session.history;
   try {
-    const {model} = await request('building_sdf', {plan: withoutImages(plan)});
+    const {model} = await request('building_sdf', {plan: withoutImages(plan), text: false});
     return store.model(model.name) ? {name: model.name, pose: model.pose, plan} : null;
   } catch (fault) {
     session.say(fault.message);

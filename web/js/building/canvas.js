@@ -260,8 +260,10 @@ export class Canvas {
     if (opening?.item.wall !== null && opening) words.push(...openingWords(opening.item, session.level));
     for (const ref of session.selection.slice(0, 40)) {
       const item = itemOf(session.plan, session.at, ref);
-      if (ref.kind === 'walls' && item) words.push(wallWord(item));
-      else if (item && item.wall !== undefined && item.wall !== null) {
+      if (ref.kind === 'walls' && item) {
+        words.push(wallWord(item, session.selection.length === 1 ? segmentWords(item)
+          : `${outerLength(item).toFixed(2)} m`));
+      } else if (item && item.wall !== undefined && item.wall !== null) {
         words.push(...openingWords(item, session.level));
       } else if (ref.kind === 'stairs' && item) {
         words.push([item.position, `${item.width.toFixed(2)} × ${item.depth.toFixed(2)} m`, '']);
@@ -278,10 +280,10 @@ export class Canvas {
   }
 }
 
-function wallWord(wall) {
+function wallWord(wall, words) {
   const yaw = wallYaw(wall);
   const middle = polar(wall.start, yaw, wallLength(wall) / 2);
-  return [polar(middle, yaw + Math.PI / 2, 0.25), `${outerLength(wall).toFixed(2)} m`, 'length'];
+  return [polar(middle, yaw + Math.PI / 2, 0.25), words, 'length'];
 }
 
 /** The distances from an opening to both ends of its wall. */

@@ -176,16 +176,18 @@ export function listenToView(view, {session, actions}) {
     return found && paintable(found.ref) ? found : null;
   };
   let down = null;
+  /** What is shown painted: between two pictures of the preview nothing can be picked. */
+  let shown = null;
   const move = (event) => {
     if (session.tool.name !== 'paint' || event.buttons) return;
-    const found = target(event);
-    session.tool.hover(found?.level ?? 0, found?.ref ?? null);
+    shown = target(event);
+    session.tool.hover(shown?.level ?? 0, shown?.ref ?? null);
   };
   const press = (event) => { down = [event.clientX, event.clientY]; };
   const release = (event) => {
     if (session.tool.name !== 'paint' || event.button !== 0 || !down) return;
     if (Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
-    const found = target(event);
+    const found = shown ?? target(event);
     if (found) session.tool.paint(found.level, found.ref);
   };
   const away = (event) => {

@@ -42,7 +42,7 @@ export class Preview {
     }
     this.#asking = true;
     try {
-      const {model, issues = []} = await this.request('building_sdf', {plan: withoutImages(plan)});
+      const {model, issues = []} = await this.request('building_sdf', {plan: withoutImages(plan), text: false});
       if (!this.#ended) this.store.setPreview?.(model);
       this.onIssues(issues);
     } catch (fault) {
