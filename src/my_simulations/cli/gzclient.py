@@ -18,6 +18,11 @@ WATCH_SECONDS = 5.0
 
 OK, FAILED = 0, 1
 
+USAGE = """usage: gzclient [-h] [options of Gazebo's client, which do nothing] [name:=value ...]
+
+Show the world editor of the running node `gazebo`: in a browser where there is a display, else by
+its address. Ends with the node."""
+
 
 def main(argv: Optional[List[str]] = None) -> int:
     """Show the editor of the node `gazebo`, and stay until that node or we are ended.
@@ -28,6 +33,9 @@ def main(argv: Optional[List[str]] = None) -> int:
         0 after a signal or the server's end, 1 when there is no server or it has no editor.
     """
     words = sys.argv if argv is None else argv
+    if "-h" in words[1:] or "--help" in words[1:]:
+        print(USAGE)
+        return OK
     client = _Client(words)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: client.ended.set())
