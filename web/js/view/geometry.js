@@ -73,7 +73,7 @@ const SIMPLE = {
 /** The named part of a mesh, all of it without a name (SDF spec 1.7, mesh/submesh). */
 function chosen(parts, {submesh, center}) {
   if (!submesh) return parts;
-  const picked = parts.filter(({names}) => names.includes(submesh));
+  const picked = parts.filter(({names, whole}) => whole || names.includes(submesh));
   if (!center || !picked.length) return picked;
   const box = new Box3();
   for (const {geometry, matrix} of picked) {

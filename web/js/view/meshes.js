@@ -7,6 +7,7 @@ import {LoadingManager, Matrix4, Mesh, MeshPhongMaterial, DoubleSide} from 'thre
  * @property {any} material  the file's own: a three material or, for groups, a list
  * @property {Matrix4} matrix  file frame from part
  * @property {string[]} names  of the part and the nodes above it
+ * @property {boolean} [whole] it is the mesh in one, its parts have no names
  */
 
 const plainMaterial = new MeshPhongMaterial({color: 0xc8c8c8, specular: 0x0d0d0d,
@@ -128,15 +129,26 @@ export class Meshes {
   load(geometry) {
     const {url} = geometry;
     if (!this.#files.has(url)) {
-      this.#files.set(url, this.#read(geometry).catch((error) => {
-        this.onProblem(`The mesh ${decodeURI(url)} could not be read: ${error.message}`);
-        return [];
-      }).then((parts) => {
+      this.#files.set(url, this.#readSomehow(geometry).then((parts) => {
         this.#ready.set(url, parts);
         return parts;
       }));
     }
     return this.#files.get(url);
+  }
+
+  /** What this page cannot read the simulator may have read: its form then, without colours. */
+  async #readSomehow(geometry) {
+    try {
+      return await this.#read(geometry);
+    } catch (error) {
+      if (geometry.fallback) {
+        const parts = await this.#read({url: geometry.fallback, format: 'stl'}).catch(() => []);
+        if (parts.length) return parts.map((part) => ({...part, whole: true}));
+      }
+      this.onProblem(`The mesh ${decodeURI(geometry.url)} could not be read: ${error.message}`);
+      return [];
+    }
   }
 
   async #read(geometry) {
