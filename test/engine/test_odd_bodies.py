@@ -42,3 +42,64 @@ def test_a_moment_above_the_sum_of_the_others_moves_as_the_file_says(damping):
 def test_a_welded_hinge_stays_where_it_is():
     position, rate = swinging(JointAxis((1.0, 0.0, 0.0), lower=0.0, upper=0.0, damping=1.0))
     assert abs(position) < 1e-3 and abs(rate) < 1e-3
+
+
+def branches(depth, width):
+    """A tree in which every link carries `width` others, listed level by level."""
+    links = [Link("base", inertial=Inertial(1.0), gravity=False)]
+    joints, level = [], ["base"]
+    for _ in range(depth):
+        above, level = level, []
+        for parent in above:
+            for n in range(width):
+                name = f"{parent}_{n}"
+                kind = ("revolute", "prismatic", "universal")[len(links) % 3]
+                links.append(Link(name, Pose((0.1 * len(links), 0.0, 0.0)),
+                                  Inertial(1.0 + len(links)), gravity=False))
+                joints.append(Joint(f"to_{name}", kind, parent, name, axis=JointAxis((0, 0, 1)),
+                                    axis2=JointAxis((0, 1, 0)) if kind == "universal" else None))
+                level.append(name)
+    return Model("tree", links=links, joints=joints)
+
+
+@pytest.mark.parametrize("depth, width", [(2, 2), (3, 2), (2, 4)])
+def test_each_link_and_joint_of_a_branching_robot_is_itself(depth, width):
+    model = branches(depth, width)
+    sim = Simulator(World(gravity=(0, 0, 0)), engine_factory=lambda: InlineEngine(BulletBackend),
+                    paused=True, log=lambda issue: None)
+    sim.start()
+    sim.spawn(model)
+    for link in model.links:
+        assert sim.link_state(f"tree::{link.name}")[0].position == pytest.approx(
+            link.pose.position, abs=1e-9)
+    for joint in model.joints:
+        if joint.type != "prismatic":
+            continue
+        before = {link.name: sim.link_state(link.name)[0].position[2] for link in model.links}
+        sim.set_joints({joint.name: 0.25})
+        for link in model.links:
+            carried = 0.25 if link.name.startswith(joint.child) else 0.0
+            assert sim.link_state(link.name)[0].position[2] == pytest.approx(
+                before[link.name] + carried, abs=1e-9), (joint.name, link.name)
+    sim.close()
+
+
+def test_an_effort_on_a_branching_robot_meets_the_mass_of_its_own_link():
+    model = branches(2, 2)
+    sim = Simulator(World(gravity=(0, 0, 0)), engine_factory=lambda: InlineEngine(BulletBackend),
+                    paused=True, log=lambda issue: None)
+    sim.start()
+    sim.spawn(model)
+    leaf = next(joint for joint in model.joints
+                if joint.type == "prismatic" and joint.child.count("_") == 2)
+    mass = next(link for link in model.links if link.name == leaf.child).inertial.mass
+    rest = sum(link.inertial.mass for link in model.links) - mass
+    sim.drive(leaf.name, 1.0, start_ns=0, duration_ns=-1)
+    sim.advance(1)
+    # The leaf goes up by F / m; the rest, were it one body, down by F / M, and it gives way at
+    # its other joints: the rate is at least the one of two rigid bodies.
+    rate = sim.joint_states(leaf.name)[0][1]
+    assert rate >= 1e-3 * (1.0 / mass + 1.0 / rest) * (1 - 1e-9)
+    velocity = sim.link_state(leaf.child)[1].linear[2]
+    assert velocity == pytest.approx(1e-3 / mass, rel=1e-6)
+    sim.close()

@@ -7,7 +7,7 @@ massless base. Static models become immovable links, joints or not.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Deque, Dict, List, Optional, Set, Tuple
 
 from ..description.model import WORLD, Joint, Link, Model
@@ -132,6 +132,7 @@ class _Planner:
         for link in roots + self.model.links:
             if link.name not in self.visited:
                 bodies.append(self._grow(BodyPlan([self._root(link)]), link.name, 0))
+        bodies = [replace(body, links=depth_first(body.links)) for body in bodies]
         bodies.sort(key=lambda body: max(body.links[0].index, body.links[-1].index)
                     if body.links[0].index == NO_LINK else body.links[0].index)
         return bodies
@@ -207,6 +208,23 @@ def _moves(joint: Joint, forward: bool) -> List[Tuple[str, Optional[Vec3], Optio
     if not forward:
         moves = [(kind, scale(axis, -1.0), number) for kind, axis, number in reversed(moves)]
     return list(moves)
+
+
+def depth_first(links: List[TreeLink]) -> List[TreeLink]:
+    """The same tree with every link right behind its parent's earlier branches.
+
+    PyBullet numbers the links of a multibody so, whatever their order (measured, 3.2.7).
+    """
+    below: Dict[int, List[int]] = {}
+    for n, link in enumerate(links):
+        below.setdefault(link.parent, []).append(n)
+    order: List[int] = []
+    waiting = below.get(BASE, [])[::-1]
+    while waiting:
+        order.append(waiting.pop())
+        waiting += below.get(order[-1], [])[::-1]
+    place = {old: new for new, old in enumerate(order)}
+    return [replace(links[old], parent=place.get(links[old].parent, BASE)) for old in order]
 
 
 def open_joints(model: Model, bodies: List[BodyPlan]) -> List[Joint]:

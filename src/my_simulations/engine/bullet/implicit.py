@@ -15,14 +15,14 @@ Efforts that are known count as known; of the rest of a, the steps before tell.
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
-from typing import Dict, Iterator, List, Optional, Sequence
+from typing import Dict, List, Optional
 
 import numpy as np
 import pybullet
 
 from ...description.model import JointAxis
 from .bodies import Axis, Body
+from .mass_matrix import MassMatrix
 
 _TRUST = 0.5       # share of the newest look at what else accelerates the axes
 _FAR = 0.05        # rad or m: axes that have moved so far may have another mobility
@@ -43,6 +43,7 @@ class ImplicitAxes:
         self._stiffness = np.array([spec.spring_stiffness for spec in specs])
         self._reference = np.array([spec.spring_reference for spec in specs])
         self._others = 1.0 - _TRUST, _TRUST / dt, _TRUST
+        self._tree: Optional[MassMatrix] = None
         self._prepared_at: Optional[List[float]] = None
         self._age = 0
         self.disturbed()
@@ -89,7 +90,9 @@ class ImplicitAxes:
         In rates, positions, other accelerations and known efforts: `_answer`, and `_at_rest`.
         """
         dt, count = self._dt, len(self._rows)
-        ease = mobility(self._body, self._indices)
+        if self._tree is None:
+            self._tree = MassMatrix(self._body.uid)
+        ease = mobility(self._tree, self._indices)
         one = np.eye(count)
         decays = np.minimum(dt * np.diag(ease) * self._damping, _MOST_DECAYS)
         spread = np.where(decays > 1e-9, np.expm1(decays) / np.maximum(decays, 1e-9), 1.0)
@@ -108,56 +111,20 @@ class ImplicitAxes:
                                         -pull @ self._reference])
 
 
-def mobility(body: Body, indices: List[int]) -> np.ndarray:
+def mobility(tree: MassMatrix, indices: List[int]) -> np.ndarray:
     """The acceleration of each joint for an effort on each, all other freedoms left free.
 
-    (n, n), 1/kg or 1/(kg m^2), in the present configuration. Ball joints count as not turned.
+    (n, n), 1/kg or 1/(kg m^2), in the present configuration.
     """
-    positions: List[float] = []
-    places: Dict[int, int] = {}
-    for index in range(pybullet.getNumJoints(body.uid)):
-        kind = pybullet.getJointInfo(body.uid, index)[2]
-        if kind in (pybullet.JOINT_REVOLUTE, pybullet.JOINT_PRISMATIC):
-            places[index] = len(positions)
-            positions.append(pybullet.getJointState(body.uid, index)[0])
-        elif kind == pybullet.JOINT_SPHERICAL:
-            positions += [0.0, 0.0, 0.0]
-    mass = np.array(pybullet.calculateMassMatrix(body.uid, positions))
+    mass = tree.now()
     if not np.isfinite(mass).all():  # it has diverged, and is put back at the next look
         return np.eye(len(indices))
-    base = mass.shape[0] - len(positions)
     # An axis whose limits are one and the same is welded, and nothing moves it.
-    moving = [n for n, index in enumerate(indices) if index in places]
-    chosen = [base + places[indices[n]] for n in moving]
+    moving = [n for n, index in enumerate(indices) if index in tree.places]
+    chosen = [tree.places[indices[n]] for n in moving]
     answer = np.zeros((len(indices), len(indices)))
     answer[np.ix_(moving, moving)] = _inverse(mass)[np.ix_(chosen, chosen)]
     return answer
-
-
-@contextmanager
-def possible_moments(body: Body) -> Iterator[None]:
-    """Around the first use of `mobility` for a body.
-
-    PyBullet steps bodies with a principal moment above the sum of the others, which files have, but
-    refuses their mass matrix, and what it was told at the first time it keeps: the next possible
-    moments, then.
-    """
-    own: Dict[int, Sequence[float]] = {}
-    for link in range(-1, pybullet.getNumJoints(body.uid)):
-        moments = pybullet.getDynamicsInfo(body.uid, link)[2]
-        if max(moments) > sum(moments) - max(moments):
-            own[link] = moments
-            pybullet.changeDynamics(body.uid, link, localInertiaDiagonal=_possible(moments))
-    yield
-    for link, moments in own.items():
-        pybullet.changeDynamics(body.uid, link, localInertiaDiagonal=moments)
-
-
-def _possible(moments: Sequence[float]) -> List[float]:
-    """The moments with the smaller ones raised until the largest is no more than their sum."""
-    least, middle, largest = sorted(moments)
-    short = max(0.0, largest * 1.001 - least - middle) / 2.0
-    return [moment if moment == largest else moment + short for moment in moments]
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:

@@ -8,7 +8,8 @@ import pybullet
 from ...description.model import INFINITE, JointAxis, Model
 from .bodies import Axis, Body
 from .forces import Forces
-from .implicit import ImplicitAxes, mobility, possible_moments
+from .implicit import ImplicitAxes, mobility
+from .mass_matrix import MassMatrix
 
 _LIMIT_FORCE = 1e6         # N or N m a kilogram: holds 1000 kg at its stop (100 a kg falls through)
 _EXPLICIT_DAMPING = 0.01   # d dt / I up to which PyBullet's explicit damping is exact enough
@@ -20,8 +21,8 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
     mass = sum(part.mass for part in body.parts)
     eases: List[float] = []
     if body.axes:
-        with possible_moments(body):
-            eases = mobility(body, [axis.index for axis in body.axes]).diagonal().tolist()
+        eases = mobility(MassMatrix(body.uid),
+                         [axis.index for axis in body.axes]).diagonal().tolist()
     _free(body)
     implicit: List[Tuple[Axis, JointAxis]] = []
     for axis, ease in zip(body.axes, eases):

@@ -1,0 +1,105 @@
+"""The joint-space mass matrix of an articulated body.
+
+PyBullet's own (calculateMassMatrix) is of no use: it keeps a copy of each body by its address in
+memory and looks at no change, so that a body that comes where another has gone gets the masses, or
+the number of axes, of that one (measured, 3.2.7). It also refuses inertia that no body can have,
+which files do have.
+
+M = sum over links of m Jv^T Jv + Jw^T I Jw, with the Jacobians of the centre of mass and of the
+rotation (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 3.1).
+"""
+from __future__ import annotations
+
+from typing import Dict, List, Tuple
+
+import numpy as np
+import pybullet
+
+_AXES = {pybullet.JOINT_REVOLUTE: True, pybullet.JOINT_PRISMATIC: False}  # kind: it turns
+
+
+class MassMatrix:
+    """The masses and freedoms of one body, as they are now; the configuration may change.
+
+    Freedoms stand in this order: three turns and three shifts of a base that can move, then the
+    axes by joint index, three for a ball joint.
+
+    Attributes:
+        places: where the axis of a joint index stands among the freedoms.
+        count: the number of freedoms.
+    """
+
+    def __init__(self, uid: int) -> None:
+        self._uid = uid
+        count = pybullet.getNumJoints(uid)
+        infos = [pybullet.getJointInfo(uid, index) for index in range(count)]
+        dynamics = [pybullet.getDynamicsInfo(uid, index) for index in range(-1, count)]
+        self._links = list(range(count))
+        self._masses = np.array([entry[0] for entry in dynamics])
+        self._moments = np.array([entry[2] for entry in dynamics])
+        self.places: Dict[int, int] = {}
+        owners, turns, local = [], [], []   # freedom: link number from the base on, turning, axis
+        if self._masses[0] > 0.0:
+            owners, turns = [0] * 6, [True] * 3 + [False] * 3
+            local = np.tile(np.eye(3), (2, 1)).tolist()
+        for index, info in enumerate(infos):
+            if info[2] in _AXES:
+                self.places[index] = len(owners)
+                owners.append(index + 1)
+                turns.append(_AXES[info[2]])
+                local.append(info[13])
+            elif info[2] == pybullet.JOINT_SPHERICAL:
+                owners += [index + 1] * 3
+                turns += [True] * 3
+                local += np.eye(3).tolist()
+        self.count = len(owners)
+        self._owners = np.array(owners, dtype=int)
+        self._turns = np.array(turns, dtype=bool)
+        self._local = np.array(local).reshape(-1, 3)
+        self._moves = _descent([info[16] for info in infos])[:, self._owners]
+
+    def now(self) -> np.ndarray:
+        """The matrix in the present configuration: (count, count), kg, kg m or kg m^2."""
+        centres, pivots, turned = self._where()
+        axes = np.einsum("fij,fj->fi", turned[self._owners], self._local)
+        lever = centres[:, None, :] - pivots[self._owners][None, :, :]
+        shifts = np.where(self._turns[None, :, None], np.cross(axes[None], lever), axes[None])
+        shifts = shifts * self._moves[:, :, None]
+        spins = np.einsum("kji,fj->kfi", turned, axes) * (
+            self._moves & self._turns[None, :])[:, :, None]
+        matrix: np.ndarray = (
+            np.einsum("k,kfi,kgi->fg", self._masses, shifts, shifts)
+            + np.einsum("ki,kfi,kgi->fg", self._moments, spins, spins))
+        return matrix
+
+    def _where(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of the base and each link: centre of mass, pivot, rotation of the principal axes."""
+        position, turn = pybullet.getBasePositionAndOrientation(self._uid)
+        centres, pivots, quaternions = [position], [position], [turn]
+        if self._links:
+            for state in pybullet.getLinkStates(self._uid, self._links,
+                                                computeForwardKinematics=1):
+                centres.append(state[0])
+                pivots.append(state[4])
+                quaternions.append(state[1])
+        return np.array(centres), np.array(pivots), _rotations(np.array(quaternions))
+
+
+def _descent(parents: List[int]) -> np.ndarray:
+    """(k, i): whether link k hangs on link i or is it; 0 is the base. Parents come first."""
+    count = len(parents) + 1
+    hangs = np.eye(count, dtype=bool)
+    hangs[:, 0] = True
+    for index, parent in enumerate(parents):
+        hangs[index + 1] |= hangs[parent + 1]
+    return hangs
+
+
+def _rotations(q: np.ndarray) -> np.ndarray:
+    """(n, 3, 3) of unit quaternions (n, 4), x y z w."""
+    x, y, z, w = q.T
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]).transpose(2, 0, 1)

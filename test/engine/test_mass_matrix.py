@@ -1,0 +1,123 @@
+"""The mass matrix against what Bullet's step does with the same body."""
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import replace
+
+import numpy as np
+import pybullet
+import pytest
+from conftest import arm
+
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.world import World
+from my_simulations.engine.bullet.backend import BulletBackend
+from my_simulations.engine.bullet.mass_matrix import MassMatrix
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.geometry import Pose
+from my_simulations.simulator.simulator import Simulator
+
+DT = 1e-5
+
+
+@pytest.fixture
+def bullet():
+    client = pybullet.connect(pybullet.DIRECT)
+    pybullet.setTimeStep(DT)
+    yield
+    pybullet.disconnect(client)
+
+
+def tree(rng: random.Random) -> int:
+    """A body of up to six links, hung together at random, with random joints."""
+    def vector(size):
+        return [rng.uniform(-size, size) for _ in range(3)]
+
+    def unit(width):
+        values = [rng.gauss(0, 1) for _ in range(width)]
+        return [value / math.hypot(*values) for value in values]
+
+    count = rng.randint(1, 6)
+    kinds = [rng.choice([pybullet.JOINT_REVOLUTE, pybullet.JOINT_PRISMATIC, pybullet.JOINT_FIXED])
+             for _ in range(count - 1)] + [pybullet.JOINT_REVOLUTE]
+    uid = pybullet.createMultiBody(
+        baseMass=rng.choice([0.0, 1.5]), basePosition=vector(1), baseOrientation=unit(4),
+        baseInertialFramePosition=vector(0.3), baseInertialFrameOrientation=unit(4),
+        linkMasses=[rng.uniform(0.5, 3) for _ in kinds], linkCollisionShapeIndices=[-1] * count,
+        linkVisualShapeIndices=[-1] * count, linkPositions=[vector(1) for _ in kinds],
+        linkOrientations=[unit(4) for _ in kinds],
+        linkInertialFramePositions=[vector(0.3) for _ in kinds],
+        linkInertialFrameOrientations=[unit(4) for _ in kinds],
+        linkParentIndices=[rng.randint(0, n) for n in range(count)], linkJointTypes=kinds,
+        linkJointAxis=[unit(3) for _ in kinds])
+    for index in range(-1, count):
+        if index >= 0 or pybullet.getDynamicsInfo(uid, -1)[0]:
+            pybullet.changeDynamics(uid, index, localInertiaDiagonal=[1.0, 1.2, 1.5])
+        pybullet.changeDynamics(uid, index, linearDamping=0.0, angularDamping=0.0)
+    for index in range(count):  # PyBullet has numbered them its own way
+        if pybullet.getJointInfo(uid, index)[2] != pybullet.JOINT_FIXED:
+            pybullet.resetJointState(uid, index, rng.uniform(-1, 1))
+            pybullet.setJointMotorControl2(uid, index, pybullet.VELOCITY_CONTROL, force=0.0)
+            pybullet.changeDynamics(uid, index, jointDamping=0.0)
+    return uid
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_its_inverse_is_what_an_effort_accelerates(bullet, seed):
+    uid = tree(random.Random(seed))
+    matrix = MassMatrix(uid)
+    index, place = list(matrix.places.items())[-1]
+    expected = np.linalg.inv(matrix.now())[:, place]
+    pybullet.setJointMotorControl2(uid, index, pybullet.TORQUE_CONTROL, force=1.0)
+    pybullet.stepSimulation()
+    for joint, row in matrix.places.items():
+        assert pybullet.getJointState(uid, joint)[1] / DT == pytest.approx(
+            expected[row], abs=1e-3 * abs(expected).max())
+
+
+def chain(count: int, mass: float) -> Model:
+    links = [Link(f"l{n}", Pose((0.5 * n, 0, 0)), Inertial(mass, Pose((0.25, 0, 0)), ixx=0.1,
+                                                          iyy=0.1, izz=0.1), gravity=False)
+             for n in range(count)]
+    joints = [Joint(f"j{n}", "revolute", f"l{n - 1}" if n else "world", f"l{n}",
+                    axis=JointAxis((0, 0, 1), damping=40.0)) for n in range(count)]
+    return Model("chain", links=links, joints=joints)
+
+
+def test_a_body_that_comes_where_another_has_gone_has_its_own_masses():
+    faults = []
+    sim = Simulator(World(), engine_factory=lambda: InlineEngine(BulletBackend), paused=True,
+                    log=faults.append)
+    sim.start()
+    seen = {}
+    for turn in range(30):
+        count, mass = 1 + turn % 3, 1.0 + turn % 2
+        sim.spawn(chain(count, mass))
+        sim.drive("chain::j0", 1.0, start_ns=0, duration_ns=-1)
+        sim.advance(50)
+        rate = sim.joint_states("j0")[0][1]
+        assert seen.setdefault((count, mass), rate) == pytest.approx(rate, rel=1e-9)
+        sim.delete("chain")
+    sim.close()
+    assert not faults
+    assert len(set(seen.values())) == 6
+
+
+def test_a_stiff_axis_keeps_its_law_when_a_lighter_body_was_there_before():
+    sim = Simulator(World(), engine_factory=lambda: InlineEngine(BulletBackend), paused=True,
+                    log=lambda issue: None)
+    sim.start()
+    damped = JointAxis((0, 0, 1), damping=1000.0)
+    for mass in (0.01, 100.0):
+        model = replace(arm("revolute", damped, mass=mass, gravity=False), name="arm")
+        sim.spawn(model)
+        entity = sim.inventory()[1][-1]
+        sim.drive("arm::hinge", 1000.0, start_ns=0, duration_ns=-1)
+        sim.advance(3000)
+        inertia = mass + 1e-3
+        assert entity.joint_names == ["hinge"]
+        assert sim.joint_states("hinge")[0][1] == pytest.approx(
+            1.0 - math.exp(-3.0 * 1000.0 / inertia), rel=0.02)
+        sim.delete("arm")
+    sim.close()
