@@ -69,3 +69,8 @@ test('models, their links when they are several, and joints can be plotted', () 
   assert.ok(robot.variables.includes('arm::elbow.position'));
   assert.ok(!robot.variables.some((variable) => variable.includes('weld')));
 });
+
+test('the axis goes on to the present while nothing changes', () => {
+  assert.equal(extent([series('a.x', [0, 2], [1, 2])], 10, 8).to, 8);
+  assert.equal(extent([series('a.x', [0, 2], [9, 2])], 10, 8).to, 9);
+});

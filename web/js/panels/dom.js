@@ -57,7 +57,7 @@ export function roving(container, selector, {vertical = false, wrap = true} = {}
   container.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const item = event.target.closest(selector);
-    if (!item || (event.target !== item && isTextInput(event.target))) return;
+    if (!item || usesArrows(event.target)) return;
     const all = items();
     const at = all.indexOf(item);
     const to = {[back]: at - 1, [forth]: at + 1, Home: 0, End: all.length - 1}[event.key];
@@ -70,6 +70,11 @@ export function roving(container, selector, {vertical = false, wrap = true} = {}
   });
   settle(container.querySelector(selector));
   return {settle: () => settle(items()[0])};
+}
+
+/** Whether an element needs the arrow keys, Home and End for itself. */
+function usesArrows(element) {
+  return isTextInput(element) || element.matches('input[type=range], input[type=radio]');
 }
 
 /** Whether key presses in this element are text, and so no hotkeys. */

@@ -47,7 +47,8 @@ function numberInput(field, commit, refuse) {
   let edited = false;
   const restore = () => {
     edited = false;
-    element.value = numberText(shown);
+    const text = numberText(shown);
+    if (element.value !== text) element.value = text;
   };
   const take = () => {
     if (!edited) return;
@@ -105,6 +106,7 @@ function textInput(field, commit) {
   };
   element.addEventListener('input', () => { edited = true; });
   element.addEventListener('blur', take);
+  element.addEventListener('focus', () => element.select());
   element.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') take();
     if (event.key === 'Escape' && edited) {
@@ -181,9 +183,13 @@ function colorInput(field, commit, refuse) {
 
 function vectorInput(field, commit, refuse) {
   let shown = field.parts.map(() => 0);
+  const take = (at, value) => {
+    // The next part may be typed before this one is confirmed.
+    shown = shown.map((old, index) => (index === at ? value : old));
+    commit(shown);
+  };
   const parts = field.parts.map((name, at) => numberInput(
-    {...field, type: 'number', label: `${field.label} ${name}`},
-    (value) => commit(shown.map((old, index) => (index === at ? value : old))), refuse));
+    {...field, type: 'number', label: `${field.label} ${name}`}, (value) => take(at, value), refuse));
   return {
     element: h('div', {class: 'vector-input'}, ...parts.map((part, at) => h('span',
       {class: `part axis-${field.parts[at]}`},
@@ -199,9 +205,13 @@ const POSE_PARTS = ['x', 'y', 'z', 'roll', 'pitch', 'yaw'];
 
 function poseInput(field, commit, refuse) {
   let shown = [0, 0, 0, 0, 0, 0];
+  const take = (at, value) => {
+    shown = shown.map((old, index) => (index === at ? value : old));
+    commit(sevenOf(shown));
+  };
   const parts = POSE_PARTS.map((name, at) => numberInput(
     {type: 'number', label: `${field.label} ${name}`, fixed: field.fixed},
-    (value) => commit(sevenOf(shown.map((old, index) => (index === at ? value : old)))), refuse));
+    (value) => take(at, value), refuse));
   const cell = (at) => h('span', {class: `part axis-${'xyz'[at % 3]}`},
     h('i', {text: POSE_PARTS[at], 'aria-hidden': 'true'}), parts[at].element);
   return {

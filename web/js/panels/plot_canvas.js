@@ -15,10 +15,10 @@ const RIGHT = 10;
 /**
  * @param {HTMLCanvasElement} canvas
  * @param {{series: import('./plot_data.js').Series, color: string}[]} curves
- * @param {{span: number|null, cursor: number|null}} options  `cursor`: px from the left, where
- *   the values are read off
+ * @param {{span: number|null, cursor: number|null, now: number}} options  `cursor`: px from the
+ *   left, where the values are read off; `now`: sim time, s
  */
-export function drawPlot(canvas, curves, {span, cursor}) {
+export function drawPlot(canvas, curves, {span, cursor, now}) {
   const {clientWidth: width, clientHeight: height} = canvas;
   const ratio = window.devicePixelRatio || 1;
   if (!width || !height) return;
@@ -29,7 +29,7 @@ export function drawPlot(canvas, curves, {span, cursor}) {
   pen.fillStyle = themeColor('panel-2');
   pen.fillRect(0, 0, width, height);
   pen.font = '11px system-ui, "DejaVu Sans", sans-serif';
-  const range = extent(curves.map((curve) => curve.series), span);
+  const range = extent(curves.map((curve) => curve.series), span, now);
   if (!range) {
     pen.fillStyle = themeColor('text-faint');
     pen.textAlign = 'center';
@@ -105,6 +105,8 @@ function drawCurve(pen, {series, color}, range, across, down, width) {
     column = place;
     low = high = values[at];
   }
+  // What has not changed since is still what it was.
+  if (times.length) pen.lineTo(across(range.to), down(values[values.length - 1]));
   pen.stroke();
 }
 

@@ -64,12 +64,13 @@ function upper(numbers, limit) {
  *
  * @param {Series[]} series
  * @param {number|null} span  s before the newest sample; null for all
+ * @param {number} [now]  sim time, s: values that do not change are told once
  * @returns {{from: number, to: number, low: number, high: number}|null} null without samples
  */
-export function extent(series, span) {
+export function extent(series, span, now = -Infinity) {
   const filled = series.filter(({times}) => times.length);
   if (!filled.length) return null;
-  const to = Math.max(...filled.map(({times}) => times[times.length - 1]));
+  const to = Math.max(now, ...filled.map(({times}) => times[times.length - 1]));
   const first = Math.min(...filled.map(({times}) => times[0]));
   const from = span === null ? first : Math.max(first, to - span);
   let low = Infinity;

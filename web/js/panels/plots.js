@@ -39,11 +39,14 @@ export class Plots {
     fill(element, bar, h('div', {class: 'plots'},
       h('div', {class: 'plot-palette'}, this.#search, this.#list), this.#canvases));
     roving(this.#list, '[role=option]', {vertical: true, wrap: false});
-    this.#draw = onceAFrame(() => this.#plots.forEach((plot) => plot.draw(this.span)));
+    this.#draw = onceAFrame(() => this.#plots.forEach((plot) => plot.draw(this.span, page.store.stats.sim_ns * 1e-9)));
     const palette = onceAFrame(() => {
       if (!element.hidden) this.#showPalette();
     });
     page.store.addEventListener('watch', (event) => this.#take(event.detail));
+    page.store.addEventListener('stats', () => {
+      if (!element.hidden && this.#series.size) this.#draw();
+    });
     for (const event of ['document', 'entity', 'selection']) page.store.addEventListener(event, palette);
     new ResizeObserver(this.#draw).observe(this.#canvases);
     this.addCanvas();
@@ -235,7 +238,7 @@ class Plot {
       }}, icon('close', 12)));
   }
 
-  draw(span) {
-    drawPlot(this.canvas, this.#curves, {span, cursor: this.#cursor});
+  draw(span, now) {
+    drawPlot(this.canvas, this.#curves, {span, now, cursor: this.#cursor});
   }
 }

@@ -24,21 +24,70 @@ export class Properties {
     this.#title = h('h2', {class: 'properties-title'});
     fill(element, this.#title, this.#body);
     this.update = onceAFrame(() => this.#show());
-    for (const event of ['document', 'entity', 'connection', 'stats']) {
+    for (const event of ['document', 'entity', 'connection']) {
       store.addEventListener(event, this.update);
     }
+    store.addEventListener('poses', () => this.#posesCame());
   }
 
   #body;
   #title;
   #signature = null;
   #inputs = [];
+  #turns = new WeakMap();
   #closed = new Set(remembered.get('closed-sections', ['Inertial']));
+
+  #refocus = null;
+  #frames = [];
+  #later = 0;
+
+  /** Ten times a second is as often as a person reads numbers. */
+  #posesCame() {
+    this.#frames.splice(0).forEach((resolve) => resolve());
+    if (this.#later || !['model', 'link'].includes(this.row?.kind)) return;
+    this.#later = setTimeout(() => {
+      this.#later = 0;
+      this.update();
+    }, 100);
+  }
+
+  /** Settles with the next poses: a moved model is where they say. */
+  #nextFrame() {
+    return new Promise((resolve) => {
+      this.#frames.push(resolve);
+      setTimeout(resolve, 500);
+    });
+  }
+
+  /**
+   * A request whose effect is told: the answer may come before the change of the document does, and
+   * what the fields show is the document.
+   */
+  async #told(name, request) {
+    let changed = null;
+    const came = new Promise((resolve) => { changed = resolve; });
+    const hear = ({detail}) => {
+      if (!detail || detail.name === name) changed();
+    };
+    const events = ['entity', 'document'];
+    for (const event of events) this.store.addEventListener(event, hear);
+    try {
+      await request();
+      await Promise.race([came, new Promise((resolve) => { setTimeout(resolve, 500); })]);
+    } finally {
+      for (const event of events) this.store.removeEventListener(event, hear);
+    }
+  }
 
   /** @param {import('./world_rows.js').Row|null} row whose properties are wanted */
   show(row) {
     this.row = row;
     this.update();
+  }
+
+  /** Shows what is so now, without waiting for the next picture. */
+  refresh() {
+    this.#show();
   }
 
   #show() {
@@ -72,6 +121,9 @@ export class Properties {
   }
 
   #build(found) {
+    const focus = this.#focused() ?? this.#refocus;
+    // A renamed entity is gone for a moment; its field gets the focus back.
+    this.#refocus = found ? null : focus;
     this.#inputs = [];
     this.#title.textContent = found?.title ?? 'Property';
     this.#title.title = found?.title ?? '';
@@ -81,6 +133,17 @@ export class Properties {
       return;
     }
     fill(this.#body, ...found.sections.map((section) => this.#section(section)));
+    if (focus && document.activeElement === document.body) focus();
+  }
+
+  /** Gives the focus back to the same field of what is built next; null where it is elsewhere. */
+  #focused() {
+    const field = document.activeElement?.closest('.field');
+    if (!field || !this.#body.contains(field)) return null;
+    const {path} = field.dataset;
+    const at = [...field.querySelectorAll('input, select')].indexOf(document.activeElement);
+    return () => [...this.#body.querySelectorAll('.field')]
+      .find((one) => one.dataset.path === path)?.querySelectorAll('input, select')[at]?.focus();
   }
 
   #section(section) {
@@ -116,27 +179,35 @@ export class Properties {
   async #commit(section, field, value, element, note) {
     note.textContent = '';
     element.classList.add('pending');
+    // Several changes of one field may be on their way; the last one decides.
+    const turn = (this.#turns.get(element) ?? 0) + 1;
+    this.#turns.set(element, turn);
     try {
       if (field.rename) await this.#rename(section.target, value);
       else if (field.path === 'geometry.type') {
         await this.#set(section.target, 'geometry', unitGeometry(value));
       } else await this.#set(section.target, field.path, value);
+      if (field.path === 'pose' && this.row?.kind !== 'light') await this.#nextFrame();
       element.classList.add('taken');
       setTimeout(() => element.classList.remove('taken'), 700);
     } catch (fault) {
       note.textContent = faultText(fault);
       note.scrollIntoView({block: 'nearest'});
     }
+    if (this.#turns.get(element) !== turn) return;
     element.classList.remove('pending');
     this.#show();
   }
 
   async #rename(name, to) {
-    await this.request('edit', {op: {kind: 'rename', name, to: to.trim()} });
-    this.store.select([to.trim()]);
+    const op = {kind: 'rename', name, to: to.trim()};
+    await this.#told(op.to, () => this.request('edit', {op}));
+    this.store.select([op.to]);
   }
 
   #set(target, path, value) {
-    return this.request('edit', {op: {kind: 'set', target, path, value} });
+    const owner = this.row.kind === 'light' ? target : this.row.model ?? '';
+    const op = {kind: 'set', target, path, value};
+    return this.#told(owner, () => this.request('edit', {op}));
   }
 }

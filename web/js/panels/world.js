@@ -114,7 +114,9 @@ export class WorldTab {
       this.tree.show(rows, this.#selectedRows());
       this.tree.reveal(found.id);
     } else if (!last && this.#row?.select) this.#row = null;
-    this.update();
+    // At once: what is typed next is meant for what is selected now.
+    this.#update();
+    this.properties.refresh();
   }
 
   #menu(row, x, y) {
@@ -142,6 +144,8 @@ export class WorldTab {
 
   /** Puts the focus into the name of what is selected. */
   rename() {
+    this.#update();
+    this.properties.refresh();
     this.properties.element.querySelector('[data-path="name"] input:not([readonly])')?.focus();
   }
 }

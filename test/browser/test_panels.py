@@ -1,0 +1,445 @@
+"""The bars, panels and dialogs around the view, against a real node."""
+from __future__ import annotations
+
+import os
+
+import pytest
+from gazebo_msgs.srv import GetModelState, GetPhysicsProperties
+from pytest import approx
+from support import Node, wait_for
+
+HINGED = """<sdf version="1.7"><model name="gate"><pose>0 0 1 0 0 0</pose>
+  <link name="post"><inertial><mass>1</mass></inertial></link>
+  <link name="leaf"><inertial><mass>1</mass></inertial></link>
+  <joint name="fixed_to_world" type="fixed"><parent>world</parent><child>post</child></joint>
+  <joint name="hinge" type="revolute"><parent>post</parent><child>leaf</child>
+    <axis><xyz>0 0 1</xyz></axis></joint>
+</model></sdf>"""
+
+
+@pytest.fixture(scope="module")
+def node(tmp_path_factory):
+    running = Node(tmp_path_factory.mktemp("node"), "worlds/empty.world")
+    yield running
+    running.close()
+
+
+@pytest.fixture
+def editor(node, browser):
+    """A page on an empty world that stands still."""
+    opened = browser.open(node.url)
+    for request in ("pause", "new"):
+        opened.get(f"editor.request({request!r}, {request!r} === 'new' ? {{discard: true}} : {{}})")
+    opened.until("editor.store.document.models.length === 1", "the empty world")
+    opened.until("editor.store.stats.paused", "the pause")
+    yield opened
+    assert opened.faults == []
+    opened.close()
+
+
+def with_box(editor, place=(0.0, 0.0)):
+    return editor.place("Box", (*place, 0.0))
+
+
+# -- properties -----------------------------------------------------------------------------------
+
+def test_a_typed_position_moves_the_model_and_is_what_services_tell(editor, node):
+    with_box(editor)
+    editor.row("unit_box").click()
+    field = editor.field("pose x")
+    field.fill("1.5")
+    field.press("Enter")
+    wait_for(lambda: node.ask("get_model_state", GetModelState, model_name="unit_box")
+             .pose.position.x == approx(1.5), "the move")
+    editor.field("pose yaw").fill("90deg")
+    editor.field("pose yaw").press("Enter")
+    wait_for(lambda: editor.field("pose yaw").input_value() == "1.5708", "the turn")
+    assert editor.field("pose x").input_value() == "1.5"
+
+
+def test_masses_sizes_and_friction_are_set_where_they_are_shown(editor):
+    with_box(editor)
+    editor.row("unit_box").click()
+    editor.page.keyboard.press("ArrowRight")
+    editor.row("link").click()
+    editor.page.get_by_text("Inertial", exact=True).click()
+    for label, text, path in (("mass", "2.5", "inertial.mass"),
+                              ("size z", "0.5", "collisions[0].geometry.size[2]"),
+                              ("friction mu", "0.3", "collisions[0].surface.mu")):
+        field = editor.field(label).first
+        field.fill(text)
+        field.press("Enter")
+        wait_for(lambda path=path, text=text: editor.get(
+            f"editor.store.model('unit_box').links[0].{path}") == float(text), label)
+    assert editor.get("editor.store.history.undo.length") == 4
+
+
+def test_a_number_that_makes_no_sense_is_refused_and_the_old_one_comes_back(editor):
+    with_box(editor)
+    editor.row("unit_box").click()
+    editor.page.keyboard.press("ArrowRight")
+    editor.row("link").click()
+    editor.page.get_by_text("Inertial", exact=True).click()
+    mass = editor.field("mass")
+    mass.fill("-1")
+    mass.press("Enter")
+    editor.page.get_by_text("mass: must be above 0").wait_for()
+    assert mass.input_value() == "1"
+    assert editor.get("editor.store.history.undo.length") == 1
+
+
+def test_a_name_that_is_taken_is_refused_by_the_simulator_and_said_at_the_field(editor):
+    with_box(editor)
+    with_box(editor, (2.0, 1.0))
+    editor.row("unit_box_0").click()
+    name = editor.field("name")
+    name.fill("unit_box")
+    name.press("Enter")
+    note = editor.page.locator('[data-path="name"] .field-note')
+    wait_for(lambda: "unit_box" in note.text_content(), "the refusal")
+    assert name.input_value() == "unit_box_0"
+    assert set(editor.names()) == {"ground_plane", "unit_box", "unit_box_0"}
+
+
+def test_the_world_s_own_properties_reach_the_engine_and_can_be_undone(editor, node):
+    editor.row("Physics").click()
+    gravity = editor.field("gravity z")
+    gravity.fill("-1.62")
+    gravity.press("Enter")
+
+    def in_node():
+        return node.ask("get_physics_properties", GetPhysicsProperties).gravity.z
+
+    wait_for(lambda: in_node() == approx(-1.62), "the moon's gravity")
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("Control+z")
+    wait_for(lambda: in_node() == approx(-9.8), "the earth's gravity")
+    wait_for(lambda: gravity.input_value() == "-9.8", "the echo")
+
+
+def test_lights_scene_and_fog_are_edited_in_the_panel(editor):
+    editor.row("Scene").click()
+    editor.page.get_by_role("checkbox", name="fog").check()
+    editor.until("editor.store.document.scene.fog !== null", "the fog")
+    density = editor.field("density")
+    density.fill("0.25")
+    density.press("Enter")
+    editor.until("editor.store.document.scene.fog.density === 0.25", "the density")
+    editor.row("sun").click()
+    editor.page.get_by_role("combobox", name="type").select_option("point")
+    editor.until("editor.store.light('sun').type === 'point'", "the other type")
+    editor.field("range").wait_for()
+
+
+# -- history ---------------------------------------------------------------------------------------
+
+def test_the_history_is_in_words_and_takes_back_several_steps_at_once(editor):
+    with_box(editor)
+    editor.place("Sphere", (2.0, 1.0, 0.0))
+    editor.place("Point light", (-1.0, 1.0, 0.0))
+    editor.button("Undo history").click()
+    labels = editor.page.locator(".menu.history button").all_text_contents()
+    assert [label.lower() for label in labels] == [
+        "insert user_point_light_0", "insert unit_sphere", "insert unit_box"]
+    editor.page.locator(".menu.history button").nth(1).click()
+    wait_for(lambda: editor.names() == ["ground_plane", "unit_box"], "the world before")
+    editor.button("Redo history").click()
+    editor.page.locator(".menu.history button").nth(1).click()
+    wait_for(lambda: len(editor.names()) == 3, "the sphere's return")
+    editor.until("editor.store.document.lights.length === 2", "the light's return")
+
+
+# -- keyboard --------------------------------------------------------------------------------------
+
+def test_selecting_renaming_and_deleting_need_no_mouse(editor):
+    with_box(editor)
+    with_box(editor, (2.0, 1.0))
+    press = editor.page.keyboard.press
+    press("Escape")
+    editor.until("editor.store.selection.length === 0", "an empty selection")
+    for _ in range(12):
+        if editor.get("document.activeElement.getAttribute('role')") == "tree":
+            break
+        press("F6")
+    press("End")
+    press("Home")
+    for _ in range(9):
+        press("ArrowDown")
+    editor.until("editor.store.selection.join() === 'unit_box_0'", "the box, chosen in the tree")
+    press("F2")
+    editor.until("document.activeElement.value === 'unit_box_0'", "the name field")
+    editor.page.keyboard.type("crate")
+    press("Enter")
+    editor.until("editor.store.selection.join() === 'crate'", "the new name")
+    press("Tab")
+    editor.until("document.activeElement.ariaLabel === 'pose x'", "the next field")
+    editor.page.keyboard.type("3")
+    press("Tab")
+    wait_for(lambda: editor.model("crate")["pose"][0] == approx(3.0), "the typed place")
+    editor.page.locator(".world-tree").focus()
+    press("Delete")
+    wait_for(lambda: "crate" not in editor.names(), "the deletion")
+    press("Control+z")
+    wait_for(lambda: "crate" in editor.names(), "the return")
+
+
+def test_menus_open_and_run_by_keys_and_show_the_hotkeys(editor):
+    editor.page.get_by_role("menuitem", name="File").focus()
+    press = editor.page.keyboard.press
+    press("ArrowRight")
+    press("ArrowRight")
+    press("ArrowRight")
+    press("Enter")
+    editor.page.get_by_role("menuitemcheckbox", name="Grid").wait_for()
+    press("Enter")
+    editor.until("editor.store.overlays.scene.grid === false", "the grid's end")
+    press("F1")
+    chart = editor.page.get_by_role("dialog", name="Hotkeys")
+    assert "Ctrl+Shift+S" in chart.text_content()
+    press("Escape")
+    wait_for(lambda: chart.count() == 0, "the chart's end")
+    editor.get("editor.store.setOverlay('grid', true)")
+
+
+def test_letters_typed_into_fields_are_no_hotkeys(editor):
+    with_box(editor)
+    editor.page.keyboard.press("Control+f")
+    editor.page.keyboard.type("ts box")
+    assert editor.get("editor.store.mode") == "select"
+    assert editor.page.get_by_label("Find a model or light").input_value() == "ts box"
+
+
+# -- time ------------------------------------------------------------------------------------------
+
+def test_time_runs_stands_steps_and_is_reset(editor):
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("Space")
+    editor.until("!editor.store.stats.paused && editor.store.stats.iterations > 20", "running")
+    editor.button("Pause").click()
+    editor.until("editor.store.stats.paused", "the pause")
+    wait_for(lambda: not editor.button("Step").is_disabled(), "the step button")
+    before = editor.get("editor.store.stats.iterations")
+    editor.page.get_by_role("spinbutton", name="Steps").fill("7")
+    editor.button("Step").click()
+    editor.until(f"editor.store.stats.iterations === {before + 7}", "seven steps")
+    editor.button("Reset time").click()
+    editor.until("editor.store.stats.sim_ns === 0", "the reset")
+    shown = editor.page.get_by_label("Sim Time", exact=True)
+    wait_for(lambda: shown.text_content() == "00 00:00:00.000", "the figure")
+
+
+# -- files -----------------------------------------------------------------------------------------
+
+def in_dialog(editor, title):
+    dialog = editor.page.get_by_role("dialog", name=title)
+    dialog.get_by_role("button", name="my_simulations/worlds").click()
+    wait_for(lambda: dialog.get_by_label("Folder").text_content().endswith("/worlds"), "the folder")
+    return dialog
+
+
+def save(editor, name):
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = in_dialog(editor, "Save World As")
+    dialog.get_by_role("textbox", name="File name").fill(name)
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    return dialog
+
+
+def test_a_file_is_replaced_only_after_a_question(editor, node):
+    path = os.path.join(node.worlds, "twice.world")
+    with open(path, "w", encoding="utf-8") as stream:
+        stream.write("precious")
+    with_box(editor)
+    dialog = save(editor, "twice")
+    question = editor.page.get_by_role("dialog", name="Overwrite the file?")
+    question.get_by_role("button", name="Cancel").click()
+    assert open(path, encoding="utf-8").read() == "precious"
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    question.get_by_role("button", name="Overwrite").click()
+    wait_for(lambda: "unit_box" in open(path, encoding="utf-8").read(), "the new content")
+    with_box(editor, (2.0, 1.0))
+    editor.page.keyboard.press("Control+s")
+    wait_for(lambda: "unit_box_0" in open(path, encoding="utf-8").read(), "Ctrl+S")
+
+
+def test_unsaved_changes_are_asked_for_before_another_world_is_opened(editor, node):
+    with_box(editor)
+    save(editor, "one_box")
+    editor.until("!editor.store.history.dirty", "the saved world")
+    with_box(editor, (2.0, 1.0))
+    editor.page.keyboard.press("Control+o")
+    question = editor.page.get_by_role("dialog", name="Save the changes?")
+    question.get_by_role("button", name="Don't save").click()
+    dialog = in_dialog(editor, "Open World")
+    dialog.get_by_role("option", name="one_box.world").dblclick()
+    wait_for(lambda: editor.names() == ["ground_plane", "unit_box"], "the opened world")
+    assert editor.page.title().startswith("one_box.world")
+
+
+def write_world(node, name, text):
+    with open(os.path.join(node.worlds, name), "w", encoding="utf-8") as stream:
+        stream.write(text)
+
+
+def test_what_is_wrong_in_an_opened_file_is_told_with_its_line(editor, node):
+    write_world(node, "nameless.world", """<sdf version="1.6">
+ <world name="w">
+  <model></model>
+ </world>
+</sdf>
+""")
+    editor.page.keyboard.press("Control+o")
+    dialog = in_dialog(editor, "Open World")
+    dialog.get_by_role("option", name="nameless.world").dblclick()
+    editor.button("Messages").click()
+    messages = editor.page.get_by_role("dialog", name="All messages")
+    wait_for(lambda: "nameless.world:3" in messages.text_content(), "the place")
+    assert "no name" in messages.text_content()
+
+
+def test_a_file_that_cannot_be_read_leaves_the_world_and_says_why(editor, node):
+    write_world(node, "hollow.world", "<sdf version='1.6'>\n</sdf>\n")
+    with_box(editor)
+    save(editor, "kept")
+    editor.until("!editor.store.history.dirty", "the saved world")
+    editor.page.keyboard.press("Control+o")
+    dialog = in_dialog(editor, "Open World")
+    dialog.get_by_role("option", name="hollow.world").click()
+    dialog.get_by_role("button", name="Open", exact=True).click()
+    reason = dialog.get_by_role("alert")
+    reason.wait_for()
+    assert "world" in reason.text_content()
+    dialog.get_by_role("button", name="Cancel").click()
+    assert editor.names() == ["ground_plane", "unit_box"]
+
+
+# -- library, forces, joints -----------------------------------------------------------------------
+
+def test_a_model_of_the_library_follows_the_mouse_and_is_placed_by_a_click(editor):
+    editor.page.get_by_role("tab", name="Insert").click()
+    editor.page.get_by_role("searchbox", name="Find a model", exact=True).fill("table")
+    card = editor.page.get_by_role("button", name="Table", exact=True)
+    card.click()
+    editor.until("editor.store.mode === 'insert'", "the ghost")
+    editor.page.mouse.move(*editor.pixel((0.5, 0.5, 0.0)))
+    editor.click((1.0, 1.0, 0.0))
+    wait_for(lambda: "table" in editor.names(), "the table")
+    assert editor.model("table")["pose"][:2] == approx([1.0, 1.0], abs=0.02)
+    assert editor.get("editor.store.mode") == "select"
+
+
+def test_a_force_from_the_dialog_pushes_the_box(editor):
+    with_box(editor)
+    editor.click((0.0, 0.0, 0.5), button="right")
+    editor.page.get_by_role("menuitem", name="Apply Force/Torque").click()
+    dialog = editor.page.get_by_role("dialog", name="Apply Force/Torque")
+    dialog.get_by_role("textbox", name="Force x").fill("60")
+    dialog.get_by_role("textbox", name="Force y").fill("80")
+    dialog.get_by_role("textbox", name="Force y").press("Enter")
+    magnitude = dialog.get_by_role("textbox", name="Force magnitude")
+    wait_for(lambda: magnitude.input_value() == "100", "the magnitude")
+    dialog.get_by_role("textbox", name="Steps").fill("100")
+    dialog.get_by_role("textbox", name="Steps").press("Tab")
+    dialog.get_by_role("button", name="Apply Force").click()
+    dialog.get_by_role("button", name="Cancel").click()
+    editor.get("editor.request('step', {steps: 150})")
+    x, y = wait_for(lambda: editor.model("unit_box")["pose"][0] > 0.05 and
+                    editor.model("unit_box")["pose"][:2], "the push")
+    assert y / x == approx(80 / 60, rel=0.05)
+
+
+def test_the_joints_panel_turns_a_hinge(editor):
+    editor.get(f"editor.request('edit', {{op: {{kind: 'insert', sdf: {HINGED!r}}}}})")
+    wait_for(lambda: "gate" in editor.names(), "the gate")
+    editor.button("Joints panel").click()
+    editor.row("gate").click()
+    panel = editor.page.locator("#right")
+    panel.get_by_role("tab", name="Velocity").click()
+    speed = panel.get_by_role("textbox", name="hinge velocity")
+    speed.fill("1")
+    speed.press("Enter")
+    editor.button("Play").click()
+    now = panel.get_by_label("hinge now")
+    wait_for(lambda: now.text_content() and abs(float(now.text_content().split()[0])) > 0.05,
+             "the hinge's turn")
+    editor.button("Pause").click()
+    editor.button("Joints panel").click()
+    wait_for(lambda: panel.is_hidden(), "the closed panel")
+
+
+# -- plots, logs, messages -------------------------------------------------------------------------
+
+def test_a_falling_box_is_plotted_and_exported(editor, tmp_path):
+    name = with_box(editor)
+    editor.get(f"editor.actions.move({{{name!r}: [0, 0, 4, 0, 0, 0, 1]}})")
+    editor.page.keyboard.press("Control+p")
+    editor.page.get_by_label("Find a variable").fill(f"{name}.vz")
+    editor.page.get_by_role("option", name=f"{name}.vz").click()
+    editor.get("editor.actions.play()")
+    editor.until("editor.store.stats.sim_ns > 5e8", "half a second of falling")
+    editor.get("editor.actions.pause()")
+    with editor.page.expect_download() as csv:
+        editor.button("CSV").click()
+    csv.value.save_as(tmp_path / "plot.csv")
+    head, *rows = (tmp_path / "plot.csv").read_text().splitlines()
+    assert head == f"time,{name}.vz"
+    pairs = [tuple(map(float, row.split(","))) for row in rows]
+    falling = [(time, rate) for time, rate in pairs if 0.05 < time < 0.5]
+    assert len(falling) > 3
+    for time, rate in falling:
+        assert rate == approx(-9.8 * time, rel=0.02)
+    with editor.page.expect_download() as png:
+        editor.button("PNG").click()
+    png.value.save_as(tmp_path / "plot.png")
+    assert (tmp_path / "plot.png").read_bytes()[:4] == b"\x89PNG"
+    editor.button("Close plots").click()
+
+
+def test_what_was_recorded_is_replayed_with_a_slider(editor):
+    name = with_box(editor)
+    editor.get(f"editor.actions.move({{{name!r}: [0, 0, 3, 0, 0, 0, 1]}})")
+    editor.page.keyboard.press("Control+d")
+    dialog = editor.page.get_by_role("dialog", name="Log Data")
+    dialog.get_by_role("textbox", name="Log name").fill("falling")
+    dialog.get_by_role("button", name="Record").click()
+    dialog.get_by_role("button", name="Stop recording").wait_for()
+    editor.get("editor.actions.play()")
+    wait_for(lambda: editor.model(name)["pose"][2] < 1.5, "the fall")
+    editor.get("editor.actions.pause()")
+    dialog.get_by_role("button", name="Stop recording").click()
+    dialog.get_by_role("button", name="Replay falling").click()
+    slider = editor.page.get_by_role("slider", name="Log time")
+    slider.wait_for()
+    wait_for(lambda: editor.model(name) and editor.model(name)["pose"][2] > 2.9, "its beginning")
+    slider.focus()
+    editor.page.keyboard.press("End")
+    wait_for(lambda: editor.model(name)["pose"][2] < 1.5, "its end")
+    editor.button("Close log").click()
+    editor.button("Play").wait_for()
+
+
+# -- screens ---------------------------------------------------------------------------------------
+
+def test_everything_fits_a_small_laptop(editor):
+    for bar in ("#menubar", "#toolbar", "#timebar", "#left", "#app"):
+        wide = editor.get(f"(() => {{ const bar = document.querySelector('{bar}');"
+                          " return [bar.scrollWidth, bar.clientWidth]; })()")
+        assert wide[0] <= wide[1], bar
+    assert editor.get("document.querySelector('#view').clientHeight") > 600
+
+
+def test_dark_and_light_follow_the_browser_until_the_user_chooses(node, browser):
+    light = browser.open(node.url, color_scheme="light")
+
+    def brightness():
+        color = light.get("getComputedStyle(document.querySelector('#left')).backgroundColor")
+        return sum(int(part) for part in color[4:-1].split(",")[:3])
+
+    assert brightness() > 600
+    light.page.get_by_role("menuitem", name="Window").click()
+    light.page.get_by_role("menuitemcheckbox", name="Colours: dark").click()
+    wait_for(lambda: brightness() < 200, "the dark")
+    light.page.reload()
+    light.until("Boolean(window.editor && editor.store.document)", "the world again")
+    assert brightness() < 200
+    light.close()
