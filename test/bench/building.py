@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Prints what a large building costs. Run it in a shell with the workspace, on a quiet machine.
 
-usage: building.py      500 walls with 200 openings: plan to SDF, and the speed with 20 boxes
-                        awake in it beside bare PyBullet with the same bodies
+usage: building.py      500 walls with 200 openings: plan to SDF, edits in the page, and the speed
+                        with 20 boxes awake in it beside bare PyBullet with the same bodies
 
 Nothing here fails on a slow machine.
 """
@@ -17,11 +17,53 @@ from typing import Any, List, Tuple
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
-from bench import Clock, Row
+from bench import EMPTY, Clock, Row
+from editor import browser, editor_url
 from server import Server, master, wait
 
 ROWS, COLUMNS, OPENINGS, BOXES = 25, 10, 200, 20
-SDF_SECONDS, SHARE = 0.5, 0.85
+SDF_SECONDS, SHARE, EDIT_MS = 0.5, 0.85, 50.0
+
+EDITS = """async (plan) => {
+  const {mount} = await import('/js/building/building.js');
+  const element = document.getElementById('building');
+  element.hidden = false;
+  document.body.classList.add('building');
+  const {session, canvas} = await mount(element, window.editor);
+  session.open(plan);
+  canvas.fit();
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
+  await frame();
+  let spent = 0;
+  const draw = canvas.draw.bind(canvas);
+  canvas.draw = () => {
+    const began = performance.now();
+    draw();
+    spent += performance.now() - began;
+  };
+  const sheet = canvas.element;
+  sheet.setPointerCapture = () => {};
+  const send = (type, point) => {
+    const [clientX, clientY] = canvas.toClient(point);
+    const began = performance.now();
+    sheet.dispatchEvent(new PointerEvent(type, {clientX, clientY, button: 0, bubbles: true}));
+    spent += performance.now() - began;
+  };
+  const wall = session.level.walls[340];
+  const from = [(wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2];
+  const took = [];
+  send('pointerdown', from);
+  for (let step = 1; step <= 60; step++) {
+    spent = 0;
+    send('pointermove', [from[0] + step * 0.03, from[1] + step * 0.03]);
+    await frame();
+    await frame();
+    took.push(spent);
+  }
+  send('pointerup', [from[0] + 1.8, from[1] + 1.8]);
+  return took;
+}"""
+"""Drags a wall in the page: milliseconds each move takes, drawing the plan included."""
 
 
 def plan() -> Any:
@@ -67,6 +109,17 @@ def convert() -> Row:
     middle = statistics.median(took)
     return (f"{2 * ROWS * COLUMNS} walls, {OPENINGS} openings to SDF, median / first",
             f"{middle:.2f} / {took[0]:.2f} s", f"{SDF_SECONDS} s", middle <= SDF_SECONDS)
+
+
+def edits() -> Row:
+    """A wall dragged by the mouse: every move changes the plan and draws it."""
+    with Server(EMPTY, "_gui:=true"), browser() as page:
+        page.goto(editor_url())
+        page.wait_for_selector("#view canvas")
+        took = sorted(page.evaluate(EDITS, plan()))
+    middle, worst = took[len(took) // 2], took[int(0.95 * len(took))]
+    return ("an edit of it in the page, median / p95", f"{middle:.1f} / {worst:.1f} ms",
+            f"{EDIT_MS:g} ms", worst <= EDIT_MS)
 
 
 def bare(seconds: float = 4.0) -> float:
@@ -151,7 +204,7 @@ def main() -> None:
     rows = [convert()]
     with master():
         rospy.init_node("bench", disable_rostime=True)
-        rows.append(speed())
+        rows += [edits(), speed()]
     for what, found, wanted, good in rows:
         print(f"{'ok ' if good else 'LOW'} {what:58} {found:34} {wanted}")
 

@@ -1,7 +1,9 @@
 /** The building in the 3D view while it is drawn, and its place in the world afterwards. */
 import {isEmpty, withoutImages} from './plan.js';
 
+/** Milliseconds after a change until the preview is asked for; large buildings wait longer. */
 const PAUSE = 120;
+const LONGEST_PAUSE = 2000;
 
 export class Preview {
   /**
@@ -20,6 +22,7 @@ export class Preview {
   #shown = null;
   #timer = 0;
   #asking = false;
+  #took = 0;
   #ended = false;
 
   #changed = () => {
@@ -27,7 +30,7 @@ export class Preview {
     this.#timer = setTimeout(() => {
       this.#timer = 0;
       this.#ask();
-    }, PAUSE);
+    }, Math.min(Math.max(PAUSE, 2 * this.#took), LONGEST_PAUSE));
   };
 
   /** One request at a time; what came in between is asked for afterwards. */
@@ -41,6 +44,7 @@ export class Preview {
       return;
     }
     this.#asking = true;
+    const began = performance.now();
     try {
       const {model, issues = []} = await this.request('building_sdf', {plan: withoutImages(plan), text: false});
       if (!this.#ended) this.store.setPreview?.(model);
@@ -49,6 +53,7 @@ export class Preview {
       // The last picture stays: a plan with a fault is not shown, and is told beside the canvas.
       this.onIssues(fault.issues ?? [{severity: 'error', message: fault.message}]);
     } finally {
+      this.#took = performance.now() - began;
       this.#asking = false;
       this.#changed();
     }
