@@ -59,6 +59,11 @@ def test_every_option_of_a_state_log_is_understood():
     assert not parse(["--record_path", "/tmp/logs"]).recording.on
 
 
+def test_that_no_state_log_is_written_is_said_in_one_line():
+    (notice,) = parse(["-r"]).notices
+    assert "--record" in notice and "no state log" in notice
+
+
 def test_steps_seed_and_physics_preset_are_numbers_and_a_name():
     options = parse(["--iters", "500", "--seed", "7.0", "-o", "fast"])
     assert (options.iterations, options.seed, options.profile) == (500, 7, "fast")

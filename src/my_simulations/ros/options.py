@@ -101,7 +101,7 @@ def parser(program: str = "gzserver") -> argparse.ArgumentParser:
 
 
 def _add_recording(made: argparse.ArgumentParser) -> None:
-    made.add_argument("-r", "--record", action="store_true", help="record a state log")
+    made.add_argument("-r", "--record", action="store_true", help="accepted without effect, like the next five: no log is written")
     made.add_argument("--record_path", metavar="FOLDER", default="", help="where the log goes")
     made.add_argument("--record_period", type=float, default=-1.0, metavar="SECONDS",
                       help="sim time between recorded states")
@@ -161,6 +161,8 @@ def _notices(given: argparse.Namespace) -> List[str]:
     plugins = given.server_plugin + given.gui_plugin
     if plugins:
         notices.append(f"plugins of the command line are not loaded: {', '.join(plugins)}")
+    if given.record:
+        notices.append("--record is accepted without effect: no state log is written")
     if given.more:
         notices.append(f"arguments for plugins are not used: {' '.join(given.more)}")
     return notices
