@@ -101,7 +101,8 @@ def parser(program: str = "gzserver") -> argparse.ArgumentParser:
 
 
 def _add_recording(made: argparse.ArgumentParser) -> None:
-    made.add_argument("-r", "--record", action="store_true", help="accepted without effect, like the next five: no log is written")
+    made.add_argument("-r", "--record", action="store_true",
+                      help="accepted without effect, like the next five: no log is written")
     made.add_argument("--record_path", metavar="FOLDER", default="", help="where the log goes")
     made.add_argument("--record_period", type=float, default=-1.0, metavar="SECONDS",
                       help="sim time between recorded states")
