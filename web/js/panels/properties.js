@@ -24,6 +24,10 @@ export class Properties {
     this.#title = h('h2', {class: 'properties-title'});
     fill(element, this.#title, this.#body);
     this.update = onceAFrame(() => this.#show());
+    // Escape leaves a field that holds nothing new; the next one is the view's.
+    element.addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') document.getElementById('view').focus();
+    });
     for (const event of ['document', 'entity', 'connection']) {
       store.addEventListener(event, this.update);
     }

@@ -1,0 +1,71 @@
+"""Several browsers on one world, and what outlives a crash."""
+from __future__ import annotations
+
+import os
+import signal
+import xmlrpc.client
+
+from pytest import approx
+from support import wait_for
+
+
+def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, browser):
+    node = launch("worlds/empty.world")
+    first, second = browser.open(node.url), browser.open(node.url, color_scheme="light")
+    first.place("Box", (0.0, 0.0, 0.0))
+    wait_for(lambda: "unit_box" in second.names(), "the box in the other browser")
+    second.row("unit_box").click()
+    second.field("pose y").fill("1.25")
+    second.field("pose y").press("Enter")
+    wait_for(lambda: first.model("unit_box")["pose"][1] == approx(1.25), "the move in the first")
+    # What is chosen is everybody's own.
+    second.page.keyboard.press("Escape")
+    second.page.keyboard.press("Escape")
+    first.row("ground_plane").click()
+    second.until("editor.store.selection.length === 0", "the second's own selection")
+    for _ in range(2):
+        first.page.locator("#view").focus()
+        first.page.keyboard.press("Control+z")
+    wait_for(lambda: "unit_box" not in second.names(), "the undone insertion")
+    assert first.faults == second.faults == []
+    first.close()
+    second.close()
+
+
+def test_unsaved_changes_survive_a_killed_node_and_are_offered_again(launch, browser):
+    node = launch("worlds/empty.world")
+    editor = browser.open(node.url)
+    editor.place("Cylinder", (0.5, 1.0, 0.0))
+    pose = editor.model("unit_cylinder")["pose"]
+    kept = os.path.join(node.home, ".cache", "my_simulations", "autosave")
+    wait_for(lambda: os.path.isdir(kept) and autosaved(kept, "unit_cylinder"), "the autosave")
+    os.kill(server_pid(node), signal.SIGKILL)
+    editor.page.get_by_text("The connection to the simulator is lost").wait_for()
+    editor.close()
+    node.close()
+
+    again = browser.open(launch("worlds/empty.world").url)
+    offer = again.page.get_by_role("dialog", name="Restore unsaved changes?")
+    offer.get_by_role("button", name="Restore").click()
+    wait_for(lambda: "unit_cylinder" in again.names(), "the cylinder's return")
+    assert again.model("unit_cylinder")["pose"] == approx(pose, abs=1e-5)
+    again.until("editor.store.history.dirty", "the mark of unsaved changes")
+    again.close()
+
+
+def autosaved(folder, name):
+    """Whether an autosave that is complete (its .json comes last) holds a name."""
+    for entry in os.listdir(folder):
+        if not entry.endswith(".json"):
+            continue
+        with open(os.path.join(folder, entry[:-5] + ".world"), encoding="utf-8") as stream:
+            if name in stream.read():
+                return True
+    return False
+
+
+def server_pid(node):
+    """The process of the node /gazebo, as it tells itself."""
+    code, _, address = xmlrpc.client.ServerProxy(node.master).lookupNode("/test", "/gazebo")
+    assert code == 1
+    return xmlrpc.client.ServerProxy(address).getPid("/test")[2]
