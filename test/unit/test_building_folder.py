@@ -70,6 +70,24 @@ def test_a_building_is_opened_as_it_was_drawn():
     assert [entry["name"] for entry in building_list()] == ["Two_rooms"]
 
 
+def test_what_config_says_of_a_building_is_told_when_it_is_opened():
+    save(version="2.1", description="A <house>", author="Ada", email="ada@example.org")
+    assert building_load("Two rooms")["about"] == {
+        "version": "2.1", "description": "A <house>", "author": "Ada", "email": "ada@example.org"}
+
+
+@pytest.mark.parametrize("config", [None, b"", b"<model", b"<other/>"])
+def test_a_building_with_a_broken_config_is_opened_all_the_same(config):
+    path = save()["path"]
+    file = os.path.join(path, "model.config")
+    os.unlink(file)
+    if config is not None:
+        with open(file, "wb") as stream:
+            stream.write(config)
+    loaded = building_load(path)
+    assert loaded["about"]["author"] == "" and len(loaded["plan"]["levels"]) == 2
+
+
 def test_without_its_plan_a_building_is_read_from_its_model():
     path = save()["path"]
     os.unlink(os.path.join(path, folders.PLAN_FILE))

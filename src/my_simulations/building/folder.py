@@ -120,6 +120,22 @@ def load_building(path: str) -> Tuple[Plan, List[Issue]]:
     return plan, [*issues, *found, *more]
 
 
+def read_about(path: str) -> About:
+    """What the model.config of a building's folder says; blank where there is none."""
+    from lxml import etree
+
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, recover=True)
+    try:
+        root = etree.parse(os.path.join(path, "model.config"), parser).getroot()
+    except (OSError, etree.XMLSyntaxError):
+        return About()
+    if root is None:
+        return About()
+    texts = (root.findtext(tag, "").strip()
+             for tag in ("version", "description", "author/name", "author/email"))
+    return About(*texts)
+
+
 def list_buildings(parent: str) -> List[Dict[str, str]]:
     """The folders below `parent` that hold a building's plan or a model: name, path and title."""
     try:

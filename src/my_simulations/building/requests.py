@@ -6,7 +6,7 @@ everything as it was.
 from __future__ import annotations
 
 import os
-from dataclasses import fields
+from dataclasses import asdict, fields
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 from ..description.model import Model
@@ -20,6 +20,7 @@ from .folder import (
     default_folder,
     list_buildings,
     load_building,
+    read_about,
     save_building,
 )
 from .plan_json import plan_from_json, plan_to_json
@@ -58,7 +59,11 @@ def building_save(plan: Any, name: str, options: Mapping[str, Any],
 
 
 def building_load(name: str, roots: Sequence[str] = ()) -> Dict[str, Any]:
-    """The plan of a saved building, by its name in the default folder or by its path."""
+    """A saved building, by its name in the default folder or by its path.
+
+    Returns:
+        plan, path, issues, and what its model.config says as `about`.
+    """
     path = os.path.expanduser(name.strip())
     if not os.path.isabs(path):
         path = os.path.join(default_folder(), checked_name(name))
@@ -66,7 +71,8 @@ def building_load(name: str, roots: Sequence[str] = ()) -> Dict[str, Any]:
     if not os.path.exists(path):
         raise CommandError(f"{path} does not exist")
     plan, issues = load_building(path)
-    return {"plan": plan_to_json(plan), "path": path, "issues": issues}
+    return {"plan": plan_to_json(plan), "path": path, "issues": issues,
+            "about": asdict(read_about(path))}
 
 
 def building_list(parents: Sequence[str] = ()) -> List[Dict[str, str]]:

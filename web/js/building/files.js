@@ -102,10 +102,10 @@ export class Files {
 
   /** Opens a building by name or path. */
   async load(name) {
-    const {plan, path, issues = []} = await this.request('building_load', {name});
+    const {plan, path, issues = [], about = {}} = await this.request('building_load', {name});
     const parts = path.split('/');
     const isFolder = !/\.(sdf|world)$/.test(path);
-    this.about = {...blankAbout(), folder: isFolder ? parts.slice(0, -1).join('/') : ''};
+    this.about = {...blankAbout(), ...about, folder: isFolder ? parts.slice(0, -1).join('/') : ''};
     this.session.open(plan, isFolder ? {path, name: plan.name} : null);
     this.session.say(issues.length ? `Opened, but ${issues[0].message}` : '');
   }
