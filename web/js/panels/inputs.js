@@ -218,14 +218,14 @@ function poseInput(field, commit, refuse) {
     element: h('div', {class: 'pose-input'}, ...POSE_PARTS.map((_, at) => cell(at))),
     show(value) {
       shown = value ? sixOf(value) : [0, 0, 0, 0, 0, 0];
-      parts.forEach((part, at) => part.show(tidy(shown[at])));
+      parts.forEach((part, at) => part.show(tidy(shown[at], at < 3 ? 1e5 : 1e4)));
     },
   };
 }
 
 /** What fits the field; a physics engine's 0.49999998 is what the user put at 0.5. */
-function tidy(value) {
-  const rounded = Math.round(value * 1e5) / 1e5;
+function tidy(value, parts) {
+  const rounded = Math.round(value * parts) / parts;
   return rounded === 0 ? 0 : rounded;
 }
 
