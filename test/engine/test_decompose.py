@@ -268,6 +268,15 @@ def test_work_without_end_is_ended_and_not_kept(tmp_path, monkeypatch):
     assert not (tmp_path / "cache").exists()
 
 
+def test_a_mesh_that_takes_too_much_processor_time_keeps_its_hull_at_once_the_next_time(
+        tmp_path, monkeypatch):
+    with_vhacd(monkeypatch, tmp_path / "fake", "[None for _ in iter(int, 1)]")
+    for tries in (1, 0):
+        parts, codes, said = divided(angle(), tmp_path / "cache", cpu_seconds=2)
+        assert len(parts) == 1 and codes == ["mesh-not-decomposed"]
+        assert len([text for text in said if text.startswith("dividing a mesh")]) == tries
+
+
 def test_a_child_that_cannot_be_started_leaves_the_mesh_as_it_is(tmp_path, monkeypatch):
     for program in ("/bin/false", "/nowhere/python"):
         monkeypatch.setattr(sys, "executable", program)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from dataclasses import replace
 
 import pytest
@@ -252,3 +253,13 @@ def test_resetting_time_keeps_poses_and_velocities(case):
     sim.reset_time()
     assert sim.sim_ns() == 0
     assert sim.model_state("a") == before
+
+
+def test_a_world_at_rest_is_saved_with_the_time_of_the_saving(case):
+    sim = case(box("a"), paused=False).sim
+    deadline = time.monotonic() + 10
+    while sim.step() < 50:
+        assert time.monotonic() < deadline, "time stands still"
+        time.sleep(0.005)
+    before = sim.step()
+    assert present_world(sim).state.iterations >= before

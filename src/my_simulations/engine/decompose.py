@@ -1,13 +1,14 @@
 """Convex parts of a mesh, for bodies that move: PyBullet lets only convex shapes do that.
 
-The work is done by `python -m my_simulations.engine.decompose FOLDER`, a process of its own: it
-takes seconds, and V-HACD may crash. The simulation goes on meanwhile.
+The work is done by `python -m my_simulations.engine.decompose FOLDER CPU_SECONDS`, a process of its
+own: it takes seconds, and V-HACD may crash. The simulation goes on meanwhile.
 """
 from __future__ import annotations
 
 import logging
 import os
 import re
+import resource
 import select
 import signal
 import subprocess
@@ -31,6 +32,7 @@ _VERSION = 1  # to be raised when the same mesh gives other parts than before
 _PARAMETERS = f"{_VERSION} {sorted(_VHACD.items())!r}"
 _THICKNESS_M = (0.001, 0.01)  # of a mesh without volume: a hundredth of its extent within these
 _INPUT, _RESULT, _FALLBACK, _FAULTS = "mesh.npz", "result.parts", "hull.parts", "faults"
+_CPU_S = 60           # V-HACD never ends on some meshes, thin rings for one: then the hull it is
 _PROGRESS = re.compile(rb"^ *(\d+)% \[", re.MULTILINE)
 
 _FLAT, _NOT_DIVIDED = "mesh-flat", "mesh-not-decomposed"
@@ -51,7 +53,8 @@ def _silent(_: str) -> None:
 
 
 def convex_parts(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: Progress = _silent,
-                 issues: Optional[List[Issue]] = None, deadline: float = 120.0) -> List[MeshData]:
+                 issues: Optional[List[Issue]] = None, deadline: float = 120.0,
+                 cpu_seconds: int = _CPU_S) -> List[MeshData]:
     """Convex parts that together have the shape of a mesh, each of about 64 corners at most.
 
     A convex mesh gives its hull; a flat one a thin solid; one that cannot be divided, in
@@ -64,13 +67,14 @@ def convex_parts(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: P
         progress: told in words how far a long piece of work is.
         issues: takes the warnings `mesh-flat` and `mesh-not-decomposed`, without a file.
         deadline: seconds that the work may take.
+        cpu_seconds: processor time that it may take; a mesh that needs more is never tried again.
     """
     cache = PartsCache(default_folder() if cache_dir is None else cache_dir)
     key = content_key(mesh, _PARAMETERS)
     made = cache.get(key)
     if made is None:
         try:
-            made, whole = _in_child(mesh, progress, time.monotonic() + deadline)
+            made, whole = _in_child(mesh, progress, time.monotonic() + deadline, cpu_seconds)
         except OSError as fault:  # no room for files or for one more process
             _log.warning("dividing a mesh was not possible: %s", fault)
             made, whole = Decomposition([mesh], _NOT_DIVIDED), False
@@ -82,7 +86,8 @@ def convex_parts(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: P
     return made.parts
 
 
-def _in_child(mesh: MeshData, progress: Progress, end: float) -> "tuple[Decomposition, bool]":
+def _in_child(mesh: MeshData, progress: Progress, end: float,
+              cpu_seconds: int) -> "tuple[Decomposition, bool]":
     """The work of a child process, and whether it came to its end in time."""
     import numpy as np
 
@@ -91,7 +96,7 @@ def _in_child(mesh: MeshData, progress: Progress, end: float) -> "tuple[Decompos
     with Scratch() as scratch:
         folder = scratch.path
         np.savez(os.path.join(folder, _INPUT), vertices=mesh.vertices, triangles=mesh.triangles)
-        in_time = _run(folder, progress, end)
+        in_time = _run(folder, progress, end, cpu_seconds)
         for name in (_RESULT, _FALLBACK):
             try:
                 made = load(os.path.join(folder, name))
@@ -106,11 +111,11 @@ def _in_child(mesh: MeshData, progress: Progress, end: float) -> "tuple[Decompos
     return Decomposition([mesh], _NOT_DIVIDED), False
 
 
-def _run(folder: str, progress: Progress, end: float) -> bool:
+def _run(folder: str, progress: Progress, end: float, cpu_seconds: int) -> bool:
     """Run the child; False when it had to be killed because its time was over."""
     faults = os.path.join(folder, _FAULTS)
     with open(faults, "wb") as stream, subprocess.Popen(
-            child_process.command("engine.decompose", folder),
+            child_process.command("engine.decompose", folder, str(cpu_seconds)),
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
             env=child_process.environment()) as child:
         assert child.stdout is not None
@@ -120,7 +125,7 @@ def _run(folder: str, progress: Progress, end: float) -> bool:
                 child.wait()
         finally:
             child.kill()
-    if in_time and child.returncode:
+    if in_time and child.returncode not in (0, -signal.SIGXCPU):
         with open(faults, "rb") as said:
             _log.warning("dividing a mesh ended with code %s: %s", child.returncode,
                          said.read()[-2000:].decode(errors="replace").strip())
@@ -153,6 +158,8 @@ def main(argv: List[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
     os.nice(5)  # the physics that runs meanwhile comes first
     folder = argv[1]
+    limit = int(argv[2])
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
     with np.load(os.path.join(folder, _INPUT), allow_pickle=False) as held:
         made = _decomposed(held["vertices"], held["triangles"], folder)
     unfinished = os.path.join(folder, _RESULT + ".new")

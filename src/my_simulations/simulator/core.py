@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace as replaced
-from typing import Callable, Dict, List, Optional
+from typing import Callable, Dict, List, Optional, Tuple
 
 from ..description.flatten import flattened
 from ..description.model import Joint, Model
@@ -21,13 +21,14 @@ from ..engine.api import (
     LoadModel,
     ModelState,
     PhysicsSettings,
+    Ping,
     RemoveModel,
     Reply,
     Run,
     SetClock,
     SetPhysics,
 )
-from ..engine.ring import JOINTS, LINKS
+from ..engine.ring import JOINTS, LINKS, Snapshot
 from ..engine.rows import axis_rows
 from ..errors import CommandError, Issue, Severity, error, warning
 from ..formats.meshes import without_missing_meshes
@@ -219,6 +220,14 @@ class WorldCore(WorldViews):
         return LoadModel(entity.model_id, model, entity.initial_pose,
                          entity.first_link_row, entity.first_joint_row, entity.meshes, state,
                          articulated=entity.articulated)
+
+    def look(self) -> Tuple[List[Entity], Snapshot]:
+        """Everything there is and where it is now; `moment` may be older while a world rests.
+
+        Raises CommandError when there is no engine.
+        """
+        self._call(Ping())
+        return self.moment()
 
     # -- physics ---------------------------------------------------------------------------------
 

@@ -31,7 +31,7 @@ def present_world(simulator: Simulator) -> World:
 
     Models stand in load order, at the poses of one snapshot; physics and gravity are as last set.
     """
-    entities, snapshot = simulator.moment()
+    entities, snapshot = simulator.look()
     world = simulator.world
     models = [replace(unflattened(entity.model), pose=entity.state(snapshot)[0])
               for entity in entities]
