@@ -233,6 +233,8 @@ class View {
     if (this.#preview) {
       const {group, ready} = this.#preview;
       place(group, preview.pose);
+      // It can be picked before it is drawn for the first time.
+      group.updateMatrixWorld(true);
       this.#stage.scene.add(group);
       ready.then(() => this.#stage.shadowsChanged());
     }
