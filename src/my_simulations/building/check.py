@@ -100,7 +100,7 @@ def _openings(level: Level, path: str) -> Iterator[Issue]:
             for other_name, other in found[:n]:
                 if openings_overlap(opening, other):
                     yield error("openings-overlap", f"{other_name} and {name} overlap in"
-                                f" Wall_{wall}", xpath=f"{path}",
+                                f" Wall_{wall}", xpath=path,
                                 hint="move them apart, or make one smaller")
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import errno
 import io
 import os
 import re
@@ -268,7 +269,7 @@ def _write_all(folder: str, files: Dict[str, bytes]) -> None:
         for name, content in files.items():
             target = os.path.join(folder, name)
             if os.path.isdir(target):
-                raise IsADirectoryError(21, "it is a folder", target)
+                raise IsADirectoryError(errno.EISDIR, "it is a folder", target)
             handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
             staged.append((temporary, target))
             with os.fdopen(handle, "wb") as stream:

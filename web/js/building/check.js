@@ -115,6 +115,3 @@ function fault(severity, words, ...refs) {
 
 export const metres = (value) => `${Math.round(value * 1000) / 1000} m`;
 
-/** Free openings that stand near nothing are no fault, but worth a word. */
-export const freeOpenings = (level) => openingsOf(level).filter(({item}) => item.wall === null);
-

@@ -12,14 +12,11 @@ export class History {
     this.#saved = plan;
   }
 
-  /** Takes a new plan; a `label` equal to the last one with the same `key` joins it. */
-  commit(plan, label, key = null) {
+  /** Takes a new plan; `label` says in words what was done. */
+  commit(plan, label) {
     if (plan === this.plan) return;
-    const last = this.#past[this.#past.length - 1];
-    if (key === null || last?.key !== key || this.#future.length) {
-      this.#past.push({plan: this.plan, label, key});
-      if (this.#past.length > MOST) this.#past.shift();
-    }
+    this.#past.push({plan: this.plan, label});
+    if (this.#past.length > MOST) this.#past.shift();
     this.plan = plan;
     this.#future = [];
   }

@@ -51,9 +51,9 @@ export class Session extends EventTarget {
   }
 
   /** Makes a plan the present one. */
-  commit(plan, label, key = null) {
+  commit(plan, label) {
     this.#preview = null;
-    if (plan !== this.history.plan) this.history.commit(plan, label, key);
+    this.history.commit(plan, label);
     this.#settle();
     this.changed();
   }
