@@ -21,7 +21,7 @@ function makeGrid() {
   const colors = [];
   for (let at = -half; at <= half; at++) {
     points.push(-half, at, 0, half, at, 0, at, -half, 0, at, half, 0);
-    const shade = at % 5 === 0 ? 0.2 : 0.38;
+    const shade = at % 5 === 0 ? 0.06 : 0.2;
     for (let end = 0; end < 4; end++) colors.push(shade, shade, shade);
   }
   const grid = new LineSegments(lines(points, colors), new LineBasicMaterial({
