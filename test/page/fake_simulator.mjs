@@ -9,44 +9,157 @@ const IDENTITY = [0, 0, 0, 0, 0, 0, 1];
 export function box(name, pose = [0, 0, 0.5, 0, 0, 0, 1], more = {}) {
   const geometry = {type: 'box', size: [1, 1, 1]};
   return {
-    name, pose, static: false, self_collide: false, allow_auto_disable: true, enable_wind: false,
-    canonical_link: '', joints: [], plugins: [], uri: '', scalable: true, scale: [1, 1, 1],
-    links: [{
-      id: 0, name: 'link', pose: IDENTITY, gravity: true, kinematic: false, self_collide: null,
-      linear_decay: 0, angular_decay: 0,
-      inertial: {mass: 1, pose: IDENTITY, ixx: 1 / 6, ixy: 0, ixz: 0, iyy: 1 / 6, iyz: 0, izz: 1 / 6},
-      collisions: [{name: 'collision', pose: IDENTITY, geometry, max_contacts: 10, laser_retro: 0,
-        surface: {mu: 1, mu2: 1, fdir1: [0, 0, 0], slip1: 0, slip2: 0, restitution: 0,
-          bounce_threshold: 1e5, kp: 1e12, kd: 1, max_vel: 0.01, min_depth: 0,
-          collide_without_contact: false, collide_bitmask: 65535}}],
-      visuals: [{name: 'visual', pose: IDENTITY, geometry, cast_shadows: true, transparency: 0,
-        laser_retro: 0, layer: null, material: {ambient: [0.3, 0.3, 0.3, 1],
-          diffuse: [0.7, 0.7, 0.7, 1], specular: null, emissive: null, name: 'Gazebo/Grey',
-          texture: null, transparency: 0, lighting: true}}],
-    }], ...more,
+    name,
+    pose,
+    static: false,
+    self_collide: false,
+    allow_auto_disable: true,
+    enable_wind: false,
+    canonical_link: '',
+    joints: [],
+    plugins: [],
+    uri: '',
+    scalable: true,
+    scale: [1, 1, 1],
+    links: [
+      {
+        id: 0,
+        name: 'link',
+        pose: IDENTITY,
+        gravity: true,
+        kinematic: false,
+        self_collide: null,
+        linear_decay: 0,
+        angular_decay: 0,
+        inertial: {
+          mass: 1,
+          pose: IDENTITY,
+          ixx: 1 / 6,
+          ixy: 0,
+          ixz: 0,
+          iyy: 1 / 6,
+          iyz: 0,
+          izz: 1 / 6,
+        },
+        collisions: [
+          {
+            name: 'collision',
+            pose: IDENTITY,
+            geometry,
+            max_contacts: 10,
+            laser_retro: 0,
+            surface: {
+              mu: 1,
+              mu2: 1,
+              fdir1: [0, 0, 0],
+              slip1: 0,
+              slip2: 0,
+              restitution: 0,
+              bounce_threshold: 1e5,
+              kp: 1e12,
+              kd: 1,
+              max_vel: 0.01,
+              min_depth: 0,
+              collide_without_contact: false,
+              collide_bitmask: 65535,
+            },
+          },
+        ],
+        visuals: [
+          {
+            name: 'visual',
+            pose: IDENTITY,
+            geometry,
+            cast_shadows: true,
+            transparency: 0,
+            laser_retro: 0,
+            layer: null,
+            material: {
+              ambient: [0.3, 0.3, 0.3, 1],
+              diffuse: [0.7, 0.7, 0.7, 1],
+              specular: null,
+              emissive: null,
+              name: 'Gazebo/Grey',
+              texture: null,
+              transparency: 0,
+              lighting: true,
+            },
+          },
+        ],
+      },
+    ],
+    ...more,
   };
 }
 
 export function light(name, more = {}) {
-  return {name, type: 'point', pose: [0, 0, 1, 0, 0, 0, 1], cast_shadows: false,
-    diffuse: [0.5, 0.5, 0.5, 1], specular: [0.1, 0.1, 0.1, 1], range: 20, constant: 0.5,
-    linear: 0.01, quadratic: 0.001, direction: [0, 0, -1], inner_angle: 0, outer_angle: 0,
-    falloff: 0, ...more};
+  return {
+    name,
+    type: 'point',
+    pose: [0, 0, 1, 0, 0, 0, 1],
+    cast_shadows: false,
+    diffuse: [0.5, 0.5, 0.5, 1],
+    specular: [0.1, 0.1, 0.1, 1],
+    range: 20,
+    constant: 0.5,
+    linear: 0.01,
+    quadratic: 0.001,
+    direction: [0, 0, -1],
+    inner_angle: 0,
+    outer_angle: 0,
+    falloff: 0,
+    ...more,
+  };
 }
 
 export function world(models = [], lights = []) {
   return {
-    name: 'default', file: '', gravity: [0, 0, -9.8], magnetic_field: [5.5e-6, 2.2e-5, -4.2e-5],
-    physics: {name: 'default_physics', type: 'ode', max_step_size: 0.001, real_time_factor: 1,
-      real_time_update_rate: 1000, ode: {auto_disable_bodies: false, precon_iters: 0, iters: 50,
-        sor: 1.3, rms_error_tol: 0, cfm: 0, erp: 0.2, contact_surface_layer: 0.001,
-        contact_max_correcting_vel: 100, max_contacts: 20}},
-    scene: {ambient: [0.4, 0.4, 0.4, 1], background: [0.7, 0.7, 0.7, 1], shadows: true, grid: true,
-      origin_visual: true, sky: null, fog: null},
-    gui_camera: null, wind: {linear_velocity: [0, 0, 0]},
-    atmosphere: {type: 'adiabatic', temperature: 288.15, pressure: 101325,
-      temperature_gradient: -0.0065},
-    spherical_coordinates: null, plugins: [], models, lights, roads: [], actors: [],
+    name: 'default',
+    file: '',
+    gravity: [0, 0, -9.8],
+    magnetic_field: [5.5e-6, 2.2e-5, -4.2e-5],
+    physics: {
+      name: 'default_physics',
+      type: 'ode',
+      max_step_size: 0.001,
+      real_time_factor: 1,
+      real_time_update_rate: 1000,
+      ode: {
+        auto_disable_bodies: false,
+        precon_iters: 0,
+        iters: 50,
+        sor: 1.3,
+        rms_error_tol: 0,
+        cfm: 0,
+        erp: 0.2,
+        contact_surface_layer: 0.001,
+        contact_max_correcting_vel: 100,
+        max_contacts: 20,
+      },
+    },
+    scene: {
+      ambient: [0.4, 0.4, 0.4, 1],
+      background: [0.7, 0.7, 0.7, 1],
+      shadows: true,
+      grid: true,
+      origin_visual: true,
+      sky: null,
+      fog: null,
+    },
+    gui_camera: null,
+    wind: {linear_velocity: [0, 0, 0]},
+    atmosphere: {
+      type: 'adiabatic',
+      temperature: 288.15,
+      pressure: 101325,
+      temperature_gradient: -0.0065,
+    },
+    spherical_coordinates: null,
+    plugins: [],
+    models,
+    lights,
+    roads: [],
+    actors: [],
   };
 }
 
@@ -127,13 +240,24 @@ export class FakeSimulator {
   }
 
   #stats() {
-    return {type: 'stats', sim_ns: this.sim_ns, real_ns: this.sim_ns, factor: 1,
-      iterations: Math.round(this.sim_ns / 1e6), paused: this.paused};
+    return {
+      type: 'stats',
+      sim_ns: this.sim_ns,
+      real_ns: this.sim_ns,
+      factor: 1,
+      iterations: Math.round(this.sim_ns / 1e6),
+      paused: this.paused,
+    };
   }
 
   #history() {
-    return {type: 'history', undo: this.undo.map((one) => one.label),
-      redo: this.redo.map((one) => one.label), dirty: this.undo.length > 0, file: this.document.file};
+    return {
+      type: 'history',
+      undo: this.undo.map((one) => one.label),
+      redo: this.redo.map((one) => one.label),
+      dirty: this.undo.length > 0,
+      file: this.document.file,
+    };
   }
 
   #record(label) {
@@ -224,7 +348,8 @@ export class FakeSimulator {
     const [owner, part, item] = target.replace(/::(collision|visual):/, '::').split('::');
     const entity = this.#find(owner);
     if (!part) return entity;
-    const link = entity.links.find((one) => one.name === part) ??
+    const link =
+      entity.links.find((one) => one.name === part) ??
       entity.joints.find((one) => one.name === part);
     if (!item) return link;
     return [...link.collisions, ...link.visuals].find((one) => one.name === item);
@@ -267,10 +392,15 @@ export class FakeSimulator {
   }
 
   on_folders({path = '/worlds'}) {
-    return {path, parent: path === '/worlds' ? null : '/worlds', roots: ['/worlds'],
+    return {
+      path,
+      parent: path === '/worlds' ? null : '/worlds',
+      roots: ['/worlds'],
       folders: path === '/worlds' ? [{name: 'old', path: '/worlds/old'}] : [],
-      files: [...this.files].filter((file) => file.slice(0, file.lastIndexOf('/')) === path)
-        .map((file) => ({name: file.split('/').pop(), path: file, size: 1200, modified: 0}))};
+      files: [...this.files]
+        .filter((file) => file.slice(0, file.lastIndexOf('/')) === path)
+        .map((file) => ({name: file.split('/').pop(), path: file, size: 1200, modified: 0})),
+    };
   }
 
   on_save({path = this.document.file, overwrite = false}) {
@@ -307,9 +437,32 @@ export class FakeSimulator {
   }
 
   on_library() {
-    return {locations: [{id: 'own', title: 'Built-in', kind: 'built-in', path: '/models', models: [
-      {uri: 'model://table', name: 'table', title: 'Table', description: 'four legs', thumb: ''},
-      {uri: 'model://chair', name: 'chair', title: 'Chair', description: 'to sit on', thumb: ''}]}]};
+    return {
+      locations: [
+        {
+          id: 'own',
+          title: 'Built-in',
+          kind: 'built-in',
+          path: '/models',
+          models: [
+            {
+              uri: 'model://table',
+              name: 'table',
+              title: 'Table',
+              description: 'four legs',
+              thumb: '',
+            },
+            {
+              uri: 'model://chair',
+              name: 'chair',
+              title: 'Chair',
+              description: 'to sit on',
+              thumb: '',
+            },
+          ],
+        },
+      ],
+    };
   }
 
   on_log_list() {

@@ -2,7 +2,12 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import {rpyOf, sevenOf, sixOf} from '../../web/js/panels/angles.js';
 import {
-  bytesText, clockText, colorOf, colorText, numberText, parseNumber,
+  bytesText,
+  clockText,
+  colorOf,
+  colorText,
+  numberText,
+  parseNumber,
 } from '../../web/js/panels/format.js';
 
 test('sim time is written as days, hours, minutes, seconds and milliseconds', () => {
@@ -66,7 +71,7 @@ test('a pose of six numbers is the pose of seven', () => {
 test('a pitch of a right angle keeps the rotation', () => {
   for (const sign of [1, -1]) {
     for (const yaw of [-2, 0, 1.2]) {
-      const pose = sevenOf([0, 0, 0, 0.4, sign * Math.PI / 2, yaw]);
+      const pose = sevenOf([0, 0, 0, 0.4, (sign * Math.PI) / 2, yaw]);
       const again = sevenOf([0, 0, 0, ...rpyOf(pose.slice(3))]);
       const dot = pose.slice(3).reduce((sum, part, at) => sum + part * again[3 + at], 0);
       assert.ok(Math.abs(Math.abs(dot) - 1) < 1e-9, `${sign} ${yaw}: ${dot}`);

@@ -29,7 +29,10 @@ test('long curves lose their oldest half, never the newest', () => {
 
 test('a curve is read off at the last sample before a time', () => {
   const curve = series('a.x', [1, 10], [2, 20]);
-  assert.deepEqual([0.5, 1, 1.7, 9].map((time) => curve.at(time)), [undefined, 10, 10, 20]);
+  assert.deepEqual(
+    [0.5, 1, 1.7, 9].map((time) => curve.at(time)),
+    [undefined, 10, 10, 20],
+  );
 });
 
 test('axes show the span that is asked for and all values in it', () => {
@@ -60,8 +63,10 @@ test('CSV has a column for each curve and a row for each time', () => {
 test('models, their links when they are several, and joints can be plotted', () => {
   const arm = box('arm');
   arm.links.push({...arm.links[0], name: 'tip'});
-  arm.joints = [{name: 'elbow', type: 'revolute', axis: {}, axis2: null},
-    {name: 'weld', type: 'fixed', axis: null}];
+  arm.joints = [
+    {name: 'elbow', type: 'revolute', axis: {}, axis2: null},
+    {name: 'weld', type: 'fixed', axis: null},
+  ];
   const [simulation, crate, robot] = variablesOf(world([box('crate'), arm]));
   assert.ok(simulation.variables.includes('real_time_factor'));
   assert.ok(crate.variables.includes('crate.vz') && !crate.variables.includes('crate::link.x'));

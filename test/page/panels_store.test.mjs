@@ -30,7 +30,8 @@ test('watches send the union of what is wanted, once for several changes', async
   const {simulator, watches, connection} = await connected();
   const offs = [watches.add('contacts'), watches.add('plot:a.x'), watches.add('contacts')];
   await settled();
-  const sent = () => simulator.requests.filter(({type}) => type === 'watch').map(({topics}) => topics);
+  const sent = () =>
+    simulator.requests.filter(({type}) => type === 'watch').map(({topics}) => topics);
   assert.deepEqual(sent(), [['contacts', 'plot:a.x']]);
   offs[0]();
   offs[0]();
@@ -48,7 +49,9 @@ test('watches are told again after the line was lost', async () => {
   watches.add('contacts');
   await settled();
   simulator.topics = null;
-  const again = new Promise((resolve) => connection.addEventListener('open', resolve, {once: true}));
+  const again = new Promise((resolve) =>
+    connection.addEventListener('open', resolve, {once: true}),
+  );
   [...simulator.clients][0].close();
   await again;
   await settled();
@@ -68,7 +71,7 @@ test('worlds are saved with an ending', () => {
   assert.equal(withEnding('room.v2'), 'room.v2.world');
 });
 
-test('numbers out of a field\'s range are refused in words', () => {
+test("numbers out of a field's range are refused in words", () => {
   assert.equal(numberFault({type: 'number', above: 0}, 0), 'must be above 0');
   assert.equal(numberFault({type: 'number', min: 0, max: 1}, 2), 'must not be above 1');
   assert.equal(numberFault({type: 'integer'}, 1.5), 'not a whole number');
@@ -88,7 +91,8 @@ test('every entry of every menu that has a hotkey or an action exists', async ()
     }
   }
   delete globalThis.document;
-  for (const {action} of HOTKEYS) if (action) assert.equal(typeof actions[action], 'function', action);
+  for (const {action} of HOTKEYS)
+    if (action) assert.equal(typeof actions[action], 'function', action);
   assert.equal(keysOf('saveAs'), 'Ctrl+Shift+S');
   connection.close();
 });
@@ -96,8 +100,19 @@ test('every entry of every menu that has a hotkey or an action exists', async ()
 test('the context menu is that of Gazebo; a light takes no force and no overlays', async () => {
   const {store, actions, connection} = await connected();
   const page = {store, actions};
-  const titles = (name) => contextMenu(page, name).map(({title}) => title).filter(Boolean);
-  assert.deepEqual(titles('a'), ['Move To', 'Follow', 'Apply Force/Torque', 'View', 'Copy', 'Paste', 'Delete']);
+  const titles = (name) =>
+    contextMenu(page, name)
+      .map(({title}) => title)
+      .filter(Boolean);
+  assert.deepEqual(titles('a'), [
+    'Move To',
+    'Follow',
+    'Apply Force/Torque',
+    'View',
+    'Copy',
+    'Paste',
+    'Delete',
+  ]);
   assert.deepEqual(titles('sun'), ['Move To', 'Follow', 'Copy', 'Paste', 'Delete']);
   assert.deepEqual(titles('nobody'), []);
   store.select(['a', 'sun']);

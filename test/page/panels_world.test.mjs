@@ -8,25 +8,60 @@ import {searched} from '../../web/js/panels/insert.js';
 import {drivenJoints} from '../../web/js/panels/joints.js';
 import {box, light, world} from './fake_simulator.mjs';
 
-const AXIS = {xyz: [0, 0, 1], lower: -1, upper: 1, effort: -1, velocity: -1, damping: 0, friction: 0,
-  spring_reference: 0, spring_stiffness: 0, motor_rate: 0, mimic: null};
-const joint = (name, type, axis = AXIS) => ({name, type, parent: 'world', child: 'link',
-  pose: [0, 0, 0, 0, 0, 0, 1], axis, axis2: null});
+const AXIS = {
+  xyz: [0, 0, 1],
+  lower: -1,
+  upper: 1,
+  effort: -1,
+  velocity: -1,
+  damping: 0,
+  friction: 0,
+  spring_reference: 0,
+  spring_stiffness: 0,
+  motor_rate: 0,
+  mimic: null,
+};
+const joint = (name, type, axis = AXIS) => ({
+  name,
+  type,
+  parent: 'world',
+  child: 'link',
+  pose: [0, 0, 0, 0, 0, 0, 1],
+  axis,
+  axis2: null,
+});
 
 const labels = (rows) => rows.map((row) => row.label);
 
 test('rows stand in the order of Gazebo', () => {
   const rows = worldRows(world([box('a')], [light('sun')]), new Set());
-  assert.deepEqual(labels(rows), ['GUI', 'Scene', 'Spherical Coordinates', 'Physics', 'Atmosphere',
-    'Wind', 'Models (1)', 'Lights (1)']);
+  assert.deepEqual(labels(rows), [
+    'GUI',
+    'Scene',
+    'Spherical Coordinates',
+    'Physics',
+    'Atmosphere',
+    'Wind',
+    'Models (1)',
+    'Lights (1)',
+  ]);
 });
 
 test('an open model shows links, joints and plugins under headings', () => {
-  const model = box('a', undefined, {joints: [joint('hinge', 'revolute')],
-    plugins: [{name: 'drive', filename: 'libdrive.so', xml: '<plugin/>'}]});
+  const model = box('a', undefined, {
+    joints: [joint('hinge', 'revolute')],
+    plugins: [{name: 'drive', filename: 'libdrive.so', xml: '<plugin/>'}],
+  });
   const rows = worldRows(world([model]), new Set(['models', 'model:a']));
-  assert.deepEqual(labels(rows).slice(7, 14),
-    ['a', 'LINKS', 'link', 'JOINTS', 'hinge', 'PLUGINS', 'drive']);
+  assert.deepEqual(labels(rows).slice(7, 14), [
+    'a',
+    'LINKS',
+    'link',
+    'JOINTS',
+    'hinge',
+    'PLUGINS',
+    'drive',
+  ]);
   assert.equal(rows[9].select, 'a::link');
   assert.equal(rows[11].select, undefined);
 });
@@ -43,8 +78,10 @@ test('a search leaves what fits and counts it', () => {
 
 test('rows of different things never share an id', () => {
   const twin = box('a::b');
-  const rows = worldRows(world([box('a'), twin], [light('l')]),
-    new Set(['models', 'lights', 'model:a', 'model:a::b']));
+  const rows = worldRows(
+    world([box('a'), twin], [light('l')]),
+    new Set(['models', 'lights', 'model:a', 'model:a::b']),
+  );
   assert.equal(new Set(rows.map((row) => row.id)).size, rows.length);
 });
 
@@ -52,8 +89,10 @@ test('a name leads to its row and what must be open', () => {
   const document = world([box('a'), box('a::b')], [light('sun')]);
   assert.deepEqual(rowOf(document, 'sun'), {id: 'light:sun', opens: ['lights']});
   assert.deepEqual(rowOf(document, 'a'), {id: 'model:a', opens: ['models']});
-  assert.deepEqual(rowOf(document, 'a::b::link'),
-    {id: 'link:a::b::link', opens: ['models', 'model:a::b']});
+  assert.deepEqual(rowOf(document, 'a::b::link'), {
+    id: 'link:a::b::link',
+    opens: ['models', 'model:a::b'],
+  });
   assert.equal(rowOf(document, 'nobody'), null);
   assert.equal(modelOf(document, 'a::b::link').name, 'a::b');
 });
@@ -65,10 +104,16 @@ test('a world without a document has no rows', () => {
 const row = (rows, id) => rows.find((one) => one.id === id);
 
 test('every field of every row finds a value in the document', () => {
-  const model = box('a', undefined, {joints: [joint('hinge', 'revolute'), joint('weld', 'fixed', null)],
-    plugins: [{name: 'p', filename: 'libp.so', xml: '<plugin/>'}]});
+  const model = box('a', undefined, {
+    joints: [joint('hinge', 'revolute'), joint('weld', 'fixed', null)],
+    plugins: [{name: 'p', filename: 'libp.so', xml: '<plugin/>'}],
+  });
   const document = world([model], [light('sun'), light('cone', {type: 'spot'})]);
-  document.gui_camera = {name: 'user_camera', pose: [0, 0, 0, 0, 0, 0, 1], view_controller: 'orbit'};
+  document.gui_camera = {
+    name: 'user_camera',
+    pose: [0, 0, 0, 0, 0, 0, 1],
+    view_controller: 'orbit',
+  };
   document.scene.sky = {time: 10};
   const rows = worldRows(document, new Set(['models', 'lights', 'model:a']));
   let fields = 0;
@@ -89,13 +134,24 @@ test('paths begin at the target of the operation', () => {
   const document = world([box('a')], []);
   const rows = worldRows(document, new Set(['models', 'model:a']));
   const physics = sectionsOf(document, row(rows, 'physics')).sections;
-  assert.ok(physics.some((section) => section.target === '' &&
-    section.fields.some((field) => field.path === 'physics.ode.iters')));
+  assert.ok(
+    physics.some(
+      (section) =>
+        section.target === '' && section.fields.some((field) => field.path === 'physics.ode.iters'),
+    ),
+  );
   assert.ok(physics.some((section) => section.fields.some((field) => field.path === 'gravity')));
   const link = sectionsOf(document, row(rows, 'link:a::link')).sections;
-  const paths = link.flatMap((section) => section.fields.map((field) => `${section.target} ${field.path}`));
-  for (const wanted of ['a::link inertial.mass', 'a::link::collision:collision geometry.size',
-    'a::link::collision:collision surface.mu', 'a::link::visual:visual material.diffuse', 'a::link gravity']) {
+  const paths = link.flatMap((section) =>
+    section.fields.map((field) => `${section.target} ${field.path}`),
+  );
+  for (const wanted of [
+    'a::link inertial.mass',
+    'a::link::collision:collision geometry.size',
+    'a::link::collision:collision surface.mu',
+    'a::link::visual:visual material.diffuse',
+    'a::link gravity',
+  ]) {
     assert.ok(paths.includes(wanted), wanted);
   }
 });
@@ -103,7 +159,8 @@ test('paths begin at the target of the operation', () => {
 test('a directional light has no range, a spot light has its cone', () => {
   const document = world([], [light('sun', {type: 'directional'}), light('cone', {type: 'spot'})]);
   const rows = worldRows(document, new Set(['lights']));
-  const paths = (id) => sectionsOf(document, row(rows, id)).sections[0].fields.map((field) => field.path);
+  const paths = (id) =>
+    sectionsOf(document, row(rows, id)).sections[0].fields.map((field) => field.path);
   assert.ok(!paths('light:sun').includes('range'));
   assert.ok(paths('light:cone').includes('inner_angle'));
 });
@@ -140,16 +197,27 @@ test('a search of the library looks at titles and descriptions and drops empty l
   const locations = [
     {id: 'a', models: [{uri: 'u', name: 'x', title: 'Chair', description: ''}]},
     {id: 'b', models: [{uri: 'v', name: 'y', title: 'Table', description: 'like a chair'}]},
-    {id: 'c', models: [{uri: 'w', name: 'z', title: 'Lamp', description: ''}]}];
-  assert.deepEqual(searched(locations, 'CHAIR').map(({id}) => id), ['a', 'b']);
+    {id: 'c', models: [{uri: 'w', name: 'z', title: 'Lamp', description: ''}]},
+  ];
+  assert.deepEqual(
+    searched(locations, 'CHAIR').map(({id}) => id),
+    ['a', 'b'],
+  );
   assert.equal(searched(locations, ' '), locations);
 });
 
 test('joints that cannot move are not driven; units follow the type', () => {
-  const model = box('a', undefined, {joints: [joint('weld', 'fixed', null),
-    joint('slide', 'prismatic'), joint('hinge', 'revolute')]});
+  const model = box('a', undefined, {
+    joints: [joint('weld', 'fixed', null), joint('slide', 'prismatic'), joint('hinge', 'revolute')],
+  });
   const driven = drivenJoints(model);
-  assert.deepEqual(driven.map(({joint: {name}}) => name), ['slide', 'hinge']);
-  assert.deepEqual(driven.map(({units}) => units.force), ['N', 'N m']);
+  assert.deepEqual(
+    driven.map(({joint: {name}}) => name),
+    ['slide', 'hinge'],
+  );
+  assert.deepEqual(
+    driven.map(({units}) => units.force),
+    ['N', 'N m'],
+  );
   assert.deepEqual(drivenJoints(null), []);
 });

@@ -1,4 +1,4 @@
-/** What this page wants to be told of regularly: several parts ask, the simulator hears one list. */
+/** What this page wants to be told of: several parts ask, the simulator hears one list. */
 
 export class Watches {
   #connection;

@@ -12,7 +12,7 @@ export function rpyOf([x, y, z, w]) {
   const sine = 2 * (w * y - z * x);
   if (Math.abs(sine) > 1 - 1e-9) {
     const sign = Math.sign(sine);
-    return [0, sign * Math.PI / 2, -sign * 2 * Math.atan2(x, w)].map(clean);
+    return [0, (sign * Math.PI) / 2, -sign * 2 * Math.atan2(x, w)].map(clean);
   }
   return [
     Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),

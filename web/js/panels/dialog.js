@@ -24,26 +24,46 @@ export class Dialog {
    * @param {string} [options.name]    a class of its own
    */
   constructor({title, content, buttons, modal = true, name = ''}) {
-    const id = `dialog-title-${numbers += 1}`;
+    const id = `dialog-title-${(numbers += 1)}`;
     this.modal = modal;
     this.#note = h('div', {class: 'dialog-note', role: 'alert', hidden: true});
-    this.#buttons = buttons.map((button) => h('button', {
-      type: button.primary ? 'submit' : 'button', text: button.title,
-      class: button.primary ? 'primary' : button.danger ? 'danger' : '',
-      onclick: button.primary ? null : () => this.#press(button),
-    }));
+    this.#buttons = buttons.map((button) =>
+      h('button', {
+        type: button.primary ? 'submit' : 'button',
+        text: button.title,
+        class: button.primary ? 'primary' : button.danger ? 'danger' : '',
+        onclick: button.primary ? null : () => this.#press(button),
+      }),
+    );
     const primary = buttons.find((button) => button.primary);
-    const form = h('form', {
-      novalidate: true,
-      onsubmit: (event) => {
-        event.preventDefault();
-        if (primary) this.#press(primary);
+    const form = h(
+      'form',
+      {
+        novalidate: true,
+        onsubmit: (event) => {
+          event.preventDefault();
+          if (primary) this.#press(primary);
+        },
       },
-    }, h('div', {class: 'dialog-body'}, ...content), this.#note,
-    h('div', {class: 'dialog-buttons'}, ...this.#buttons));
-    const head = h('header', {}, h('h2', {id, text: title}), h('button', {
-      type: 'button', class: 'plain', 'aria-label': 'Close', onclick: () => this.close(undefined),
-    }, icon('close', 16)));
+      h('div', {class: 'dialog-body'}, ...content),
+      this.#note,
+      h('div', {class: 'dialog-buttons'}, ...this.#buttons),
+    );
+    const head = h(
+      'header',
+      {},
+      h('h2', {id, text: title}),
+      h(
+        'button',
+        {
+          type: 'button',
+          class: 'plain',
+          'aria-label': 'Close',
+          onclick: () => this.close(undefined),
+        },
+        icon('close', 16),
+      ),
+    );
     this.element = h('dialog', {class: `dialog ${name}`, 'aria-labelledby': id}, head, form);
     this.element.addEventListener('cancel', (event) => {
       event.preventDefault();
@@ -57,7 +77,9 @@ export class Dialog {
       // The page's hotkeys are not for what is typed here.
       event.stopPropagation();
     });
-    this.closed = new Promise((resolve) => { this.#resolve = resolve; });
+    this.closed = new Promise((resolve) => {
+      this.#resolve = resolve;
+    });
     movable(this.element, head);
   }
 
@@ -72,8 +94,10 @@ export class Dialog {
     document.body.append(this.element);
     if (this.modal) this.element.showModal();
     else this.element.show();
-    const first = this.element.querySelector('[autofocus]') ??
-      this.element.querySelector('.dialog-body input, .dialog-body select') ?? this.#buttons[0];
+    const first =
+      this.element.querySelector('[autofocus]') ??
+      this.element.querySelector('.dialog-body input, .dialog-body select') ??
+      this.#buttons[0];
     first?.focus();
     return this.closed;
   }
@@ -102,14 +126,18 @@ export class Dialog {
       this.close(button.value);
       return;
     }
-    this.#buttons.forEach((element) => { element.disabled = true; });
+    this.#buttons.forEach((element) => {
+      element.disabled = true;
+    });
     try {
       const answer = await button.run();
       if (answer !== false) this.close(answer ?? button.value);
     } catch (fault) {
       this.say(faultText(fault));
     } finally {
-      this.#buttons.forEach((element) => { element.disabled = false; });
+      this.#buttons.forEach((element) => {
+        element.disabled = false;
+      });
     }
   }
 }
@@ -159,4 +187,3 @@ function movable(element, handle) {
     handle.addEventListener('pointerup', end);
   });
 }
-

@@ -21,8 +21,9 @@ export function h(tag, attributes = {}, ...children) {
     else if (name in PROPERTIES) element[name] = value;
     else element.setAttribute(name, value === true ? '' : String(value));
   }
-  element.append(...children.filter((child) => child !== null && child !== undefined &&
-    child !== false));
+  element.append(
+    ...children.filter((child) => child !== null && child !== undefined && child !== false),
+  );
   return element;
 }
 
@@ -44,8 +45,10 @@ export function fill(element, ...children) {
  */
 export function roving(container, selector, {vertical = false, wrap = true} = {}) {
   const [back, forth] = vertical ? ['ArrowUp', 'ArrowDown'] : ['ArrowLeft', 'ArrowRight'];
-  const items = () => [...container.querySelectorAll(selector)]
-    .filter((item) => !item.disabled && item.offsetParent !== null);
+  const items = () =>
+    [...container.querySelectorAll(selector)].filter(
+      (item) => !item.disabled && item.offsetParent !== null,
+    );
   const settle = (chosen) => {
     for (const item of container.querySelectorAll(selector)) item.tabIndex = -1;
     if (chosen) chosen.tabIndex = 0;
@@ -64,7 +67,8 @@ export function roving(container, selector, {vertical = false, wrap = true} = {}
     if (to === undefined || !all.length) return;
     event.preventDefault();
     event.stopPropagation();
-    const within = wrap ? (to + all.length) % all.length
+    const within = wrap
+      ? (to + all.length) % all.length
       : Math.min(Math.max(to, 0), all.length - 1);
     all[within].focus();
   });
@@ -81,8 +85,10 @@ function usesArrows(element) {
 export function isTextInput(element) {
   if (!(element instanceof HTMLElement)) return false;
   if (element.isContentEditable || element.matches('textarea, select')) return true;
-  return element.matches('input') &&
-    !['checkbox', 'radio', 'button', 'range', 'color'].includes(element.type);
+  return (
+    element.matches('input') &&
+    !['checkbox', 'radio', 'button', 'range', 'color'].includes(element.type)
+  );
 }
 
 /** A click on the element or Enter and Space on it, for things that are no buttons. */
@@ -116,7 +122,7 @@ export function onceAFrame(run) {
 
 /** A colour of the theme as the canvas wants it. */
 export function themeColor(name) {
-  const probe = h('span', {style: `color: var(--${name}); display: none` });
+  const probe = h('span', {style: `color: var(--${name}); display: none`});
   document.body.append(probe);
   const color = getComputedStyle(probe).color;
   probe.remove();

@@ -12,9 +12,11 @@ export function clockText(ns) {
   const total = Math.max(0, Math.floor(ns / 1e6));
   const two = (number) => String(number).padStart(2, '0');
   const seconds = Math.floor(total / 1000);
-  return `${two(Math.floor(seconds / 86400))} ${two(Math.floor(seconds / 3600) % 24)}:` +
+  return (
+    `${two(Math.floor(seconds / 86400))} ${two(Math.floor(seconds / 3600) % 24)}:` +
     `${two(Math.floor(seconds / 60) % 60)}:${two(seconds % 60)}.` +
-    String(total % 1000).padStart(3, '0');
+    String(total % 1000).padStart(3, '0')
+  );
 }
 
 /**
@@ -39,11 +41,21 @@ function trimmed(text) {
   return exponent === undefined ? short : `${short}e${Number(exponent)}`;
 }
 
-const TOKEN = /\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([a-zA-Z°]+)|([-+*/()]))/y;
+const TOKEN =
+  /\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([a-zA-Z°]+)|([-+*/()]))/y;
 const NAMES = new Map(Object.entries({pi: Math.PI, inf: 1e16, infinity: 1e16}));
-const UNITS = new Map(Object.entries({
-  deg: Math.PI / 180, '°': Math.PI / 180, rad: 1, cm: 0.01, mm: 0.001, m: 1, g: 0.001, kg: 1,
-}));
+const UNITS = new Map(
+  Object.entries({
+    deg: Math.PI / 180,
+    '°': Math.PI / 180,
+    rad: 1,
+    cm: 0.01,
+    mm: 0.001,
+    m: 1,
+    g: 0.001,
+    kg: 1,
+  }),
+);
 
 /**
  * What a person types into a number field: a number, `pi/2`, `90deg`, `25cm`, `(1+2)/3`, `inf`.
@@ -66,7 +78,7 @@ function tokensOf(text) {
   while (TOKEN.lastIndex < source.length) {
     const found = TOKEN.exec(source);
     if (!found) return null;
-    tokens.push(found[1] !== undefined ? Number(found[1]) : found[2] ?? found[3]);
+    tokens.push(found[1] !== undefined ? Number(found[1]) : (found[2] ?? found[3]));
   }
   return tokens;
 }
@@ -117,8 +129,10 @@ function factor(state) {
  * @returns {string} `#rrggbb`
  */
 export function colorText(color) {
-  const part = (value) => Math.round(Math.min(1, Math.max(0, value ?? 0)) * 255)
-    .toString(16).padStart(2, '0');
+  const part = (value) =>
+    Math.round(Math.min(1, Math.max(0, value ?? 0)) * 255)
+      .toString(16)
+      .padStart(2, '0');
   return `#${part(color[0])}${part(color[1])}${part(color[2])}`;
 }
 
@@ -128,7 +142,7 @@ export function colorText(color) {
  * @returns {number[]} r, g, b, a in 0..1
  */
 export function colorOf(text, alpha) {
-  const part = (at) => Math.round(parseInt(text.slice(at, at + 2), 16) / 255 * 1e4) / 1e4;
+  const part = (at) => Math.round((parseInt(text.slice(at, at + 2), 16) / 255) * 1e4) / 1e4;
   return [part(1), part(3), part(5), alpha];
 }
 

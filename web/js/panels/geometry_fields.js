@@ -1,12 +1,28 @@
 /** The fields of each kind of geometry, with paths below `geometry`. Pure. */
 
 const positive = {above: 0};
-const number = (name, label, unit = 'm', more = positive) =>
-  ({path: `geometry.${name}`, label, type: 'number', unit, ...more});
-const vector = (name, label, parts, unit = 'm', more = {}) =>
-  ({path: `geometry.${name}`, label, type: 'vector', parts, unit, ...more});
-const fixed = (name, label, type = 'text', more = {}) =>
-  ({path: `geometry.${name}`, label, type, fixed: true, ...more});
+const number = (name, label, unit = 'm', more = positive) => ({
+  path: `geometry.${name}`,
+  label,
+  type: 'number',
+  unit,
+  ...more,
+});
+const vector = (name, label, parts, unit = 'm', more = {}) => ({
+  path: `geometry.${name}`,
+  label,
+  type: 'vector',
+  parts,
+  unit,
+  ...more,
+});
+const fixed = (name, label, type = 'text', more = {}) => ({
+  path: `geometry.${name}`,
+  label,
+  type,
+  fixed: true,
+  ...more,
+});
 
 const XYZ = ['x', 'y', 'z'];
 const RADIUS_LENGTH = [number('radius', 'radius'), number('length', 'length')];
@@ -19,15 +35,25 @@ const TABLE = {
   cone: RADIUS_LENGTH,
   ellipsoid: [vector('radii', 'radii', XYZ, 'm', positive)],
   plane: [vector('normal', 'normal', XYZ, ''), vector('size', 'size', ['x', 'y'], 'm', positive)],
-  mesh: [fixed('uri', 'file'), vector('scale', 'scale', XYZ, ''), fixed('submesh', 'submesh'),
-    fixed('center', 'centred', 'flag')],
-  heightmap: [fixed('uri', 'file'), vector('size', 'size', XYZ, 'm', positive),
-    vector('position', 'position', XYZ)],
+  mesh: [
+    fixed('uri', 'file'),
+    vector('scale', 'scale', XYZ, ''),
+    fixed('submesh', 'submesh'),
+    fixed('center', 'centred', 'flag'),
+  ],
+  heightmap: [
+    fixed('uri', 'file'),
+    vector('size', 'size', XYZ, 'm', positive),
+    vector('position', 'position', XYZ),
+  ],
   polyline: [number('height', 'height')],
-  image: [fixed('uri', 'file'), number('scale', 'scale', 'm/pixel'),
+  image: [
+    fixed('uri', 'file'),
+    number('scale', 'scale', 'm/pixel'),
     {path: 'geometry.threshold', label: 'threshold', type: 'integer', min: 0, max: 255},
     number('height', 'height'),
-    {path: 'geometry.granularity', label: 'granularity', type: 'integer', min: 1}],
+    {path: 'geometry.granularity', label: 'granularity', type: 'integer', min: 1},
+  ],
   empty: [],
 };
 
@@ -35,8 +61,11 @@ const TABLE = {
 const SIMPLE = ['box', 'sphere', 'cylinder', 'capsule', 'cone', 'ellipsoid'];
 
 const UNIT = {
-  box: {size: [1, 1, 1]}, sphere: {radius: 0.5}, cylinder: {radius: 0.5, length: 1},
-  capsule: {radius: 0.5, length: 1}, cone: {radius: 0.5, length: 1},
+  box: {size: [1, 1, 1]},
+  sphere: {radius: 0.5},
+  cylinder: {radius: 0.5, length: 1},
+  capsule: {radius: 0.5, length: 1},
+  cone: {radius: 0.5, length: 1},
   ellipsoid: {radii: [0.5, 0.5, 0.5]},
 };
 
@@ -52,7 +81,10 @@ export function unitGeometry(type) {
 export function geometryFields(geometry) {
   const simple = SIMPLE.includes(geometry.type);
   const type = {
-    path: 'geometry.type', label: 'geometry', type: simple ? 'choice' : 'text', choices: SIMPLE,
+    path: 'geometry.type',
+    label: 'geometry',
+    type: simple ? 'choice' : 'text',
+    choices: SIMPLE,
     fixed: !simple,
   };
   return [type, ...(TABLE[geometry.type] ?? [])];

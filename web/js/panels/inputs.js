@@ -21,9 +21,16 @@ export function makeInput(field, commit, refuse) {
 }
 
 const MAKERS = {
-  number: numberInput, integer: numberInput, text: textInput, flag: flagInput, color: colorInput,
-  vector: vectorInput, pose: poseInput, choice: choiceInput,
-  optional: optionalInput, xml: xmlInput,
+  number: numberInput,
+  integer: numberInput,
+  text: textInput,
+  flag: flagInput,
+  color: colorInput,
+  vector: vectorInput,
+  pose: poseInput,
+  choice: choiceInput,
+  optional: optionalInput,
+  xml: xmlInput,
 };
 
 /** What is wrong with a number in this field; '' when nothing is. */
@@ -41,8 +48,14 @@ export function numberFault(field, value) {
 function numberInput(field, commit, refuse) {
   let shown = null;
   const element = h('input', {
-    type: 'text', inputmode: 'decimal', class: 'number', autocomplete: 'off', spellcheck: 'false',
-    'aria-label': field.label, readOnly: Boolean(field.fixed), title: field.hint,
+    type: 'text',
+    inputmode: 'decimal',
+    class: 'number',
+    autocomplete: 'off',
+    spellcheck: 'false',
+    'aria-label': field.label,
+    readOnly: Boolean(field.fixed),
+    title: field.hint,
   });
   let edited = false;
   const restore = () => {
@@ -63,7 +76,9 @@ function numberInput(field, commit, refuse) {
     if (value !== shown) commit(value);
     else restore();
   };
-  element.addEventListener('input', () => { edited = true; });
+  element.addEventListener('input', () => {
+    edited = true;
+  });
   element.addEventListener('blur', take);
   element.addEventListener('focus', () => element.select());
   element.addEventListener('keydown', (event) => {
@@ -96,15 +111,22 @@ function numberInput(field, commit, refuse) {
 function textInput(field, commit) {
   let shown = '';
   const element = h('input', {
-    type: 'text', class: 'text', autocomplete: 'off', spellcheck: 'false',
-    'aria-label': field.label, readOnly: Boolean(field.fixed), title: field.hint,
+    type: 'text',
+    class: 'text',
+    autocomplete: 'off',
+    spellcheck: 'false',
+    'aria-label': field.label,
+    readOnly: Boolean(field.fixed),
+    title: field.hint,
   });
   let edited = false;
   const take = () => {
     if (edited && element.value !== shown) commit(element.value);
     edited = false;
   };
-  element.addEventListener('input', () => { edited = true; });
+  element.addEventListener('input', () => {
+    edited = true;
+  });
   element.addEventListener('blur', take);
   element.addEventListener('focus', () => element.select());
   element.addEventListener('keydown', (event) => {
@@ -127,7 +149,9 @@ function textInput(field, commit) {
 
 function flagInput(field, commit) {
   const element = h('input', {
-    type: 'checkbox', 'aria-label': field.label, disabled: Boolean(field.fixed),
+    type: 'checkbox',
+    'aria-label': field.label,
+    disabled: Boolean(field.fixed),
     onchange: () => commit(element.checked),
   });
   return {
@@ -145,10 +169,15 @@ function optionalInput(field, commit) {
 }
 
 function choiceInput(field, commit) {
-  const element = h('select', {
-    'aria-label': field.label, disabled: Boolean(field.fixed),
-    onchange: () => commit(element.value),
-  }, ...field.choices.map((choice) => h('option', {value: choice, text: choice})));
+  const element = h(
+    'select',
+    {
+      'aria-label': field.label,
+      disabled: Boolean(field.fixed),
+      onchange: () => commit(element.value),
+    },
+    ...field.choices.map((choice) => h('option', {value: choice, text: choice})),
+  );
   return {
     element,
     show(value) {
@@ -163,12 +192,18 @@ function choiceInput(field, commit) {
 function colorInput(field, commit, refuse) {
   let shown = [0, 0, 0, 1];
   const swatch = h('input', {
-    type: 'color', 'aria-label': field.label, disabled: Boolean(field.fixed),
+    type: 'color',
+    'aria-label': field.label,
+    disabled: Boolean(field.fixed),
     onchange: () => commit(colorOf(swatch.value, shown[3] ?? 1)),
   });
-  const parts = ['red', 'green', 'blue', 'alpha'].map((name, at) => numberInput(
-    {type: 'number', label: `${field.label} ${name}`, min: 0, max: 1, fixed: field.fixed},
-    (value) => commit(shown.map((old, index) => (index === at ? value : old))), refuse));
+  const parts = ['red', 'green', 'blue', 'alpha'].map((name, at) =>
+    numberInput(
+      {type: 'number', label: `${field.label} ${name}`, min: 0, max: 1, fixed: field.fixed},
+      (value) => commit(shown.map((old, index) => (index === at ? value : old))),
+      refuse,
+    ),
+  );
   return {
     element: h('div', {class: 'color-input'}, swatch, ...parts.map((part) => part.element)),
     show(value) {
@@ -188,12 +223,26 @@ function vectorInput(field, commit, refuse) {
     shown = shown.map((old, index) => (index === at ? value : old));
     commit(shown);
   };
-  const parts = field.parts.map((name, at) => numberInput(
-    {...field, type: 'number', label: `${field.label} ${name}`}, (value) => take(at, value), refuse));
+  const parts = field.parts.map((name, at) =>
+    numberInput(
+      {...field, type: 'number', label: `${field.label} ${name}`},
+      (value) => take(at, value),
+      refuse,
+    ),
+  );
   return {
-    element: h('div', {class: 'vector-input'}, ...parts.map((part, at) => h('span',
-      {class: `part axis-${field.parts[at]}`},
-      h('i', {text: field.parts[at], 'aria-hidden': 'true'}), part.element))),
+    element: h(
+      'div',
+      {class: 'vector-input'},
+      ...parts.map((part, at) =>
+        h(
+          'span',
+          {class: `part axis-${field.parts[at]}`},
+          h('i', {text: field.parts[at], 'aria-hidden': 'true'}),
+          part.element,
+        ),
+      ),
+    ),
     show(value) {
       shown = value ?? field.parts.map(() => 0);
       parts.forEach((part, at) => part.show(shown[at]));
@@ -209,11 +258,20 @@ function poseInput(field, commit, refuse) {
     shown = shown.map((old, index) => (index === at ? value : old));
     commit(sevenOf(shown));
   };
-  const parts = POSE_PARTS.map((name, at) => numberInput(
-    {type: 'number', label: `${field.label} ${name}`, fixed: field.fixed},
-    (value) => take(at, value), refuse));
-  const cell = (at) => h('span', {class: `part axis-${'xyz'[at % 3]}`},
-    h('i', {text: POSE_PARTS[at], 'aria-hidden': 'true'}), parts[at].element);
+  const parts = POSE_PARTS.map((name, at) =>
+    numberInput(
+      {type: 'number', label: `${field.label} ${name}`, fixed: field.fixed},
+      (value) => take(at, value),
+      refuse,
+    ),
+  );
+  const cell = (at) =>
+    h(
+      'span',
+      {class: `part axis-${'xyz'[at % 3]}`},
+      h('i', {text: POSE_PARTS[at], 'aria-hidden': 'true'}),
+      parts[at].element,
+    );
   return {
     element: h('div', {class: 'pose-input'}, ...POSE_PARTS.map((_, at) => cell(at))),
     show(value) {
@@ -231,5 +289,10 @@ function tidy(value, parts) {
 
 function xmlInput(field) {
   const element = h('pre', {class: 'xml', tabindex: 0, 'aria-label': field.label});
-  return { element, show: (value) => { element.textContent = value ?? ''; } };
+  return {
+    element,
+    show: (value) => {
+      element.textContent = value ?? '';
+    },
+  };
 }

@@ -16,9 +16,10 @@ import {icon} from './icons.js';
 export function searched(locations, wanted) {
   const word = wanted.trim().toLowerCase();
   if (!word) return locations;
-  const fits = ({title, name, description}) => [title, name, description]
-    .some((text) => text?.toLowerCase().includes(word));
-  return locations.map((location) => ({...location, models: location.models.filter(fits)}))
+  const fits = ({title, name, description}) =>
+    [title, name, description].some((text) => text?.toLowerCase().includes(word));
+  return locations
+    .map((location) => ({...location, models: location.models.filter(fits)}))
     .filter((location) => location.models.length);
 }
 
@@ -31,15 +32,33 @@ export class InsertTab {
     this.page = page;
     this.locations = null;
     this.#search = h('input', {
-      type: 'search', placeholder: 'Find a model', 'aria-label': 'Find a model', oninput: () => this.#show(),
+      type: 'search',
+      placeholder: 'Find a model',
+      'aria-label': 'Find a model',
+      oninput: () => this.#show(),
     });
     this.#list = h('div', {class: 'library'});
     this.#progress = h('div', {class: 'download', role: 'status', hidden: true});
-    fill(element,
-      h('div', {class: 'filter'}, this.#search, h('button', {
-        type: 'button', title: 'Add a folder of models', onclick: () => this.#addPath(),
-      }, icon('add', 15), 'Add Path')),
-      this.#progress, this.#list);
+    fill(
+      element,
+      h(
+        'div',
+        {class: 'filter'},
+        this.#search,
+        h(
+          'button',
+          {
+            type: 'button',
+            title: 'Add a folder of models',
+            onclick: () => this.#addPath(),
+          },
+          icon('add', 15),
+          'Add Path',
+        ),
+      ),
+      this.#progress,
+      this.#list,
+    );
     this.#list.addEventListener('keydown', (event) => this.#key(event));
     page.store.addEventListener('library', (event) => this.#take(event.detail.locations));
     page.store.addEventListener('placing', () => this.#markPlaced());
@@ -79,22 +98,48 @@ export class InsertTab {
     }
     const found = searched(this.locations, this.#search.value);
     const at = document.activeElement?.dataset?.uri;
-    fill(this.#list, ...(found.length ? found.map((location) => this.#location(location))
-      : [h('p', {class: 'empty', text: 'No model has this in its name.'})]));
-    if (at) [...this.#list.querySelectorAll('.model-card')].find((card) => card.dataset.uri === at)?.focus();
+    fill(
+      this.#list,
+      ...(found.length
+        ? found.map((location) => this.#location(location))
+        : [h('p', {class: 'empty', text: 'No model has this in its name.'})]),
+    );
+    if (at)
+      [...this.#list.querySelectorAll('.model-card')]
+        .find((card) => card.dataset.uri === at)
+        ?.focus();
   }
 
   #location(location) {
-    const body = location.problem ? h('p', {class: 'empty', text: location.problem})
-      : location.models.length ? h('div', {class: 'model-grid'}, ...location.models.map((model) => this.#model(model)))
+    const body = location.problem
+      ? h('p', {class: 'empty', text: location.problem})
+      : location.models.length
+        ? h('div', {class: 'model-grid'}, ...location.models.map((model) => this.#model(model)))
         : h('p', {class: 'empty', text: 'No models in this folder.'});
-    const details = h('details', {class: 'section', open: !this.#closed.has(location.id)},
-      h('summary', {title: location.path}, icon('right', 13), h('span', {text: location.title}),
+    const details = h(
+      'details',
+      {class: 'section', open: !this.#closed.has(location.id)},
+      h(
+        'summary',
+        {title: location.path},
+        icon('right', 13),
+        h('span', {text: location.title}),
         h('span', {class: 'tag', text: String(location.models.length)}),
-        location.kind === 'added' && h('button', {
-          type: 'button', class: 'plain', title: 'Remove this path', 'aria-label': `Remove ${location.title}`,
-          onclick: (event) => this.#removePath(event, location),
-        }, icon('close', 12))), body);
+        location.kind === 'added' &&
+          h(
+            'button',
+            {
+              type: 'button',
+              class: 'plain',
+              title: 'Remove this path',
+              'aria-label': `Remove ${location.title}`,
+              onclick: (event) => this.#removePath(event, location),
+            },
+            icon('close', 12),
+          ),
+      ),
+      body,
+    );
     details.addEventListener('toggle', () => {
       if (details.open) this.#closed.delete(location.id);
       else this.#closed.add(location.id);
@@ -104,14 +149,24 @@ export class InsertTab {
   }
 
   #model(model) {
-    const card = h('div', {
-      class: 'model-card', role: 'button', tabindex: 0, draggable: true, dataset: {uri: model.uri},
-      title: model.description || model.title || model.name, 'aria-label': model.title || model.name,
-      ondragstart: (event) => {
-        event.dataTransfer.setData('text/x-model-uri', model.uri);
-        event.dataTransfer.effectAllowed = 'copy';
+    const card = h(
+      'div',
+      {
+        class: 'model-card',
+        role: 'button',
+        tabindex: 0,
+        draggable: true,
+        dataset: {uri: model.uri},
+        title: model.description || model.title || model.name,
+        'aria-label': model.title || model.name,
+        ondragstart: (event) => {
+          event.dataTransfer.setData('text/x-model-uri', model.uri);
+          event.dataTransfer.effectAllowed = 'copy';
+        },
       },
-    }, this.#picture(model), h('span', {class: 'label', text: model.title || model.name}));
+      this.#picture(model),
+      h('span', {class: 'label', text: model.title || model.name}),
+    );
     onActivate(card, () => this.#insert(model));
     return card;
   }
@@ -120,7 +175,10 @@ export class InsertTab {
     const frame = h('span', {class: 'thumb'}, icon('model', 26));
     if (!model.thumb) return frame;
     const image = h('img', {
-      alt: '', loading: 'lazy', src: model.thumb, draggable: 'false',
+      alt: '',
+      loading: 'lazy',
+      src: model.thumb,
+      draggable: 'false',
       onload: () => fill(frame, image),
       onerror: () => this.#render(model, frame),
     });
@@ -138,7 +196,9 @@ export class InsertTab {
   }
 
   async #insert(model) {
-    const card = [...this.#list.querySelectorAll('.model-card')].find((one) => one.dataset.uri === model.uri);
+    const card = [...this.#list.querySelectorAll('.model-card')].find(
+      (one) => one.dataset.uri === model.uri,
+    );
     card?.classList.add('pending');
     await this.page.actions.insertModel(model.uri);
     card?.classList.remove('pending');
@@ -155,19 +215,37 @@ export class InsertTab {
     clearTimeout(this.#hide);
     this.#progress.hidden = false;
     const known = expected > 0;
-    fill(this.#progress, h('span', {text: `Downloading ${name}: ${bytesText(done)}${known ? ` of ${bytesText(expected)}` : ''}`}),
-      h('progress', known ? {max: expected, value: done} : {}));
+    fill(
+      this.#progress,
+      h('span', {
+        text: `Downloading ${name}: ${bytesText(done)}${known ? ` of ${bytesText(expected)}` : ''}`,
+      }),
+      h('progress', known ? {max: expected, value: done} : {}),
+    );
     const over = known && done >= expected;
-    this.#hide = setTimeout(() => { this.#progress.hidden = true; }, over ? 800 : 15000);
+    this.#hide = setTimeout(
+      () => {
+        this.#progress.hidden = true;
+      },
+      over ? 800 : 15000,
+    );
   }
 
   #key(event) {
-    const cards = [...this.#list.querySelectorAll('.model-card')].filter((card) => card.offsetParent);
+    const cards = [...this.#list.querySelectorAll('.model-card')].filter(
+      (card) => card.offsetParent,
+    );
     const at = cards.indexOf(document.activeElement);
     if (at < 0) return;
     const columns = cards.filter((card) => card.offsetTop === cards[at].offsetTop).length || 1;
-    const to = { ArrowLeft: at - 1, ArrowRight: at + 1, ArrowUp: at - columns, ArrowDown: at + columns,
-      Home: 0, End: cards.length - 1 }[event.key];
+    const to = {
+      ArrowLeft: at - 1,
+      ArrowRight: at + 1,
+      ArrowUp: at - columns,
+      ArrowDown: at + columns,
+      Home: 0,
+      End: cards.length - 1,
+    }[event.key];
     if (to === undefined) return;
     event.preventDefault();
     event.stopPropagation();
@@ -175,12 +253,28 @@ export class InsertTab {
   }
 
   #addPath() {
-    const path = h('input', {type: 'text', spellcheck: 'false', autofocus: true, 'aria-label': 'Folder', placeholder: '/home/me/models'});
+    const path = h('input', {
+      type: 'text',
+      spellcheck: 'false',
+      autofocus: true,
+      'aria-label': 'Folder',
+      placeholder: '/home/me/models',
+    });
     new Dialog({
-      title: 'Add Path', content: [labelled('A folder that holds model folders', path)],
-      buttons: [{title: 'Cancel'}, {title: 'Add', primary: true, run: async () => {
-        this.#take((await this.page.request('library_add', {path: path.value.trim()})).locations);
-      } }],
+      title: 'Add Path',
+      content: [labelled('A folder that holds model folders', path)],
+      buttons: [
+        {title: 'Cancel'},
+        {
+          title: 'Add',
+          primary: true,
+          run: async () => {
+            this.#take(
+              (await this.page.request('library_add', {path: path.value.trim()})).locations,
+            );
+          },
+        },
+      ],
     }).open();
   }
 

@@ -8,12 +8,17 @@ import {icon} from './icons.js';
 import {makeInput} from './inputs.js';
 import {modelOf} from './world_rows.js';
 
-const MODES = [['force', 'Force'], ['position', 'Position'], ['velocity', 'Velocity']];
+const MODES = [
+  ['force', 'Force'],
+  ['position', 'Position'],
+  ['velocity', 'Velocity'],
+];
 const GAINS = {position: {p: 1, i: 0.1, d: 0.01}, velocity: {p: 1, i: 0.1, d: 0.01}};
 
 /** Joints that can be driven, with their units in each mode. Pure. */
 export function drivenJoints(model) {
-  return (model?.joints ?? []).filter((joint) => joint.axis && joint.type !== 'fixed')
+  return (model?.joints ?? [])
+    .filter((joint) => joint.axis && joint.type !== 'fixed')
     .map((joint) => {
       const [length, force] = joint.type === 'prismatic' ? ['m', 'N'] : ['rad', 'N m'];
       return {joint, units: {force, position: length, velocity: `${length}/s`}};
@@ -29,14 +34,23 @@ export class JointsPanel {
     this.page = page;
     this.#head = h('h2', {class: 'properties-title'});
     this.#body = h('div', {class: 'joints-body'});
-    this.#tabs = MODES.map(([mode, title]) => h('button', {
-      type: 'button', role: 'tab', text: title, dataset: {mode},
-      onclick: () => {
-        this.#mode = mode;
-        this.#build();
-      },
-    }));
-    const tabs = h('div', {class: 'tabs', role: 'tablist', 'aria-label': 'Joint control'}, ...this.#tabs);
+    this.#tabs = MODES.map(([mode, title]) =>
+      h('button', {
+        type: 'button',
+        role: 'tab',
+        text: title,
+        dataset: {mode},
+        onclick: () => {
+          this.#mode = mode;
+          this.#build();
+        },
+      }),
+    );
+    const tabs = h(
+      'div',
+      {class: 'tabs', role: 'tablist', 'aria-label': 'Joint control'},
+      ...this.#tabs,
+    );
     fill(element, this.#head, tabs, this.#body);
     roving(tabs, '[role=tab]');
     const {store} = page;
@@ -70,9 +84,13 @@ export class JointsPanel {
     const {store, watches} = this.page;
     const name = store.selection[store.selection.length - 1];
     this.#model = this.#shown && name ? modelOf(store.document, name) : null;
-    const topic = this.#model && drivenJoints(this.#model).length ? `joints:${this.#model.name}` : '';
-    const signature = JSON.stringify([topic, this.#model?.name,
-      this.#model?.joints.map((joint) => [joint.name, joint.type])]);
+    const topic =
+      this.#model && drivenJoints(this.#model).length ? `joints:${this.#model.name}` : '';
+    const signature = JSON.stringify([
+      topic,
+      this.#model?.name,
+      this.#model?.joints.map((joint) => [joint.name, joint.type]),
+    ]);
     if (signature === this.#signature) return;
     this.#signature = signature;
     this.#off?.();
@@ -88,20 +106,46 @@ export class JointsPanel {
     const joints = drivenJoints(this.#model);
     this.#head.textContent = this.#model ? `Joints of ${this.#model.name}` : 'Joints';
     if (!joints.length) {
-      fill(this.#body, h('p', {class: 'empty', text: this.#model
-        ? 'This model has no joint that moves.' : 'Select a model that has joints.'}));
+      fill(
+        this.#body,
+        h('p', {
+          class: 'empty',
+          text: this.#model
+            ? 'This model has no joint that moves.'
+            : 'Select a model that has joints.',
+        }),
+      );
       return;
     }
     const angular = joints.some(({units}) => units.position === 'rad') && this.#mode !== 'force';
-    fill(this.#body, angular && h('label', {class: 'check-row'}, h('input', {
-      type: 'checkbox', checked: this.#degrees,
-      onchange: (event) => {
-        this.#degrees = event.target.checked;
-        this.#build();
-      },
-    }), 'in degrees'), ...joints.map((one) => this.#row(one)),
-    h('div', {class: 'row'}, h('button', {type: 'button', onclick: () => this.#reset(joints)},
-      icon('reset', 14), 'Reset')));
+    fill(
+      this.#body,
+      angular &&
+        h(
+          'label',
+          {class: 'check-row'},
+          h('input', {
+            type: 'checkbox',
+            checked: this.#degrees,
+            onchange: (event) => {
+              this.#degrees = event.target.checked;
+              this.#build();
+            },
+          }),
+          'in degrees',
+        ),
+      ...joints.map((one) => this.#row(one)),
+      h(
+        'div',
+        {class: 'row'},
+        h(
+          'button',
+          {type: 'button', onclick: () => this.#reset(joints)},
+          icon('reset', 14),
+          'Reset',
+        ),
+      ),
+    );
   }
 
   #row({joint, units}) {
@@ -122,31 +166,57 @@ export class JointsPanel {
       else note.textContent = outcome.issues[0].message;
       input.show((this.#wanted.get(key) ?? 0) / factor);
     };
-    const input = makeInput({type: 'number', label: `${joint.name} ${mode}`}, send,
-      (text) => { note.textContent = text; });
+    const input = makeInput({type: 'number', label: `${joint.name} ${mode}`}, send, (text) => {
+      note.textContent = text;
+    });
     input.show((this.#wanted.get(key) ?? 0) / factor);
     const present = h('output', {class: 'soft', 'aria-label': `${joint.name} now`});
     this.#present.set(joint.name, {present, units, factor, unit: degrees ? '°' : units.position});
-    const gainInputs = mode === 'force' ? [] : ['p', 'i', 'd'].map((name) => {
-      const gain = makeInput({type: 'number', label: `${joint.name} ${name.toUpperCase()} gain`}, (value) => {
-        gains[name] = value;
-        gain.show(value);
-        if (this.#wanted.has(key)) send(this.#wanted.get(key) / factor);
-      }, (text) => { note.textContent = text; });
-      gain.show(gains[name]);
-      return h('span', {class: 'part'}, h('i', {text: name.toUpperCase(), 'aria-hidden': 'true'}), gain.element);
-    });
-    return h('div', {class: 'joint-row'}, h('div', {class: 'joint-name'}, h('span', {class: 'label', text: joint.name, title: scoped}), present),
+    const gainInputs =
+      mode === 'force'
+        ? []
+        : ['p', 'i', 'd'].map((name) => {
+            const gain = makeInput(
+              {type: 'number', label: `${joint.name} ${name.toUpperCase()} gain`},
+              (value) => {
+                gains[name] = value;
+                gain.show(value);
+                if (this.#wanted.has(key)) send(this.#wanted.get(key) / factor);
+              },
+              (text) => {
+                note.textContent = text;
+              },
+            );
+            gain.show(gains[name]);
+            return h(
+              'span',
+              {class: 'part'},
+              h('i', {text: name.toUpperCase(), 'aria-hidden': 'true'}),
+              gain.element,
+            );
+          });
+    return h(
+      'div',
+      {class: 'joint-row'},
+      h(
+        'div',
+        {class: 'joint-name'},
+        h('span', {class: 'label', text: joint.name, title: scoped}),
+        present,
+      ),
       h('div', {class: 'row'}, input.element, h('span', {class: 'unit', text: unit})),
-      gainInputs.length && h('div', {class: 'vector-input'}, ...gainInputs), note);
+      gainInputs.length && h('div', {class: 'vector-input'}, ...gainInputs),
+      note,
+    );
   }
 
   #showStates({topic, joints}) {
     if (!this.#model || topic !== `joints:${this.#model.name}`) return;
     for (const {name, axis, position, rate} of joints ?? []) {
-      const row = axis === 0 && (this.#present.get(name) ?? this.#present.get(name.split('::').pop()));
+      const row =
+        axis === 0 && (this.#present.get(name) ?? this.#present.get(name.split('::').pop()));
       if (!row) continue;
-      const at = (value) => numberText(Math.round(value / row.factor * 1e4) / 1e4);
+      const at = (value) => numberText(Math.round((value / row.factor) * 1e4) / 1e4);
       row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;
     }
   }

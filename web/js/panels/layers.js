@@ -30,12 +30,28 @@ export function mountLayers(element, {store}) {
     const signature = JSON.stringify([layers, [...store.overlays.hiddenLayers]]);
     if (signature === shown) return;
     shown = signature;
-    fill(element, ...(layers.length ? layers.map((layer) => h('label', {class: 'check-row'},
-      h('input', {
-        type: 'checkbox', checked: !store.overlays.hiddenLayers.has(layer),
-        onchange: (event) => store.setLayer(layer, event.target.checked),
-      }), `Layer ${layer}`))
-      : [h('p', {class: 'empty', text: 'No visual of this world has a layer (visual/meta/layer).'})]));
+    fill(
+      element,
+      ...(layers.length
+        ? layers.map((layer) =>
+            h(
+              'label',
+              {class: 'check-row'},
+              h('input', {
+                type: 'checkbox',
+                checked: !store.overlays.hiddenLayers.has(layer),
+                onchange: (event) => store.setLayer(layer, event.target.checked),
+              }),
+              `Layer ${layer}`,
+            ),
+          )
+        : [
+            h('p', {
+              class: 'empty',
+              text: 'No visual of this world has a layer (visual/meta/layer).',
+            }),
+          ]),
+    );
   });
   for (const event of ['document', 'entity', 'overlays']) store.addEventListener(event, show);
   show();

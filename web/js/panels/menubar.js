@@ -8,19 +8,28 @@ import {closePopup, menuList, openPopup} from './popup.js';
  */
 export function mountMenuBar(element, menus) {
   let open = null;
-  const buttons = menus.map((menu) => h('button', {
-    type: 'button', class: 'menu-title', role: 'menuitem', 'aria-haspopup': 'menu',
-    'aria-expanded': 'false', text: menu.title,
-  }));
+  const buttons = menus.map((menu) =>
+    h('button', {
+      type: 'button',
+      class: 'menu-title',
+      role: 'menuitem',
+      'aria-haspopup': 'menu',
+      'aria-expanded': 'false',
+      text: menu.title,
+    }),
+  );
   const show = (at) => {
     const button = buttons[at];
-    const close = openPopup(menuList(menus[at].items(), () => close(), menus[at].title), {
-      anchor: button,
-      onClose: () => {
-        button.setAttribute('aria-expanded', 'false');
-        if (open === at) open = null;
+    const close = openPopup(
+      menuList(menus[at].items(), () => close(), menus[at].title),
+      {
+        anchor: button,
+        onClose: () => {
+          button.setAttribute('aria-expanded', 'false');
+          if (open === at) open = null;
+        },
       },
-    });
+    );
     open = at;
     button.setAttribute('aria-expanded', 'true');
     const list = document.querySelector('.popup .menu');
@@ -35,7 +44,9 @@ export function mountMenuBar(element, menus) {
   };
   buttons.forEach((button, at) => {
     let wasOpen = false;
-    button.addEventListener('pointerdown', () => { wasOpen = open === at; });
+    button.addEventListener('pointerdown', () => {
+      wasOpen = open === at;
+    });
     button.addEventListener('click', (event) => {
       if (wasOpen && event.detail) {
         wasOpen = false;

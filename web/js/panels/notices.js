@@ -17,11 +17,25 @@ export class Notices {
     this.entries = [];
     this.unseen = 0;
     this.badge = h('span', {class: 'badge', hidden: true});
-    this.button = h('button', {
-      type: 'button', class: 'plain notices-button', title: 'Messages', 'aria-label': 'Messages',
-      'aria-expanded': 'false', onclick: () => this.#toggle(),
-    }, icon('messages', 16), this.badge);
-    this.#list = h('div', {class: 'notice-list', hidden: true, role: 'dialog', 'aria-label': 'All messages'});
+    this.button = h(
+      'button',
+      {
+        type: 'button',
+        class: 'plain notices-button',
+        title: 'Messages',
+        'aria-label': 'Messages',
+        'aria-expanded': 'false',
+        onclick: () => this.#toggle(),
+      },
+      icon('messages', 16),
+      this.badge,
+    );
+    this.#list = h('div', {
+      class: 'notice-list',
+      hidden: true,
+      role: 'dialog',
+      'aria-label': 'All messages',
+    });
     this.#list.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
       event.stopPropagation();
@@ -68,12 +82,22 @@ export class Notices {
   #card(issue) {
     const severity = issue.severity ?? 'error';
     const close = () => card.remove();
-    const card = h('div', {class: `notice ${severity}`}, icon(glyph(severity), 16), body(issue),
-      h('button', {type: 'button', class: 'plain', 'aria-label': 'Dismiss', onclick: close},
-        icon('close', 12)));
+    const card = h(
+      'div',
+      {class: `notice ${severity}`},
+      icon(glyph(severity), 16),
+      body(issue),
+      h(
+        'button',
+        {type: 'button', class: 'plain', 'aria-label': 'Dismiss', onclick: close},
+        icon('close', 12),
+      ),
+    );
     let timer = setTimeout(close, SECONDS[severity] * 1000);
     card.addEventListener('pointerenter', () => clearTimeout(timer));
-    card.addEventListener('pointerleave', () => { timer = setTimeout(close, 3000); });
+    card.addEventListener('pointerleave', () => {
+      timer = setTimeout(close, 3000);
+    });
     this.element.append(card);
     while (this.element.childElementCount > CARDS) this.element.firstChild.remove();
   }
@@ -90,15 +114,45 @@ export class Notices {
   }
 
   #showList() {
-    fill(this.#list,
-      h('header', {}, h('h2', {text: 'Messages'}),
-        h('button', { type: 'button', text: 'Clear', onclick: () => { this.entries = []; this.#showList(); } }),
-        h('button', {type: 'button', class: 'plain', 'aria-label': 'Close', onclick: () => this.#toggle()},
-          icon('close', 14))),
-      this.entries.length ? h('ol', {}, ...this.entries.map(({issue, count, at}) => h('li',
-        {class: issue.severity ?? 'error'}, icon(glyph(issue.severity ?? 'error'), 15),
-        body(issue), h('span', {class: 'soft', text: `${count > 1 ? `${count}× ` : ''}${at.toLocaleTimeString()}`}))))
-        : h('p', {class: 'empty', text: 'Nothing was reported.'}));
+    fill(
+      this.#list,
+      h(
+        'header',
+        {},
+        h('h2', {text: 'Messages'}),
+        h('button', {
+          type: 'button',
+          text: 'Clear',
+          onclick: () => {
+            this.entries = [];
+            this.#showList();
+          },
+        }),
+        h(
+          'button',
+          {type: 'button', class: 'plain', 'aria-label': 'Close', onclick: () => this.#toggle()},
+          icon('close', 14),
+        ),
+      ),
+      this.entries.length
+        ? h(
+            'ol',
+            {},
+            ...this.entries.map(({issue, count, at}) =>
+              h(
+                'li',
+                {class: issue.severity ?? 'error'},
+                icon(glyph(issue.severity ?? 'error'), 15),
+                body(issue),
+                h('span', {
+                  class: 'soft',
+                  text: `${count > 1 ? `${count}× ` : ''}${at.toLocaleTimeString()}`,
+                }),
+              ),
+            ),
+          )
+        : h('p', {class: 'empty', text: 'Nothing was reported.'}),
+    );
   }
 }
 
@@ -108,9 +162,12 @@ function glyph(severity) {
 
 function body(issue) {
   const place = issue.file ? `${issue.file}${issue.line ? `:${issue.line}` : ''}` : '';
-  return h('div', {class: 'notice-body'},
+  return h(
+    'div',
+    {class: 'notice-body'},
     h('div', {text: issue.message}),
     issue.hint && h('div', {class: 'soft', text: issue.hint}),
     place && h('code', {text: place}),
-    issue.xpath && h('code', {class: 'soft', text: issue.xpath}));
+    issue.xpath && h('code', {class: 'soft', text: issue.xpath}),
+  );
 }

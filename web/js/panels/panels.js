@@ -57,22 +57,40 @@ export function mountPanels(document, parts) {
   });
   page.store.addEventListener('issue', (event) => page.notices.add(event.detail));
   page.store.addEventListener('autosave', (event) => offerRestore(page, event.detail));
-  page.store.addEventListener('shutdown', (event) => page.notices.say(
-    `The simulator has ended${event.detail.reason ? `: ${event.detail.reason}` : ''}.`));
+  page.store.addEventListener('shutdown', (event) =>
+    page.notices.say(
+      `The simulator has ended${event.detail.reason ? `: ${event.detail.reason}` : ''}.`,
+    ),
+  );
   mountConnectionNote(element('centre'), page);
   return page;
 }
 
-const TABS = [['world', 'World'], ['insert', 'Insert'], ['layers', 'Layers']];
+const TABS = [
+  ['world', 'World'],
+  ['insert', 'Insert'],
+  ['layers', 'Layers'],
+];
 
 function mountTabs(element, page) {
-  const panels = TABS.map(([name]) => h('section', {
-    class: `tab-panel ${name}-tab`, id: `tab-${name}`, role: 'tabpanel', 'aria-labelledby': `tab-button-${name}`,
-  }));
-  const buttons = TABS.map(([name, title], at) => h('button', {
-    type: 'button', role: 'tab', id: `tab-button-${name}`, 'aria-controls': `tab-${name}`, text: title,
-    onclick: () => show(at),
-  }));
+  const panels = TABS.map(([name]) =>
+    h('section', {
+      class: `tab-panel ${name}-tab`,
+      id: `tab-${name}`,
+      role: 'tabpanel',
+      'aria-labelledby': `tab-button-${name}`,
+    }),
+  );
+  const buttons = TABS.map(([name, title], at) =>
+    h('button', {
+      type: 'button',
+      role: 'tab',
+      id: `tab-button-${name}`,
+      'aria-controls': `tab-${name}`,
+      text: title,
+      onclick: () => show(at),
+    }),
+  );
   const bar = h('div', {class: 'tabs', role: 'tablist', 'aria-label': 'Left panel'}, ...buttons);
   fill(element, bar, ...panels);
   const world = new WorldTab(panels[0], page);
@@ -80,29 +98,45 @@ function mountTabs(element, page) {
   mountLayers(panels[2], page);
   const show = (at) => {
     buttons.forEach((button, index) => button.setAttribute('aria-selected', String(index === at)));
-    panels.forEach((panel, index) => { panel.hidden = index !== at; });
+    panels.forEach((panel, index) => {
+      panel.hidden = index !== at;
+    });
     if (TABS[at][0] === 'insert' && !insert.locations) insert.load();
   };
   show(0);
   roving(bar, '[role=tab]').settle();
   splitter(document.getElementById('left-splitter'), {
-    key: 'left-width', initial: 292, min: 200, max: 560, from: 'left', within: document.getElementById('app'),
+    key: 'left-width',
+    initial: 292,
+    min: 200,
+    max: 560,
+    from: 'left',
+    within: document.getElementById('app'),
     apply: (size) => document.getElementById('app').style.setProperty('--left-width', `${size}px`),
   });
   return {world, show: (name) => show(TABS.findIndex((tab) => tab[0] === name))};
 }
 
 /** The parts of the window that F6 visits, each with what takes the focus there. */
-const REGIONS = ['#menubar [tabindex="0"]', '#toolbar [tabindex="0"]', '.world-tree',
-  '.properties input, .properties select', '#view', '#dock input', '#right [tabindex="0"]',
-  '#timebar [tabindex="0"]'];
+const REGIONS = [
+  '#menubar [tabindex="0"]',
+  '#toolbar [tabindex="0"]',
+  '.world-tree',
+  '.properties input, .properties select',
+  '#view',
+  '#dock input',
+  '#right [tabindex="0"]',
+  '#timebar [tabindex="0"]',
+];
 
 /** Moves the focus to the next part of the window that is there. */
 function goToRegion(step) {
-  const shown = REGIONS.map((selector) => [...document.querySelectorAll(selector)]
-    .find((element) => element.offsetParent !== null)).filter(Boolean);
-  const parts = shown.map((element) => element.closest(
-    '#menubar, #toolbar, .world-tree, .properties, #view, #dock, #right, #timebar'));
+  const shown = REGIONS.map((selector) =>
+    [...document.querySelectorAll(selector)].find((element) => element.offsetParent !== null),
+  ).filter(Boolean);
+  const parts = shown.map((element) =>
+    element.closest('#menubar, #toolbar, .world-tree, .properties, #view, #dock, #right, #timebar'),
+  );
   const at = parts.findIndex((part) => part.contains(document.activeElement));
   const from = at < 0 && step < 0 ? 0 : at;
   shown[(from + step + shown.length) % shown.length].focus();
@@ -119,8 +153,14 @@ class Windows {
     this.tabs = tabs;
     this.joints = new JointsPanel(document.getElementById('right'), page);
     splitter(document.getElementById('right-splitter'), {
-      key: 'right-width', initial: 300, min: 220, max: 560, from: 'right', within: document.getElementById('app'),
-      apply: (size) => document.getElementById('app').style.setProperty('--right-size', `${size}px`),
+      key: 'right-width',
+      initial: 300,
+      min: 220,
+      max: 560,
+      from: 'right',
+      within: document.getElementById('app'),
+      apply: (size) =>
+        document.getElementById('app').style.setProperty('--right-size', `${size}px`),
     });
     if (remembered.get('joints-shown', false)) this.#toggleJoints();
   }
@@ -151,7 +191,8 @@ class Windows {
     if (!run || this.#open.has(detail.name)) return;
     // A key that repeats must not stack the same window.
     this.#open.set(detail.name, true);
-    Promise.resolve(run()).catch((fault) => this.page.notices.fault(fault))
+    Promise.resolve(run())
+      .catch((fault) => this.page.notices.fault(fault))
       .finally(() => this.#open.delete(detail.name));
   }
 
@@ -174,12 +215,23 @@ class Windows {
   #togglePlots() {
     const dock = document.getElementById('dock');
     if (!this.#plots) {
-      const bar = h('div', {class: 'splitter horizontal', role: 'separator', tabindex: 0,
-        'aria-label': 'Height of the plots', 'aria-orientation': 'horizontal'});
+      const bar = h('div', {
+        class: 'splitter horizontal',
+        role: 'separator',
+        tabindex: 0,
+        'aria-label': 'Height of the plots',
+        'aria-orientation': 'horizontal',
+      });
       dock.before(bar);
-      splitter(bar, {key: 'dock-height', initial: 250, min: 120, max: 600, from: 'bottom',
+      splitter(bar, {
+        key: 'dock-height',
+        initial: 250,
+        min: 120,
+        max: 600,
+        from: 'bottom',
         within: document.getElementById('centre'),
-        apply: (size) => dock.style.setProperty('--dock-height', `${size}px`)});
+        apply: (size) => dock.style.setProperty('--dock-height', `${size}px`),
+      });
       this.#plots = {panel: new Plots(dock, this.page, () => this.#togglePlots()), bar};
       bar.hidden = true;
     }
@@ -214,12 +266,16 @@ class Windows {
     document.body.classList.add('building');
     const {store, request, actions} = this.page;
     this.#building = await mount(element, {store, request, actions});
-    element.addEventListener('exit', () => {
-      this.#building = null;
-      element.hidden = true;
-      document.body.classList.remove('building');
-      document.getElementById('view').focus();
-    }, {once: true});
+    element.addEventListener(
+      'exit',
+      () => {
+        this.#building = null;
+        element.hidden = true;
+        document.body.classList.remove('building');
+        document.getElementById('view').focus();
+      },
+      {once: true},
+    );
   }
 }
 
@@ -227,10 +283,15 @@ class Windows {
 async function offerRestore(page, {found, file, time}) {
   if (!found) return;
   const when = time ? ` of ${new Date(time * 1000).toLocaleString()}` : '';
-  const choice = await ask('Restore unsaved changes?',
-    `There are changes${when}${file ? ` to ${file}` : ''} that were never saved.`, [
-      {title: 'Discard', value: 'discard', danger: true}, {title: 'Later'},
-      {title: 'Restore', value: 'restore', primary: true}]);
+  const choice = await ask(
+    'Restore unsaved changes?',
+    `There are changes${when}${file ? ` to ${file}` : ''} that were never saved.`,
+    [
+      {title: 'Discard', value: 'discard', danger: true},
+      {title: 'Later'},
+      {title: 'Restore', value: 'restore', primary: true},
+    ],
+  );
   if (!choice) return;
   try {
     await page.request('autosave', {action: choice});
@@ -246,11 +307,11 @@ function mountConnectionNote(element, {store}) {
   const show = () => {
     begun ||= store.connected;
     note.hidden = store.connected;
-    note.textContent = begun ? 'The connection to the simulator is lost. Trying again…'
+    note.textContent = begun
+      ? 'The connection to the simulator is lost. Trying again…'
       : 'Connecting to the simulator…';
   };
   store.addEventListener('connection', show);
   // A page that connects at once need not say so.
   setTimeout(show, 600);
 }
-

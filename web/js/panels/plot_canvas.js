@@ -4,8 +4,16 @@ import {numberText} from './format.js';
 import {extent, ticks} from './plot_data.js';
 
 /** Told apart by eyes that see no red or green as well; readable on dark and light. */
-export const CURVE_COLORS = ['#e8812a', '#3f93e0', '#36a869', '#c765c4', '#d9534f', '#8a7be0',
-  '#b09a1f', '#2fa7a7'];
+export const CURVE_COLORS = [
+  '#e8812a',
+  '#3f93e0',
+  '#36a869',
+  '#c765c4',
+  '#d9534f',
+  '#8a7be0',
+  '#b09a1f',
+  '#2fa7a7',
+];
 
 const LEFT = 62;
 const BOTTOM = 22;
@@ -29,7 +37,11 @@ export function drawPlot(canvas, curves, {span, cursor, now}) {
   pen.fillStyle = themeColor('panel-2');
   pen.fillRect(0, 0, width, height);
   pen.font = '11px system-ui, "DejaVu Sans", sans-serif';
-  const range = extent(curves.map((curve) => curve.series), span, now);
+  const range = extent(
+    curves.map((curve) => curve.series),
+    span,
+    now,
+  );
   if (!range) {
     pen.fillStyle = themeColor('text-faint');
     pen.textAlign = 'center';
@@ -37,8 +49,8 @@ export function drawPlot(canvas, curves, {span, cursor, now}) {
     return;
   }
   const box = {left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - BOTTOM};
-  const across = (time) => box.left + (time - range.from) / (range.to - range.from) * box.width;
-  const down = (value) => box.top + (range.high - value) / (range.high - range.low) * box.height;
+  const across = (time) => box.left + ((time - range.from) / (range.to - range.from)) * box.width;
+  const down = (value) => box.top + ((range.high - value) / (range.high - range.low)) * box.height;
   drawAxes(pen, box, range, across, down);
   pen.save();
   pen.beginPath();
@@ -47,7 +59,7 @@ export function drawPlot(canvas, curves, {span, cursor, now}) {
   for (const curve of curves) drawCurve(pen, curve, range, across, down, box.width);
   pen.restore();
   if (cursor !== null && cursor > box.left && cursor < box.left + box.width) {
-    const time = range.from + (cursor - box.left) / box.width * (range.to - range.from);
+    const time = range.from + ((cursor - box.left) / box.width) * (range.to - range.from);
     drawCursor(pen, box, curves, time, across, down);
   }
 }

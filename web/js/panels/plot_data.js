@@ -116,7 +116,8 @@ export function csvOf(series) {
   const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const maps = series.map((one) => new Map(one.times.map((time, at) => [time, one.values[at]])));
   const rows = times.map((time) => [time, ...maps.map((map) => map.get(time) ?? '')].join(','));
-  return `${[['time', ...series.map((one) => cell(one.variable))].join(','), ...rows].join('\n')}\n`;
+  const head = ['time', ...series.map((one) => cell(one.variable))].join(',');
+  return `${[head, ...rows].join('\n')}\n`;
 }
 
 const STATE = ['x', 'y', 'z', 'roll', 'pitch', 'yaw', 'vx', 'vy', 'vz', 'wx', 'wy', 'wz'];

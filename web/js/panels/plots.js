@@ -8,7 +8,13 @@ import {icon} from './icons.js';
 import {CURVE_COLORS, drawPlot} from './plot_canvas.js';
 import {csvOf, Series, variablesOf} from './plot_data.js';
 
-const SPANS = [['5 s', 5], ['10 s', 10], ['30 s', 30], ['2 min', 120], ['all', null]];
+const SPANS = [
+  ['5 s', 5],
+  ['10 s', 10],
+  ['30 s', 30],
+  ['2 min', 120],
+  ['all', null],
+];
 const SHOWN = 300;
 
 export class Plots {
@@ -21,25 +27,56 @@ export class Plots {
     this.page = page;
     this.span = 10;
     this.#search = h('input', {
-      type: 'search', placeholder: 'Find a variable', 'aria-label': 'Find a variable',
+      type: 'search',
+      placeholder: 'Find a variable',
+      'aria-label': 'Find a variable',
       oninput: () => this.#showPalette(),
     });
     this.#list = h('div', {class: 'plot-variables', role: 'listbox', 'aria-label': 'Variables'});
     this.#canvases = h('div', {class: 'plot-canvases'});
-    const span = h('select', {'aria-label': 'Time span', onchange: () => {
-      this.span = SPANS[span.selectedIndex][1];
-      this.#draw();
-    }}, ...SPANS.map(([title, value]) => h('option', {text: title, selected: value === 10})));
-    const tool = (glyph, text, run) => h('button', {type: 'button', onclick: run}, icon(glyph, 14), text);
-    const bar = h('div', {class: 'dock-bar', role: 'toolbar', 'aria-label': 'Plots'},
-      h('h2', {text: 'Plots'}), tool('add', 'Canvas', () => this.addCanvas()), span,
-      tool('export', 'CSV', () => this.exportCsv()), tool('export', 'PNG', () => this.exportPng()),
-      tool('trash', 'Clear', () => this.clear()), h('span', {class: 'spring'}),
-      h('button', {type: 'button', class: 'plain', 'aria-label': 'Close plots', onclick: close}, icon('close', 15)));
-    fill(element, bar, h('div', {class: 'plots'},
-      h('div', {class: 'plot-palette'}, this.#search, this.#list), this.#canvases));
+    const span = h(
+      'select',
+      {
+        'aria-label': 'Time span',
+        onchange: () => {
+          this.span = SPANS[span.selectedIndex][1];
+          this.#draw();
+        },
+      },
+      ...SPANS.map(([title, value]) => h('option', {text: title, selected: value === 10})),
+    );
+    const tool = (glyph, text, run) =>
+      h('button', {type: 'button', onclick: run}, icon(glyph, 14), text);
+    const bar = h(
+      'div',
+      {class: 'dock-bar', role: 'toolbar', 'aria-label': 'Plots'},
+      h('h2', {text: 'Plots'}),
+      tool('add', 'Canvas', () => this.addCanvas()),
+      span,
+      tool('export', 'CSV', () => this.exportCsv()),
+      tool('export', 'PNG', () => this.exportPng()),
+      tool('trash', 'Clear', () => this.clear()),
+      h('span', {class: 'spring'}),
+      h(
+        'button',
+        {type: 'button', class: 'plain', 'aria-label': 'Close plots', onclick: close},
+        icon('close', 15),
+      ),
+    );
+    fill(
+      element,
+      bar,
+      h(
+        'div',
+        {class: 'plots'},
+        h('div', {class: 'plot-palette'}, this.#search, this.#list),
+        this.#canvases,
+      ),
+    );
     roving(this.#list, '[role=option]', {vertical: true, wrap: false});
-    this.#draw = onceAFrame(() => this.#plots.forEach((plot) => plot.draw(this.span, page.store.stats.sim_ns * 1e-9)));
+    this.#draw = onceAFrame(() =>
+      this.#plots.forEach((plot) => plot.draw(this.span, page.store.stats.sim_ns * 1e-9)),
+    );
     const palette = onceAFrame(() => {
       if (!element.hidden) this.#showPalette();
     });
@@ -47,7 +84,8 @@ export class Plots {
     page.store.addEventListener('stats', () => {
       if (!element.hidden && this.#series.size) this.#draw();
     });
-    for (const event of ['document', 'entity', 'selection']) page.store.addEventListener(event, palette);
+    for (const event of ['document', 'entity', 'selection'])
+      page.store.addEventListener(event, palette);
     new ResizeObserver(this.#draw).observe(this.#canvases);
     this.addCanvas();
     this.#showPalette();
@@ -80,7 +118,11 @@ export class Plots {
   series(variable) {
     let kept = this.#series.get(variable);
     if (!kept) {
-      kept = {series: new Series(variable), uses: 0, off: this.page.watches.add(`plot:${variable}`)};
+      kept = {
+        series: new Series(variable),
+        uses: 0,
+        off: this.page.watches.add(`plot:${variable}`),
+      };
       this.#series.set(variable, kept);
     }
     kept.uses += 1;
@@ -146,17 +188,25 @@ export class Plots {
   #showPalette() {
     const word = this.#search.value.trim().toLowerCase();
     const chosen = new Set(this.page.store.selection.map((name) => name.split('::')[0]));
-    const groups = variablesOf(this.page.store.document)
-      .sort((a, b) => chosen.has(b.owner) - chosen.has(a.owner));
-    const found = groups.flatMap(({owner, variables}) => variables
-      .filter((variable) => !word || variable.toLowerCase().includes(word))
-      .map((variable) => ({owner, variable})));
+    const groups = variablesOf(this.page.store.document).sort(
+      (a, b) => chosen.has(b.owner) - chosen.has(a.owner),
+    );
+    const found = groups.flatMap(({owner, variables}) =>
+      variables
+        .filter((variable) => !word || variable.toLowerCase().includes(word))
+        .map((variable) => ({owner, variable})),
+    );
     let owner = null;
-    fill(this.#list, ...found.slice(0, SHOWN).flatMap((one) => {
-      const head = one.owner !== owner && h('h3', {text: one.owner});
-      owner = one.owner;
-      return [head, this.#option(one.variable)];
-    }), found.length > SHOWN && h('p', {class: 'empty', text: `and ${found.length - SHOWN} more: search for them`}));
+    fill(
+      this.#list,
+      ...found.slice(0, SHOWN).flatMap((one) => {
+        const head = one.owner !== owner && h('h3', {text: one.owner});
+        owner = one.owner;
+        return [head, this.#option(one.variable)];
+      }),
+      found.length > SHOWN &&
+        h('p', {class: 'empty', text: `and ${found.length - SHOWN} more: search for them`}),
+    );
     if (!this.#list.querySelector('[tabindex="0"]')) {
       this.#list.querySelector('[role=option]')?.setAttribute('tabindex', '0');
     }
@@ -164,8 +214,13 @@ export class Plots {
 
   #option(variable) {
     const option = h('div', {
-      class: 'plot-variable', role: 'option', tabindex: -1, draggable: true, text: variable,
-      'aria-selected': String(this.#series.has(variable)), title: 'Click, or drag onto a canvas',
+      class: 'plot-variable',
+      role: 'option',
+      tabindex: -1,
+      draggable: true,
+      text: variable,
+      'aria-selected': String(this.#series.has(variable)),
+      title: 'Click, or drag onto a canvas',
       ondragstart: (event) => event.dataTransfer.setData('text/x-variable', variable),
     });
     onActivate(option, () => {
@@ -187,16 +242,22 @@ class Plot {
     this.#owner = owner;
     this.canvas = h('canvas', {class: 'plot-canvas', role: 'img', 'aria-label': 'Plot'});
     this.#legend = h('div', {class: 'plot-legend'});
-    this.element = h('div', {
-      class: 'plot', onpointerdown: () => owner.choose(this),
-      ondragover: (event) => {
-        if (event.dataTransfer.types.includes('text/x-variable')) event.preventDefault();
+    this.element = h(
+      'div',
+      {
+        class: 'plot',
+        onpointerdown: () => owner.choose(this),
+        ondragover: (event) => {
+          if (event.dataTransfer.types.includes('text/x-variable')) event.preventDefault();
+        },
+        ondrop: (event) => {
+          event.preventDefault();
+          this.add(event.dataTransfer.getData('text/x-variable'));
+        },
       },
-      ondrop: (event) => {
-        event.preventDefault();
-        this.add(event.dataTransfer.getData('text/x-variable'));
-      },
-    }, this.#legend, this.canvas);
+      this.#legend,
+      this.canvas,
+    );
     this.canvas.addEventListener('pointermove', (event) => {
       this.#cursor = event.offsetX;
       owner.redraw();
@@ -225,17 +286,44 @@ class Plot {
   }
 
   #showLegend() {
-    fill(this.#legend, ...this.#curves.map((curve) => h('span', {class: 'plot-key'},
-      h('i', {style: `background:${curve.color}`}), curve.series.variable,
-      h('button', {type: 'button', class: 'plain', 'aria-label': `Remove ${curve.series.variable}`,
-        onclick: () => this.#drop(curve)}, icon('close', 10)))),
-    !this.#curves.length && h('span', {class: 'soft', text: 'Click variables, or drop them here'}),
-    h('span', {class: 'spring'}),
-    h('button', {type: 'button', class: 'plain', 'aria-label': 'Remove this canvas', title: 'Remove this canvas',
-      onclick: () => {
-        [...this.#curves].forEach((curve) => this.#drop(curve));
-        this.#owner.remove(this);
-      }}, icon('close', 12)));
+    fill(
+      this.#legend,
+      ...this.#curves.map((curve) =>
+        h(
+          'span',
+          {class: 'plot-key'},
+          h('i', {style: `background:${curve.color}`}),
+          curve.series.variable,
+          h(
+            'button',
+            {
+              type: 'button',
+              class: 'plain',
+              'aria-label': `Remove ${curve.series.variable}`,
+              onclick: () => this.#drop(curve),
+            },
+            icon('close', 10),
+          ),
+        ),
+      ),
+      !this.#curves.length &&
+        h('span', {class: 'soft', text: 'Click variables, or drop them here'}),
+      h('span', {class: 'spring'}),
+      h(
+        'button',
+        {
+          type: 'button',
+          class: 'plain',
+          'aria-label': 'Remove this canvas',
+          title: 'Remove this canvas',
+          onclick: () => {
+            [...this.#curves].forEach((curve) => this.#drop(curve));
+            this.#owner.remove(this);
+          },
+        },
+        icon('close', 12),
+      ),
+    );
   }
 
   draw(span, now) {

@@ -48,8 +48,8 @@ export function openPopup(content, {anchor, x, y, onClose, keepFocus = false}) {
   const close = () => {
     if (closeOpen !== close) return;
     closeOpen = null;
-    const hadFocus = popup.contains(document.activeElement) ||
-      document.activeElement === document.body;
+    const hadFocus =
+      popup.contains(document.activeElement) || document.activeElement === document.body;
     popup.remove();
     document.removeEventListener('pointerdown', outside, true);
     document.removeEventListener('keydown', key, true);
@@ -103,16 +103,25 @@ function menuItem(item, close) {
   }
   const check = item.checked !== undefined;
   const on = check && item.checked();
-  return [h('button', {
-    type: 'button', class: 'menu-item', role: check ? 'menuitemcheckbox' : 'menuitem',
-    'aria-checked': check ? String(on) : null, disabled: item.enabled ? !item.enabled() : false,
-    onclick: () => {
-      close();
-      item.run();
-    },
-  }, h('span', {class: 'menu-check'}, on && icon('check', 14)),
-  h('span', {class: 'menu-title', text: item.title}),
-  item.keys && h('kbd', {text: item.keys}))];
+  return [
+    h(
+      'button',
+      {
+        type: 'button',
+        class: 'menu-item',
+        role: check ? 'menuitemcheckbox' : 'menuitem',
+        'aria-checked': check ? String(on) : null,
+        disabled: item.enabled ? !item.enabled() : false,
+        onclick: () => {
+          close();
+          item.run();
+        },
+      },
+      h('span', {class: 'menu-check'}, on && icon('check', 14)),
+      h('span', {class: 'menu-title', text: item.title}),
+      item.keys && h('kbd', {text: item.keys}),
+    ),
+  ];
 }
 
 /** Opens a menu at a point or anchor and puts the focus on its first item. */

@@ -69,7 +69,9 @@ export class Properties {
    */
   async #told(name, request) {
     let changed = null;
-    const came = new Promise((resolve) => { changed = resolve; });
+    const came = new Promise((resolve) => {
+      changed = resolve;
+    });
     const hear = ({detail}) => {
       if (!detail || detail.name === name) changed();
     };
@@ -77,7 +79,12 @@ export class Properties {
     for (const event of events) this.store.addEventListener(event, hear);
     try {
       await request();
-      await Promise.race([came, new Promise((resolve) => { setTimeout(resolve, 500); })]);
+      await Promise.race([
+        came,
+        new Promise((resolve) => {
+          setTimeout(resolve, 500);
+        }),
+      ]);
     } finally {
       for (const event of events) this.store.removeEventListener(event, hear);
     }
@@ -96,8 +103,16 @@ export class Properties {
 
   #show() {
     const found = sectionsOf(this.store.document, this.row);
-    const signature = found ? JSON.stringify([found.title, this.row.id, found.sections.map(
-      ({key, fields}) => [key, fields.map(({path, type, fixed}) => [path, type, fixed])])]) : '';
+    const signature = found
+      ? JSON.stringify([
+          found.title,
+          this.row.id,
+          found.sections.map(({key, fields}) => [
+            key,
+            fields.map(({path, type, fixed}) => [path, type, fixed]),
+          ]),
+        ])
+      : '';
     if (signature !== this.#signature) {
       this.#signature = signature;
       this.#build(found);
@@ -116,9 +131,15 @@ export class Properties {
     if (field.path === 'pose' && this.row.kind === 'model') {
       return this.store.worldPose(entity.name) ?? entity.pose;
     }
-    if (field.path === 'pose' && this.row.kind === 'link' && field.local === 'pose' &&
-        entity.inertial) {
-      const [model, link] = [this.row.model, this.row.select].map((name) => this.store.worldPose(name));
+    if (
+      field.path === 'pose' &&
+      this.row.kind === 'link' &&
+      field.local === 'pose' &&
+      entity.inertial
+    ) {
+      const [model, link] = [this.row.model, this.row.select].map((name) =>
+        this.store.worldPose(name),
+      );
       return model && link ? compose(inverse(model), link) : entity.pose;
     }
     return valueAt(entity, field.local);
@@ -132,8 +153,10 @@ export class Properties {
     this.#title.textContent = found?.title ?? 'Property';
     this.#title.title = found?.title ?? '';
     if (!found) {
-      fill(this.#body, h('p', {class: 'empty',
-        text: 'Choose a row above, or click something in the view.' }));
+      fill(
+        this.#body,
+        h('p', {class: 'empty', text: 'Choose a row above, or click something in the view.'}),
+      );
       return;
     }
     fill(this.#body, ...found.sections.map((section) => this.#section(section)));
@@ -146,16 +169,23 @@ export class Properties {
     if (!field || !this.#body.contains(field)) return null;
     const {path} = field.dataset;
     const at = [...field.querySelectorAll('input, select')].indexOf(document.activeElement);
-    return () => [...this.#body.querySelectorAll('.field')]
-      .find((one) => one.dataset.path === path)?.querySelectorAll('input, select')[at]?.focus();
+    return () =>
+      [...this.#body.querySelectorAll('.field')]
+        .find((one) => one.dataset.path === path)
+        ?.querySelectorAll('input, select')
+        [at]?.focus();
   }
 
   #section(section) {
     const rows = section.fields.map((field) => this.#field(section, field));
     if (!section.title) return h('div', {class: 'section'}, ...rows);
     const kind = section.title.split(' ')[0];
-    const details = h('details', {class: 'section', open: !this.#closed.has(kind)},
-      h('summary', {}, icon('right', 13), h('span', {text: section.title})), ...rows);
+    const details = h(
+      'details',
+      {class: 'section', open: !this.#closed.has(kind)},
+      h('summary', {}, icon('right', 13), h('span', {text: section.title})),
+      ...rows,
+    );
     details.addEventListener('toggle', () => {
       if (details.open) this.#closed.delete(kind);
       else this.#closed.add(kind);
@@ -167,15 +197,27 @@ export class Properties {
   #field(section, field) {
     const note = h('div', {class: 'field-note', role: 'alert'});
     const commit = (value) => this.#commit(section, field, value, element, note);
-    const refuse = (text) => { note.textContent = text; };
+    const refuse = (text) => {
+      note.textContent = text;
+    };
     const input = makeInput(field, commit, refuse);
     const wide = ['vector', 'pose', 'color', 'xml'].includes(field.type);
-    const element = h('div', {
-      class: `field ${wide ? 'wide' : ''} ${field.fixed ? 'fixed' : ''}`, title: field.hint,
-      dataset: {path: field.path, target: section.target},
-    }, h('span', {class: 'field-label', text: field.label}),
-    h('span', {class: 'field-input'}, input.element,
-      field.unit && h('span', {class: 'unit', text: field.unit})), note);
+    const element = h(
+      'div',
+      {
+        class: `field ${wide ? 'wide' : ''} ${field.fixed ? 'fixed' : ''}`,
+        title: field.hint,
+        dataset: {path: field.path, target: section.target},
+      },
+      h('span', {class: 'field-label', text: field.label}),
+      h(
+        'span',
+        {class: 'field-input'},
+        input.element,
+        field.unit && h('span', {class: 'unit', text: field.unit}),
+      ),
+      note,
+    );
     this.#inputs.push({key: section.key, field, input, element});
     return element;
   }
@@ -210,7 +252,7 @@ export class Properties {
   }
 
   #set(target, path, value) {
-    const owner = this.row.kind === 'light' ? target : this.row.model ?? '';
+    const owner = this.row.kind === 'light' ? target : (this.row.model ?? '');
     const op = {kind: 'set', target, path, value};
     return this.#told(owner, () => this.request('edit', {op}));
   }

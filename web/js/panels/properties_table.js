@@ -145,14 +145,20 @@ export const LINK = [
 export const INERTIAL = [
   number('mass', 'mass', 'kg', {above: 0}),
   POSE,
-  number('ixx', 'ixx', 'kg m²', NOT_NEGATIVE), number('ixy', 'ixy', 'kg m²'),
-  number('ixz', 'ixz', 'kg m²'), number('iyy', 'iyy', 'kg m²', NOT_NEGATIVE),
-  number('iyz', 'iyz', 'kg m²'), number('izz', 'izz', 'kg m²', NOT_NEGATIVE),
+  number('ixx', 'ixx', 'kg m²', NOT_NEGATIVE),
+  number('ixy', 'ixy', 'kg m²'),
+  number('ixz', 'ixz', 'kg m²'),
+  number('iyy', 'iyy', 'kg m²', NOT_NEGATIVE),
+  number('iyz', 'iyz', 'kg m²'),
+  number('izz', 'izz', 'kg m²', NOT_NEGATIVE),
 ];
 
-export const COLLISION = [NAME, POSE,
+export const COLLISION = [
+  NAME,
+  POSE,
   field('max_contacts', 'max contacts', 'integer', NOT_NEGATIVE),
-  number('laser_retro', 'laser retro')];
+  number('laser_retro', 'laser retro'),
+];
 
 export const SURFACE = [
   number('mu', 'friction mu', '', NOT_NEGATIVE),
@@ -168,13 +174,17 @@ export const SURFACE = [
   number('min_depth', 'contact min depth', 'm', NOT_NEGATIVE),
 ];
 
-export const VISUAL = [NAME, POSE,
+export const VISUAL = [
+  NAME,
+  POSE,
   number('transparency', 'transparency', '', {min: 0, max: 1}),
   flag('cast_shadows', 'cast shadows'),
-  optional('material', 'material', {ambient: [0.5, 0.5, 0.5, 1], diffuse: [0.7, 0.7, 0.7, 1]})];
+  optional('material', 'material', {ambient: [0.5, 0.5, 0.5, 1], diffuse: [0.7, 0.7, 0.7, 1]}),
+];
 
-export const MATERIAL = ['ambient', 'diffuse', 'specular', 'emissive']
-  .map((path) => color(path, path));
+export const MATERIAL = ['ambient', 'diffuse', 'specular', 'emissive'].map((path) =>
+  color(path, path),
+);
 
 export const JOINT = [
   NAME,
@@ -205,17 +215,23 @@ export const LIGHT_TYPES = ['point', 'spot', 'directional'];
 
 /** The fields of a light: its type decides. */
 export function lightFields(light) {
-  const far = light.type === 'directional' ? [] : [
-    number('range', 'range', 'm', NOT_NEGATIVE),
-    number('constant', 'attenuation constant', '', NOT_NEGATIVE),
-    number('linear', 'attenuation linear', '1/m', NOT_NEGATIVE),
-    number('quadratic', 'attenuation quadratic', '1/m²', NOT_NEGATIVE),
-  ];
-  const spot = light.type !== 'spot' ? [] : [
-    number('inner_angle', 'spot inner angle', 'rad', {min: 0, max: Math.PI}),
-    number('outer_angle', 'spot outer angle', 'rad', {min: 0, max: Math.PI}),
-    number('falloff', 'spot falloff', '', NOT_NEGATIVE),
-  ];
+  const far =
+    light.type === 'directional'
+      ? []
+      : [
+          number('range', 'range', 'm', NOT_NEGATIVE),
+          number('constant', 'attenuation constant', '', NOT_NEGATIVE),
+          number('linear', 'attenuation linear', '1/m', NOT_NEGATIVE),
+          number('quadratic', 'attenuation quadratic', '1/m²', NOT_NEGATIVE),
+        ];
+  const spot =
+    light.type !== 'spot'
+      ? []
+      : [
+          number('inner_angle', 'spot inner angle', 'rad', {min: 0, max: Math.PI}),
+          number('outer_angle', 'spot outer angle', 'rad', {min: 0, max: Math.PI}),
+          number('falloff', 'spot falloff', '', NOT_NEGATIVE),
+        ];
   return [
     NEW_NAME,
     field('type', 'type', 'choice', {choices: LIGHT_TYPES}),
@@ -229,5 +245,8 @@ export function lightFields(light) {
   ];
 }
 
-export const PLUGIN = [fixed('name', 'name'), fixed('filename', 'file'),
-  field('xml', 'XML', 'xml', {fixed: true})];
+export const PLUGIN = [
+  fixed('name', 'name'),
+  fixed('filename', 'file'),
+  field('xml', 'XML', 'xml', {fixed: true}),
+];

@@ -14,7 +14,8 @@ export function sectionsOf(document, row) {
   const make = row && document && KINDS[row.kind];
   const made = make ? make(document, row) : null;
   if (!made) return null;
-  const sections = made.filter((section) => section.entity)
+  const sections = made
+    .filter((section) => section.entity)
     .map((section) => ({...section, fields: present(section)}))
     .filter((section) => section.fields.length);
   return {title: titleOf(row), sections};
@@ -25,8 +26,14 @@ function titleOf(row) {
   return row.model && row.name ? `${row.model}::${row.name}` : row.label;
 }
 
-const section = (title, target, entity, fields, prefix = '') =>
-  ({key: `${target}|${title}`, title, target, entity, fields, prefix});
+const section = (title, target, entity, fields, prefix = '') => ({
+  key: `${target}|${title}`,
+  title,
+  target,
+  entity,
+  fields,
+  prefix,
+});
 
 /** A field of an entity that has no such member is not for this version of the server. */
 function present({entity, fields, prefix}) {
@@ -102,24 +109,40 @@ function linkSections(world, row) {
   const target = `${model.name}::${link.name}`;
   const canonical = model.links[0] === link;
   const sections = [
-    section('', target, link, table.LINK.map((field) => (
-      field.path === 'pose' && canonical ? {...field, hint: 'in the model'} : field))),
+    section(
+      '',
+      target,
+      link,
+      table.LINK.map((field) =>
+        field.path === 'pose' && canonical ? {...field, hint: 'in the model'} : field,
+      ),
+    ),
     section('Inertial', target, link.inertial, table.INERTIAL, 'inertial.'),
   ];
   // A collision and a visual may share a name: the target says which is meant.
   for (const collision of link.collisions ?? []) {
     const exact = `${target}::collision:${collision.name}`;
-    sections.push(section(`Collision ${collision.name}`, exact, collision,
-      [...table.COLLISION, ...geometryFields(collision.geometry)]));
-    sections.push(section(`Surface of ${collision.name}`, exact, collision.surface, table.SURFACE,
-      'surface.'));
+    sections.push(
+      section(`Collision ${collision.name}`, exact, collision, [
+        ...table.COLLISION,
+        ...geometryFields(collision.geometry),
+      ]),
+    );
+    sections.push(
+      section(`Surface of ${collision.name}`, exact, collision.surface, table.SURFACE, 'surface.'),
+    );
   }
   for (const visual of link.visuals ?? []) {
     const exact = `${target}::visual:${visual.name}`;
-    sections.push(section(`Visual ${visual.name}`, exact, visual,
-      [...table.VISUAL, ...geometryFields(visual.geometry)]));
-    sections.push(section(`Material of ${visual.name}`, exact, visual.material, table.MATERIAL,
-      'material.'));
+    sections.push(
+      section(`Visual ${visual.name}`, exact, visual, [
+        ...table.VISUAL,
+        ...geometryFields(visual.geometry),
+      ]),
+    );
+    sections.push(
+      section(`Material of ${visual.name}`, exact, visual.material, table.MATERIAL, 'material.'),
+    );
   }
   return sections;
 }

@@ -1,4 +1,4 @@
-/** Bars that change the size of a panel, with the mouse or the arrow keys; the size is remembered. */
+/** Bars that change the size of a panel, by mouse or arrow keys; the size is remembered. */
 import {remembered} from './dom.js';
 
 /**
@@ -34,8 +34,11 @@ export function splitter(bar, {key, initial, min, max, from, within, apply}) {
     bar.addEventListener('pointermove', move);
     bar.addEventListener('lostpointercapture', end);
   });
-  const [less, more] = {left: ['ArrowLeft', 'ArrowRight'], right: ['ArrowRight', 'ArrowLeft'],
-    bottom: ['ArrowDown', 'ArrowUp'] }[from];
+  const [less, more] = {
+    left: ['ArrowLeft', 'ArrowRight'],
+    right: ['ArrowRight', 'ArrowLeft'],
+    bottom: ['ArrowDown', 'ArrowUp'],
+  }[from];
   bar.addEventListener('keydown', (event) => {
     if (event.key !== less && event.key !== more) return;
     event.preventDefault();

@@ -63,29 +63,74 @@ export class TimeBar {
   #lastIterations = -1;
 
   #liveBar() {
-    this.#play = h('button', {type: 'button', class: 'play', onclick: () => this.actions.togglePlay()});
-    this.#step = h('button', {
-      type: 'button', title: 'Step', 'aria-label': 'Step', onclick: () => this.#doStep(),
-    }, icon('step'));
+    this.#play = h('button', {
+      type: 'button',
+      class: 'play',
+      onclick: () => this.actions.togglePlay(),
+    });
+    this.#step = h(
+      'button',
+      {
+        type: 'button',
+        title: 'Step',
+        'aria-label': 'Step',
+        onclick: () => this.#doStep(),
+      },
+      icon('step'),
+    );
     this.#steps = h('input', {
-      type: 'number', min: 1, max: 9999, step: 1, value: remembered.get('steps', 1),
-      'aria-label': 'Steps', class: 'steps',
+      type: 'number',
+      min: 1,
+      max: 9999,
+      step: 1,
+      value: remembered.get('steps', 1),
+      'aria-label': 'Steps',
+      class: 'steps',
       onkeydown: (event) => {
         if (event.key === 'Enter') this.#doStep();
       },
     });
     const figure = (key, label, width) => {
-      this.#figures[key] = h('output', {class: 'figure', 'aria-label': label, style: `min-width:${width}`});
-      return h('span', {class: 'figure-pair'}, h('span', {class: 'figure-label', text: label}), this.#figures[key]);
+      this.#figures[key] = h('output', {
+        class: 'figure',
+        'aria-label': label,
+        style: `min-width:${width}`,
+      });
+      return h(
+        'span',
+        {class: 'figure-pair'},
+        h('span', {class: 'figure-label', text: label}),
+        this.#figures[key],
+      );
     };
-    const reset = h('button', {
-      type: 'button', title: 'Reset time', 'aria-label': 'Reset time', onclick: () => this.actions.reset('time'),
-    }, icon('reset', 16));
-    return h('div', {class: 'time-part'}, this.#play, this.#step,
-      h('label', {class: 'figure-pair'}, h('span', {class: 'figure-label', text: 'Steps'}), this.#steps),
-      figure('factor', 'Real Time Factor', '3.2em'), figure('sim', 'Sim Time', '8.6em'),
-      figure('real', 'Real Time', '8.6em'), figure('iterations', 'Iterations', '5em'),
-      figure('fps', 'FPS', '2.4em'), reset);
+    const reset = h(
+      'button',
+      {
+        type: 'button',
+        title: 'Reset time',
+        'aria-label': 'Reset time',
+        onclick: () => this.actions.reset('time'),
+      },
+      icon('reset', 16),
+    );
+    return h(
+      'div',
+      {class: 'time-part'},
+      this.#play,
+      this.#step,
+      h(
+        'label',
+        {class: 'figure-pair'},
+        h('span', {class: 'figure-label', text: 'Steps'}),
+        this.#steps,
+      ),
+      figure('factor', 'Real Time Factor', '3.2em'),
+      figure('sim', 'Sim Time', '8.6em'),
+      figure('real', 'Real Time', '8.6em'),
+      figure('iterations', 'Iterations', '5em'),
+      figure('fps', 'FPS', '2.4em'),
+      reset,
+    );
   }
 
   async #doStep() {
@@ -121,37 +166,69 @@ export class TimeBar {
   #shared() {
     this.#log.recording = h('span', {class: 'recording', hidden: true, text: '● recording'});
     this.#figures.file = h('span', {class: 'file-name'});
-    return h('span', {class: 'time-part'}, this.#log.recording, this.#figures.file, this.notices.button);
+    return h(
+      'span',
+      {class: 'time-part'},
+      this.#log.recording,
+      this.#figures.file,
+      this.notices.button,
+    );
   }
 
   #showFile() {
     const {file, dirty} = this.store.history;
     const name = file ? file.split('/').pop() : 'not saved yet';
     this.#figures.file.textContent = `${name}${dirty ? ' •' : ''}`;
-    this.#figures.file.title = `${file || 'This world has no file'}${dirty ? ': unsaved changes' : ''}`;
-    document.title = `${dirty ? '• ' : ''}${file ? name : this.store.document?.name ?? 'World editor'} – World editor`;
+    const unsaved = dirty ? ': unsaved changes' : '';
+    this.#figures.file.title = `${file || 'This world has no file'}${unsaved}`;
+    const world = file ? name : (this.store.document?.name ?? 'no world');
+    document.title = `${dirty ? '• ' : ''}${world} – World editor`;
   }
 
   #replayBar() {
-    const button = (glyph, label, run) => h('button', {type: 'button', title: label, 'aria-label': label, onclick: run}, icon(glyph, 16));
+    const button = (glyph, label, run) =>
+      h(
+        'button',
+        {type: 'button', title: label, 'aria-label': label, onclick: run},
+        icon(glyph, 16),
+      );
     const seek = (time) => this.actions.logSeek(time);
     const ends = () => [this.store.log?.begin ?? 0, this.store.log?.end ?? 0];
     const log = this.#log;
     log.play = h('button', {type: 'button', class: 'play', onclick: () => this.#playLog()});
     log.slider = h('input', {
-      type: 'range', min: 0, max: 1, step: 0.001, 'aria-label': 'Log time', class: 'log-slider',
+      type: 'range',
+      min: 0,
+      max: 1,
+      step: 0.001,
+      'aria-label': 'Log time',
+      class: 'log-slider',
       oninput: () => seek(Number(log.slider.value)),
     });
     log.time = h('output', {class: 'figure', 'aria-label': 'Current time'});
     log.end = h('output', {class: 'figure', 'aria-label': 'End time'});
-    log.rate = h('select', {'aria-label': 'Rate', onchange: () => this.#playLog(true)},
-      ...RATES.map((rate) => h('option', {value: rate, text: `${rate}×`, selected: rate === 1})));
-    const by = (change) => () => seek(Math.min(Math.max((this.store.log?.time ?? 0) + change, ends()[0]), ends()[1]));
-    return h('div', {class: 'time-part replay', hidden: true},
-      button('begin', 'To the beginning', () => seek(ends()[0])), button('left', 'Step back', by(-0.05)),
-      log.play, button('right', 'Step forward', by(0.05)), button('end', 'To the end', () => seek(ends()[1])),
-      log.slider, log.time, h('span', {text: '/'}), log.end, log.rate,
-      h('button', {type: 'button', text: 'Close log', onclick: () => this.actions.logClose()}));
+    log.rate = h(
+      'select',
+      {'aria-label': 'Rate', onchange: () => this.#playLog(true)},
+      ...RATES.map((rate) => h('option', {value: rate, text: `${rate}×`, selected: rate === 1})),
+    );
+    const by = (change) => () =>
+      seek(Math.min(Math.max((this.store.log?.time ?? 0) + change, ends()[0]), ends()[1]));
+    return h(
+      'div',
+      {class: 'time-part replay', hidden: true},
+      button('begin', 'To the beginning', () => seek(ends()[0])),
+      button('left', 'Step back', by(-0.05)),
+      log.play,
+      button('right', 'Step forward', by(0.05)),
+      button('end', 'To the end', () => seek(ends()[1])),
+      log.slider,
+      log.time,
+      h('span', {text: '/'}),
+      log.end,
+      log.rate,
+      h('button', {type: 'button', text: 'Close log', onclick: () => this.actions.logClose()}),
+    );
   }
 
   /** Plays or stops; with `keep` goes on as it was, at the rate that is chosen now. */

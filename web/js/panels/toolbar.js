@@ -2,13 +2,24 @@
 import {fill, h, roving} from './dom.js';
 import {icon} from './icons.js';
 import {openPopup} from './popup.js';
+import {Video} from './video.js';
 
 const MODES = [
-  ['select', 'select', 'Select (Esc)'], ['translate', 'translate', 'Translate (T)'],
-  ['rotate', 'rotate', 'Rotate (R)'], ['scale', 'scale', 'Scale (S)'],
+  ['select', 'select', 'Select (Esc)'],
+  ['translate', 'translate', 'Translate (T)'],
+  ['rotate', 'rotate', 'Rotate (R)'],
+  ['scale', 'scale', 'Scale (S)'],
 ];
-const SHAPES = [['box', 'Box'], ['sphere', 'Sphere'], ['cylinder', 'Cylinder']];
-const LIGHTS = [['point', 'Point light'], ['spot', 'Spot light'], ['directional', 'Directional light']];
+const SHAPES = [
+  ['box', 'Box'],
+  ['sphere', 'Sphere'],
+  ['cylinder', 'Cylinder'],
+];
+const LIGHTS = [
+  ['point', 'Point light'],
+  ['spot', 'Spot light'],
+  ['directional', 'Directional light'],
+];
 const VIEWS = ['top', 'bottom', 'front', 'back', 'left', 'right', 'home'];
 
 /**
@@ -17,19 +28,33 @@ const VIEWS = ['top', 'bottom', 'front', 'back', 'left', 'right', 'home'];
  */
 export function mountToolBar(element, page) {
   const {store, actions} = page;
-  const button = (glyph, title, run, more = {}) => h('button', {
-    type: 'button', title, 'aria-label': title.replace(/ \(.*\)$/, ''), onclick: run, ...more,
-  }, icon(glyph));
+  const button = (glyph, title, run, more = {}) =>
+    h(
+      'button',
+      {
+        type: 'button',
+        title,
+        'aria-label': title.replace(/ \(.*\)$/, ''),
+        onclick: run,
+        ...more,
+      },
+      icon(glyph),
+    );
   const line = () => h('span', {class: 'tool-line', role: 'separator'});
 
-  const modes = MODES.map(([mode, glyph, title]) => button(glyph, title,
-    () => actions[`${mode}Mode`](), {role: 'radio', dataset: {mode} }));
+  const modes = MODES.map(([mode, glyph, title]) =>
+    button(glyph, title, () => actions[`${mode}Mode`](), {role: 'radio', dataset: {mode}}),
+  );
   const undo = button('undo', 'Undo (Ctrl+Z)', () => actions.undo());
   const redo = button('redo', 'Redo (Shift+Ctrl+Z)', () => actions.redo());
   const undoList = arrow('Undo history', (anchor) => historyList(page, 'undo', anchor));
   const redoList = arrow('Redo history', (anchor) => historyList(page, 'redo', anchor));
-  const shapes = SHAPES.map(([shape, title]) => button(shape, title, () => actions.insertShape(shape)));
-  const lights = LIGHTS.map(([type, title]) => button(type, title, () => actions.insertLight(type)));
+  const shapes = SHAPES.map(([shape, title]) =>
+    button(shape, title, () => actions.insertShape(shape)),
+  );
+  const lights = LIGHTS.map(([type, title]) =>
+    button(type, title, () => actions.insertLight(type)),
+  );
   const copy = button('copy', 'Copy (Ctrl+C)', () => actions.copy());
   const paste = button('paste', 'Paste (Ctrl+V)', () => actions.paste());
   const align = button('align', 'Align', () => {
@@ -38,18 +63,49 @@ export function mountToolBar(element, page) {
   });
   const snap = button('snap', 'Snap (N)', () => actions.snapMode());
   const views = button('views', 'View angle', () => {
-    const close = openPopup(viewPanel(page, () => close()), {anchor: views});
+    const close = openPopup(
+      viewPanel(page, () => close()),
+      {anchor: views},
+    );
     document.querySelector('.popup button')?.focus();
   });
   const camera = button('camera', 'Screenshot', () => actions.screenshot());
+  const record = button('video', 'Record video', () => video.toggle());
+  const video = new Video(page, () => {
+    record.setAttribute('aria-pressed', String(video.recording));
+    record.title = video.recording ? 'Stop and save the video' : 'Record video';
+  });
   const log = button('log', 'Log data (Ctrl+D)', () => actions.logs());
   const plot = button('plot', 'Plot (Ctrl+P)', () => actions.plot());
   const joints = button('joints', 'Joints panel', () => actions.joints());
 
-  fill(element, h('span', {role: 'radiogroup', 'aria-label': 'Mode', class: 'tool-group'}, ...modes),
-    line(), undo, undoList, redo, redoList, line(), ...shapes, line(), ...lights, line(),
-    copy, paste, line(), align, snap, line(), views, h('span', {class: 'spring'}),
-    camera, log, plot, joints);
+  fill(
+    element,
+    h('span', {role: 'radiogroup', 'aria-label': 'Mode', class: 'tool-group'}, ...modes),
+    line(),
+    undo,
+    undoList,
+    redo,
+    redoList,
+    line(),
+    ...shapes,
+    line(),
+    ...lights,
+    line(),
+    copy,
+    paste,
+    line(),
+    align,
+    snap,
+    line(),
+    views,
+    h('span', {class: 'spring'}),
+    camera,
+    record,
+    log,
+    plot,
+    joints,
+  );
   const rove = roving(element, 'button');
 
   const update = () => {
@@ -57,48 +113,89 @@ export function mountToolBar(element, page) {
       mode.setAttribute('aria-checked', String(store.mode === mode.dataset.mode));
     }
     snap.setAttribute('aria-pressed', String(store.mode === 'snap'));
-    for (const [list, one, many] of [[store.history.undo, undo, undoList], [store.history.redo, redo, redoList]]) {
+    for (const [list, one, many] of [
+      [store.history.undo, undo, undoList],
+      [store.history.redo, redo, redoList],
+    ]) {
       one.disabled = many.disabled = !list.length;
     }
-    undo.title = store.history.undo.length ? `Undo ${store.history.undo[0]} (Ctrl+Z)` : 'Undo (Ctrl+Z)';
-    redo.title = store.history.redo.length ? `Redo ${store.history.redo[0]} (Shift+Ctrl+Z)` : 'Redo (Shift+Ctrl+Z)';
+    undo.title = store.history.undo.length
+      ? `Undo ${store.history.undo[0]} (Ctrl+Z)`
+      : 'Undo (Ctrl+Z)';
+    redo.title = store.history.redo.length
+      ? `Redo ${store.history.redo[0]} (Shift+Ctrl+Z)`
+      : 'Redo (Shift+Ctrl+Z)';
     const wholes = store.selection.filter((name) => store.entity(name)?.kind !== 'link');
     copy.disabled = !wholes.length;
     paste.disabled = !store.clipboard;
     align.disabled = store.selection.length < 2;
     const placing = store.placing;
-    SHAPES.forEach(([shape], at) => shapes[at].setAttribute('aria-pressed', String(placing?.shape === shape)));
-    LIGHTS.forEach(([type], at) => lights[at].setAttribute('aria-pressed',
-      String(placing?.kind === 'light' && !placing.items && placing.document.type === type)));
+    SHAPES.forEach(([shape], at) =>
+      shapes[at].setAttribute('aria-pressed', String(placing?.shape === shape)),
+    );
+    LIGHTS.forEach(([type], at) =>
+      lights[at].setAttribute(
+        'aria-pressed',
+        String(placing?.kind === 'light' && !placing.items && placing.document.type === type),
+      ),
+    );
     if (!element.querySelector('button[tabindex="0"]:not(:disabled)')) rove.settle();
   };
-  for (const event of ['mode', 'history', 'selection', 'clipboard', 'placing', 'document', 'entity']) {
+  for (const event of [
+    'mode',
+    'history',
+    'selection',
+    'clipboard',
+    'placing',
+    'document',
+    'entity',
+  ]) {
     store.addEventListener(event, update);
   }
   update();
 }
 
 function arrow(title, open) {
-  const button = h('button', {
-    type: 'button', class: 'narrow', title, 'aria-label': title, 'aria-haspopup': 'menu',
-    onclick: () => open(button),
-  }, icon('down', 12));
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'narrow',
+      title,
+      'aria-label': title,
+      'aria-haspopup': 'menu',
+      onclick: () => open(button),
+    },
+    icon('down', 12),
+  );
   return button;
 }
 
 /** The history in words: choosing one takes back all down to it. */
 function historyList({store, actions}, which, anchor) {
   const labels = store.history[which];
-  const items = labels.map((label, at) => h('button', {
-    type: 'button', class: 'menu-item', role: 'menuitem',
-    onclick: () => {
-      close();
-      actions[which](at);
-    },
-  }, h('span', {class: 'menu-title', text: label})));
-  const list = h('div', {class: 'menu history', role: 'menu', 'aria-label': `${which} history`}, ...items);
-  const mark = (item) => items.forEach((one, at) =>
-    one.classList.toggle('included', at <= items.indexOf(item)));
+  const items = labels.map((label, at) =>
+    h(
+      'button',
+      {
+        type: 'button',
+        class: 'menu-item',
+        role: 'menuitem',
+        onclick: () => {
+          close();
+          actions[which](at);
+        },
+      },
+      h('span', {class: 'menu-title', text: label}),
+    ),
+  );
+  const list = h(
+    'div',
+    {class: 'menu history', role: 'menu', 'aria-label': `${which} history`},
+    ...items,
+  );
+  const mark = (item) =>
+    items.forEach((one, at) => one.classList.toggle('included', at <= items.indexOf(item)));
   list.addEventListener('focusin', (event) => mark(event.target.closest('button')));
   list.addEventListener('pointermove', (event) => event.target.closest('button')?.focus());
   roving(list, 'button', {vertical: true});
@@ -109,25 +206,43 @@ function historyList({store, actions}, which, anchor) {
 /** Align: Min, Center, Max for each axis; hovering shows what would be, a click does it. */
 function alignPanel({store, actions}) {
   const reverse = h('input', {type: 'checkbox'});
-  const relative = h('select', {'aria-label': 'Relative to'},
-    h('option', {value: 'first', text: 'First selected'}), h('option', {value: 'last', text: 'Last selected'}));
+  const relative = h(
+    'select',
+    {'aria-label': 'Relative to'},
+    h('option', {value: 'first', text: 'First selected'}),
+    h('option', {value: 'last', text: 'Last selected'}),
+  );
   const choice = (axis, at) => ({axis, at, reverse: reverse.checked, relative: relative.value});
   const cell = (axis, at) => {
     const preview = () => actions.alignPreview(choice(axis, at));
     const end = () => actions.alignPreview(null);
     return h('button', {
-      type: 'button', text: {min: 'Min', center: 'Center', max: 'Max'}[at],
-      'aria-label': `Align ${axis.toUpperCase()} ${at}`, onpointerenter: preview, onpointerleave: end,
-      onfocus: preview, onblur: end, onclick: () => actions.align(choice(axis, at)),
+      type: 'button',
+      text: {min: 'Min', center: 'Center', max: 'Max'}[at],
+      'aria-label': `Align ${axis.toUpperCase()} ${at}`,
+      onpointerenter: preview,
+      onpointerleave: end,
+      onfocus: preview,
+      onblur: end,
+      onclick: () => actions.align(choice(axis, at)),
     });
   };
-  return h('div', {class: 'align-panel', role: 'dialog', 'aria-label': 'Align'},
-    h('div', {class: 'align-grid'}, ...['x', 'y', 'z'].flatMap((axis) => [
-      h('b', {class: `axis-${axis}`, text: axis.toUpperCase()}),
-      ...['min', 'center', 'max'].map((at) => cell(axis, at))])),
+  return h(
+    'div',
+    {class: 'align-panel', role: 'dialog', 'aria-label': 'Align'},
+    h(
+      'div',
+      {class: 'align-grid'},
+      ...['x', 'y', 'z'].flatMap((axis) => [
+        h('b', {class: `axis-${axis}`, text: axis.toUpperCase()}),
+        ...['min', 'center', 'max'].map((at) => cell(axis, at)),
+      ]),
+    ),
     h('label', {}, reverse, 'Reverse'),
     h('label', {}, 'Relative to ', relative),
-    !store.stats.paused && h('p', {class: 'soft', text: 'Pause first, so that nothing falls meanwhile.'}));
+    !store.stats.paused &&
+      h('p', {class: 'soft', text: 'Pause first, so that nothing falls meanwhile.'}),
+  );
 }
 
 function viewPanel({store, actions}, close) {
@@ -136,14 +251,29 @@ function viewPanel({store, actions}, close) {
     action();
   };
   const title = (side) => side[0].toUpperCase() + side.slice(1);
-  const projection = (name) => h('button', {
-    type: 'button', text: title(name), 'aria-pressed': String(store.camera.projection === name),
-    onclick: run(() => actions.setProjection(name)),
-  });
-  const panel = h('div', {class: 'view-panel', role: 'dialog', 'aria-label': 'View angle'},
-    h('div', {class: 'view-grid'}, ...VIEWS.map((side) => h('button', {
-      type: 'button', text: title(side), onclick: run(() => actions.viewFrom(side)),
-    }))), h('div', {class: 'view-grid two'}, projection('perspective'), projection('orthographic')));
+  const projection = (name) =>
+    h('button', {
+      type: 'button',
+      text: title(name),
+      'aria-pressed': String(store.camera.projection === name),
+      onclick: run(() => actions.setProjection(name)),
+    });
+  const panel = h(
+    'div',
+    {class: 'view-panel', role: 'dialog', 'aria-label': 'View angle'},
+    h(
+      'div',
+      {class: 'view-grid'},
+      ...VIEWS.map((side) =>
+        h('button', {
+          type: 'button',
+          text: title(side),
+          onclick: run(() => actions.viewFrom(side)),
+        }),
+      ),
+    ),
+    h('div', {class: 'view-grid two'}, projection('perspective'), projection('orthographic')),
+  );
   roving(panel, 'button');
   return panel;
 }

@@ -78,8 +78,10 @@ export class Tree {
     const first = Math.max(0, Math.floor(scrollTop / ROW) - SPARE);
     const last = Math.min(this.rows.length, Math.ceil((scrollTop + clientHeight) / ROW) + SPARE);
     this.#sheet.style.height = `${this.rows.length * ROW}px`;
-    fill(this.#sheet, ...this.rows.slice(first, last).map((row, at) =>
-      this.#rowElement(row, first + at)));
+    fill(
+      this.#sheet,
+      ...this.rows.slice(first, last).map((row, at) => this.#rowElement(row, first + at)),
+    );
     const at = this.rows.findIndex((row) => row.id === this.current);
     const inSight = at >= first && at < last;
     if (inSight) this.element.setAttribute('aria-activedescendant', this.#prefix + at);
@@ -90,17 +92,31 @@ export class Tree {
     const classes = ['tree-row', `kind-${row.kind}`];
     if (this.selected.has(row.id)) classes.push('selected');
     if (row.id === this.current && document.activeElement === this.element) classes.push('current');
-    const arrow = h('span', {class: row.open ? 'arrow open' : 'arrow'},
-      row.expandable && icon('right', 14));
-    return h('div', {
-      class: classes.join(' '), id: this.#prefix + at, role: 'treeitem',
-      style: `top: ${at * ROW}px; padding-left: ${indent(row)}px`,
-      'aria-level': row.level, 'aria-selected': this.selected.has(row.id),
-      'aria-expanded': row.expandable ? String(row.open) : null,
-      'aria-setsize': this.rows.length, 'aria-posinset': at + 1,
-      title: row.label, 'aria-label': row.label,
-    }, arrow, row.icon && icon(row.icon, 15), h('span', {class: 'label', text: row.label}),
-    this.handlers.decorate?.(row));
+    const arrow = h(
+      'span',
+      {class: row.open ? 'arrow open' : 'arrow'},
+      row.expandable && icon('right', 14),
+    );
+    return h(
+      'div',
+      {
+        class: classes.join(' '),
+        id: this.#prefix + at,
+        role: 'treeitem',
+        style: `top: ${at * ROW}px; padding-left: ${indent(row)}px`,
+        'aria-level': row.level,
+        'aria-selected': this.selected.has(row.id),
+        'aria-expanded': row.expandable ? String(row.open) : null,
+        'aria-setsize': this.rows.length,
+        'aria-posinset': at + 1,
+        title: row.label,
+        'aria-label': row.label,
+      },
+      arrow,
+      row.icon && icon(row.icon, 15),
+      h('span', {class: 'label', text: row.label}),
+      this.handlers.decorate?.(row),
+    );
   }
 
   /** By place, not by element: a drawing between press and release replaces the elements. */
@@ -144,8 +160,7 @@ export class Tree {
     const at = this.rows.findIndex((row) => row.id === this.current);
     const row = this.rows[at];
     if (!row) return;
-    if (this.#keyMoves(event, at, row) || this.#keyActs(event, row) ||
-        this.#keyTypes(event, at)) {
+    if (this.#keyMoves(event, at, row) || this.#keyActs(event, row) || this.#keyTypes(event, at)) {
       event.preventDefault();
       event.stopPropagation();
     }
@@ -155,7 +170,11 @@ export class Tree {
     const page = Math.max(1, Math.floor(this.element.clientHeight / ROW) - 1);
     const last = this.rows.length - 1;
     const to = {
-      ArrowUp: at - 1, ArrowDown: at + 1, Home: 0, End: last, PageUp: at - page,
+      ArrowUp: at - 1,
+      ArrowDown: at + 1,
+      Home: 0,
+      End: last,
+      PageUp: at - page,
       PageDown: at + page,
       ArrowLeft: row.expandable && row.open ? undefined : this.#parentOf(at),
       ArrowRight: row.expandable && row.open ? at + 1 : undefined,
@@ -192,7 +211,8 @@ export class Tree {
       return true;
     }
     if (event.key === 'ContextMenu' || (event.key === 'F10' && event.shiftKey)) {
-      const box = document.getElementById(this.element.getAttribute('aria-activedescendant'))
+      const box = document
+        .getElementById(this.element.getAttribute('aria-activedescendant'))
         ?.getBoundingClientRect();
       if (box) this.handlers.menu?.(row, box.left + 40, box.bottom);
       return true;
@@ -202,7 +222,8 @@ export class Tree {
 
   /** Upper-case letters look for a row by its beginning: the plain ones are hotkeys. */
   #keyTypes(event, at) {
-    if (event.ctrlKey || event.key.length !== 1 || !event.shiftKey || event.key === ' ') return false;
+    if (event.ctrlKey || event.key.length !== 1 || !event.shiftKey || event.key === ' ')
+      return false;
     const now = performance.now();
     const fresh = now - this.#typed.at > 800;
     this.#typed = {text: (fresh ? '' : this.#typed.text) + event.key.toLowerCase(), at: now};

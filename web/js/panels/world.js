@@ -15,7 +15,9 @@ export class WorldTab {
     this.actions = page.actions;
     this.page = page;
     this.#filter = h('input', {
-      type: 'search', placeholder: 'Find a model or light', 'aria-label': 'Find a model or light',
+      type: 'search',
+      placeholder: 'Find a model or light',
+      'aria-label': 'Find a model or light',
       oninput: () => {
         this.#open.add('models').add('lights');
         this.update();
@@ -23,11 +25,25 @@ export class WorldTab {
     });
     const tree = h('div', {class: 'world-tree'});
     const properties = h('section', {class: 'properties', 'aria-label': 'Properties'});
-    const bar = h('div', {class: 'splitter horizontal', role: 'separator', tabindex: 0,
-      'aria-label': 'Height of the properties', 'aria-orientation': 'horizontal' });
+    const bar = h('div', {
+      class: 'splitter horizontal',
+      role: 'separator',
+      tabindex: 0,
+      'aria-label': 'Height of the properties',
+      'aria-orientation': 'horizontal',
+    });
     fill(element, h('div', {class: 'filter'}, this.#filter), tree, bar, properties);
-    splitter(bar, {key: 'properties-height', initial: 300, min: 90, max: 640, from: 'bottom',
-      within: element, apply: (size) => { properties.style.height = `${size}px`; } });
+    splitter(bar, {
+      key: 'properties-height',
+      initial: 300,
+      min: 90,
+      max: 640,
+      from: 'bottom',
+      within: element,
+      apply: (size) => {
+        properties.style.height = `${size}px`;
+      },
+    });
     this.tree = new Tree(tree, {
       label: 'World',
       choose: (row, event) => this.#choose(row, event),
@@ -71,8 +87,8 @@ export class WorldTab {
     if (!document) return new Set();
     const models = new Set(document.models.map(({name}) => name));
     const lights = new Set(document.lights.map(({name}) => name));
-    const idOf = (name) => (models.has(name) ? `model:${name}`
-      : lights.has(name) ? `light:${name}` : `link:${name}`);
+    const idOf = (name) =>
+      models.has(name) ? `model:${name}` : lights.has(name) ? `light:${name}` : `link:${name}`;
     return new Set([...selection.map(idOf), ...(this.#row ? [this.#row.id] : [])]);
   }
 
@@ -89,15 +105,17 @@ export class WorldTab {
 
   /** A joint's or plugin's row leaves its model selected. */
   #belongs(row, selection) {
-    return row.model && selection.some((name) =>
-      name === row.model || name.startsWith(`${row.model}::`));
+    return (
+      row.model && selection.some((name) => name === row.model || name.startsWith(`${row.model}::`))
+    );
   }
 
   #toggle(row, open) {
     if (open) this.#open.add(row.id);
     else this.#open.delete(row.id);
-    const kept = [...this.#open].filter((id) => this.store.document?.models
-      .some((model) => id.endsWith(`:${model.name}`)));
+    const kept = [...this.#open].filter((id) =>
+      this.store.document?.models.some((model) => id.endsWith(`:${model.name}`)),
+    );
     remembered.set('open-rows', kept.slice(-50));
     this.update();
   }
@@ -105,12 +123,14 @@ export class WorldTab {
   #followSelection() {
     const last = this.store.selection[this.store.selection.length - 1];
     const found = last && rowOf(this.store.document, last);
-    this.#awaited = found ? null : last ?? null;
+    this.#awaited = found ? null : (last ?? null);
     if (found && this.#row?.id !== found.id) {
       found.opens.forEach((id) => this.#open.add(id));
       const rows = worldRows(this.store.document, this.#open, this.#filter.value);
-      this.#row = rows.find((row) => row.id === found.id) ??
-        worldRows(this.store.document, this.#open).find((row) => row.id === found.id) ?? null;
+      this.#row =
+        rows.find((row) => row.id === found.id) ??
+        worldRows(this.store.document, this.#open).find((row) => row.id === found.id) ??
+        null;
       this.tree.show(rows, this.#selectedRows());
       this.tree.reveal(found.id);
     } else if (!last && this.#row?.select) this.#row = null;
@@ -122,7 +142,7 @@ export class WorldTab {
   #menu(row, x, y) {
     if (!row.select) return;
     if (!this.store.selection.includes(row.select)) this.#choose(row, {});
-    this.store.dispatchEvent(new CustomEvent('contextmenu', {detail: {name: row.select, x, y} }));
+    this.store.dispatchEvent(new CustomEvent('contextmenu', {detail: {name: row.select, x, y}}));
   }
 
   #decorate(row) {
@@ -149,4 +169,3 @@ export class WorldTab {
     this.properties.element.querySelector('[data-path="name"] input:not([readonly])')?.focus();
   }
 }
-

@@ -36,28 +36,58 @@ export function worldRows(document, open, wanted = '') {
   const rows = WORLD_ROWS.map(([id, label, icon]) => leaf(id, label, icon, 1, id));
   const fits = fitting(wanted);
   const models = document.models.filter(fits);
-  group(rows, open, 'models', counted('Models', models, document.models), 'model', models,
-    (model) => modelRows(rows, open, model));
+  group(
+    rows,
+    open,
+    'models',
+    counted('Models', models, document.models),
+    'model',
+    models,
+    (model) => modelRows(rows, open, model),
+  );
   const lights = document.lights.filter(fits);
-  group(rows, open, 'lights', counted('Lights', lights, document.lights), 'light', lights,
-    (light) => rows.push({
-      ...leaf(`light:${light.name}`, light.name, 'light', 2, 'light'),
-      select: light.name, name: light.name,
-    }));
-  for (const [key, label, kind, glyph] of [['actors', 'Actors', 'actor', 'model'],
-    ['roads', 'Roads', 'road', 'scene']]) {
+  group(
+    rows,
+    open,
+    'lights',
+    counted('Lights', lights, document.lights),
+    'light',
+    lights,
+    (light) =>
+      rows.push({
+        ...leaf(`light:${light.name}`, light.name, 'light', 2, 'light'),
+        select: light.name,
+        name: light.name,
+      }),
+  );
+  for (const [key, label, kind, glyph] of [
+    ['actors', 'Actors', 'actor', 'model'],
+    ['roads', 'Roads', 'road', 'scene'],
+  ]) {
     const all = document[key] ?? [];
     if (!all.length) continue;
-    group(rows, open, key, counted(label, all, all), glyph, all, (one) => rows.push({
-      ...leaf(`${kind}:${one.name}`, one.name, glyph, 2, kind), name: one.name,
-    }));
+    group(rows, open, key, counted(label, all, all), glyph, all, (one) =>
+      rows.push({
+        ...leaf(`${kind}:${one.name}`, one.name, glyph, 2, kind),
+        name: one.name,
+      }),
+    );
   }
   const plugins = document.plugins ?? [];
   if (plugins.length) {
-    group(rows, open, 'plugins', `Plugins (${plugins.length})`, 'plugin', plugins,
-      (plugin, index) => rows.push({
-        ...leaf(`plugin::${index}`, plugin.name || plugin.filename, 'plugin', 2, 'plugin'), index,
-      }));
+    group(
+      rows,
+      open,
+      'plugins',
+      `Plugins (${plugins.length})`,
+      'plugin',
+      plugins,
+      (plugin, index) =>
+        rows.push({
+          ...leaf(`plugin::${index}`, plugin.name || plugin.filename, 'plugin', 2, 'plugin'),
+          index,
+        }),
+    );
   }
   return rows;
 }
@@ -68,7 +98,8 @@ function fitting(wanted) {
 }
 
 function counted(label, shown, all) {
-  return shown.length === all.length ? `${label} (${all.length})`
+  return shown.length === all.length
+    ? `${label} (${all.length})`
     : `${label} (${shown.length} of ${all.length})`;
 }
 
@@ -85,13 +116,18 @@ function group(rows, open, id, label, icon, entities, add) {
 function modelRows(rows, open, model) {
   const id = `model:${model.name}`;
   const row = {
-    ...leaf(id, model.name, 'model', 2, 'model'), expandable: true, open: open.has(id),
-    select: model.name, model: model.name, name: model.name,
+    ...leaf(id, model.name, 'model', 2, 'model'),
+    expandable: true,
+    open: open.has(id),
+    select: model.name,
+    model: model.name,
+    name: model.name,
   };
   rows.push(row);
   if (!row.open) return;
   part(rows, model, 'LINKS', 'link', model.links, (link) => ({
-    select: `${model.name}::${link.name}`, name: link.name,
+    select: `${model.name}::${link.name}`,
+    name: link.name,
   }));
   part(rows, model, 'JOINTS', 'joint', model.joints, (joint) => ({name: joint.name}));
   part(rows, model, 'PLUGINS', 'plugin', model.plugins ?? [], (plugin, index) => ({index}));
@@ -103,9 +139,15 @@ function part(rows, model, heading, kind, entities, more) {
   entities.forEach((entity, index) => {
     const name = entity.name || entity.filename || kind;
     rows.push({
-      ...leaf(`${kind}:${model.name}::${kind === 'plugin' ? index : entity.name}`, name, kind, 3,
-        kind),
-      model: model.name, ...more(entity, index),
+      ...leaf(
+        `${kind}:${model.name}::${kind === 'plugin' ? index : entity.name}`,
+        name,
+        kind,
+        3,
+        kind,
+      ),
+      model: model.name,
+      ...more(entity, index),
     });
   });
 }

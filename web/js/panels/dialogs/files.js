@@ -19,8 +19,12 @@ class FolderList {
     this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
     this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
     this.list = h('div', {class: 'folder-list', role: 'listbox', 'aria-label': 'Files'});
-    this.element = h('div', {class: 'folders'}, this.roots,
-      h('div', {class: 'folder-main'}, this.path, this.list));
+    this.element = h(
+      'div',
+      {class: 'folders'},
+      this.roots,
+      h('div', {class: 'folder-main'}, this.path, this.list),
+    );
     this.#rove = roving(this.list, '[role=option]', {vertical: true, wrap: false});
   }
 
@@ -41,17 +45,32 @@ class FolderList {
     const {path, parent, roots = [], folders = [], files = []} = this.listing;
     this.path.textContent = path;
     this.path.title = path;
-    fill(this.roots, ...roots.map((root) => h('button', {
-      type: 'button', class: 'plain wide', title: root, onclick: () => this.go(root),
-      'aria-pressed': String(path === root || path.startsWith(`${root}/`)),
-    }, icon('folder', 15), h('span', {class: 'label', text: root.split('/').slice(-2).join('/')}))));
+    fill(
+      this.roots,
+      ...roots.map((root) =>
+        h(
+          'button',
+          {
+            type: 'button',
+            class: 'plain wide',
+            title: root,
+            onclick: () => this.go(root),
+            'aria-pressed': String(path === root || path.startsWith(`${root}/`)),
+          },
+          icon('folder', 15),
+          h('span', {class: 'label', text: root.split('/').slice(-2).join('/')}),
+        ),
+      ),
+    );
     const rows = [];
     if (parent) rows.push(this.#row('..', 'up', '', () => this.go(parent)));
     for (const folder of folders) {
       rows.push(this.#row(folder.name, 'folder', '', () => this.go(folder.path)));
     }
     for (const file of files) {
-      const row = this.#row(file.name, 'file', bytesText(file.size), () => this.handlers.onOpen(file.name));
+      const row = this.#row(file.name, 'file', bytesText(file.size), () =>
+        this.handlers.onOpen(file.name),
+      );
       row.addEventListener('click', () => this.handlers.onFile(file.name));
       row.addEventListener('focus', () => this.handlers.onFile(file.name));
       rows.push(row);
@@ -62,19 +81,28 @@ class FolderList {
   }
 
   #row(name, glyph, more, open) {
-    const row = h('div', {
-      class: 'folder-row', role: 'option', tabindex: -1, 'aria-selected': 'false',
-      ondblclick: open,
-      onkeydown: (event) => {
-        if (event.key !== 'Enter') return;
-        event.preventDefault();
-        open();
+    const row = h(
+      'div',
+      {
+        class: 'folder-row',
+        role: 'option',
+        tabindex: -1,
+        'aria-selected': 'false',
+        ondblclick: open,
+        onkeydown: (event) => {
+          if (event.key !== 'Enter') return;
+          event.preventDefault();
+          open();
+        },
+        onfocus: () => {
+          for (const other of this.list.children) other.setAttribute('aria-selected', 'false');
+          row.setAttribute('aria-selected', 'true');
+        },
       },
-      onfocus: () => {
-        for (const other of this.list.children) other.setAttribute('aria-selected', 'false');
-        row.setAttribute('aria-selected', 'true');
-      },
-    }, icon(glyph, 15), h('span', {class: 'label', text: name}), h('span', {class: 'more', text: more}));
+      icon(glyph, 15),
+      h('span', {class: 'label', text: name}),
+      h('span', {class: 'more', text: more}),
+    );
     if (glyph !== 'file') row.addEventListener('click', open);
     return row;
   }
@@ -98,11 +126,17 @@ export function withEnding(name) {
  */
 export async function saveAsDialog({store, request}) {
   const name = h('input', {
-    type: 'text', value: baseName(store.history?.file || store.document?.file) || 'untitled.world',
-    spellcheck: 'false', autocomplete: 'off', autofocus: true, 'aria-label': 'File name',
+    type: 'text',
+    value: baseName(store.history?.file || store.document?.file) || 'untitled.world',
+    spellcheck: 'false',
+    autocomplete: 'off',
+    autofocus: true,
+    'aria-label': 'File name',
   });
   const folders = new FolderList(request, {
-    onFile: (file) => { name.value = file; },
+    onFile: (file) => {
+      name.value = file;
+    },
     onOpen: (file) => {
       name.value = file;
       dialog.submit();
@@ -115,12 +149,15 @@ export async function saveAsDialog({store, request}) {
       dialog.say('Give the file a name.');
       return false;
     }
-    const path = wanted.startsWith('/') || !folders.listing ? withEnding(wanted)
-      : joined(folders.listing.path, withEnding(wanted));
+    const path =
+      wanted.startsWith('/') || !folders.listing
+        ? withEnding(wanted)
+        : joined(folders.listing.path, withEnding(wanted));
     return saveTo(request, path);
   };
   const dialog = new Dialog({
-    title: 'Save World As', name: 'files',
+    title: 'Save World As',
+    name: 'files',
     content: [labelled('File name', name), folders.element],
     buttons: [{title: 'Cancel'}, {title: 'Save', primary: true, run: save}],
   });
@@ -137,7 +174,9 @@ async function saveTo(request, path) {
     if (!fault.issues?.some((issue) => issue.code === 'exists')) throw fault;
   }
   const overwrite = await ask('Overwrite the file?', `${path} exists already.`, [
-    {title: 'Cancel'}, {title: 'Overwrite', value: true, primary: true}]);
+    {title: 'Cancel'},
+    {title: 'Overwrite', value: true, primary: true},
+  ]);
   return overwrite ? (await request('save', {path, overwrite: true})).path : false;
 }
 
@@ -155,11 +194,17 @@ export async function openDialog({store, request}) {
   const discard = await mayDiscard({store, request});
   if (!discard) return undefined;
   const name = h('input', {
-    type: 'text', spellcheck: 'false', autocomplete: 'off', autofocus: true,
-    'aria-label': 'File name', placeholder: 'a name from the list, or a path',
+    type: 'text',
+    spellcheck: 'false',
+    autocomplete: 'off',
+    autofocus: true,
+    'aria-label': 'File name',
+    placeholder: 'a name from the list, or a path',
   });
   const folders = new FolderList(request, {
-    onFile: (file) => { name.value = file; },
+    onFile: (file) => {
+      name.value = file;
+    },
     onOpen: (file) => {
       name.value = file;
       dialog.submit();
@@ -172,13 +217,14 @@ export async function openDialog({store, request}) {
       dialog.say('Choose a file.');
       return false;
     }
-    const path = wanted.startsWith('/') || !folders.listing ? wanted
-      : joined(folders.listing.path, wanted);
+    const path =
+      wanted.startsWith('/') || !folders.listing ? wanted : joined(folders.listing.path, wanted);
     await request('open', {path, discard: true});
     return path;
   };
   const dialog = new Dialog({
-    title: 'Open World', name: 'files',
+    title: 'Open World',
+    name: 'files',
     content: [labelled('File name', name), folders.element],
     buttons: [{title: 'Cancel'}, {title: 'Open', primary: true, run: open}],
   });
@@ -194,10 +240,11 @@ export async function openDialog({store, request}) {
  */
 export async function mayDiscard({store, request}) {
   if (!store.history?.dirty) return true;
-  const choice = await ask('Save the changes?',
-    'This world has changes that are not saved.', [
-      {title: 'Cancel'}, {title: "Don't save", value: 'discard', danger: true},
-      {title: 'Save', value: 'save', primary: true}]);
+  const choice = await ask('Save the changes?', 'This world has changes that are not saved.', [
+    {title: 'Cancel'},
+    {title: "Don't save", value: 'discard', danger: true},
+    {title: 'Save', value: 'save', primary: true},
+  ]);
   if (choice === 'discard') return true;
   if (choice !== 'save') return false;
   return saved({store, request});

@@ -15,7 +15,7 @@ export function magnitude(vector) {
 export function withMagnitude(vector, length) {
   const old = magnitude(vector);
   if (!old) return [length, 0, 0];
-  return vector.map((part) => part / old * length);
+  return vector.map((part) => (part / old) * length);
 }
 
 /** A vector with a magnitude and Clear. */
@@ -23,18 +23,39 @@ class VectorGroup {
   constructor(title, unit, changed) {
     this.value = [0, 0, 0];
     this.#changed = changed;
-    const refuse = (text) => { this.#note.textContent = text; };
+    const refuse = (text) => {
+      this.#note.textContent = text;
+    };
     this.#note = h('span', {class: 'field-note', role: 'alert'});
-    this.#vector = makeInput({type: 'vector', label: title, parts: ['x', 'y', 'z'], unit},
-      (value) => this.set(value), refuse);
-    this.#size = makeInput({type: 'number', label: `${title} magnitude`, min: 0},
-      (value) => this.set(withMagnitude(this.value, value)), refuse);
-    this.element = h('fieldset', {}, h('legend', {text: `${title} (${unit})`}),
+    this.#vector = makeInput(
+      {type: 'vector', label: title, parts: ['x', 'y', 'z'], unit},
+      (value) => this.set(value),
+      refuse,
+    );
+    this.#size = makeInput(
+      {type: 'number', label: `${title} magnitude`, min: 0},
+      (value) => this.set(withMagnitude(this.value, value)),
+      refuse,
+    );
+    this.element = h(
+      'fieldset',
+      {},
+      h('legend', {text: `${title} (${unit})`}),
       this.#vector.element,
-      h('div', {class: 'row'}, h('span', {text: 'Magnitude'}), this.#size.element, h('button', {
-        type: 'button', text: 'Clear', 'aria-label': `Clear ${title.toLowerCase()}`,
-        onclick: () => this.set([0, 0, 0]),
-      })), this.#note);
+      h(
+        'div',
+        {class: 'row'},
+        h('span', {text: 'Magnitude'}),
+        this.#size.element,
+        h('button', {
+          type: 'button',
+          text: 'Clear',
+          'aria-label': `Clear ${title.toLowerCase()}`,
+          onclick: () => this.set([0, 0, 0]),
+        }),
+      ),
+      this.#note,
+    );
     this.#show();
   }
 
@@ -61,21 +82,31 @@ class ForceDialog {
     this.#actions = actions;
     this.#request = request;
     const links = model.links.map((link) => `${model.name}::${link.name}`);
-    this.#link = h('select', {'aria-label': 'Link', onchange: () => this.preview()},
-      ...links.map((one) => h('option', {value: one, text: one})));
+    this.#link = h(
+      'select',
+      {'aria-label': 'Link', onchange: () => this.preview()},
+      ...links.map((one) => h('option', {value: one, text: one})),
+    );
     this.#link.value = links.includes(name) ? name : links[0];
     this.#force = new VectorGroup('Force', 'N', () => this.preview());
     this.#torque = new VectorGroup('Torque', 'N m', () => this.preview());
     this.dialog = new Dialog({
-      title: 'Apply Force/Torque', name: 'force', modal: false,
+      title: 'Apply Force/Torque',
+      name: 'force',
+      modal: false,
       content: [
         h('div', {class: 'row'}, h('span', {text: 'Link'}), this.#link),
-        this.#force.element, this.#pointFields(), this.#torque.element, this.#stepsField(),
+        this.#force.element,
+        this.#pointFields(),
+        this.#torque.element,
+        this.#stepsField(),
       ],
-      buttons: [{title: 'Cancel'},
+      buttons: [
+        {title: 'Cancel'},
         {title: 'Apply Force', run: () => this.#apply(true, false)},
         {title: 'Apply Torque', run: () => this.#apply(false, true)},
-        {title: 'Apply All', primary: true, run: () => this.#apply(true, true)}],
+        {title: 'Apply All', primary: true, run: () => this.#apply(true, true)},
+      ],
     });
   }
 
@@ -89,46 +120,70 @@ class ForceDialog {
   #steps = 1;
 
   #pointFields() {
-    const radio = (checked) => h('input', {
-      type: 'radio', name: 'force-point', checked, onchange: () => this.preview(),
-    });
+    const radio = (checked) =>
+      h('input', {
+        type: 'radio',
+        name: 'force-point',
+        checked,
+        onchange: () => this.preview(),
+      });
     const atCentre = radio(true);
     this.#atPoint = radio(false);
-    const input = makeInput({type: 'vector', label: 'Application point', parts: ['x', 'y', 'z']},
+    const input = makeInput(
+      {type: 'vector', label: 'Application point', parts: ['x', 'y', 'z']},
       (value) => {
         this.#point = value;
         this.#atPoint.checked = true;
         input.show(value);
         this.preview();
-      }, (text) => this.dialog.say(text));
+      },
+      (text) => this.dialog.say(text),
+    );
     input.show(this.#point);
-    return h('fieldset', {}, h('legend', {text: 'Applied at'}),
+    return h(
+      'fieldset',
+      {},
+      h('legend', {text: 'Applied at'}),
       h('label', {}, atCentre, 'centre of mass'),
-      h('label', {}, this.#atPoint, 'a point of the link (m)'), input.element);
+      h('label', {}, this.#atPoint, 'a point of the link (m)'),
+      input.element,
+    );
   }
 
   #stepsField() {
-    const input = makeInput({type: 'integer', label: 'Steps', min: 1}, (value) => {
-      this.#steps = value;
-      input.show(value);
-    }, (text) => this.dialog.say(text));
+    const input = makeInput(
+      {type: 'integer', label: 'Steps', min: 1},
+      (value) => {
+        this.#steps = value;
+        input.show(value);
+      },
+      (text) => this.dialog.say(text),
+    );
     input.show(this.#steps);
     return h('div', {class: 'row'}, h('span', {text: 'Steps it lasts'}), input.element);
   }
 
   /** Draws the arrows in the view, where it can. */
   preview() {
-    this.#actions.showForce({
-      link: this.#link.value, force: this.#force.value, torque: this.#torque.value,
-      point: this.#atPoint.checked ? this.#point : null,
-    }, (vector) => this.#force.set(vector));
+    this.#actions.showForce(
+      {
+        link: this.#link.value,
+        force: this.#force.value,
+        torque: this.#torque.value,
+        point: this.#atPoint.checked ? this.#point : null,
+      },
+      (vector) => this.#force.set(vector),
+    );
   }
 
   async #apply(withForce, withTorque) {
     const none = [0, 0, 0];
     const wrench = {
-      kind: 'wrench', link: this.#link.value, force: withForce ? this.#force.value : none,
-      torque: withTorque ? this.#torque.value : none, steps: this.#steps,
+      kind: 'wrench',
+      link: this.#link.value,
+      force: withForce ? this.#force.value : none,
+      torque: withTorque ? this.#torque.value : none,
+      steps: this.#steps,
     };
     if (withForce && this.#atPoint.checked) wrench.point = this.#point;
     this.dialog.say('');

@@ -9,7 +9,12 @@ import {icon} from '../icons.js';
  * @returns {Promise<any>}
  */
 export function logsDialog({store, actions}) {
-  const name = h('input', {type: 'text', placeholder: 'name (or the date)', 'aria-label': 'Log name', spellcheck: 'false'});
+  const name = h('input', {
+    type: 'text',
+    placeholder: 'name (or the date)',
+    'aria-label': 'Log name',
+    spellcheck: 'false',
+  });
   const record = h('button', {type: 'button'});
   const list = h('div', {class: 'folder-list', 'aria-label': 'Logs'});
   const check = (outcome) => {
@@ -20,16 +25,39 @@ export function logsDialog({store, actions}) {
     const outcome = await actions.logList();
     if (!outcome.ok) return;
     const logs = [...outcome.value.logs].sort((a, b) => b.modified - a.modified);
-    fill(list, ...(logs.length ? logs.map((log) => h('div', {class: 'folder-row'},
-      icon('log', 15), h('span', {class: 'label', text: log.name}),
-      h('span', {class: 'more', text: `${bytesText(log.bytes)}, ${new Date(log.modified * 1000).toLocaleString()}`}),
-      h('button', {type: 'button', text: 'Replay', 'aria-label': `Replay ${log.name}`, onclick: async () => {
-        if (check(await actions.logOpen(log.name))) dialog.close(log.name);
-      }}))) : [h('p', {class: 'empty', text: 'Nothing was recorded yet.'})]));
+    fill(
+      list,
+      ...(logs.length
+        ? logs.map((log) =>
+            h(
+              'div',
+              {class: 'folder-row'},
+              icon('log', 15),
+              h('span', {class: 'label', text: log.name}),
+              h('span', {
+                class: 'more',
+                text: `${bytesText(log.bytes)}, ${new Date(log.modified * 1000).toLocaleString()}`,
+              }),
+              h('button', {
+                type: 'button',
+                text: 'Replay',
+                'aria-label': `Replay ${log.name}`,
+                onclick: async () => {
+                  if (check(await actions.logOpen(log.name))) dialog.close(log.name);
+                },
+              }),
+            ),
+          )
+        : [h('p', {class: 'empty', text: 'Nothing was recorded yet.'})]),
+    );
   };
   const update = () => {
     const recording = store.log?.state === 'recording';
-    fill(record, icon('log', 16), h('span', {text: recording ? `Stop recording ${store.log.name}` : 'Record'}));
+    fill(
+      record,
+      icon('log', 16),
+      h('span', {text: recording ? `Stop recording ${store.log.name}` : 'Record'}),
+    );
     record.classList.toggle('danger', recording);
     name.disabled = recording;
   };
@@ -41,9 +69,17 @@ export function logsDialog({store, actions}) {
     update();
   });
   const dialog = new Dialog({
-    title: 'Log Data', name: 'logs',
-    content: [h('div', {class: 'row'}, record, name),
-      h('p', {class: 'soft', text: 'Every pose of the world is recorded while it runs. A replay shows it in this window only; the simulation goes on.'}), list],
+    title: 'Log Data',
+    name: 'logs',
+    content: [
+      h('div', {class: 'row'}, record, name),
+      h('p', {
+        class: 'soft',
+        text: `Every pose of the world is recorded while it runs. A replay shows it in this window
+          only; the simulation goes on.`,
+      }),
+      list,
+    ],
     buttons: [{title: 'Close', primary: true, value: true}],
   });
   store.addEventListener('log', update);
