@@ -418,6 +418,24 @@ def test_what_was_recorded_is_replayed_with_a_slider(editor):
     editor.button("Play").wait_for()
 
 
+def test_a_video_of_the_view_is_recorded(editor, tmp_path):
+    with_box(editor)
+    editor.button("Record video").click()
+    editor.page.keyboard.press("Escape")
+    seen = [editor.get("editor.view.pixelOf('unit_box')")]
+    editor.get("editor.actions.viewFrom('top')")
+
+    def flown():
+        seen.append(editor.get("editor.view.pixelOf('unit_box')"))
+        return seen[-1] != seen[0] and len(seen) > 3 and seen[-1] == seen[-2] == seen[-3]
+
+    wait_for(flown, "the flight")
+    with editor.page.expect_download() as video:
+        editor.button("Record video").click()
+    video.value.save_as(tmp_path / "view.webm")
+    assert (tmp_path / "view.webm").read_bytes()[:4] == b"\x1aE\xdf\xa3"
+
+
 # -- screens ---------------------------------------------------------------------------------------
 
 def test_everything_fits_a_small_laptop(editor):
