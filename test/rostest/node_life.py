@@ -14,6 +14,8 @@ import rospy
 import support
 from support import Program, executable, wait_for
 
+from my_simulations.editor.state_log import LogReader
+
 WORLD = '<sdf version="1.5"><world name="default">{}</world></sdf>'
 
 
@@ -72,6 +74,39 @@ class NodeLife(unittest.TestCase):
 
     def test_a_termination_ends_it_with_its_engine(self):
         self.ends_well(signal.SIGTERM)
+
+    def assert_logs(self, number):
+        """A second server's state log is whole when a signal has ended it."""
+        world = self.world(WORLD.format(""))
+        self.addCleanup(lambda: rospy.delete_param("/second"))
+        with Program([self.server, "-r", "--record_path", self.folder, world,
+                      "__name:=second"]) as program:
+            gazebo = support.Gazebo("/second", persistent=False)
+            wait_for(lambda: gazebo.sim_time() > 0.2, "some steps")
+            gazebo.pause_physics()
+            last = gazebo.sim_time()
+            program.process.send_signal(number)
+            self.assertEqual(program.ended(), 0, program.text)
+        log = LogReader(os.path.join(self.folder, "state.log"))
+        self.addCleanup(log.close)
+        self.assertEqual(log.begin, 0.0)
+        self.assertAlmostEqual(log.end, last, 9)
+
+    def test_a_state_log_is_whole_after_an_interrupt(self):
+        self.assert_logs(signal.SIGINT)
+
+    def test_a_state_log_is_whole_after_a_termination(self):
+        self.assert_logs(signal.SIGTERM)
+
+    def test_a_server_that_cannot_write_its_log_says_so_and_runs(self):
+        file = self.world("in the way", "taken")
+        self.addCleanup(lambda: rospy.delete_param("/second"))
+        with Program([self.server, "-r", "--record_path", os.path.join(file, "logs"),
+                      self.world(WORLD.format("")), "__name:=second"]) as program:
+            gazebo = support.Gazebo("/second", persistent=False)
+            wait_for(lambda: gazebo.sim_time() > 0.0, "a step")
+            wait_for(lambda: "no state log is recorded" in program.text, "the reason")
+            self.assertEqual(program.text.count("Not a directory"), 1)
 
     def test_an_engine_does_not_outlive_a_killed_server(self):
         with Program([self.server, self.world(WORLD.format("")), "__name:=second"]) as program:

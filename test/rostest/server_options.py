@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """gzserver's options in a running node, and spawn_model's joint positions."""
 import os
+import shutil
 import sys
 import unittest
 
@@ -9,6 +10,8 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rospy
 import support
 from support import Program, executable, wait_for
+
+from my_simulations.editor.state_log import LogReader
 
 STEPS = 300
 ARM = """<robot name="arm"><link name="world"/>
@@ -22,6 +25,11 @@ class ServerOptions(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.gazebo = support.Gazebo()
+        cls.logs = rospy.get_param("~logs")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.logs)
 
     def run_spawn_model(self, *words, status=0):
         with Program([executable("gazebo_ros", "spawn_model"), *words]) as program:
@@ -35,6 +43,16 @@ class ServerOptions(unittest.TestCase):
         self.assertTrue(self.gazebo.spawn("late", where=support.pose(z=5.0)).success)
         self.assertAlmostEqual(self.gazebo.z("late"), 5.0, 9)
         self.assertAlmostEqual(self.gazebo.sim_time(), STEPS / 1000.0, 9)
+
+    def test_the_launch_argument_recording_writes_a_log_from_the_first_step_to_the_last(self):
+        wait_for(lambda: self.gazebo.sim_time() * 1000 > STEPS - 0.5, "the last step")
+
+        def whole():
+            log = LogReader(os.path.join(self.logs, "state.log"))
+            log.close()
+            return log.begin == 0.0 and abs(log.end - STEPS / 1000.0) < 1e-9
+
+        wait_for(whole, "a whole log")
 
     def test_joints_start_where_spawn_model_is_told(self):
         rospy.set_param("/arm", ARM)

@@ -59,9 +59,19 @@ def test_every_option_of_a_state_log_is_understood():
     assert not parse(["--record_path", "/tmp/logs"]).recording.on
 
 
-def test_that_no_state_log_is_written_is_said_in_one_line():
-    (notice,) = parse(["-r"]).notices
-    assert "--record" in notice and "no state log" in notice
+def test_a_state_log_alone_needs_no_word():
+    assert parse(["-r", "--record_path", "/tmp/logs", "--record_period", "0.5"]).notices == []
+
+
+def test_what_changes_nothing_in_a_state_log_is_said_in_one_line():
+    (notice,) = parse(["-r", "--record_encoding", "bz2", "--record_filter", "box*",
+                       "--record_resources"]).notices
+    assert notice == ("without effect: --record_encoding, --record_filter, --record_resources")
+
+
+def test_words_on_a_state_log_that_nobody_asked_for_are_said_in_one_line():
+    (notice,) = parse(["--record_path", "/tmp/logs", "--record_period", "0"]).notices
+    assert notice == "without effect unless --record is given: --record_path, --record_period"
 
 
 def test_steps_seed_and_physics_preset_are_numbers_and_a_name():
@@ -71,7 +81,8 @@ def test_steps_seed_and_physics_preset_are_numbers_and_a_name():
 
 @pytest.mark.parametrize("words", [
     ["--iters", "0"], ["--iters", "-1"], ["--iters", "many"], ["--seed", "0.5"], ["--seed", "x"],
-    ["--record_encoding", "rar"], ["--record_period", "often"], ["-p", "old.log"], ["-e"]])
+    ["--record_encoding", "rar"], ["--record_period", "often"], ["--record_period", "nan"],
+    ["-p", "old.log"], ["-e"]])
 def test_bad_values_are_refused_with_the_usage(words, capsys):
     with pytest.raises(SystemExit) as refused:
         parse(words)

@@ -3,12 +3,7 @@ from __future__ import annotations
 
 import io
 import sys
-from typing import TYPE_CHECKING, Any, Dict, List, Optional
-
-if TYPE_CHECKING:
-    from ..editor.server import EditorServer
-    from ..resources.resolver import Resolver
-    from ..simulator.simulator import Simulator
+from typing import List, Optional
 
 
 def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool = False) -> int:
@@ -39,27 +34,13 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
     engines = EngineSupply(ProcessEngine)
     profile.mark("engine process started")
     from ..ros.server import Server
+    from .faces import Faces
 
     def say(line: str) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
-    return Server(options, words, say, engines, profile, start_editor, gui).run()
-
-
-def start_editor(simulator: "Simulator", resolver: "Resolver",
-                 settings: Dict[str, Any]) -> "EditorServer":
-    """Start the world editor; nothing of it is imported before.
-
-    Raises CommandError: it cannot listen, or what it needs is not installed.
-    """
-    from ..errors import CommandError
-
-    try:
-        from .. import editor
-
-        return editor.start(simulator, resolver, editor.EditorOptions(**settings))
-    except ImportError as missing:
-        raise CommandError(f"{missing}; tools/run installs what the editor needs") from missing
+    faces = Faces()
+    return Server(options, words, say, engines, profile, faces.edit, gui, faces.record).run()
 
 
 if __name__ == "__main__":

@@ -4,11 +4,17 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from typing import Callable, List
+from typing import TYPE_CHECKING, Callable, List, Optional
 
 from ..errors import CommandError, InputError, Issue, Severity
 from .browser import show
-from .gzserver import start_editor
+from .faces import Faces
+
+if TYPE_CHECKING:
+    from ..editor.recording import Recorder
+    from ..resources.resolver import Resolver
+    from ..ros.options import Recording
+    from ..simulator.simulator import Simulator
 
 OK, FAILED = 0, 1
 
@@ -53,7 +59,7 @@ def main(words: List[str], program: str) -> int:
     try:
         resolver = Resolver.from_environment()
         world, meshes = load_world(options.world, resolver, log)
-        simulator = Simulator(world, engine_factory=engines, paused=options.paused, log=log,
+        simulator = Simulator(world, engine_factory=engines, paused=True, log=log,
                               meshes=meshes)
         simulator.start()
     except InputError as fault:
@@ -61,8 +67,12 @@ def main(words: List[str], program: str) -> int:
             say(issue)
         engines.close()
         return FAILED
+    faces = Faces()
+    recorder = _record(faces, simulator, resolver, options.recording, say)
     try:
-        editor = start_editor(simulator, resolver, {"log": lambda issue: say(issue)})
+        if not options.paused:
+            simulator.unpause()
+        editor = faces.edit(simulator, resolver, {"log": lambda issue: say(issue)})
         for issue in list(heard):
             editor.tell(issue)
         shown.append(editor.tell)
@@ -74,4 +84,26 @@ def main(words: List[str], program: str) -> int:
         say(fault)
         return FAILED
     finally:
+        _finish(recorder, say)
         simulator.close()
+
+
+def _record(faces: Faces, simulator: "Simulator", resolver: "Resolver", wanted: "Recording",
+            say: Callable[[object], None]) -> "Optional[Recorder]":
+    if not wanted.on:
+        return None
+    try:
+        recorder = faces.record(simulator, resolver, wanted, say)
+    except CommandError as fault:
+        say(f"no state log is recorded: {fault}")
+        return None
+    say(f"the state log is {recorder.path}")
+    return recorder
+
+
+def _finish(recorder: "Optional[Recorder]", say: Callable[[object], None]) -> None:
+    try:
+        if recorder is not None:
+            recorder.stop()
+    except CommandError as fault:
+        say(f"the state log ends early: {fault}")

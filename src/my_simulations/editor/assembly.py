@@ -64,7 +64,7 @@ class Assembly:
         self._requests = Requests(self.hub, resolver, self._history, self._files,
                                   self._autosave, self.tell_all)
         self._models = LibraryRequests(self.hub, resolver, library, self._pool, self.tell_all)
-        self._logs = Logs(self.hub, options.data_dir, self.tell_all)
+        self._logs = Logs(self.hub, options.data_dir, self.tell_all, options.more_logs)
         self.routes: Dict[str, Route] = {
             **self._requests.routes(), **self._models.routes(), **self._logs.routes(),
             **Watching(self.hub).routes(),

@@ -18,6 +18,7 @@ from .document import Documents
 from .faults import issue_document
 from .frames import LIVE, Poses
 from .mirror import Mirror
+from .poses import PoseReader
 from .protocol import Protocol
 
 _KEPT_ISSUES = 100
@@ -52,8 +53,7 @@ class Hub:
         self._stats_due = 0.0
         self._issues: Deque[Issue] = deque(maxlen=_KEPT_ISSUES)
         self._poses: Optional[Poses] = None
-        self._layout: Any = None
-        self._ids: Any = None
+        self._reader = PoseReader(simulator)
 
     # -- telling ---------------------------------------------------------------------------------
 
@@ -171,7 +171,10 @@ class Hub:
         moved = sequence != self._sequence or self._behind()
         if moved:
             self._sequence = sequence
-            self._poses = self._read()
+            # None: names have changed that clients have not heard of.
+            self._poses = self._reader.read(self._mirror.revision, self.clock.real_ns * 1e-9)
+            if self._poses is None:
+                self._sequence = -1
             self._send_poses()
         for listener in self.on_tick:
             listener(self._poses if moved else None, self._mirror.revision)
@@ -203,27 +206,6 @@ class Hub:
         message = self._mirror.whole()
         self.check([message])
         return encoded(message)
-
-    def _read(self) -> Optional[Poses]:
-        """All poses of now; None while names have changed that clients have not heard of."""
-        import numpy as np
-
-        layout, _, raw = self.simulator.raw_states()
-        if layout.revision != self._mirror.revision:
-            self._sequence = -1
-            return None
-        step, clock = self.simulator.ring.clock()
-        if layout is not self._layout:
-            self._layout = layout
-            self._ids = np.fromiter((row for row, _ in layout.link_places), dtype=np.int64,
-                                    count=len(layout.link_places))
-        ids = self._ids
-        table = np.frombuffer(raw, dtype=np.float64).reshape(-1, 13)
-        if len(ids) and int(ids.max()) >= len(table):
-            self._sequence = -1
-            return None
-        return Poses(ids, table[ids, :7].astype(np.float32), step, clock.sim_ns(step) * 1e-9,
-                     self.clock.real_ns * 1e-9)
 
     def _send_poses(self) -> None:
         poses = self._poses

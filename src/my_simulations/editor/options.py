@@ -4,7 +4,7 @@ from __future__ import annotations
 import ipaddress
 import os
 from dataclasses import dataclass, field
-from typing import Callable, List, Optional
+from typing import Callable, List, Optional, Tuple
 
 from ..errors import Issue
 
@@ -31,6 +31,7 @@ class EditorOptions:
         config_dir: keeps the folders a user added to the library.
         cache_dir: keeps autosaves and thumbnails.
         data_dir: keeps state logs.
+        more_logs: state logs that lie elsewhere.
         check_outgoing: hold what is sent to the protocol too (tests).
     """
 
@@ -43,6 +44,7 @@ class EditorOptions:
     config_dir: str = field(default_factory=lambda: _xdg("XDG_CONFIG_HOME", "~/.config"))
     cache_dir: str = field(default_factory=lambda: _xdg("XDG_CACHE_HOME", "~/.cache"))
     data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
+    more_logs: Tuple[str, ...] = ()
     check_outgoing: bool = False
 
 

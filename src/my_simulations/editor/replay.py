@@ -6,8 +6,7 @@ import contextlib
 import os
 import re
 from concurrent.futures import ThreadPoolExecutor
-from time import strftime
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, Iterable, List, Optional
 
 from ..errors import CommandError, Issue, warning
 from .client import Client
@@ -15,10 +14,9 @@ from .faults import Refusal
 from .frames import LOG, Poses
 from .hub import Hub
 from .sockets import Route
-from .state_log import LogReader, LogWriter
+from .state_log import FILE, LogReader, LogWriter, new_name
 
 _NAME = re.compile(r"[\w][\w.+-]{0,80}\Z")
-_FILE = "state.log"
 
 
 class Replay:
@@ -40,11 +38,21 @@ class Replay:
 
 
 class Logs:
-    """The requests `log_…`. Everything runs in the server's loop but reading and writing."""
+    """The requests `log_…`. Everything runs in the server's loop but reading and writing.
 
-    def __init__(self, hub: Hub, folder: str, tell: Callable[[Issue], None]) -> None:
+    Args:
+        hub: the clients.
+        folder: where logs are, each in a folder of its name.
+        tell: hears of faults.
+        more: log files that lie elsewhere.
+    """
+
+    def __init__(self, hub: Hub, folder: str, tell: Callable[[Issue], None],
+                 more: Iterable[str] = ()) -> None:
         self._hub = hub
         self._folder = folder
+        self._more = {os.path.basename(os.path.dirname(path)): path for path in more
+                      if os.path.dirname(os.path.dirname(path)) != os.path.abspath(folder)}
         self._tell = tell
         self._writer: Optional[LogWriter] = None
         self._name = ""
@@ -94,7 +102,7 @@ class Logs:
     async def _start(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is not None:
             raise Refusal("recording", f"the log {self._name!r} is being recorded already")
-        name = message.get("name") or strftime("%Y-%m-%dT%H.%M.%S")
+        name = message.get("name") or new_name()
         path = self._path(name)
         if os.path.lexists(path):
             raise Refusal("exists", f"there is a log {name!r} already")
@@ -154,18 +162,21 @@ class Logs:
             names = os.listdir(self._folder)
         except OSError:
             names = []
-        for name in names:
+        paths = {name: os.path.join(self._folder, name, FILE) for name in names}
+        for name, path in {**paths, **self._more}.items():
             try:
-                status = os.stat(os.path.join(self._folder, name, _FILE))
+                status = os.stat(path)
             except OSError:
                 continue
             found.append({"name": name, "bytes": status.st_size, "modified": status.st_mtime})
         return {"logs": sorted(found, key=lambda log: -float(log["modified"]))}
 
     def _path(self, name: str) -> str:
+        if name in self._more:
+            return self._more[name]
         if not _NAME.match(name):
             raise CommandError(f"{name!r} is no name for a log")
-        return os.path.join(self._folder, name, _FILE)
+        return os.path.join(self._folder, name, FILE)
 
     # -- playing ---------------------------------------------------------------------------------
 

@@ -11,10 +11,14 @@ import json
 import os
 import struct
 from dataclasses import dataclass
+from time import strftime
 from typing import Any, BinaryIO, Dict, List, Optional, Tuple
 
 from ..errors import CommandError
 from .frames import LOG, Poses, SentPoses, record_type
+
+FILE = "state.log"
+"""What a log is called, in a folder that bears its name (Gazebo behaviour)."""
 
 MAGIC = b"my_simulations state log 1\n"
 DOCUMENT, WHOLE, MOVED = 1, 2, 3
@@ -23,6 +27,11 @@ _RECORD = struct.Struct("<BdI")
 _HEAD_BYTES = 40
 _WHOLE_EVERY_S = 5.0
 _LARGEST = 256 << 20
+
+
+def new_name() -> str:
+    """What a log is called that nobody gave a name: date and time."""
+    return strftime("%Y-%m-%dT%H.%M.%S")
 
 
 class LogWriter:
@@ -34,6 +43,7 @@ class LogWriter:
         self._whole_at = float("-inf")
         self.begin: Optional[float] = None
         self.end = 0.0
+        self._written = float("-inf")
         try:
             os.makedirs(os.path.dirname(path), exist_ok=True)
             self._file: BinaryIO = open(path, "xb")
@@ -55,10 +65,17 @@ class LogWriter:
             self._sent.forget()
             self._whole_at = time
         frame = self._sent.frame(LOG, 0, poses)
-        if frame:
+        if frame or whole:  # a world without links has states, too
             self._write(WHOLE if whole else MOVED, time, frame[_HEAD_BYTES:])
         self.begin = time if self.begin is None else self.begin
         self.end = time
+
+    def flush(self) -> None:
+        """Make what was written so far survive the end of this process. Raises CommandError."""
+        try:
+            self._file.flush()
+        except OSError as fault:
+            raise CommandError(f"{self.path} cannot be written: {fault.strerror}") from fault
 
     def close(self, time: Optional[float] = None) -> None:
         """Nothing more comes; what was last stayed so until `time`.
@@ -66,7 +83,7 @@ class LogWriter:
         Raises CommandError when not all of it could be written.
         """
         try:
-            if time is not None and self.begin is not None and time > self.end:
+            if time is not None and self.begin is not None and time > self._written:
                 self._write(MOVED, time, b"")
                 self.end = time
         finally:
@@ -78,6 +95,7 @@ class LogWriter:
     def _write(self, kind: int, time: float, data: bytes) -> None:
         try:
             self._file.write(_RECORD.pack(kind, time, len(data)) + data)
+            self._written = time
         except OSError as fault:
             raise CommandError(f"{self.path} cannot be written: {fault.strerror}") from fault
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import List, Optional, Sequence
 
 DEFAULT_WORLD = "worlds/empty.world"
@@ -22,11 +23,11 @@ class Recording:
 
     Attributes:
         on: record at all.
-        encoding: one of RECORD_ENCODINGS.
+        encoding: one of RECORD_ENCODINGS; not used.
         path: folder of the log; "" for the usual place.
-        period: seconds of sim time between states; negative for every change.
-        filter: which models; "" for all.
-        resources: put meshes and textures into the log too.
+        period: least seconds of sim time between states; negative for all that are shown.
+        filter: which models; not used.
+        resources: put meshes and textures into the log too; not used.
     """
 
     on: bool = False
@@ -102,21 +103,30 @@ def parser(program: str = "gzserver") -> argparse.ArgumentParser:
 
 def _add_recording(made: argparse.ArgumentParser) -> None:
     made.add_argument("-r", "--record", action="store_true",
-                      help="accepted without effect, like the next five: no log is written")
-    made.add_argument("--record_path", metavar="FOLDER", default="", help="where the log goes")
-    made.add_argument("--record_period", type=float, default=-1.0, metavar="SECONDS",
-                      help="sim time between recorded states")
+                      help="write a state log, which the world editor plays")
+    made.add_argument("--record_path", metavar="FOLDER", default="",
+                      help="folder of the log (default ~/.gazebo/log/DATE_AND_TIME)")
+    made.add_argument("--record_period", type=_period, default=-1.0, metavar="SECONDS",
+                      help="least sim time between recorded states")
     made.add_argument("--record_encoding", choices=RECORD_ENCODINGS, default="zlib",
-                      help="how the log is packed (default %(default)s)")
-    made.add_argument("--record_filter", metavar="NAME", default="", help="what is recorded")
+                      help="accepted: logs have one form here")
+    made.add_argument("--record_filter", metavar="NAME", default="",
+                      help="accepted: everything is recorded")
     made.add_argument("--record_resources", action="store_true",
-                      help="put meshes and textures into the log")
+                      help="accepted: meshes and textures stay where they are")
 
 
 def _count(text: str) -> int:
     value = int(text)
     if value < 1:
         raise argparse.ArgumentTypeError(f"{text} is not a number of steps")
+    return value
+
+
+def _period(text: str) -> float:
+    value = float(text)
+    if not isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds")
     return value
 
 
@@ -162,8 +172,23 @@ def _notices(given: argparse.Namespace) -> List[str]:
     plugins = given.server_plugin + given.gui_plugin
     if plugins:
         notices.append(f"plugins of the command line are not loaded: {', '.join(plugins)}")
-    if given.record:
-        notices.append("--record is accepted without effect: no state log is written")
+    idle = _idle_recording(given)
+    if idle:
+        notices.append(f"without effect{'' if given.record else ' unless --record is given'}: "
+                       + ", ".join(idle))
     if given.more:
         notices.append(f"arguments for plugins are not used: {' '.join(given.more)}")
     return notices
+
+
+def _idle_recording(given: argparse.Namespace) -> List[str]:
+    """The words on recording that change nothing."""
+    idle = [name for name, used in (
+        ("--record_encoding", given.record_encoding != "zlib"),
+        ("--record_filter", given.record_filter), ("--record_resources", given.record_resources),
+    ) if used]
+    if not given.record:
+        idle += [name for name, used in (
+            ("--record_path", given.record_path), ("--record_period", given.record_period >= 0.0),
+        ) if used]
+    return idle

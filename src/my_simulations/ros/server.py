@@ -22,6 +22,7 @@ from .profile import StartProfile
 
 if TYPE_CHECKING:
     from .editing import EditorDoor, StartEditor
+    from .recording import RunningRecorder, StartRecording
 
 NODE = "gazebo"
 END_SECONDS = 3.0
@@ -137,7 +138,8 @@ class Server:
 
     def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say,
                  engines: EngineSupply, profile: StartProfile,
-                 start_editor: "Optional[StartEditor]" = None, gui: bool = False) -> None:
+                 start_editor: "Optional[StartEditor]" = None, gui: bool = False,
+                 start_recording: "Optional[StartRecording]" = None) -> None:
         """Take over a start that has begun.
 
         Args:
@@ -148,7 +150,10 @@ class Server:
             profile: gets the phases.
             start_editor: starts the world editor, when somebody wants it.
             gui: want it at once, whatever the parameters say.
+            start_recording: begins the state log that the options ask for.
         """
+        self._start_recording = start_recording
+        self._recorder: "Optional[RunningRecorder]" = None
         self._start_editor, self._gui = start_editor, gui
         self._door: "Optional[EditorDoor]" = None
         self._options, self._argv, self._say = options, list(argv), say
@@ -266,6 +271,7 @@ class Server:
         self._profile.mark("services and topics registered")
         node.start_publishing()
         node.spawn_robot()
+        self._record(loader)
         if not self._options.paused:
             loader.simulator.unpause()
         self._profile.mark("running")
@@ -278,6 +284,16 @@ class Server:
         for line in self._profile.lines():
             self._say(line)
         return node
+
+    def _record(self, loader: WorldLoader) -> None:
+        """Begin the state log; the clock is published by now, and time still stands."""
+        wanted = self._options.recording
+        if self._start_recording is None or not wanted.on:
+            return
+        from .recording import begin
+
+        self._recorder = begin(self._start_recording, loader.simulator, loader.resolver, wanted)
+        self._profile.mark("state log begun")
 
     def _make_door(self, loader: WorldLoader) -> "Optional[EditorDoor]":
         if self._start_editor is None:
@@ -304,6 +320,10 @@ class Server:
             self._door.close()
         if node is not None:
             node.stop()
+        if self._recorder is not None:
+            from .recording import finish
+
+            finish(self._recorder)
         if loader.simulator is not None:
             loader.simulator.close()
         self._engines.close()
