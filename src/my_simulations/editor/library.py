@@ -23,6 +23,7 @@ _DESCRIPTIONS = ("model.sdf", "model.urdf")
 _LARGEST_CONFIG = 1 << 16
 _FORBIDDEN = ("/proc", "/sys", "/dev", "/etc", "/boot")
 _REMOTE = "remote"
+_LOOK = 2  # of the pictures that the page draws: a new number has them drawn anew
 
 Progress = Callable[[str, int, int], None]
 
@@ -215,7 +216,7 @@ class Library:
         except OSError:
             pictures = []
         url = self._served.url(os.path.join(folder, pictures[0])) if pictures else None
-        known = hashlib.sha256(f"{uri}|{path}|{changed}".encode()).hexdigest()[:32]
+        known = hashlib.sha256(f"{_LOOK}|{uri}|{path}|{changed}".encode()).hexdigest()[:32]
         return url or f"/thumb/{known}.png"
 
     def _remote_location(self, uri: str) -> Dict[str, Any]:

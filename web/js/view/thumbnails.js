@@ -18,6 +18,7 @@ export async function thumbnail(stage, model, stock) {
   const {group, ready} = soloModel(model, stock);
   await ready;
   await stock.meshes.idle();
+  group.updateMatrixWorld(true);  // the parts' own matrices were set by hand
   const box = new Box3().setFromObject(group);
   if (box.isEmpty()) return null;
   const scene = new Scene();
