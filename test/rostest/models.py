@@ -155,6 +155,19 @@ class Base:
             self.assertEqual(state.link_state.reference_frame, "world")
             self.assert_near(numbers(state.link_state.pose)[:2], (1.0, 2.0), 1e-3)
 
+    def test_a_plain_name_that_two_models_have_is_the_firsts_and_is_warned_about(self):
+        link = f"twin_{type(self).__name__}"  # one that no other test case was warned about
+        told = support.heard_on_rosout(f"have a link '{link}'")
+        xml = support.box(link=link)
+        self.spawned("one", xml=xml, where=pose(1.0, 2.0, 0.1))
+        self.spawned("two", xml=xml, where=pose(3.0, 2.0, 0.1))
+        for _ in range(3):
+            state = self.gazebo.get_link_state(link, "world")
+            self.assertTrue(state.success, state.status_message)
+            self.assert_near(numbers(state.link_state.pose)[:2], (1.0, 2.0), 1e-3)
+        (line,) = told()
+        self.assertIn("that of 'one' is taken", line.msg)
+
     def test_a_link_can_be_set(self):
         self.spawned("one")
         answer = self.gazebo.place_link("one::body", pose(0.0, 4.0, 3.0))

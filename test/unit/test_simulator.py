@@ -137,6 +137,33 @@ def test_links_are_found_by_scoped_and_by_plain_name(case):
         sim.link_state("a::z")
 
 
+def test_a_plain_name_of_several_models_is_warned_about_once(case):
+    made = case(box("a", ("x", "y")), box("b", ("y", "z")), arm("c"), arm("d"))
+    sim = made.sim
+    for _ in range(3):
+        for name in ("a::y", "b::y", "x", "z", "y"):
+            sim.link_state(name)
+        sim.model_state("c", "base")
+        sim.joint_state("hinge")
+        sim.find_joint("hinge")
+    assert [str(issue.severity.name) for issue in made.issues] == ["WARNING"] * 3
+    links, base, joints = (issue.message for issue in made.issues)
+    assert "'a' and 'b' have a link 'y'; that of 'a' is taken; write 'a::y'" in links
+    assert "'c' and 'd' have a link 'base'" in base
+    assert "'c' and 'd' have a joint 'hinge'" in joints
+
+
+def test_scoped_and_single_names_are_not_warned_about(case):
+    made = case(arm("a"), arm("b"))
+    made.sim.joint_state("b::hinge")
+    made.sim.find_joint("a::hinge")
+    made.sim.link_state("a::tip", "b::tip")
+    made.sim.delete("a")
+    made.sim.joint_state("hinge")
+    made.sim.link_state("tip")
+    assert made.issues == []
+
+
 def test_relative_states_turn_pose_and_velocity_difference_into_the_frame(case):
     sim = case(box("a"), box("b")).sim
     quarter = quat_from_rpy(0, 0, math.pi / 2)

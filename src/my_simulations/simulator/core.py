@@ -51,6 +51,7 @@ class WorldCore(WorldViews):
         super().__init__(Supervisor(engine_factory, self._restore, log))
         self.world = world
         self._registry.lights = lambda: self.world.lights
+        self._registry.ambiguous = lambda text: log(warning("name-ambiguous", text))
         self._world_meshes = meshes or {}
         self._log = log
         self._order = threading.RLock()   # one change of structure or clock at a time

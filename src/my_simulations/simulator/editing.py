@@ -120,6 +120,7 @@ class ModelEdits(WorldCore):
                     plain = name[len(owner) + 2:]
                 for joint in entity.model.joints:
                     if plain == joint.name:
+                        self._registry.joint_taken(name, entity)
                         return owner, joint, 0
                     if plain == f"{joint.name}::1" and AXES.get(joint.type, 0) > 1:
                         return owner, joint, 1

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
@@ -141,11 +141,14 @@ class Rows:
 class Registry:
     """The entities in the order in which they came. Not thread safe: its owner locks.
 
-    `lights` tells the lights of the world, which are frames too.
+    `lights` tells the lights of the world, which are frames too; `ambiguous` hears once of each
+    plain name that several models have, and of the sentence to say about it.
     """
 
     def __init__(self, lights: Callable[[], List[Light]] = list) -> None:
         self.lights = lights
+        self.ambiguous: Callable[[str], object] = _nobody
+        self._told: Set[Tuple[str, str]] = set()
         self._entities: Dict[str, Entity] = {}
         self._plain_links: Dict[str, List[Tuple[Entity, int]]] = {}
         self.revision = 0
@@ -219,6 +222,7 @@ class Registry:
             if name.startswith(entity.model.name + "::"):
                 plain = name[len(entity.model.name) + 2:]
             if plain in entity.joint_names:
+                self.joint_taken(name, entity)
                 return entity.first_joint_row + entity.joint_names.index(plain)
         raise UnknownEntity(f"there is no movable joint '{name}'")
 
@@ -257,7 +261,28 @@ class Registry:
 
     def _plain_link(self, name: str) -> Optional[Tuple[Entity, int]]:
         found = self._plain_links.get(name)
-        return found[0] if found else None
+        if found is None:
+            return None
+        if len(found) > 1:
+            self._tell("link", name, [entity.model.name for entity, _ in found])
+        return found[0]
+
+    def joint_taken(self, name: str, taken: Entity) -> None:
+        """A joint of `taken` was found for a name, which others may have as well."""
+        if ("joint", name) in self._told or name.startswith(taken.model.name + "::"):
+            return
+        self._tell("joint", name, [
+            entity.model.name for entity in self._entities.values()
+            if any(joint.name == name for joint in entity.model.joints)
+            or name in entity.joint_names])
+
+    def _tell(self, kind: str, name: str, owners: Sequence[str]) -> None:
+        if len(owners) < 2 or (kind, name) in self._told:
+            return
+        self._told.add((kind, name))
+        others = f"'{owners[1]}'" if len(owners) == 2 else f"{len(owners) - 1} other models"
+        self.ambiguous(f"'{owners[0]}' and {others} have a {kind} '{name}'; that of '{owners[0]}' "
+                       f"is taken; write '{owners[0]}::{name}' or another model's name before it")
 
     def _collision(self, name: str) -> Optional[Anchor]:
         head, _, last = name.rpartition("::")
@@ -273,3 +298,7 @@ class Registry:
     def _nearest(self, name: str) -> str:
         near = difflib.get_close_matches(name, self._entities, n=3)
         return f"; did you mean {' or '.join(near)}?" if near else ""
+
+
+def _nobody(_text: str) -> None:
+    """Nobody listens."""
