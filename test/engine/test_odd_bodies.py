@@ -7,7 +7,7 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.inline import InlineEngine
-from my_simulations.geometry import Pose
+from my_simulations.geometry import Pose, Twist, rotate
 from my_simulations.simulator.simulator import Simulator
 
 PLATE = Inertial(1.0, Pose((0.0, -0.5, 0.0)), ixx=0.05, iyy=0.05, izz=1.5)
@@ -42,6 +42,49 @@ def test_a_moment_above_the_sum_of_the_others_moves_as_the_file_says(damping):
 def test_a_welded_hinge_stays_where_it_is():
     position, rate = swinging(JointAxis((1.0, 0.0, 0.0), lower=0.0, upper=0.0, damping=1.0))
     assert abs(position) < 1e-3 and abs(rate) < 1e-3
+
+
+BALL = {"ixx": 0.4, "iyy": 0.4, "izz": 0.4}
+FLAT = {"ixx": 0.1, "iyy": 0.1, "izz": 0.2}
+
+
+def thrown_arm(inertial, seconds=0.5):
+    """Places, axes and rates of a free robot of three links that tumbles and bends."""
+    links = [Link(f"l{n}", Pose((0.5 * n, 0, 0)), inertial) for n in range(3)]
+    joints = [Joint("first", "revolute", "l0", "l1", axis=JointAxis((0, 1, 0), damping=0.3)),
+              Joint("second", "revolute", "l1", "l2", axis=JointAxis((0, 0, 1)))]
+    faults = []
+    sim = Simulator(World(models=[Model("m", links=links, joints=joints)]), paused=True,
+                    engine_factory=lambda: InlineEngine(BulletBackend), log=faults.append)
+    try:
+        sim.start()
+        sim.set_model_state("m", Pose((0, 0, 9)), Twist((1.0, 0.0, 4.0), (3.0, -2.0, 5.0)))
+        sim.drive("second", 0.5)
+        sim.advance(round(seconds * 1000))
+        found = [number for n in range(3) for pose, twist in [sim.link_state(f"m::l{n}")]
+                 for number in (*pose.position, *rotate(pose.orientation, (1, 0, 0)),
+                                *rotate(pose.orientation, (0, 1, 0)), *twist.angular)]
+        found += [number for joint in ("first", "second")
+                  for number in sim.joint_states(joint)[0]]
+    finally:
+        sim.close()
+    assert faults == []
+    return found
+
+
+@pytest.mark.parametrize("ideal, noise", [
+    (BALL, {"ixx": 1e-13}), (BALL, {"iyy": -1e-13, "izz": 1e-13}), (BALL, {"ixy": 1e-13}),
+    (BALL, {"ixy": 1e-13, "ixz": -1e-13, "iyz": 2e-13}),
+    (FLAT, {"izz": 1e-13}), (FLAT, {"ixx": -1e-13}), (FLAT, {"ixy": 1e-13}),
+    (FLAT, {"iyy": 1e-13, "iyz": 1e-13}),
+], ids=str)
+def test_noise_in_the_inertia_of_a_robots_links_changes_nothing_of_its_motion(ideal, noise):
+    com = Pose((0.2, 0.0, 0.0))
+    noisy = {name: ideal.get(name, 0.0) + noise.get(name, 0.0) for name in {*ideal, *noise}}
+    wanted = thrown_arm(Inertial(2.0, com, **ideal))
+    found = thrown_arm(Inertial(2.0, com, **noisy))
+    assert max(abs(number) for number in wanted[-4:]) > 0.1  # it did bend
+    assert found == pytest.approx(wanted, abs=1e-6)
 
 
 def branches(depth, width):
