@@ -158,6 +158,19 @@ def test_the_environment_gives_gazebos_variables_and_our_own_models(tree, monkey
     assert own == resolver.model_file("model://ground_plane")
 
 
+def test_buildings_that_were_drawn_are_models_after_all_others(tree, monkeypatch):
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tree / "second"))
+    monkeypatch.setenv("HOME", str(tree))
+    drawn = tree / "building_editor_models"
+    assert str(drawn) not in Resolver.from_environment().model_folders()
+    for name in ("Cottage", "crate"):
+        (drawn / name).mkdir(parents=True)
+        (drawn / name / "a.dae").write_text("")
+    resolver = Resolver.from_environment()
+    assert found(resolver, "model://Cottage", tree) == "building_editor_models/Cottage"
+    assert found(resolver, "model://crate/a.dae", tree) == "second/crate/a.dae"
+
+
 def config(folder, text, name="model.config"):
     (folder / name).write_text(text)
 

@@ -83,6 +83,7 @@ class Resolver:
     def from_environment(cls, progress: Optional[Progress] = None) -> "Resolver":
         """A resolver with Gazebo's variables, ~/.gazebo/models, our own models and ROS packages.
 
+        Buildings that were drawn are models, too, where there are any (Gazebo behaviour).
         `progress` hears of downloads (see `resources.database`).
         """
         own = own_directory()
@@ -92,6 +93,9 @@ class Resolver:
             models.append(os.path.join(own, "models"))
             # `worlds/empty.world` and `empty.world` both name the world in our `world/` folder.
             resources += [os.path.join(own, "world"), own]
+        buildings = os.path.expanduser("~/building_editor_models")
+        if os.path.isdir(buildings):
+            models.append(buildings)
         packages = PackageIndex()
 
         def find(name: str) -> Optional[str]:
