@@ -164,7 +164,7 @@ class Animation:
 
 @dataclass
 class Waypoint:
-    """`time` s since the trajectory began; `pose` in the actor's frame."""
+    """`time` s since the trajectory began; `pose` in the world (Gazebo behaviour)."""
 
     time: float = 0.0
     pose: Pose = IDENTITY

@@ -22,10 +22,10 @@ from ..description.shapes import (
     Sphere,
     Visual,
 )
-from ..description.world import Light, World
+from ..description.world import Actor, Light, World
 from ..engine.ring import Snapshot
 from ..geometry import Pose, Vec3
-from ..resources.resolver import Resolver
+from ..resources.resolver import NotFound, Resolver
 from ..simulator.registry import Entity
 from .materials import Materials
 from .plain import plain, plain_fields
@@ -51,6 +51,7 @@ class Documents:
         self.served = ServedFiles(resolver)
         self.solids = Solids()
         self._materials = Materials(resolver, self.served)
+        self._resolver = resolver
 
     def world(self, world: World, physics: Any, gravity: Vec3, models: Sequence[Dict[str, Any]],
               ) -> Dict[str, Any]:
@@ -62,7 +63,7 @@ class Documents:
                 "roads": [{**plain_fields(road, "material"),
                            "material": self._materials.document(road.material)}
                           for road in world.roads],
-                "actors": [plain_fields(actor, "plugins") for actor in world.actors]}
+                "actors": [self.actor(actor) for actor in world.actors]}
 
     def surroundings(self, world: World, physics: Any, gravity: Vec3) -> Dict[str, Any]:
         """Everything of a world but models, lights, roads and actors."""
@@ -94,6 +95,18 @@ class Documents:
     def light(light: Light) -> Dict[str, Any]:
         """The protocol's `Light`."""
         return plain_fields(light)
+
+    def actor(self, actor: Actor) -> Dict[str, Any]:
+        """The protocol's `Actor`: its skin is a geometry, "empty" for an actor without one."""
+        found = {**plain_fields(actor, "plugins", "skin_scale"), "geometry": {"type": "empty"}}
+        if actor.skin:
+            try:
+                path = self._resolver.resolve(actor.skin, actor.base_dir)
+            except NotFound:
+                path = ""
+            scale = actor.skin_scale
+            found["geometry"] = self.geometry(Mesh(actor.skin, path, (scale, scale, scale)))
+        return found
 
     def _link(self, link: Link, known: int) -> Dict[str, Any]:
         return {**plain_fields(link, "collisions", "visuals"), "id": known,
