@@ -88,3 +88,14 @@ export function fromRpy(roll, pitch, yaw) {
   return multiply(axisAngle([0, 0, 1], yaw),
     multiply(axisAngle([0, 1, 0], pitch), axisAngle([1, 0, 0], roll)));
 }
+
+/** The rotation a part (0..1) of the shorter way from `a` to `b`. @returns {Quat} */
+export function slerp(a, b, part) {
+  const cosine = a.reduce((sum, value, index) => sum + value * b[index], 0);
+  const end = cosine < 0 ? scale4(b, -1) : b;
+  const angle = Math.acos(Math.min(Math.abs(cosine), 1));
+  const [from, to] = angle < 1e-6 ? [1 - part, part]
+    : [Math.sin((1 - part) * angle) / Math.sin(angle), Math.sin(part * angle) / Math.sin(angle)];
+  const mixed = a.map((value, index) => from * value + to * end[index]);
+  return scale4(mixed, 1 / Math.hypot(...mixed));
+}

@@ -69,8 +69,9 @@ function namesOf(object) {
   return names;
 }
 
-function partsOf(root) {
-  const parts = [];
+/** The meshes of a file that hold anything, ready to be drawn. */
+function meshesOf(root) {
+  const found = [];
   root.updateMatrixWorld(true);
   root.traverse((object) => {
     if (!object.isMesh) return;
@@ -81,10 +82,25 @@ function partsOf(root) {
       material.side = DoubleSide;
       if (material.map) material.map.anisotropy = 4;
     }
-    parts.push({geometry: object.geometry, material: object.material,
-      matrix: object.matrixWorld.clone(), names: namesOf(object)});
+    found.push(object);
   });
-  return parts;
+  return found;
+}
+
+const partsOf = (root) => meshesOf(root).map((object) => ({geometry: object.geometry,
+  material: object.material, matrix: object.matrixWorld.clone(), names: namesOf(object)}));
+
+/** A file's scene without its lights and cameras. */
+function figureOf(root) {
+  const left = [];
+  root.traverse((object) => { if (object.isLight || object.isCamera) left.push(object); });
+  for (const object of left) object.removeFromParent();
+  for (const mesh of meshesOf(root)) {
+    mesh.castShadow = mesh.receiveShadow = true;
+    // Its bounds are those of the rest pose, its bones may carry it elsewhere.
+    mesh.frustumCulled = !mesh.isSkinnedMesh;
+  }
+  return root;
 }
 
 export class Meshes {
@@ -129,7 +145,8 @@ export class Meshes {
   load(geometry) {
     const {url} = geometry;
     if (!this.#files.has(url)) {
-      this.#files.set(url, this.#readSomehow(geometry).then((parts) => {
+      this.#files.set(url, this.#readSomehow(geometry, partsOf).then(({found, whole}) => {
+        const parts = (found ?? []).map((part) => (whole ? {...part, whole} : part));
         this.#ready.set(url, parts);
         return parts;
       }));
@@ -137,17 +154,26 @@ export class Meshes {
     return this.#files.get(url);
   }
 
+  /**
+   * A mesh as a scene of its own, with bones and `animations`, for one that moves in itself. Each
+   * call makes another one.
+   * @returns {Promise<import('three').Object3D|null>} null for a file that cannot be read
+   */
+  async figure(geometry) {
+    return (await this.#readSomehow(geometry, figureOf)).found;
+  }
+
   /** What this page cannot read the simulator may have read: its form then, without colours. */
-  async #readSomehow(geometry) {
+  async #readSomehow(geometry, use) {
     try {
-      return await this.#read(geometry);
+      return {found: use(await this.#read(geometry)), whole: false};
     } catch (error) {
       if (geometry.fallback) {
-        const parts = await this.#read({url: geometry.fallback, format: 'stl'}).catch(() => []);
-        if (parts.length) return parts.map((part) => ({...part, whole: true}));
+        const root = await this.#read({url: geometry.fallback, format: 'stl'}).catch(() => null);
+        if (root) return {found: use(root), whole: true};
       }
       this.onProblem(`The mesh ${decodeURI(geometry.url)} could not be read: ${error.message}`);
-      return [];
+      return {found: null, whole: false};
     }
   }
 
@@ -155,7 +181,7 @@ export class Meshes {
     const reader = READERS[formatOf(geometry)];
     if (!reader) throw new Error(`the page reads ${Object.keys(READERS).join(', ')}`);
     if (formatOf(geometry) !== 'stl') await this.#withTga();
-    return partsOf(await reader(geometry.url, this.manager));
+    return reader(geometry.url, this.manager);
   }
 
   async #withTga() {

@@ -1,6 +1,7 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
 import {Vector3} from 'three';
 import {subtract} from '../pose.js';
+import {Actors} from './actors.js';
 import {Batches} from './batches.js';
 import {CameraRig} from './camera.js';
 import {place} from './convert.js';
@@ -66,6 +67,7 @@ class View {
   #boxes;
   #overlays;
   #pointer;
+  #actors;
   #preview = null;
   #thumbnails = new Map();
   #shifted = [];
@@ -95,6 +97,7 @@ class View {
     this.#rig = rig;
     this.#picker = picker;
     new Surroundings({stage, store, materials});
+    this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
     this.#boxes = new SelectionBoxes(shared);
     this.#manipulator = new Manipulator(shared);
@@ -112,6 +115,7 @@ class View {
   get fps() { return this.#stage.fps; }
 
   dispose() {
+    this.#actors.dispose();
     this.#pointer.dispose();
     this.#stage.dispose();
   }

@@ -1,0 +1,170 @@
+/**
+ * Actors: figures that walk by sim time alone. They are seen, never touched: nothing picks them,
+ * and no pose frame tells of them.
+ */
+import {AnimationMixer, Group} from 'three';
+import {ActorPath} from '../actor_path.js';
+import {SimClock} from '../sim_clock.js';
+import {place} from './convert.js';
+
+/** Milliseconds between two steps, as between pose frames. */
+const PERIOD = 1000 / 30;
+
+/** The bone that carries all others, or undefined. */
+function rootBone(root) {
+  const bones = [];
+  root.traverse((object) => { if (object.isBone) bones.push(object); });
+  return bones.find((bone) => !bone.parent.isBone);
+}
+
+/** The movement of a skin's bones, when its file is also that of the actor's animation. */
+class Gait {
+  #mixer;
+  #root;
+  #onTheSpot;
+
+  constructor(figure, onTheSpot) {
+    this.#mixer = new AnimationMixer(figure);
+    this.#mixer.clipAction(figure.animations[0]).play();
+    this.#root = rootBone(figure);
+    this.#onTheSpot = onTheSpot;
+  }
+
+  /** @param {number} time  s since the script began */
+  show(time) {
+    this.#mixer.setTime(time);
+    // Where there is a path, it says how far the figure has come (Gazebo behaviour).
+    if (this.#onTheSpot && this.#root) this.#root.position.x = 0;
+  }
+}
+
+class Figure {
+  group = new Group();
+  path;
+  #actor;
+  #gait = null;
+  #shown = null;
+
+  constructor(actor) {
+    this.#actor = actor;
+    this.path = new ActorPath(actor);
+    this.group.name = actor.name;
+    this.group.scale.set(...(actor.geometry.scale ?? [1, 1, 1]));
+  }
+
+  get moves() {
+    return this.path.moves || this.#gait !== null;
+  }
+
+  /** Gives it its body. @param {import('three').Object3D} skin  a file's scene */
+  dress(skin) {
+    const {animations, skin: file, auto_start: starts} = this.#actor;
+    const own = !animations.length || animations.some(({filename}) => filename === file);
+    if (starts && own && skin.animations.length) this.#gait = new Gait(skin, this.path.moves);
+    this.group.add(skin);
+    this.#shown = null;
+  }
+
+  /** @param {number} time  sim time, s @returns {boolean} whether it looks different now */
+  show(time) {
+    const pose = this.path.poseAt(time);
+    const stride = this.#gait ? this.path.scriptTime(time) : null;
+    const now = [...pose, stride];
+    if (this.#shown?.every((value, index) => value === now[index])) return false;
+    this.#shown = now;
+    place(this.group, pose);
+    if (stride !== null) this.#gait.show(stride);
+    return true;
+  }
+}
+
+export class Actors {
+  #stage;
+  #store;
+  #meshes;
+  #clock = new SimClock();
+  #figures = [];
+  #known = '';
+  #replaying = false;
+  #timer = null;
+  #told = new Set();
+
+  constructor({stage, store, stock}) {
+    this.#stage = stage;
+    this.#store = store;
+    this.#meshes = stock.meshes;
+    store.addEventListener('document', () => this.#build());
+    store.addEventListener('stats', () => { if (!this.#replaying) this.#tellLive(); });
+    store.addEventListener('log', ({detail}) => this.#tellLog(detail));
+    this.#tellLive();
+  }
+
+  dispose() {
+    clearTimeout(this.#timer);
+    this.#timer = null;
+    this.#figures = [];
+  }
+
+  #tellLive() {
+    const {sim_ns: sim, factor, paused} = this.#store.stats;
+    this.#tell(sim / 1e9, paused ? 0 : factor);
+  }
+
+  #tellLog({state, time, rate}) {
+    const before = this.#replaying;
+    this.#replaying = state === 'open' || state === 'playing';
+    if (this.#replaying) this.#tell(time, state === 'playing' ? rate : 0);
+    else if (before) this.#tellLive();
+  }
+
+  #tell(time, rate) {
+    this.#clock.tell(time, rate, performance.now());
+    this.#step();
+  }
+
+  #build() {
+    const {actors} = this.#store.document;
+    const text = JSON.stringify(actors);
+    if (text === this.#known) return;
+    this.#known = text;
+    this.#stage.scene.remove(...this.#figures.map(({group}) => group));
+    this.#figures = actors.map((actor) => this.#made(actor));
+    this.#step();
+    this.#stage.shadowsChanged();
+  }
+
+  #made(actor) {
+    const figure = new Figure(actor);
+    const {url, problem} = actor.geometry;
+    if (problem) this.#tellOnce(`The actor ${actor.name} has no skin to show: ${problem}`);
+    if (url) {
+      this.#meshes.figure(actor.geometry).then((skin) => {
+        if (!skin || !this.#figures.includes(figure)) return;
+        figure.dress(skin);
+        this.#stage.scene.add(figure.group);
+        this.#step();
+        this.#stage.shadowsChanged();
+      });
+    }
+    return figure;
+  }
+
+  #tellOnce(message) {
+    if (this.#told.has(message)) return;
+    this.#told.add(message);
+    this.#store.addIssue({severity: 'warning', code: 'resource', message});
+  }
+
+  /** Shows all where they are now, and comes back while time goes on. */
+  #step() {
+    clearTimeout(this.#timer);
+    this.#timer = null;
+    const now = performance.now();
+    const time = this.#clock.at(now);
+    const changed = this.#figures.filter((figure) => figure.show(time));
+    if (changed.length) this.#stage.shadowsChanged();
+    if (this.#clock.runs(now) && this.#figures.some(({moves}) => moves)) {
+      this.#timer = setTimeout(() => this.#step(), PERIOD);
+    }
+  }
+}
