@@ -96,8 +96,8 @@ def _read_file(path: str, element: Any, source: Source, changes: Changes,
             light = read_light(child, inner)
             return _changed_light(light, changes)
         if child.tag == "actor":
-            source.warn("actor-unsupported", f"{uri!r} is an actor: it is kept, but does not walk"
-                        " here", element)
+            source.warn("actor-unsupported", f"{uri!r} is an actor: it is shown, but nothing of it"
+                        " is simulated", element)
             return _changed_actor(read_actor(child, inner), changes)
     source.report(Level.ERROR, "include-empty", f"{path} holds no model and no light", element)
     return None

@@ -279,7 +279,7 @@ WORLD = Table("world", World, {
     "state": Part(kept=True), "joint": Part("1.10"),
     "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),
     "gui": Part(use=SHOWN, kept=True), "scene": Part(use=SHOWN, kept=True),
-    "actor": Part(use=KEPT, told=True, kept=True),
+    "actor": Part(use=SHOWN, told=True, kept=True),
     "road": Part(use=KEPT, told=True, kept=True),
     "wind": Part(use=KEPT, told=True, kept=True), "atmosphere": Part(use=KEPT, kept=True),
     "spherical_coordinates": Part(use=KEPT, kept=True),

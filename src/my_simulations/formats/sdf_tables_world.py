@@ -92,11 +92,12 @@ ANIMATION = Table("animation", Animation, {
 
 WAYPOINT = Table("waypoint", Waypoint, {
     "time": Value("time", FLOAT), "pose": Value("pose", POSE),
-}, level=WARNING, use=KEPT)
+}, level=WARNING, use=SHOWN)
 
 TRAJECTORY = Table("trajectory", Trajectory, {"waypoint": Part()}, attributes={
-    "id": Value("id", INT), "type": Value("type", TEXT), "tension": Value("tension", FLOAT),
-}, level=WARNING, use=KEPT)
+    "id": Value("id", INT), "type": Value("type", TEXT),
+    "tension": Value("tension", FLOAT, use=KEPT),
+}, level=WARNING, use=SHOWN)
 
 ACTOR = Table("actor", Actor, {
     "pose": Value("pose", POSE),
@@ -106,10 +107,10 @@ ACTOR = Table("actor", Actor, {
         "loop": Value("loop", BOOL), "delay_start": Value("delay_start", FLOAT),
         "auto_start": Value("auto_start", BOOL), "trajectory": Part(),
     }),
-    "plugin": Part(),
+    "plugin": Part(use=KEPT),
     **{name: Kept() for name in ("link", "joint", "frame", "static", "origin", "enable_wind",
                                  "allow_auto_disable", "self_collide")},
-}, level=WARNING, known_attributes=("name", "static"), use=KEPT)
+}, level=WARNING, known_attributes=("name", "static"), use=SHOWN)
 
 
 @dataclass

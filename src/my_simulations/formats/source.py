@@ -15,6 +15,8 @@ _LAST_LINE = 65535
 """libxml2 counts no further; an element that seems to stand there may stand anywhere below."""
 
 
+_ONLY_SHOWN = ("actor", "road")
+"""What the world editor draws and physics knows nothing of."""
 _TOLD_APART_BY = {"sensor": "type", "plugin": "filename"}
 """Attributes that make elements of one name different things."""
 
@@ -105,5 +107,7 @@ class Source:
         if kind in self.log.told:
             return
         self.log.told.add(kind)
-        self.log.add(Issue(Severity.NOTE, "not-simulated", f"<{kind}> is kept, but does nothing"
-                           " here", **self.where(element)))
+        what = ("shown, but not simulated" if element.tag in _ONLY_SHOWN
+                else "kept, but does nothing here")
+        self.log.add(Issue(Severity.NOTE, "not-simulated", f"<{kind}> is {what}",
+                           **self.where(element)))
