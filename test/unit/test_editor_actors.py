@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import pytest
 
-from my_simulations.description.world import Actor, Trajectory, Waypoint
+from my_simulations.description.world import Actor, Animation, Trajectory, Waypoint
 from my_simulations.editor.document import Documents
 from my_simulations.editor.pages import Pages
 from my_simulations.editor.protocol import Protocol
@@ -57,3 +57,13 @@ def test_a_missing_skin_is_told_with_its_name(documents):
 
 def test_an_actor_without_a_skin_has_no_shape(documents):
     assert told(documents, Actor("man"))["geometry"] == {"type": "empty"}
+
+
+def test_the_files_of_animations_are_served_too(documents, tmp_path):
+    (tmp_path / "run.bvh").write_text("HIERARCHY")
+    walk = Animation("walk", "model://man/meshes/man.dae")
+    found = told(documents, Actor("man", animations=[walk, Animation("run", "run.bvh")],
+                                  base_dir=str(tmp_path)))
+    [first, second] = found["animations"]
+    assert first["name"] == "walk" and first["geometry"]["url"].endswith("/man.dae")
+    assert second["geometry"]["url"] is None and "BVH" in second["geometry"]["problem"]

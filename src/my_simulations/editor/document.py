@@ -98,15 +98,22 @@ class Documents:
 
     def actor(self, actor: Actor) -> Dict[str, Any]:
         """The protocol's `Actor`: its skin is a geometry, "empty" for an actor without one."""
-        found = {**plain_fields(actor, "plugins", "skin_scale"), "geometry": {"type": "empty"}}
-        if actor.skin:
-            try:
-                path = self._resolver.resolve(actor.skin, actor.base_dir)
-            except NotFound:
-                path = ""
-            scale = actor.skin_scale
-            found["geometry"] = self.geometry(Mesh(actor.skin, path, (scale, scale, scale)))
-        return found
+        return {**plain_fields(actor, "plugins", "skin_scale"),
+                "geometry": self._found_mesh(actor.skin, actor.base_dir, actor.skin_scale),
+                "animations": [{**plain_fields(one, "scale"), "geometry":
+                                self._found_mesh(one.filename, actor.base_dir, one.scale)}
+                               for one in actor.animations]}
+
+    def _found_mesh(self, uri: str, base_dir: str, scale: float) -> Dict[str, Any]:
+        if not uri:
+            return {"type": "empty"}
+        try:
+            path = self._resolver.resolve(uri, base_dir)
+        except NotFound:
+            path = ""
+        if path.lower().endswith(".bvh"):  # a skeleton without triangles
+            return {"type": "mesh", "url": None, "problem": f"{uri} is BVH, which is not shown"}
+        return self.geometry(Mesh(uri, path, (scale, scale, scale)))
 
     def _link(self, link: Link, known: int) -> Dict[str, Any]:
         return {**plain_fields(link, "collisions", "visuals"), "id": known,

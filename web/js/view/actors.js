@@ -2,7 +2,7 @@
  * Actors: figures that walk by sim time alone. They are seen, never touched: nothing picks them,
  * and no pose frame tells of them.
  */
-import {AnimationMixer, Group} from 'three';
+import {AnimationClip, AnimationMixer, Group} from 'three';
 import {ActorPath} from '../actor_path.js';
 import {SimClock} from '../sim_clock.js';
 import {place} from './convert.js';
@@ -17,15 +17,33 @@ function rootBone(root) {
   return bones.find((bone) => !bone.parent.isBone);
 }
 
-/** The movement of a skin's bones, when its file is also that of the actor's animation. */
+/**
+ * Another file's movement for the bones of this name: how they turn, not how long they are.
+ * @returns {AnimationClip|null} null where no bone has a name in common
+ */
+function borrowed(clip, owner, figure) {
+  const tracks = [];
+  for (const track of clip.tracks) {
+    const [uuid, property] = track.name.split('.');
+    const {name} = owner.getObjectByProperty('uuid', uuid) ?? {};
+    const bone = name && figure.getObjectByName(name);
+    if (property !== 'quaternion' || !bone) continue;
+    const copy = track.clone();
+    copy.name = `${bone.uuid}.${property}`;
+    tracks.push(copy);
+  }
+  return tracks.length ? new AnimationClip(clip.name, clip.duration, tracks) : null;
+}
+
+/** The movement of a skin's bones. */
 class Gait {
   #mixer;
   #root;
   #onTheSpot;
 
-  constructor(figure, onTheSpot) {
+  constructor(figure, clip, onTheSpot) {
     this.#mixer = new AnimationMixer(figure);
-    this.#mixer.clipAction(figure.animations[0]).play();
+    this.#mixer.clipAction(clip).play();
     this.#root = rootBone(figure);
     this.#onTheSpot = onTheSpot;
   }
@@ -56,11 +74,25 @@ class Figure {
     return this.path.moves || this.#gait !== null;
   }
 
-  /** Gives it its body. @param {import('three').Object3D} skin  a file's scene */
-  dress(skin) {
-    const {animations, skin: file, auto_start: starts} = this.#actor;
-    const own = !animations.length || animations.some(({filename}) => filename === file);
-    if (starts && own && skin.animations.length) this.#gait = new Gait(skin, this.path.moves);
+  /**
+   * The file that its first animation is in, when that is not the skin's own.
+   * @returns {any} a geometry or null
+   */
+  get foreign() {
+    const [animation] = this.#actor.animations;
+    return animation?.geometry.url && animation.geometry.url !== this.#actor.geometry.url
+      ? animation.geometry : null;
+  }
+
+  /**
+   * Gives it its body.
+   * @param {import('three').Object3D} skin  a file's scene
+   * @param {import('three').Object3D|null} mover  the scene of the file in `foreign`
+   */
+  dress(skin, mover) {
+    const [clip] = (this.foreign ? mover?.animations : skin.animations) ?? [];
+    const own = clip && this.foreign ? borrowed(clip, mover, skin) : clip;
+    if (own && this.#actor.auto_start) this.#gait = new Gait(skin, own, this.path.moves);
     this.group.add(skin);
     this.#shown = null;
   }
@@ -138,9 +170,10 @@ export class Actors {
     const {url, problem} = actor.geometry;
     if (problem) this.#tellOnce(`The actor ${actor.name} has no skin to show: ${problem}`);
     if (url) {
-      this.#meshes.figure(actor.geometry).then((skin) => {
+      Promise.all([this.#meshes.figure(actor.geometry),
+        figure.foreign && this.#meshes.figure(figure.foreign)]).then(([skin, mover]) => {
         if (!skin || !this.#figures.includes(figure)) return;
-        figure.dress(skin);
+        figure.dress(skin, mover);
         this.#stage.scene.add(figure.group);
         this.#step();
         this.#stage.shadowsChanged();
