@@ -2,6 +2,9 @@
 import {saveBlob} from '../actions.js';
 
 const RATE = 30;
+const SLICE_MS = 1000;
+const LONGEST_WAIT_MS = 5000;
+const STILL_MS = 200;  // a still view is drawn again so often, for a video has no length without
 
 export class Video {
   /** @param {import('./panels.js').Page} page @param {() => void} changed begun or ended */
@@ -13,6 +16,9 @@ export class Video {
   #page;
   #changed;
   #recorder = null;
+  #redrawing = 0;
+  #parts = [];
+  #ending = false;
 
   get recording() {
     return this.#recorder !== null;
@@ -20,8 +26,16 @@ export class Video {
 
   /** Begins, or ends and hands the file over. */
   toggle() {
-    if (this.#recorder) this.#recorder.stop();
-    else this.#begin();
+    if (!this.#recorder) this.#begin();
+    else if (this.#recorder.state === 'recording') this.#end();
+  }
+
+  /** A film of less than a picture is no file: the first one is waited for. */
+  #end() {
+    const recorder = this.#recorder;
+    this.#ending = true;
+    if (this.#parts.length) recorder.stop();
+    else setTimeout(() => recorder.state === 'recording' && recorder.stop(), LONGEST_WAIT_MS);
   }
 
   #begin() {
@@ -32,15 +46,22 @@ export class Video {
     }
     const parts = [];
     const recorder = new MediaRecorder(canvas.captureStream(RATE), {mimeType: 'video/webm'});
-    recorder.ondataavailable = ({data}) => parts.push(data);
+    recorder.ondataavailable = ({data}) => {
+      if (data.size) parts.push(data);
+      if (parts.length && this.#ending && recorder.state === 'recording') recorder.stop();
+    };
     recorder.onstop = () => {
       this.#recorder = null;
+      this.#ending = false;
+      clearInterval(this.#redrawing);
       this.#changed();
       const blob = new Blob(parts, {type: 'video/webm'});
       if (blob.size) saveBlob(blob, `${this.#page.store.document?.name ?? 'world'}.webm`);
-      else this.#page.notices.say('Nothing moved meanwhile: there is no video.');
+      else this.#page.notices.say('The view was not drawn meanwhile: there is no video.');
     };
-    recorder.start(1000);
+    this.#parts = parts;
+    recorder.start(SLICE_MS);
+    this.#redrawing = setInterval(() => this.#page.view?.redraw?.(), STILL_MS);
     this.#recorder = recorder;
     this.#changed();
   }

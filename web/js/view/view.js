@@ -252,6 +252,11 @@ class View {
     return hit ? {link: hit.object.parent.name} : null;
   }
 
+  /** Draws the next frame although nothing has changed. */
+  redraw() {
+    this.#stage.invalidate();
+  }
+
   /**
    * A small picture of a library model: drawn once, and given to the simulator to keep.
    * @param {string} uri  of the model
