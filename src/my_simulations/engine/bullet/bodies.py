@@ -102,6 +102,7 @@ class Body:
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
+        lead_row: of its first part.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
         ties: how many joints connect it with other models.
     """
@@ -118,6 +119,10 @@ class Body:
     radius: float = 0.0
     still: int = 0
     ties: int = 0
+    lead_row: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.lead_row = self.parts[0].row
 
     @property
     def uids(self) -> Tuple[int, ...]:
