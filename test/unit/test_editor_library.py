@@ -249,6 +249,22 @@ def record(made, name="flight"):
     return made.folder / "data" / "log" / name / "state.log"
 
 
+def test_a_log_ends_where_steps_made_at_once_have_led(case):
+    made = case(box("a"))
+    made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
+
+    async def leap(browser):
+        await browser.ask("log_start", name="leap")
+        await browser.ask("step", steps=600)
+        await browser.ask("log_stop")
+        found = await browser.ask("log_open", name="leap")
+        await browser.ask("log_seek", time=found["end"])
+        await browser.until(lambda: browser.frames[-1][0] == 2
+                            and browser.link_pose("a")[0] == pytest.approx(1.2, abs=1e-6))
+
+    made.browse(leap)
+
+
 def test_a_log_is_recorded_listed_and_played_to_one_browser(case):
     made = case(box("a"), paused=False)
     record(made)

@@ -8,7 +8,7 @@ import asyncio
 import functools
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Callable, Deque, Dict, Iterable, List, Optional
+from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
 
 from ..errors import CommandError, Issue, error
 from ..simulator.simulator import Simulator
@@ -129,6 +129,14 @@ class Hub:
         self._sequence = -1
         self._nudged.set()
 
+    def now(self) -> Tuple[Optional[Poses], int]:
+        """All poses of now, and the revision of the world that clients know.
+
+        None for the poses while names have changed that clients have not heard of.
+        """
+        revision = self._mirror.revision
+        return self._reader.read(revision, self.clock.real_ns * 1e-9), revision
+
     # -- the loop --------------------------------------------------------------------------------
 
     async def run(self) -> None:
@@ -172,7 +180,7 @@ class Hub:
         if moved:
             self._sequence = sequence
             # None: names have changed that clients have not heard of.
-            self._poses = self._reader.read(self._mirror.revision, self.clock.real_ns * 1e-9)
+            self._poses, _ = self.now()
             if self._poses is None:
                 self._sequence = -1
             self._send_poses()

@@ -114,6 +114,10 @@ class Logs:
     async def _stop(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is None:
             raise CommandError("nothing is being recorded")
+        self._tick(*self._hub.now())  # steps made since the last look may have been many
+        if self._fetching is not None:
+            await self._fetching
+            self._tick(*self._hub.now())
         try:
             self.close(self._hub.simulator.sim_ns() * 1e-9)
         finally:
