@@ -42,7 +42,14 @@ export class Tree {
     new ResizeObserver(draw).observe(element);
     element.addEventListener('focus', draw);
     element.addEventListener('blur', draw);
-    element.addEventListener('click', (event) => this.#click(event));
+    // Not by click: browsers give none when what was pressed has been drawn anew meanwhile.
+    element.addEventListener('pointerdown', (event) => {
+      this.#pressed = event.button === 0 ? this.#rowAt(event) : null;
+    });
+    element.addEventListener('pointerup', (event) => {
+      if (this.#pressed && this.#rowAt(event)?.id === this.#pressed.id) this.#click(event);
+      this.#pressed = null;
+    });
     element.addEventListener('dblclick', (event) => this.#doubleClick(event));
     element.addEventListener('contextmenu', (event) => this.#context(event));
     element.addEventListener('keydown', (event) => this.#key(event));
@@ -50,6 +57,7 @@ export class Tree {
 
   #prefix;
   #sheet;
+  #pressed = null;
   #typed = {text: '', at: 0};
 
   /** @param {any[]} rows as `world_rows.Row` @param {Set<string>} selected ids */
