@@ -25,6 +25,7 @@ from my_simulations.formats.load import read_world
 from my_simulations.formats.sdf_write import write_world
 from my_simulations.geometry import STILL, Pose, Twist, quat_from_rpy
 from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.moments import Moment
 from my_simulations.simulator.registry import UnknownEntity
 from my_simulations.simulator.saving import present_world
 
@@ -257,9 +258,25 @@ def test_resetting_time_keeps_poses_and_velocities(case):
 
 def test_a_world_at_rest_is_saved_with_the_time_of_the_saving(case):
     sim = case(box("a"), paused=False).sim
-    deadline = time.monotonic() + 10
-    while sim.step() < 50:
-        assert time.monotonic() < deadline, "time stands still"
-        time.sleep(0.005)
+    wait_until(lambda: sim.step() >= 50, 10.0)
     before = sim.step()
     assert present_world(sim).state.iterations >= before
+
+
+def test_putting_a_moment_back_starts_no_time_that_lockstep_holds(case):
+    sim = case(box("a"), paused=False).sim
+    sim.set_lockstep(True)
+    moment = Moment.of(*sim.look(), sim.ring.clock())
+    sim.put_back(moment)
+    stands = sim.step()
+    with pytest.raises(AssertionError):
+        wait_until(lambda: sim.step() != stands, 0.3)
+    sim.set_lockstep(False)
+    wait_until(lambda: sim.step() != stands, 10.0)
+
+
+def wait_until(true, seconds):
+    deadline = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < deadline, "it did not happen"
+        time.sleep(0.005)

@@ -165,13 +165,12 @@ class Simulator(TimedLoads):
         Models that have gone or got other links meanwhile are passed over.
         """
         with self._order:
-            running = not self._paused
             with self._lock:
                 commands = moment.commands(self._registry.entities())
                 self._registry.revision += 1
             time = [SetClock(moment.step, moment.sim_ns)] if clock else []
             self._call(Batch((Pause(), *time, *commands,
-                              *([Run(self._horizon)] if running else []))))
+                              *([Run(self._horizon)] if self._runs else []))))
 
     def load_world(self, world: World, meshes: Optional[Dict[str, MeshTable]] = None) -> None:
         """Replace everything by another world, as at a start; paused stays what it is.
