@@ -184,22 +184,28 @@ def test_damping_can_be_raised_and_taken_away_again(start):
     assert slowed(0.0) == pytest.approx(1.0, rel=1e-6)
 
 
+def set_motor(sim, name, rate, max_effort):
+    _, joint, _ = sim.find_joint(name)
+    axis = replace(joint.axis, motor_rate=rate, friction=max_effort)
+    sim.edit_joint(name, replace(joint, axis=axis))
+
+
 def test_a_motor_drives_an_axis_at_its_rate_and_lets_go(start):
     sim = start(arm("revolute", JointAxis((0, 0, 1)), gravity=False))
-    sim.set_motor("hinge", 2.0, 100.0)
+    set_motor(sim, "hinge", 2.0, 100.0)
     sim.advance(500)
     assert sim.joint_states("hinge")[0][1] == pytest.approx(2.0, rel=1e-3)
     kill(sim)
     sim.advance(100)
     assert sim.joint_states("hinge")[0][1] == pytest.approx(2.0, rel=1e-3)
-    sim.set_motor("hinge", 0.0, 0.0)
+    set_motor(sim, "hinge", 0.0, 0.0)
     sim.advance(500)
     assert sim.joint_states("hinge")[0][1] == pytest.approx(2.0, rel=1e-3)
 
 
 def test_a_motor_takes_no_more_effort_than_it_may(start):
     sim = start(arm("revolute", JointAxis((0, 0, 1)), gravity=False))
-    sim.set_motor("hinge", 100.0, 0.5)
+    set_motor(sim, "hinge", 100.0, 0.5)
     sim.advance(1000)
     assert sim.joint_states("hinge")[0][1] == pytest.approx(0.5 / (1.0 + 1e-3), rel=0.02)
 

@@ -248,6 +248,11 @@ class WorldCore(WorldViews):
         return PhysicsSettings(physics.max_step_size, gravity or self._gravity,
                                max(0.0, physics.real_time_update_rate), max(1, physics.ode.iters))
 
+    def _holding(self) -> Hold:
+        with self._lock:
+            return Hold(tuple(self._registry.model(name).model_id
+                              for name in self._held if name in self._registry))
+
     # -- engine ----------------------------------------------------------------------------------
 
     def _call(self, command: Command) -> Reply:
@@ -263,9 +268,8 @@ class WorldCore(WorldViews):
                                    SetClock(snapshot.step, clock.sim_ns(snapshot.step))]
         commands += [self._loading(entity, entity.saved(snapshot)) for entity in entities]
         commands += self._connections.commands(self._registry)
-        held = tuple(entity.model_id for entity in entities if entity.model.name in self._held)
-        if held:
-            commands.append(Hold(held))
+        if self._held:
+            commands.append(self._holding())
         pending = tuple(load for load in self._loads.values() if load.stop > snapshot.step)
         if pending:
             commands.append(AddLoads(pending))

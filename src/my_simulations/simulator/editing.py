@@ -5,23 +5,21 @@ from dataclasses import replace
 from typing import List, Optional, Tuple
 
 from ..description.flatten import flattened
-from ..description.model import Inertial, Joint, JointAxis, Model
+from ..description.model import Inertial, Joint, Model
 from ..description.shapes import MeshTable
 from ..engine.api import (
     AddLoads,
     Batch,
     Command,
     Contact,
-    Hold,
     Load,
     ReadContacts,
     RemoveModel,
     SetAxes,
 )
-from ..engine.rows import AXES
 from ..errors import CommandError
 from .core import WorldCore
-from .registry import Entity, UnknownEntity
+from .registry import Entity
 
 
 class ModelEdits(WorldCore):
@@ -114,26 +112,16 @@ class ModelEdits(WorldCore):
         `joint::1` is the second axis. Models are searched in order. Raises UnknownEntity.
         """
         with self._lock:
-            for entity in self._registry.entities():
-                owner, plain = entity.model.name, name
-                if name.startswith(owner + "::"):
-                    plain = name[len(owner) + 2:]
-                for joint in entity.model.joints:
-                    if plain == joint.name:
-                        self._registry.joint_taken(name, entity)
-                        return owner, joint, 0
-                    if plain == f"{joint.name}::1" and AXES.get(joint.type, 0) > 1:
-                        return owner, joint, 1
-        raise UnknownEntity(f"there is no joint '{name}'")
+            entity, joint, number = self._registry.joint(name)
+            return entity.model.name, joint, number
 
     def joint_states(self, name: str) -> List[Tuple[float, float]]:
         """(position, rate) of each axis of a joint; none of a fixed one. Raises UnknownEntity."""
-        owner, joint, _ = self.find_joint(name)
         with self._lock:
-            entity, snapshot = self._registry.model(owner), self._snapshot()
-            return [snapshot.joint(entity.first_joint_row + n)
-                    for n, row in enumerate(entity.joint_names)
-                    if row in (joint.name, f"{joint.name}::1")]
+            entity, joint, _ = self._registry.joint(name)
+            snapshot = self._snapshot()
+            return [snapshot.joint(row) for row in (entity.axis_row(joint.name, number)
+                                                    for number in (0, 1)) if row is not None]
 
     def edit_joint(self, name: str, joint: Joint) -> None:
         """Give a joint other axes (limits, friction, damping, spring, motor) or another form.
@@ -141,29 +129,18 @@ class ModelEdits(WorldCore):
         Raises CommandError; then nothing has changed.
         """
         with self._order:
-            owner, old, _ = self.find_joint(name)
             with self._lock:
-                entity = self._registry.model(owner)
+                entity, old, _ = self._registry.joint(name)
             joints = [joint if one.name == old.name else one for one in entity.model.joints]
             model = replace(entity.model, joints=joints)
             if _form(joint) != _form(old):
-                self.edit_model(owner, model)
+                self.edit_model(entity.model.name, model)
                 return
             self._call(SetAxes(entity.model_id, tuple(joints)))
             changed = replace(entity, model=model)
             changed.pose = entity.pose
             with self._lock:
                 self._registry.swap(entity, changed)
-
-    def set_motor(self, name: str, rate: float, max_effort: float) -> None:
-        """Drive a joint axis at `rate` (rad/s, m/s) with at most `max_effort` (N m, N).
-
-        ODE's joint motor, `vel` and `fmax`; 0 effort lets go. Raises CommandError.
-        """
-        _, joint, number = self.find_joint(name)
-        axis = joint.axis2 if number else joint.axis
-        axis = replace(axis or JointAxis(), motor_rate=rate, friction=max_effort)
-        self.edit_joint(name, replace(joint, axis2=axis) if number else replace(joint, axis=axis))
 
     # -- looking and holding ---------------------------------------------------------------------
 
@@ -178,11 +155,6 @@ class ModelEdits(WorldCore):
                     self._registry.model(name)
             self._held = list(names)
             self._call(self._holding())
-
-    def _holding(self) -> Hold:
-        with self._lock:
-            return Hold(tuple(self._registry.model(name).model_id
-                              for name in self._held if name in self._registry))
 
     def contacts(self) -> List[Tuple[str, str, Contact]]:
         """The contacts of the last step, with the scoped names of both links."""

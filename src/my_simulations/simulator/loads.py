@@ -6,7 +6,6 @@ from typing import List
 
 from ..engine.api import FOREVER, AddLoads, ClearLoads, Load
 from ..engine.ring import Clock
-from ..engine.rows import axis_rows
 from ..errors import CommandError
 from ..geometry import ZERO3, Vec3, compose, inverse, rotate, subtract, transform
 from .surroundings import Surroundings
@@ -110,12 +109,11 @@ class TimedLoads(Surroundings):
             self.clear_loads(found)
 
     def _axis_row(self, name: str) -> int:
-        owner, joint, number = self.find_joint(name)
         with self._lock:
-            entity = self._registry.model(owner)
-            for index, row in enumerate(axis_rows(entity.model)):
-                if row.joint.name == joint.name and row.number == number:
-                    return entity.first_joint_row + index
+            entity, joint, number = self._registry.joint(name)
+            row = entity.axis_row(joint.name, number)
+        if row is not None:
+            return row
         raise CommandError(f"the joint '{name}' is {joint.type} and has no axis to drive")
 
     def _span(self, start_ns: int, duration_ns: int) -> "tuple[int, int]":

@@ -3,14 +3,14 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field
-from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
-from ..description.model import Model
+from ..description.model import Joint, Model
 from ..description.shapes import MeshTable
 from ..description.world import Light
 from ..engine.api import LinkState, ModelState
 from ..engine.ring import Snapshot
-from ..engine.rows import axis_rows
+from ..engine.rows import AXES, axis_rows, row_name
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
 
@@ -72,6 +72,12 @@ class Entity:
     def has_joint_row(self, row: int) -> bool:
         """Whether a row of the joint table is one of its axes."""
         return 0 <= row - self.first_joint_row < len(self.joint_names)
+
+    def axis_row(self, joint: str, number: int) -> Optional[int]:
+        """Row of an axis of a joint; None for one that does not move."""
+        name = row_name(joint, number)
+        return (self.first_joint_row + self.joint_names.index(name)
+                if name in self.joint_names else None)
 
     def state(self, snapshot: Snapshot) -> Tuple[Pose, Twist]:
         """World pose of the model frame, twist of the canonical link at its origin."""
@@ -217,14 +223,32 @@ class Registry:
 
     def joint_row(self, name: str) -> int:
         """The row of a movable joint by plain or scoped name. Raises UnknownEntity."""
+        for entity, joint, number in self._joints_named(name):
+            row = entity.axis_row(joint.name, number)
+            if row is not None:
+                self._joint_taken(name, entity)
+                return row
+        raise UnknownEntity(f"there is no movable joint '{name}'")
+
+    def joint(self, name: str) -> Tuple[Entity, Joint, int]:
+        """Model, joint and axis number of a joint by plain or scoped name, fixed ones too.
+
+        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntity.
+        """
+        for entity, joint, number in self._joints_named(name):
+            self._joint_taken(name, entity)
+            return entity, joint, number
+        raise UnknownEntity(f"there is no joint '{name}'")
+
+    def _joints_named(self, name: str) -> Iterator[Tuple[Entity, Joint, int]]:
         for entity in self._entities.values():
             plain = name
             if name.startswith(entity.model.name + "::"):
                 plain = name[len(entity.model.name) + 2:]
-            if plain in entity.joint_names:
-                self.joint_taken(name, entity)
-                return entity.first_joint_row + entity.joint_names.index(plain)
-        raise UnknownEntity(f"there is no movable joint '{name}'")
+            for joint in entity.model.joints:
+                for number in range(max(1, AXES.get(joint.type, 0))):
+                    if row_name(joint.name, number) == plain:
+                        yield entity, joint, number
 
     def frame(self, name: str) -> Optional[Anchor]:
         """What a reference frame name means; None for the world frame.
@@ -267,7 +291,7 @@ class Registry:
             self._tell("link", name, [entity.model.name for entity, _ in found])
         return found[0]
 
-    def joint_taken(self, name: str, taken: Entity) -> None:
+    def _joint_taken(self, name: str, taken: Entity) -> None:
         """A joint of `taken` was found for a name, which others may have as well."""
         if ("joint", name) in self._told or name.startswith(taken.model.name + "::"):
             return

@@ -49,7 +49,7 @@ class Surroundings(ModelEdits):
             pose = _usable(light)
             if anchor is not None:
                 pose = compose(anchor.state(self._snapshot())[0], pose)
-            self._set_lights(self.world.lights + [replace(light, pose=pose)])
+            self._surround(lights=self.world.lights + [replace(light, pose=pose)])
 
     def set_light(self, name: str, light: Light) -> None:
         """Give a light other properties; another name renames it. Raises CommandError."""
@@ -60,17 +60,14 @@ class Surroundings(ModelEdits):
             if light.name != name:
                 self._check_free(light.name)
             light = replace(light, pose=_usable(light))
-            self._set_lights([light if one.name == name else one for one in self.world.lights])
+            self._surround(lights=[light if one.name == name else one for one in self.world.lights])
 
     def delete_light(self, name: str) -> Light:
         """Take a light out; returns what it was. Raises UnknownEntity."""
         with self._order, self._lock:
             light = self.light(name)
-            self._set_lights([one for one in self.world.lights if one.name != name])
+            self._surround(lights=[one for one in self.world.lights if one.name != name])
             return light
-
-    def _set_lights(self, lights: List[Light]) -> None:
-        self._surround(lights=lights)
 
     # -- the rest --------------------------------------------------------------------------------
 
