@@ -11,7 +11,8 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Geometry, Plane, Sphere, Surface
-from my_simulations.engine.api import (
+from my_simulations.engine.bullet.backend import BulletBackend
+from my_simulations.engine.commands import (
     Command,
     LoadModel,
     ModelState,
@@ -19,7 +20,6 @@ from my_simulations.engine.api import (
     RemoveModel,
     SetModelState,
 )
-from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.rows import axis_rows
 from my_simulations.geometry import STILL, Pose, Twist
 

@@ -23,7 +23,7 @@ from my_simulations.description.shapes import (
     Surface,
     mesh_key,
 )
-from my_simulations.engine.api import FOREVER, AddLoads, Load, SetJoints, SetModelState
+from my_simulations.engine.commands import FOREVER, AddLoads, Load, SetJoints, SetModelState
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
 G = 9.8

@@ -8,13 +8,13 @@ from closed_forms import pendulum
 from conftest import Lab, arm, box, inertial_of_box
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Mimic, Model
-from my_simulations.engine.api import (
+from my_simulations.engine.api import Refused
+from my_simulations.engine.commands import (
     FOREVER,
     AddLoads,
     LinkState,
     Load,
     ModelState,
-    Refused,
     SetJoints,
     SetLinkState,
     SetModelState,

@@ -10,7 +10,7 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Surface
-from my_simulations.engine.api import SetModelState
+from my_simulations.engine.commands import SetModelState
 from my_simulations.geometry import Pose, Twist, conjugate, quat_from_rpy, rotate
 
 

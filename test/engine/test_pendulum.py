@@ -9,7 +9,7 @@ from conftest import Lab, arm
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.engine.api import SetJoints
+from my_simulations.engine.commands import SetJoints
 from my_simulations.geometry import Pose, dot, rotate, transform, twist_at
 
 G = 9.8

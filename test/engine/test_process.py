@@ -15,7 +15,7 @@ from conftest import arm, ball, box, ground
 from my_simulations.description.model import Inertial, JointAxis, Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import InitialState, Physics, World
-from my_simulations.engine.api import FOREVER, Load
+from my_simulations.engine.commands import FOREVER, Load
 from my_simulations.engine.process import ProcessEngine
 from my_simulations.errors import CommandError, EngineLost
 from my_simulations.geometry import STILL, Pose, Twist
@@ -129,7 +129,7 @@ def test_a_state_that_becomes_infinite_is_put_back_and_reported(start):
 def test_the_engine_ends_with_its_parent():
     script = ("import sys, time; sys.path.insert(0, 'src')\n"
               "from my_simulations.engine.process import ProcessEngine\n"
-              "from my_simulations.engine.api import Ping\n"
+              "from my_simulations.engine.commands import Ping\n"
               "engine = ProcessEngine(); engine.submit(Ping()).result()\n"
               "print(engine.pid, flush=True); time.sleep(60)\n")
     parent = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,

@@ -14,7 +14,7 @@ from test_contact import _cube_mesh
 
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, mesh_key
-from my_simulations.engine.api import LoadModel
+from my_simulations.engine.commands import LoadModel
 from my_simulations.engine.process import ProcessEngine
 from my_simulations.engine.scratch import Scratch, sweep
 from my_simulations.geometry import Pose

@@ -13,7 +13,8 @@ from conftest import Lab, arm, box, ground, slab
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.api import Clear, Connect, Refused
+from my_simulations.engine.api import Refused
+from my_simulations.engine.commands import Clear, Connect
 from my_simulations.engine.process import ProcessEngine
 from my_simulations.geometry import Pose, Twist, compose, inverse, quat_from_rpy, transform
 from my_simulations.simulator.simulator import Simulator

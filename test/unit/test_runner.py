@@ -7,11 +7,11 @@ from typing import List
 import pytest
 
 from my_simulations.description.model import Inertial, Link, Model
-from my_simulations.engine.api import (
+from my_simulations.engine.api import Event
+from my_simulations.engine.commands import (
     FOREVER,
     Advance,
     Batch,
-    Event,
     LoadModel,
     Pause,
     PhysicsSettings,

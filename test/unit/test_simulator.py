@@ -10,7 +10,7 @@ import pytest
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh
 from my_simulations.description.world import World
-from my_simulations.engine.api import FOREVER, Load
+from my_simulations.engine.commands import FOREVER, Load
 from my_simulations.engine.inline import InlineEngine
 from my_simulations.engine.kinematic import KinematicBackend
 from my_simulations.errors import CommandError, EngineLost

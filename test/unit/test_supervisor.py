@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from my_simulations.engine.api import Advance, Command, Ping
+from my_simulations.engine.commands import Advance, Command, Ping
 from my_simulations.engine.inline import InlineEngine
 from my_simulations.engine.kinematic import KinematicBackend
 from my_simulations.errors import CommandError, NoAnswer

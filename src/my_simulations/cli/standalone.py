@@ -38,30 +38,25 @@ def main(words: List[str], program: str) -> int:
     say("no ROS master answers; this world runs without ROS")
     for notice in options.notices:
         say(notice)
+    from ..engine.commands import FOREVER
     from ..engine.process import ProcessEngine
     from ..resources.resolver import Resolver
     from ..ros.engines import EngineSupply
-    from ..ros.loading import load_world
-    from ..simulator.simulator import Simulator
+    from ..simulator.issue_log import IssueLog
+    from ..simulator.starting import start_world
 
-    heard: List[Issue] = []
-    shown: List[Callable[[Issue], None]] = []
-
-    def log(issue: Issue) -> None:
-        heard.append(issue)
-        del heard[:-100]
-        for tell in shown:
-            tell(issue)
+    def tell(issue: Issue) -> None:
         if options.verbose or issue.severity is not Severity.NOTE:
             say(issue)
 
+    log = IssueLog()
+    log.open(tell)
     engines = EngineSupply(ProcessEngine)
     try:
         resolver = Resolver.from_environment()
-        world, meshes = load_world(options.world, resolver, log)
-        simulator = Simulator(world, engine_factory=engines, paused=True, log=log,
-                              meshes=meshes)
-        simulator.start()
+        simulator = start_world(options.world, resolver, engines, log, seed=options.seed or 0,
+                                profile=options.profile,
+                                steps=options.iterations or FOREVER)
     except InputError as fault:
         for issue in fault.issues:
             say(issue)
@@ -73,9 +68,7 @@ def main(words: List[str], program: str) -> int:
         if not options.paused:
             simulator.unpause()
         editor = faces.edit(simulator, resolver, {"log": lambda issue: say(issue)})
-        for issue in list(heard):
-            editor.tell(issue)
-        shown.append(editor.tell)
+        log.also(editor.tell)
         show(editor.url, program)
         ended.wait()
         editor.stop()

@@ -8,10 +8,10 @@ from typing import Any, Callable, Dict, List, Set, Tuple
 from ..errors import Issue
 from ..formats.sdf_write import write_world
 from ..resources.resolver import Resolver
-from ..ros.loading import load_world
 from ..simulator.history import History
 from ..simulator.saving import EXTENSIONS, allowed_path, default_roots, present_world, save_world
 from ..simulator.simulator import Simulator
+from ..simulator.starting import load_world
 from .faults import Refusal
 
 NEW_WORLD = "worlds/empty.world"

@@ -8,8 +8,9 @@ import socket
 import sys
 from typing import Iterator, List, Tuple
 
-from .api import Command, Event, Reply
-from .child import die_with_parent
+from .api import Event, Reply
+from .child import die_with_parent, keep_freed_memory
+from .commands import Command
 from .ring import RingWriter
 from .runner import Runner
 from .wire import Wire
@@ -64,6 +65,7 @@ def main(argv: List[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     die_with_parent()
+    keep_freed_memory()
     commands, ring, bell = (int(word) for word in argv[1:4])
     os.set_blocking(bell, False)
     with _silent_stderr():

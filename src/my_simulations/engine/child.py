@@ -8,6 +8,8 @@ import sys
 from typing import Dict, List
 
 _PR_SET_PDEATHSIG = 1
+_M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3  # of mallopt(3)
+_KEPT_BYTES, _HEAP_BYTES = 64 << 20, 32 << 20
 
 
 def command(module: str, *arguments: str) -> List[str]:
@@ -28,3 +30,15 @@ def environment() -> Dict[str, str]:
 def die_with_parent() -> None:
     """In the child: have the kernel end it with the thread that started it (Linux)."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def keep_freed_memory() -> None:
+    """In the child: have the C library hold freed memory for the next who asks (glibc).
+
+    Bullet takes 5 MB for every new world; when they come from the kernel page by page each time, a
+    reset takes three times as long (measured).
+    """
+    libc = ctypes.CDLL(None)
+    if hasattr(libc, "mallopt"):
+        libc.mallopt(_M_TRIM_THRESHOLD, _KEPT_BYTES)
+        libc.mallopt(_M_MMAP_THRESHOLD, _HEAP_BYTES)

@@ -6,7 +6,8 @@ import threading
 from concurrent.futures import Future
 from typing import Callable, Dict, List, Tuple
 
-from .api import Backend, Command, EngineGone, Event, Reply
+from .api import Backend, EngineGone, Event, Reply
+from .commands import Command
 from .ring import Memory, RingReader, RingWriter
 from .runner import Runner
 

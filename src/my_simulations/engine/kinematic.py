@@ -7,20 +7,20 @@ from typing import Any, Callable, Dict, List, Tuple
 
 from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
-from .api import (
+from .api import Event, Refused
+from .commands import (
     AddLoads,
     Clear,
     ClearLoads,
     Command,
     Connect,
-    Event,
     Hold,
     LinkState,
     LoadModel,
     PhysicsSettings,
     ReadContacts,
-    Refused,
     RemoveModel,
+    Restart,
     SetAxes,
     SetJoints,
     SetLinkState,
@@ -45,7 +45,8 @@ class KinematicBackend:
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: lambda c: self._remove(c.model_id),
-            Clear: self._clear, SetModelState: self._set_model, SetLinkState: self._set_link,
+            Clear: self._clear, Restart: self._restart,
+            SetModelState: self._set_model, SetLinkState: self._set_link,
             SetJoints: lambda c: self.joints.update({row: (at, rate)
                                                      for row, at, rate in c.joints}),
             SetAxes: self._set_axes, Hold: self._hold, ReadContacts: lambda _: (),
@@ -104,6 +105,13 @@ class KinematicBackend:
         for model_id in list(self.models):
             self._remove(model_id)
         self.loads.clear()
+
+    def _restart(self, command: Restart) -> None:
+        before = {number: self.models[number] for number, _ in command.models}
+        self._clear(Clear())
+        for number, pose in command.models:
+            model, first_link, first_joint, _ = before[number]
+            self._load(LoadModel(number, model, pose, first_link, first_joint))
 
     def _set_link(self, command: SetLinkState) -> None:
         self.links[command.row] = LinkState(

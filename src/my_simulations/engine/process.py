@@ -15,7 +15,8 @@ from typing import Callable, List, Optional, Tuple
 
 from . import child
 from . import ring as ring_module
-from .api import Command, EngineGone, Event, Reply
+from .api import EngineGone, Event, Reply
+from .commands import Command
 from .ring import RingReader
 from .scratch import sweep
 from .wire import Wire

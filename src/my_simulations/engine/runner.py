@@ -10,18 +10,15 @@ import time
 import traceback
 from typing import List, Optional, Protocol, Tuple
 
-from .api import (
+from .api import Backend, Event, Refused, Reply
+from .commands import (
     AddLoads,
     Advance,
-    Backend,
     Batch,
     Command,
-    Event,
     Pause,
     PhysicsSettings,
     Ping,
-    Refused,
-    Reply,
     Run,
     SetClock,
     SetPhysics,

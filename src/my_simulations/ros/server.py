@@ -10,10 +10,10 @@ import os
 import signal
 import sys
 import threading
-from collections import deque
-from typing import TYPE_CHECKING, Any, Callable, Deque, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
 
-from ..errors import CommandError, InputError, Issue, error
+from ..errors import CommandError, InputError, error
+from ..simulator.issue_log import IssueLog
 from . import master
 from .engines import EngineSupply
 from .lean import import_genpy
@@ -32,46 +32,9 @@ UPKEEP_SECONDS = 0.5
 CLOCK_QUEUE = 1000
 """Messages a subscriber to `/clock` may be behind by: a second in real time."""
 
-RECENT_ISSUES = 100
-
 OK, FAILED = 0, 1
 
 Say = Callable[[str], None]
-
-
-class IssueLog:
-    """Keeps issues until there is a node to log them through."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._kept: List[Issue] = []
-        self._recent: Deque[Issue] = deque(maxlen=RECENT_ISSUES)
-        self._sink: Optional[Callable[[Issue], None]] = None
-        self._also: Optional[Callable[[Issue], None]] = None
-
-    def __call__(self, issue: Issue) -> None:
-        with self._lock:
-            sink, also = self._sink, self._also
-            self._recent.append(issue)
-            if sink is None:
-                self._kept.append(issue)
-        for hears in (sink, also):
-            if hears is not None:
-                hears(issue)
-
-    def also(self, sink: Callable[[Issue], None]) -> None:
-        """Tell one more, from the last `RECENT_ISSUES` on."""
-        with self._lock:
-            self._also, recent = sink, list(self._recent)
-        for issue in recent:
-            sink(issue)
-
-    def open(self, sink: Callable[[Issue], None]) -> None:
-        """From now on, and for what was kept, use `sink`."""
-        with self._lock:
-            self._sink, kept, self._kept = sink, self._kept, []
-        for issue in kept:
-            sink(issue)
 
 
 class WorldLoader:
@@ -109,21 +72,17 @@ class WorldLoader:
 
     def _load(self) -> None:
         options, engines, log = self._given
-        from ..engine.api import FOREVER
+        from ..engine.commands import FOREVER
         from ..resources.downloads import DownloadNotes
         from ..resources.resolver import Resolver
-        from ..simulator.simulator import Simulator
-        from .loading import load_world
+        from ..simulator.starting import start_world
 
         self._profile.mark("readers imported")
         self.resolver = Resolver.from_environment(DownloadNotes(log))
-        world, meshes = load_world(options.world, self.resolver, log, seed=options.seed or 0,
-                                   profile=options.profile)
-        self._profile.mark("world read")
-        simulator = Simulator(world, engine_factory=engines, paused=True, log=log, meshes=meshes,
-                              steps=options.iterations or FOREVER)
-        simulator.start()
-        self.simulator = simulator
+        self.simulator = start_world(
+            options.world, self.resolver, engines, log, seed=options.seed or 0,
+            profile=options.profile, steps=options.iterations or FOREVER,
+            read=lambda: self._profile.mark("world read"))
         self._profile.mark("world loaded into the engine")
 
     def wait(self) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import List, Optional, Sequence, Tuple
 
 from ..description.model import WORLD, Joint
-from ..engine.api import Connect
+from ..engine.commands import Connect
 from ..engine.plan import TIE_TYPES
 from ..errors import Issue, warning
 from ..geometry import IDENTITY, Pose, compose, inverse

@@ -9,13 +9,12 @@ from ..description.flatten import flattened
 from ..description.model import Joint, Model
 from ..description.shapes import MeshTable
 from ..description.world import Physics, World
-from ..engine.api import (
+from ..engine.api import Engine, Event, Reply
+from ..engine.commands import (
     FOREVER,
     AddLoads,
     Batch,
     Command,
-    Engine,
-    Event,
     Hold,
     Load,
     LoadModel,
@@ -23,7 +22,6 @@ from ..engine.api import (
     PhysicsSettings,
     Ping,
     RemoveModel,
-    Reply,
     Run,
     SetClock,
     SetPhysics,

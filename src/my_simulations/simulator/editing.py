@@ -7,7 +7,7 @@ from typing import List, Optional, Tuple
 from ..description.flatten import flattened
 from ..description.model import Inertial, Joint, Model
 from ..description.shapes import MeshTable
-from ..engine.api import (
+from ..engine.commands import (
     AddLoads,
     Batch,
     Command,

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Optional, Tuple
 
-from ..engine.api import Frame
+from ..engine.commands import Frame
 from ..engine.ring import Snapshot
 from ..errors import CommandError
 from ..geometry import (

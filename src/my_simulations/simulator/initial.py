@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import List, Optional
 
 from ..description.world import InitialState
-from ..engine.api import Command, SetJoints, SetLinkState, SetModelState
+from ..engine.commands import Command, SetJoints, SetLinkState, SetModelState
 from ..geometry import compose
 from .registry import Entity
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import List
 
-from ..engine.api import FOREVER, AddLoads, ClearLoads, Load
+from ..engine.commands import FOREVER, AddLoads, ClearLoads, Load
 from ..engine.ring import Clock
 from ..errors import CommandError
 from ..geometry import ZERO3, Vec3, compose, inverse, rotate, subtract, transform

@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
-from ..engine.api import Command, ModelState, SetJoints, SetLinkState, SetModelState
+from ..engine.commands import Command, ModelState, SetJoints, SetLinkState, SetModelState
 from ..engine.ring import Clock, Snapshot
 from ..geometry import Pose, Twist
 from .registry import Entity

@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple
 from ..description.model import Joint, Model
 from ..description.shapes import MeshTable
 from ..description.world import Light, Physics
-from ..engine.api import ModelState
+from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
 from .moments import Moment

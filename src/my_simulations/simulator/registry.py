@@ -8,7 +8,7 @@ from typing import Callable, Dict, Iterator, List, Optional, Sequence, Set, Tupl
 from ..description.model import Joint, Model
 from ..description.shapes import MeshTable
 from ..description.world import Light
-from ..engine.api import LinkState, ModelState
+from ..engine.commands import LinkState, ModelState
 from ..engine.ring import Snapshot
 from ..engine.rows import AXES, axis_rows, row_name
 from ..errors import CommandError

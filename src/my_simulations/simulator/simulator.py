@@ -10,7 +10,7 @@ from typing import Dict, List, Optional
 
 from ..description.shapes import MeshTable
 from ..description.world import Physics, World
-from ..engine.api import (
+from ..engine.commands import (
     FOREVER,
     AddLoads,
     Advance,
@@ -19,6 +19,7 @@ from ..engine.api import (
     ClearLoads,
     Command,
     Pause,
+    Restart,
     Run,
     SetClock,
     SetJoints,
@@ -93,7 +94,7 @@ class Simulator(TimedLoads):
         self._call(SetModelState(entity.model_id, pose, twist, reference))
 
     def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
-        """Move a link (see `engine.api.SetLinkState`). Raises CommandError."""
+        """Move a link (see `engine.commands.SetLinkState`). Raises CommandError."""
         pose = usable(pose, twist)
         with self._lock:
             entity, index = self._registry.link(name)
@@ -147,10 +148,12 @@ class Simulator(TimedLoads):
     def reset_simulation(self) -> None:
         """Everything as loaded, joints too, time 0, loads dropped; spawned models stay."""
         with self._order:
-            commands: List[Command] = [Clear(), SetClock(0, 0)]
-            for entity in self._registry.entities():
+            entities = self._registry.entities()
+            commands: List[Command] = [
+                Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
+                SetClock(0, 0)]
+            for entity in entities:
                 entity.pose = entity.initial_pose
-                commands.append(self._loading(entity))
                 commands += initial_commands(entity, self.world.initial.get(entity.model.name))
             commands += self._connections.commands(self._registry)
             self._loads.clear()

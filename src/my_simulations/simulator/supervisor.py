@@ -12,7 +12,8 @@ import time
 from concurrent.futures import TimeoutError as FutureTimeout
 from typing import Callable, List, Optional, Tuple
 
-from ..engine.api import Advance, Command, Engine, EngineGone, Reply
+from ..engine.api import Engine, EngineGone, Reply
+from ..engine.commands import Advance, Command
 from ..engine.ring import HEARTBEAT
 from ..errors import CommandError, EngineLost, Issue, NoAnswer, error
 

@@ -2,56 +2,46 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Optional, Tuple, Type
+from typing import Any, Callable, Dict, List, Tuple, Type
 
 import pybullet
 
+from ...description.model import Model
 from ...geometry import (
-    STILL,
     Pose,
-    Twist,
-    add,
-    compose,
-    conjugate,
-    cross,
-    inverse,
-    multiply,
     pose_is_finite,
-    rotate,
-    subtract,
 )
-from ..api import (
+from ..api import Event, Refused
+from ..commands import (
     AddLoads,
     Clear,
     ClearLoads,
     Command,
     Connect,
-    Event,
-    Frame,
     Hold,
-    LinkState,
     LoadModel,
     ModelState,
     PhysicsSettings,
     ReadContacts,
-    Refused,
     RemoveModel,
+    Restart,
     SetAxes,
     SetJoints,
     SetLinkState,
     SetModelState,
 )
-from ..plan import PlanError, open_joints, plan_bodies
+from ..plan import PlanError, open_joints
 from ..ring import JOINTS, LINKS
-from ..rows import axis_rows
 from . import bodies, joints
-from .bodies import Body, Builder, Part
+from .bodies import Body, Part
+from .builder import Builder
 from .constraints import Constraints
 from .contacts import read_contacts
 from .decay import Decay
 from .forces import Forces
 from .friction import EVERY, FrictionBalance
 from .holds import Holds
+from .moving import Mover
 from .readout import Readout
 from .restore import Entry, inherited, restore
 from .shapes import ShapeError, ShapeFactory
@@ -79,14 +69,19 @@ class BulletBackend:
         self._holds = Holds(self._waker.around)
         self._ties = Ties()
         self._decay = Decay()
+        self._mover = Mover(self._rows, self._axes, self._readout, self._waker,
+                            self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
                          self._decay, self._readout)
         self._events: List[Event] = []
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
-            SetModelState: self._set_model, SetLinkState: self._set_link,
-            SetJoints: self._set_joints, SetAxes: self._set_axes, Hold: self._hold,
+            Restart: self._restart,
+            SetModelState: lambda command: self._mover.set_model(
+                command, self._entry(command.model_id)),
+            SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
+            SetAxes: self._set_axes, Hold: self._hold,
             Connect: self._connect,
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit),
             AddLoads: self._add_loads, ClearLoads: self._clear_loads,
@@ -169,43 +164,47 @@ class BulletBackend:
 
     def _load(self, command: LoadModel) -> None:
         self._check_load(command)
-        joint_rows = {row.name: command.first_joint_row + n
-                      for n, row in enumerate(axis_rows(command.model))}
         try:
-            plans = plan_bodies(command.model)
-            built = Builder(command.model_id, command.model, command.pose, command.meshes,
-                            self._shapes, command.first_link_row, joint_rows,
-                            self._settings.step_size, command.articulated).build(plans)
+            builder = Builder(command, self._shapes)
         except (PlanError, ShapeError) as fault:
             raise Refused(str(fault)) from fault
-        constraints = Constraints(command.model, plans, built, command.pose,
-                                  open_joints(command.model, plans), command.first_link_row)
-        entry = Entry(command.model, built, command.first_link_row, command.pose,
-                      constraints)
-        self._models[command.model_id] = entry
-        for body in built:
-            self._register(body)
-            for part in body.parts:
-                self._decay.add(body, part, command.model.links[part.row - entry.first_row])
-            joints.set_up(body, command.model, self._forces, self._settings.step_size)
+        entry = self._enter(command.model_id, builder, command.model, command.first_link_row,
+                            command.pose)
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
             restore(entry, state)
-        self._waker.around(built)
+        self._waker.around(entry.bodies)
+
+    def _enter(self, model_id: int, builder: Builder, model: Model, first_row: int,
+               pose: Pose) -> Entry:
+        """Build a model and know it."""
+        dt = self._settings.step_size
+        try:
+            built = builder.build(pose, dt)
+        except ShapeError as fault:
+            raise Refused(str(fault)) from fault
+        constraints = Constraints(model, builder.plans, built, pose,
+                                  open_joints(model, builder.plans), first_row)
+        entry = Entry(model, builder, built, first_row, pose, constraints)
+        self._models[model_id] = entry
+        for body in built:
+            self._register(body)
+            for part in body.parts:
+                self._decay.add(body, part, model.links[part.row - first_row])
+            joints.set_up(body, model, self._forces, dt)
+        return entry
+
+    def _restart(self, command: Restart) -> None:
+        before = [(number, self._entry(number), pose) for number, pose in command.models]
+        self._clear(Clear())
+        for number, entry, pose in before:
+            self._enter(number, entry.builder, entry.model, entry.first_row, pose)
 
     def _inherited(self, command: LoadModel) -> ModelState:
         self._readout.read()
         before = self._entry(command.inherit)
-        return inherited(before, command.model, self._model_pose(before), self._link_state,
-                         self._readout.joints)
-
-    def _model_pose(self, entry: Entry) -> Pose:
-        names = [link.name for link in entry.model.links]
-        if not names:
-            return entry.pose
-        lead = names.index(entry.model.canonical_link) if entry.model.canonical_link else 0
-        return compose(self._link_state(entry.first_row + lead).pose,
-                       inverse(entry.model.links[lead].pose))
+        return inherited(before, command.model, self._mover.model_pose(before),
+                         self._mover.link_state, self._readout.joints)
 
     def _check_load(self, command: LoadModel) -> None:
         if command.model_id in self._models:
@@ -261,6 +260,7 @@ class BulletBackend:
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         pybullet.resetSimulation()
+        self._shapes.forget_world()
         self._configure_bullet()
 
     def _entry(self, model_id: int) -> Entry:
@@ -269,88 +269,6 @@ class BulletBackend:
         return self._models[model_id]
 
     # -- states ----------------------------------------------------------------------------------
-
-    def _link_state(self, row: int) -> LinkState:
-        values = self._readout.links[row].tolist()
-        return LinkState(Pose((values[0], values[1], values[2]),
-                              (values[3], values[4], values[5], values[6])),
-                         Twist((values[7], values[8], values[9]),
-                               (values[10], values[11], values[12])))
-
-    def _in_world(self, pose: Pose, twist: Optional[Twist],
-                  frame: Optional[Frame]) -> Tuple[Pose, Optional[Twist]]:
-        if not pose_is_finite(pose):
-            raise Refused("the pose is not finite")
-        if frame is None:
-            return pose, twist
-        if frame.row not in self._rows:
-            raise Refused("the reference frame is not there any more")
-        at = compose(self._link_state(frame.row).pose, frame.offset)
-        if twist is not None:
-            twist = Twist(rotate(at.orientation, twist.linear),
-                          rotate(at.orientation, twist.angular))
-        return compose(at, pose), twist
-
-    def _set_model(self, command: SetModelState) -> None:
-        entry = self._entry(command.model_id)
-        self._readout.read()
-        pose, twist = self._in_world(command.pose, command.twist, command.frame)
-        if not entry.model.links:
-            return
-        current = self._model_pose(entry)
-        self._waker.around(entry.bodies)
-        for body in entry.bodies:
-            self._move(body, current, pose, twist)
-        self._waker.around(entry.bodies)
-
-    def _set_link(self, command: SetLinkState) -> None:
-        if command.row not in self._rows:
-            raise Refused("the link is not there any more")
-        self._readout.read()
-        body, part = self._rows[command.row]
-        if not body.rigid and body.base is None:
-            raise Refused("the link belongs to a body that is joined to the world")
-        pose, twist = self._in_world(command.pose, command.twist, command.frame)
-        current = self._link_state(part.row).pose
-        self._waker.around([body])
-        self._move(body, current, pose, twist)
-        self._waker.around([body])
-
-    def _move(self, body: Body, current: Pose, wanted: Pose, twist: Optional[Twist]) -> None:
-        """Move a body as if `current`, a pose fixed to it, became `wanted` with `twist` there."""
-        lead = self._link_state(body.parts[0].row)
-        if body.rigid or body.base is not None:
-            target = compose(wanted, compose(inverse(current), lead.pose))
-            bodies.place(body, target)
-        else:
-            position, turn = pybullet.getBasePositionAndOrientation(body.uid)
-            target = compose(wanted, compose(inverse(current), Pose(position, turn)))
-            pybullet.resetBasePositionAndOrientation(body.uid, target.position,
-                                                     target.orientation)
-        for axis in body.axes:
-            position_rate = pybullet.getJointState(body.uid, axis.index)[:2]
-            rate = position_rate[1] if twist is None else 0.0
-            pybullet.resetJointState(body.uid, axis.index, position_rate[0], rate)
-        self._forces.disturbed(body)
-        if body.moves and (body.rigid or body.base is not None):
-            bodies.launch(body, target, _carried(lead, target, wanted, twist))
-        self._holds.moved(body)
-        self._spin.moved(body)
-        self._readout.touch(body)
-
-    def _set_joints(self, command: SetJoints) -> None:
-        for row, position, rate in command.joints:
-            if row not in self._axes:
-                raise Refused("the joint is not there any more")
-            if not (abs(position) < 1e12 and abs(rate) < 1e12):
-                raise Refused("the joint position is not finite")
-        for row, position, rate in command.joints:
-            body, axis = self._axes[row]
-            self._waker.around([body])
-            pybullet.resetJointState(body.uid, axis.index, position, rate)
-            self._forces.disturbed(body)
-            self._spin.moved(body)
-            self._readout.touch(body)
 
     def _set_axes(self, command: SetAxes) -> None:
         entry = self._entry(command.model_id)
@@ -380,26 +298,7 @@ class BulletBackend:
             f"for which no friction fits all pairs: it is {100 * share:.0f} % off", body.model_id))
 
     def _on_diverged(self, body: Body) -> None:
-        """Put a body whose state is no number back where it last was one, at rest."""
-        for part in body.parts[:1]:
-            last = self._link_state(part.row)
-            if body.rigid or body.base is not None:
-                bodies.place(body, last.pose)
-                bodies.launch(body, last.pose, STILL)
-        for axis in body.axes:
-            pybullet.resetJointState(body.uid, axis.index,
-                                     float(self._readout.joints[axis.row, 0]), 0.0)
-        self._forces.disturbed(body)
-        self._spin.moved(body)
+        self._mover.put_back(body)
         name = self._models[body.model_id].model.name
         self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "
                                   "was put back where it was, at rest", body.model_id))
-
-
-def _carried(lead: LinkState, target: Pose, wanted: Pose, twist: Optional[Twist]) -> Twist:
-    """The twist at `target` of a body that moves with `twist` at `wanted`; None: keep, turned."""
-    if twist is None:
-        turn = multiply(target.orientation, conjugate(lead.pose.orientation))
-        return Twist(rotate(turn, lead.twist.linear), rotate(turn, lead.twist.angular))
-    lever = subtract(target.position, wanted.position)
-    return Twist(add(twist.linear, cross(twist.angular, lever)), twist.angular)

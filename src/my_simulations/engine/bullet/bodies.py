@@ -6,38 +6,27 @@ nowhere else: `link_from_com` of each part converts, both ways.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import List, Optional, Tuple
 
 import pybullet
 
-from ...description.model import Link, Model
-from ...description.shapes import MeshTable
+from ...description.model import Link
 from ...geometry import (
-    IDENTITY,
     Pose,
     Quat,
     Twist,
     Vec3,
     compose,
-    conjugate,
-    inverse,
-    multiply,
     rotate,
     twist_at,
 )
-from ..inertia import principal
-from ..plan import BASE, NO_LINK, BodyPlan, TreeLink
-from ..rows import AXES, row_name
+from ..plan import BASE
 from . import surfaces
-from .shapes import ShapeFactory
 
 SLEEP_THRESHOLD = 0.01
 """Bodies slower than about 0.1 m/s (measured) for 2 s of sim time may sleep, as Gazebo's."""
 
 _FREE_JOINT_VELOCITY = 1e6  # PyBullet clamps joint rates to 100 by default
-_LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
-_JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
-                "fixed": pybullet.JOINT_FIXED, "ball": pybullet.JOINT_SPHERICAL}
 
 
 @dataclass
@@ -70,12 +59,18 @@ class Part:
 
 @dataclass
 class Axis:
-    """One joint axis of a body: its row in the ring and PyBullet's joint index."""
+    """One joint axis of a body: its row in the ring and PyBullet's joint index.
+
+    Attributes:
+        number: which of its joint's axes it is.
+        ease: what acceleration an effort of 1 gives it, all else free, as the file has the body.
+    """
 
     row: int
     index: int
     name: str
     number: int = 0
+    ease: float = 0.0
 
 
 @dataclass
@@ -135,170 +130,6 @@ class Body:
         return self.parts[0] if self.parts[0].index == BASE else None
 
 
-class Builder:
-    """Builds the bodies of one model; on a fault it removes what it had built."""
-
-    def __init__(self, model_id: int, model: Model, pose: Pose, meshes: MeshTable,
-                 shapes: ShapeFactory, link_rows: int, joint_rows: Dict[str, int],
-                 dt: float, articulated: bool = False) -> None:
-        self.dt = dt
-        self.articulated = articulated
-        self.model_id = model_id
-        self.model = model
-        self.pose = pose
-        self.meshes = meshes
-        self.shapes = shapes
-        self.first_row = link_rows
-        self.joint_rows = joint_rows
-        self.built: List[Body] = []
-
-    def build(self, plans: Sequence[BodyPlan]) -> List[Body]:
-        """All bodies, at their initial poses, with Gazebo's dynamics instead of PyBullet's."""
-        try:
-            for plan in plans:
-                self.built.append(self._rigid(plan) if self._is_rigid(plan)
-                                  else self._tree(plan))
-            self._ignore_each_other()
-        except Exception:
-            for body in self.built:
-                remove(body)
-            raise
-        return self.built
-
-    def _is_rigid(self, plan: BodyPlan) -> bool:
-        if not plan.is_rigid:
-            return False
-        return (not self.articulated or self.model.static
-                or self.model.links[plan.links[0].index].kinematic)
-
-    def _rigid(self, plan: BodyPlan) -> Body:
-        link = self.model.links[plan.links[0].index]
-        static = self.model.static or link.kinematic
-        com, moments = (IDENTITY, (0.0, 0.0, 0.0)) if static else principal(link.inertial)
-        mass = 0.0 if static else link.inertial.mass
-        pieces = self.shapes.compounds(link.collisions, self.meshes, inverse(com), static)
-        at = compose(compose(self.pose, link.pose), com)
-        uids = [
-            pybullet.createMultiBody(mass, piece, -1, at.position, at.orientation,
-                                     useMaximalCoordinates=int(not self.articulated))
-            for piece in (pieces or [-1])
-        ]
-        part = self._part(plan.links[0].index, BASE, com, mass, moments)
-        body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]), moves=not static,
-                    rigid=not self.articulated, may_sleep=self._may_sleep(link))
-        for uid in uids:
-            set_dynamics(uid, BASE, link, mass, moments, body.may_sleep and not static)
-            if body.rigid:
-                set_decay(uid, link, self.dt)
-        body.radius = _radius(uids[0])
-        return body
-
-    def _part(self, number: int, index: int, com: Pose, mass: float, moments: Vec3) -> Part:
-        link = self.model.links[number]
-        surface = surfaces.of_link(link)
-        return Part(self.first_row + number, index, com, mass, moments, surface.mu,
-                    surfaces.friction(surface, mass == 0.0), link.gravity)
-
-    def _may_sleep(self, link: Link) -> bool:
-        return (self.model.allow_auto_disable and link.gravity
-                and not any(joint.type in AXES for joint in self.model.joints))
-
-    def _tree(self, plan: BodyPlan) -> Body:
-        offset = 0 if plan.fixed_base else 1
-        hung = plan.links[offset:]
-        masses = self._masses(plan)
-        shape = [self._tree_shape(node) for node in plan.links]
-        base_mass, base_shape, base_at, base_com = 0.0, -1, self.pose, IDENTITY
-        if not plan.fixed_base:
-            root = self.model.links[plan.links[0].index]
-            base_mass, base_com, _ = masses[0]
-            base_shape, base_at = shape[0], compose(self.pose, root.pose)
-        coms = [compose(inverse(node.link_from_frame), com)
-                for node, (_, com, _) in zip(hung, masses[offset:])]
-        uid = pybullet.createMultiBody(
-            baseMass=base_mass, baseCollisionShapeIndex=base_shape,
-            basePosition=base_at.position, baseOrientation=base_at.orientation,
-            baseInertialFramePosition=base_com.position,
-            baseInertialFrameOrientation=base_com.orientation,
-            linkMasses=[mass for mass, _, _ in masses[offset:]],
-            linkCollisionShapeIndices=shape[offset:],
-            linkVisualShapeIndices=[-1] * len(hung),
-            linkPositions=[node.parent_from_frame.position for node in hung],
-            linkOrientations=[node.parent_from_frame.orientation for node in hung],
-            linkInertialFramePositions=[com.position for com in coms],
-            linkInertialFrameOrientations=[com.orientation for com in coms],
-            linkParentIndices=[node.parent + 1 - offset if node.parent >= 0 else 0
-                               for node in hung],
-            linkJointTypes=[_JOINT_TYPES[node.kind] for node in hung],
-            linkJointAxis=[node.axis or (0.0, 0.0, 1.0) for node in hung],
-            flags=(pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
-                   | pybullet.URDF_USE_SELF_COLLISION) if self.model.self_collide else 0,
-        )
-        return self._finish_tree(uid, plan, masses, offset)
-
-    def _masses(self, plan: BodyPlan) -> List[Tuple[float, Pose, Vec3]]:
-        """Mass, pose of the principal axes in the link frame, and moments of every tree link."""
-        found: List[Tuple[float, Pose, Vec3]] = []
-        for n, node in enumerate(plan.links):
-            if node.index == NO_LINK:
-                beyond = next(link for link in plan.links[n:] if link.index != NO_LINK)
-                mass = _LIGHT * self.model.links[beyond.index].inertial.mass
-                found.append((mass, IDENTITY, (mass * 1e-3,) * 3))
-            else:
-                inertial = self.model.links[node.index].inertial
-                found.append((inertial.mass, *principal(inertial)))
-        return found
-
-    def _finish_tree(self, uid: int, plan: BodyPlan, masses: List[Tuple[float, Pose, Vec3]],
-                     offset: int) -> Body:
-        parts: List[Part] = []
-        axes: List[Axis] = []
-        balls: List[Ball] = []
-        for n, node in enumerate(plan.links):
-            index, (mass, com, moments) = n - offset, masses[n]
-            link = Link("") if node.index == NO_LINK else self.model.links[node.index]
-            set_dynamics(uid, index, link, mass, moments, False)
-            if node.index != NO_LINK:
-                parts.append(self._part(node.index, index, com, mass, moments))
-            if node.joint is not None and node.number is not None:
-                row = self.joint_rows[row_name(node.joint.name, node.number)]
-                axes.append(Axis(row, index, node.joint.name, node.number))
-            elif node.kind == "ball":
-                balls.append(self._ball(plan, node, index, parts))
-        if plan.fixed_base:
-            pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
-        return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
-                    balls=tuple(balls))
-
-    def _ball(self, plan: BodyPlan, node: TreeLink, index: int, parts: List[Part]) -> Ball:
-        child, parent, above = parts[-1], None, IDENTITY
-        if node.parent >= 0:
-            over = plan.links[node.parent].index
-            parent = next(part for part in parts if part.row == self.first_row + over)
-            above = parent.com_pose(self.model.links[over].pose)
-        mine = child.com_pose(self.model.links[node.index].pose)
-        return Ball(index, child, parent, multiply(conjugate(mine.orientation),
-                                                   above.orientation))
-
-    def _tree_shape(self, node: TreeLink) -> int:
-        if node.index == NO_LINK:
-            return -1
-        link = self.model.links[node.index]
-        found = self.shapes.compounds(link.collisions, self.meshes,
-                                      inverse(node.link_from_frame), False)
-        return found[0] if found else -1
-
-    def _ignore_each_other(self) -> None:
-        """Links of one model collide only when self_collide asks (SDF 1.7, model/self_collide)."""
-        if self.model.self_collide or self.model.static:
-            return
-        for n, one in enumerate(self.built):
-            for other in self.built[n + 1:]:
-                for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
-                    for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
-                        pybullet.setCollisionFilterPair(one.uid, other.uid, a, b, 0)
-
-
 def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
                  may_sleep: bool) -> None:
     """Gazebo's dynamics for one link: the file's inertia, no hidden damping, its surface."""
@@ -354,7 +185,8 @@ def launch(body: Body, link_pose: Pose, twist: Twist) -> None:
     pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
 
 
-def _radius(uid: int) -> float:
+def radius_of(uid: int) -> float:
+    """Of a sphere about the centre of mass that holds the body, m; 0 for an endless one."""
     low, high = pybullet.getAABB(uid, BASE)
     if not -1e9 < low[0] <= high[0] < 1e9:
         return 0.0

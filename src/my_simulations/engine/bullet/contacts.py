@@ -5,7 +5,7 @@ from typing import Dict, List, Tuple
 
 import pybullet
 
-from ..api import Contact
+from ..commands import Contact
 from ..plan import BASE
 from .bodies import Body
 

@@ -9,7 +9,7 @@ from typing import Callable, Dict, List, Optional, Set, Tuple
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
-from ..api import Load
+from ..commands import Load
 from ..plan import BASE
 from .bodies import Axis, Body, Part
 from .implicit import ImplicitAxes

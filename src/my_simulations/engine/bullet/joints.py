@@ -8,8 +8,7 @@ import pybullet
 from ...description.model import INFINITE, JointAxis, Model
 from .bodies import Axis, Body
 from .forces import Forces
-from .implicit import ImplicitAxes, mobility
-from .mass_matrix import MassMatrix
+from .implicit import ImplicitAxes
 
 _LIMIT_FORCE = 1e6         # N or N m a kilogram: holds 1000 kg at its stop (100 a kg falls through)
 _EXPLICIT_DAMPING = 0.01   # d dt / I up to which PyBullet's explicit damping is exact enough
@@ -19,13 +18,9 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
     """Give every axis of a body the limits, friction, damping and spring of the description."""
     specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
     mass = sum(part.mass for part in body.parts)
-    eases: List[float] = []
-    if body.axes:
-        eases = mobility(MassMatrix(body.uid),
-                         [axis.index for axis in body.axes]).diagonal().tolist()
     _free(body)
     implicit: List[Tuple[Axis, JointAxis]] = []
-    for axis, ease in zip(body.axes, eases):
+    for axis in body.axes:
         spec = specs[axis.name][axis.number] or JointAxis()
         # createMultiBody leaves a velocity motor on every axis; as a brake it is the friction.
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
@@ -33,7 +28,7 @@ def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
                                        force=max(0.0, spec.friction))
         _limit(body, axis, spec, mass)
         forces.set_limits(axis.row, spec.effort, spec.velocity)
-        explicit = not spec.spring_stiffness and spec.damping * dt * ease <= _EXPLICIT_DAMPING
+        explicit = not spec.spring_stiffness and spec.damping * dt * axis.ease <= _EXPLICIT_DAMPING
         if not explicit:
             implicit.append((axis, spec))
         pybullet.changeDynamics(body.uid, axis.index,

@@ -9,18 +9,20 @@ import pybullet
 
 from ...description.model import Model
 from ...geometry import Pose, compose, conjugate, inverse, multiply, rotate, subtract, twist_at
-from ..api import LinkState, ModelState
+from ..commands import LinkState, ModelState
 from ..rows import axis_rows, row_name
 from . import bodies
 from .bodies import Body
+from .builder import Builder
 from .constraints import Constraints
 
 
 @dataclass
 class Entry:
-    """A model in the engine."""
+    """A model in the engine; `pose` is where its frame was put when it was built."""
 
     model: Model
+    builder: Builder
     bodies: List[Body]
     first_row: int
     pose: Pose

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
 
 import numpy as np
@@ -36,21 +37,53 @@ class ShapeError(ValueError):
     """A collision that PyBullet refuses; the message is one sentence for the user."""
 
 
+@dataclass(frozen=True)
+class Recipe:
+    """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments."""
+
+    names: str
+    arguments: Dict[str, Any]
+
+    def make(self) -> int:
+        """PyBullet's number of a new one, which goes with its body. Raises ShapeError."""
+        shape: int = pybullet.createCollisionShapeArray(**self.arguments)
+        if shape < 0:
+            raise ShapeError(f"the physics engine refused the collision shapes {self.names}")
+        return shape
+
+
 class ShapeFactory:
-    """Makes compounds. Meshes go through files in a private directory, removed at the end."""
+    """Knows what makes a shape. Meshes go through files of its own, removed at the end."""
 
     def __init__(self) -> None:
         self._scratch = Scratch()
         self._files: Dict[str, str] = {}
         self._count = 0
+        self._unseen = -1
 
     def close(self) -> None:
         """Remove the mesh files."""
         self._scratch.close()
 
-    def compounds(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
-                  static: bool) -> List[int]:
-        """Shapes of a link as PyBullet shape numbers: one, or several for a large static link.
+    @property
+    def unseen(self) -> int:
+        """A visual shape of one triangle, for all bodies of a world; nobody looks at them here.
+
+        Without one PyBullet makes a picture of every collision shape, textures and all: a sphere
+        or a plane takes three times as long to create, a mesh is read twice (measured).
+        """
+        if self._unseen < 0:
+            self._unseen = pybullet.createVisualShape(
+                pybullet.GEOM_MESH, vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], indices=[0, 1, 2])
+        return self._unseen
+
+    def forget_world(self) -> None:
+        """The simulation was reset, and what was made for it is gone; files stay."""
+        self._unseen = -1
+
+    def recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
+                static: bool) -> List[Recipe]:
+        """What makes the shape of a link, files written: one, or several for a large static link.
 
         Args:
             collisions: the link's, poses in the link frame.
@@ -59,38 +92,34 @@ class ShapeFactory:
             static: static meshes collide as triangles, others as their convex hull.
 
         Raises:
-            ShapeError: PyBullet refused.
+            ShapeError: there is no such shape.
         """
         solid = [c for c in collisions if not isinstance(c.geometry, Empty)]
         if static or len(solid) <= MAX_SHAPES:
-            return [self._compound(solid[at:at + MAX_SHAPES], meshes, frame, static)
+            return [self._recipe(solid[at:at + MAX_SHAPES], meshes, frame, static)
                     for at in range(0, len(solid), MAX_SHAPES)]
         # A moving link must be one body: curved shapes first, the rest as hulls of one file.
         solid.sort(key=lambda c: isinstance(c.geometry, (Box, Mesh)))
         kept, rest = solid[:MAX_SHAPES - 1], solid[MAX_SHAPES - 1:]
-        return [self._compound(kept, meshes, frame, static, self._hulls(rest, meshes, frame))]
+        return [self._recipe(kept, meshes, frame, static, self._hulls(rest, meshes, frame))]
 
-    def _compound(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
-                  static: bool, more: Optional[Dict[str, Any]] = None) -> int:
+    def _recipe(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
+                static: bool, more: Optional[Dict[str, Any]] = None) -> Recipe:
         columns = [self._column(c, meshes, frame, static) for c in collisions]
         if more is not None:
             columns.append(more)
-        shape = pybullet.createCollisionShapeArray(
-            shapeTypes=[c["type"] for c in columns],
-            halfExtents=[c.get("half", (0, 0, 0)) for c in columns],
-            radii=[c.get("radius", 0.0) for c in columns],
-            lengths=[c.get("length", 0.0) for c in columns],
-            fileNames=[c.get("file", "") for c in columns],
-            meshScales=[(1.0, 1.0, 1.0)] * len(columns),
-            planeNormals=[(0.0, 0.0, 1.0)] * len(columns),
-            flags=[c.get("flags", 0) for c in columns],
-            collisionFramePositions=[c["pose"].position for c in columns],
-            collisionFrameOrientations=[c["pose"].orientation for c in columns],
-        )
-        if shape < 0:
-            names = ", ".join(c.name for c in collisions)
-            raise ShapeError(f"the physics engine refused the collision shapes {names}")
-        return shape
+        return Recipe(", ".join(c.name for c in collisions), {
+            "shapeTypes": [c["type"] for c in columns],
+            "halfExtents": [c.get("half", (0, 0, 0)) for c in columns],
+            "radii": [c.get("radius", 0.0) for c in columns],
+            "lengths": [c.get("length", 0.0) for c in columns],
+            "fileNames": [c.get("file", "") for c in columns],
+            "meshScales": [(1.0, 1.0, 1.0)] * len(columns),
+            "planeNormals": [(0.0, 0.0, 1.0)] * len(columns),
+            "flags": [c.get("flags", 0) for c in columns],
+            "collisionFramePositions": [c["pose"].position for c in columns],
+            "collisionFrameOrientations": [c["pose"].orientation for c in columns],
+        })
 
     def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
                 static: bool) -> Dict[str, Any]:

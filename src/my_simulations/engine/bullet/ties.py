@@ -11,7 +11,8 @@ from typing import Dict, List, Optional, Tuple
 import pybullet
 
 from ...geometry import IDENTITY
-from ..api import Connect, Refused
+from ..api import Refused
+from ..commands import Connect
 from ..plan import BASE, TIE_TYPES
 from .bodies import SLEEP_THRESHOLD, Body, Part
 from .constraints import End, tie

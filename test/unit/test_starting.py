@@ -1,10 +1,14 @@
+import time
+
 import pytest
 
+from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.kinematic import KinematicBackend
 from my_simulations.errors import InputError, Severity, warning
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.engines import EngineSupply
-from my_simulations.ros.loading import load_world
-from my_simulations.ros.server import IssueLog
+from my_simulations.simulator.issue_log import IssueLog
+from my_simulations.simulator.starting import load_world, start_world
 
 WORLD = """<sdf version="1.6"><world name="w">
 <model name="good"><static>true</static><link name="l"><collision name="c"><geometry>
@@ -117,3 +121,25 @@ def test_a_seed_decides_where_a_population_stands(tmp_path):
 
     assert len(places(1)) == 5
     assert places(1) == places(1) != places(2)
+
+
+def test_a_world_starts_paused_with_its_seed_and_preset_and_stands_after_its_steps(tmp_path):
+    (tmp_path / "a.world").write_text(RANDOM.replace("<population", PRESETS.split('"w">')[1].split(
+        "</world>")[0] + "<population"))
+    engine, told = InlineEngine(KinematicBackend), []
+    sim = start_world(str(tmp_path / "a.world"), Resolver(), lambda: engine, told.append, seed=3,
+                      profile="fast", steps=20, read=lambda: told.append("read"))
+    try:
+        assert (sim.paused, sim.step(), told) == (True, 0, ["read"])
+        assert sim.physics.max_step_size == 0.004
+        again, _ = load_world(str(tmp_path / "a.world"), Resolver(), lambda issue: None, seed=3)
+        assert [sim.model(name).pose for name in sim.model_names()] == [
+            model.pose for model in again.models]
+        sim.unpause()
+        deadline = time.monotonic() + 10
+        while sim.step() < 20:
+            assert time.monotonic() < deadline, "it stands too early"
+            sim.wait_step(sim.step(), 0.1)
+        assert sim.advance(0) == 20
+    finally:
+        sim.close()

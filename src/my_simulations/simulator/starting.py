@@ -1,4 +1,4 @@
-"""The world file of the command line: found, read, its meshes loaded."""
+"""A world of some name: found, read, its meshes loaded, its simulator started."""
 from __future__ import annotations
 
 from typing import Callable, Dict, List, Tuple
@@ -6,10 +6,40 @@ from typing import Callable, Dict, List, Tuple
 from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..description.world import World
+from ..engine.api import Engine
+from ..engine.commands import FOREVER
 from ..errors import InputError, Issue, error
 from ..resources.resolver import NotFound, Resolver
+from .simulator import Simulator
 
 Log = Callable[[Issue], None]
+
+
+def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], log: Log, *,
+                seed: int = 0, profile: str = "", steps: int = FOREVER,
+                read: Callable[[], None] = lambda: None) -> Simulator:
+    """Read a world and start its simulator, paused.
+
+    Args:
+        name: see `load_world`.
+        resolver: see `load_world`.
+        engines: makes the engine.
+        log: hears every issue of a usable world, and those of the simulator.
+        seed: see `load_world`.
+        profile: see `load_world`.
+        steps: how many it makes before it stands.
+        read: called when the file has been read.
+
+    Raises:
+        InputError: there is no usable world.
+        CommandError: there is no engine.
+    """
+    world, meshes = load_world(name, resolver, log, seed=seed, profile=profile)
+    read()
+    simulator = Simulator(world, engine_factory=engines, paused=True, log=log, meshes=meshes,
+                          steps=steps)
+    simulator.start()
+    return simulator
 
 
 def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0,

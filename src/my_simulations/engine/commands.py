@@ -1,0 +1,318 @@
+"""What an engine can be told: every change of the world is one of these commands.
+
+Commands are applied between steps, also while paused. Entities are known to the engine by numbers
+that the simulator hands out: a model by its id, a link by its row in the ring's link table, a joint
+axis by its row in the joint table.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Dict, Optional, Tuple
+
+from ..description.model import Joint, Model
+from ..description.shapes import MeshData
+from ..geometry import STILL, Pose, Twist, Vec3
+
+FOREVER = 1 << 62
+"""A step that never comes: the horizon of a world nobody needs to meet."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A moving reference: the link at `row`, and `offset` the wanted frame from that link."""
+
+    row: int
+    offset: Pose
+
+
+@dataclass(frozen=True)
+class LinkState:
+    """World pose of a link frame and world-axes twist at its origin."""
+
+    pose: Pose
+    twist: Twist = STILL
+
+
+@dataclass(frozen=True)
+class ModelState:
+    """Links in the description's order; joints (position, rate) likewise, fixed ones left out."""
+
+    links: Tuple[LinkState, ...]
+    joints: Tuple[Tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class PhysicsSettings:
+    """`step_size` s; `gravity` m/s^2; `rate` steps a wall second, 0 = as fast as possible."""
+
+    step_size: float = 0.001
+    gravity: Vec3 = (0.0, 0.0, -9.8)
+    rate: float = 1000.0
+    iterations: int = 50
+
+
+@dataclass(frozen=True)
+class Load:
+    """A wrench on a link or an effort on a joint axis, exact to the step.
+
+    Acts in steps `start` (the first step whose beginning is at this count) to `stop` - 1.
+
+    Attributes:
+        load_id: to clear it by.
+        row: link row, or joint row when `effort` is not None.
+        force, torque: world axes, N and N m, at the centre of mass (link loads).
+        effort: N m or N (joint loads).
+        start, stop: step counts; `stop` FOREVER for until cleared.
+        in_link_axes: force and torque turn with the link (link loads).
+        point: where the force attacks, from the centre of mass, same axes as the force.
+    """
+
+    load_id: int
+    row: int
+    start: int
+    stop: int
+    force: Vec3 = (0.0, 0.0, 0.0)
+    torque: Vec3 = (0.0, 0.0, 0.0)
+    effort: Optional[float] = None
+    in_link_axes: bool = False
+    point: Vec3 = (0.0, 0.0, 0.0)
+
+    def begun(self, step: int) -> "Load":
+        """As it acts when it is queued whole at `step`: none of its steps lies in the past."""
+        late = step - self.start
+        if late <= 0:
+            return self
+        return replace(self, start=step,
+                       stop=FOREVER if self.stop == FOREVER else self.stop + late)
+
+
+class Command:
+    """Base of all commands; each says what its reply's `value` holds (None where silent)."""
+
+
+@dataclass(frozen=True)
+class LoadModel(Command):
+    """Put a model into the world.
+
+    Attributes:
+        model_id: new number.
+        model: flattened (no nested models).
+        pose: world pose of the model frame.
+        first_link_row, first_joint_row: rows of its links (in order) and of its movable joints'
+            axes (in order, `joint_rows` in `engine.rows` says how many).
+        meshes: what its collisions need, by `mesh_key`.
+        state: where its links and joints are, instead of the pose of the file.
+        articulated: build it as articulated bodies even where it has no joints: sliding joints to
+            other models need that.
+        inherit: number of a model in the world whose present states its links and joints of the
+            same names take on; a link's pose in the model may differ. 0 for none.
+    """
+
+    model_id: int
+    model: Model
+    pose: Pose
+    first_link_row: int
+    first_joint_row: int
+    meshes: Dict[str, MeshData] = field(default_factory=dict)
+    state: Optional[ModelState] = None
+    inherit: int = 0
+    articulated: bool = False
+
+
+@dataclass(frozen=True)
+class Connect(Command):
+    """Join links of two models, or a link and the world, until either model is removed.
+
+    Attributes:
+        joint: its type and the direction of its axis count; limits and the like do not act.
+        parent_row, child_row: link rows; -1 for the world.
+        parent_from_joint, child_from_joint: the joint frame in the frame of each link (world pose
+            for the world); at position 0 they are the same frame.
+    """
+
+    joint: Joint
+    parent_row: int
+    parent_from_joint: Pose
+    child_row: int
+    child_from_joint: Pose
+
+
+@dataclass(frozen=True)
+class RemoveModel(Command):
+    """Take a model out; bodies that rested on it wake up."""
+
+    model_id: int
+
+
+@dataclass(frozen=True)
+class SetModelState(Command):
+    """Move all links of a model rigidly so that its frame gets `pose`; joints keep their positions.
+
+    Every link gets the rigid body's velocity, v + w x r. With `frame`, pose and twist are given in
+    it (the frame's own velocity is not added). `twist` None keeps the velocities, turned along.
+    """
+
+    model_id: int
+    pose: Pose
+    twist: Optional[Twist] = None
+    frame: Optional[Frame] = None
+
+
+@dataclass(frozen=True)
+class SetLinkState(Command):
+    """Move one link and set its velocity.
+
+    A link of an articulated body takes the whole body along, joint positions kept: reduced
+    coordinates know no pose of a single link. A body joined to the world cannot be moved so.
+    """
+
+    row: int
+    pose: Pose
+    twist: Optional[Twist] = None
+    frame: Optional[Frame] = None
+
+
+@dataclass(frozen=True)
+class SetJoints(Command):
+    """Set positions (and rates) of joint axes by row; the subtree moves along."""
+
+    joints: Tuple[Tuple[int, float, float], ...]
+
+
+@dataclass(frozen=True)
+class SetAxes(Command):
+    """Give the joints of a model other axes: limits, friction, damping, spring, motor.
+
+    `joints` are the model's joints, in order, of unchanged names, types, ends, poses and axis
+    directions.
+    """
+
+    model_id: int
+    joints: Tuple[Joint, ...]
+
+
+@dataclass(frozen=True)
+class Hold(Command):
+    """Hold models where they are, at rest, whatever acts on them; `SetModelState` moves them.
+
+    Replaces those held so far; the others fall, wakened, from where they are.
+    """
+
+    model_ids: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class ReadContacts(Command):
+    """The contacts of the last step. Reply value: a tuple of at most `limit` `Contact`s."""
+
+    limit: int = 2000
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One point of contact of the links at two rows.
+
+    Attributes:
+        row_a, row_b: link rows.
+        position: m, world axes, on b.
+        normal: unit vector from b to a, world axes.
+        depth: m, how far they overlap; negative while apart.
+        force: N, along the normal, on a.
+    """
+
+    row_a: int
+    row_b: int
+    position: Vec3
+    normal: Vec3
+    depth: float
+    force: float
+
+
+@dataclass(frozen=True)
+class Clear(Command):
+    """Take everything out: models, loads, contacts. Settings and clock stay.
+
+    What is loaded afterwards behaves bit for bit as in a new engine.
+    """
+
+
+@dataclass(frozen=True)
+class Restart(Command):
+    """As `Clear`, and then these models in again as they are described, in this order, at rest.
+
+    Quicker than loading each: nothing has to be read or worked out again.
+
+    Attributes:
+        models: numbers and world poses of the model frames. What is not named stays out.
+    """
+
+    models: Tuple[Tuple[int, Pose], ...]
+
+
+@dataclass(frozen=True)
+class Batch(Command):
+    """Commands applied in the same gap between steps, in order.
+
+    The first one that is refused ends the batch: those before it stay done, and the reply carries
+    its error. Reply value: the list of their values.
+    """
+
+    commands: Tuple[Command, ...]
+
+
+@dataclass(frozen=True)
+class SetPhysics(Command):
+    """Replace the settings; a changed gravity wakes everything."""
+
+    settings: PhysicsSettings
+
+
+@dataclass(frozen=True)
+class SetClock(Command):
+    """Set the step count and the sim time (ns)."""
+
+    step: int
+    sim_ns: int
+
+
+@dataclass(frozen=True)
+class Pause(Command):
+    """Stop after the running step. Reply value: the step count."""
+
+
+@dataclass(frozen=True)
+class Run(Command):
+    """Step until the horizon (a step count; FOREVER for no end). Reply value: the step count."""
+
+    horizon: int = FOREVER
+
+
+@dataclass(frozen=True)
+class Advance(Command):
+    """Make exactly `steps` steps as fast as possible, also while paused; answered when done."""
+
+    steps: int
+
+
+@dataclass(frozen=True)
+class AddLoads(Command):
+    """Add timed wrenches and efforts; loads on one target add up.
+
+    With `whole`, a load whose start has passed begins with the next step and acts as many steps as
+    it would have.
+    """
+
+    loads: Tuple[Load, ...]
+    whole: bool = False
+
+
+@dataclass(frozen=True)
+class ClearLoads(Command):
+    """Remove loads by id; unknown ids are ignored, they have run out."""
+
+    load_ids: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Ping(Command):
+    """Nothing; the reply shows that everything before it is done."""
