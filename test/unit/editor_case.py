@@ -72,6 +72,19 @@ class Case:
         return asyncio.run(run())
 
 
+def cases(tmp_path):
+    """What makes cases, and ends them: make a fixture of it."""
+    made = []
+
+    def make(*models, **options):
+        made.append(Case(tmp_path, models, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
 class Refused(Exception):
     """A request was refused; `code` is that of the first issue."""
 

@@ -4,23 +4,12 @@ from __future__ import annotations
 import asyncio
 
 import pytest
-from editor_case import Case, Refused, arm, box, sun
+from editor_case import Refused, arm, box, cases, sun
 
 from my_simulations.description.compare import differences
 from my_simulations.geometry import STILL, Pose
 
-
-@pytest.fixture
-def case(tmp_path):
-    made = []
-
-    def make(*models, **options):
-        made.append(Case(tmp_path, models, **options))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
+case = pytest.fixture(cases)
 
 
 def state(sim):

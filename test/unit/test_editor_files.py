@@ -8,24 +8,13 @@ import subprocess
 import sys
 
 import pytest
-from editor_case import Browser, Case, Refused, box
+from editor_case import Browser, Refused, box, cases
 
 from my_simulations.editor.autosave import process_id
 from my_simulations.formats.load import read_world
 from my_simulations.resources.resolver import Resolver
 
-
-@pytest.fixture
-def case(tmp_path):
-    made = []
-
-    def make(*models, **options):
-        made.append(Case(tmp_path, models, **options))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
+case = pytest.fixture(cases)
 
 
 def test_save_asks_for_a_name_once_and_replaces_its_own_file_later(case):

@@ -6,7 +6,7 @@ import os
 
 import aiohttp
 import pytest
-from editor_case import Browser, Case, box
+from editor_case import Browser, box, cases
 
 from my_simulations.description.shapes import Mesh
 from my_simulations.editor.options import is_loopback
@@ -15,17 +15,7 @@ from my_simulations.resources.resolver import Resolver
 PNG = b"\x89PNG\r\n\x1a\n" + b"\0" * 32
 
 
-@pytest.fixture
-def case(tmp_path):
-    made = []
-
-    def make(*models, **options):
-        made.append(Case(tmp_path, models, **options))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
+case = pytest.fixture(cases)
 
 
 def request(url, method="GET", **more):

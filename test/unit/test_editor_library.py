@@ -1,6 +1,7 @@
 """The model library, what is watched, and state logs."""
 from __future__ import annotations
 
+import asyncio
 import http.server
 import io
 import tarfile
@@ -12,6 +13,7 @@ from editor_case import Case, Refused, arm, box
 
 from my_simulations.building.plan_json import plan_to_json
 from my_simulations.editor.state_log import MAGIC, LogReader, LogWriter
+from my_simulations.engine.ring import DEMAND_NS, POSE_DEMAND_NS
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist
 from my_simulations.resources.resolver import Resolver
@@ -207,6 +209,31 @@ def test_plots_joints_and_contacts_are_sent_while_they_are_watched(case):
                 await browser.ask("watch", topics=[topic])
 
     made.browse(watch)
+
+
+def test_the_engine_reads_whole_states_for_pages_only_while_something_is_watched(case):
+    made = case(box("a"), paused=False)
+    words = made.sim.ring.words
+
+    async def until(states, poses):
+        for _ in range(1000):
+            if (words[DEMAND_NS] > 0, words[POSE_DEMAND_NS] > 0) == (states, poses):
+                return
+            await asyncio.sleep(0.01)
+        raise AssertionError(f"states {words[DEMAND_NS]}, poses {words[POSE_DEMAND_NS]}")
+
+    async def look(browser):
+        await until(False, True)
+        await browser.ask("watch", topics=["plot:a.vx"])
+        await until(True, True)
+        await browser.ask("watch", topics=[])
+        await until(False, True)
+        await browser.ask("watch", topics=["plot:a.vx"])
+        await until(True, True)
+        await browser.socket.close()
+        await until(False, False)
+
+    made.browse(look)
 
 
 def test_time_is_plotted_and_recorded_also_while_nothing_moves(case):

@@ -5,23 +5,12 @@ import asyncio
 
 import aiohttp
 import pytest
-from editor_case import Browser, Case, Refused, arm, box, sun
+from editor_case import Browser, Case, Refused, arm, box, cases, sun
 
 from my_simulations.errors import CommandError, error
 from my_simulations.geometry import STILL, Pose, Twist
 
-
-@pytest.fixture
-def case(tmp_path):
-    made = []
-
-    def make(*models, **options):
-        made.append(Case(tmp_path, models, **options))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
+case = pytest.fixture(cases)
 
 
 def test_a_browser_gets_the_whole_world_with_present_poses(case):

@@ -24,9 +24,20 @@ from my_simulations.engine.commands import (
 )
 from my_simulations.engine.inline import InlineEngine
 from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.engine.ring import DEMAND_NS, LATEST_POSES, POSE_DEMAND_NS
 from my_simulations.geometry import Pose, Twist
 
 WAIT = 10.0
+
+
+class Slow(KinematicBackend):
+    """A world whose states take long to read, and its poses do not."""
+
+    def read(self):
+        until = time.perf_counter() + 0.004
+        while time.perf_counter() < until:
+            pass
+        return super().read()
 
 
 @pytest.fixture
@@ -166,3 +177,32 @@ def test_a_killed_engine_fails_what_it_has_not_answered(engine):
         ask(engine, Ping())
     engine.restart()
     assert ask(engine, Ping()).step == 0
+
+
+@pytest.fixture
+def slow():
+    made = InlineEngine(Slow)
+    ask(made, SetPhysics(PhysicsSettings(rate=0.0)))
+    load(made, twist=Twist((1.0, 0.0, 0.0)))
+    yield made
+    made.close()
+
+
+def test_states_nobody_waits_for_go_on_after_many_that_were_asked_for(slow):
+    words = slow.ring.words
+    words[DEMAND_NS] = 1
+    first = slow.ring.latest
+    ask(slow, Run())
+    until(lambda: slow.ring.latest > first + 100)   # 0.4 s that nobody has to make up for
+    words[DEMAND_NS] = 0
+    last = slow.ring.latest + 1
+    until(lambda: slow.ring.latest > last + 3)
+
+
+def test_poses_can_be_had_more_often_than_states(slow):
+    words = slow.ring.words
+    words[POSE_DEMAND_NS] = 1_000_000
+    first = slow.ring.latest
+    ask(slow, Run())
+    until(lambda: words[LATEST_POSES] > 50)
+    assert slow.ring.latest - first < 25

@@ -50,6 +50,7 @@ class Hub:
         self._nudged = asyncio.Event()
         self._sequence = -1
         self._listeners = 0
+        self._states_hz = 0.0
         self._stats_due = 0.0
         self._issues: Deque[Issue] = deque(maxlen=_KEPT_ISSUES)
         self._poses: Optional[Poses] = None
@@ -124,10 +125,16 @@ class Hub:
     def listen(self, more: int) -> None:
         """So many more (fewer) want poses."""
         self._listeners += more
-        rate = self.protocol.limits["frames_hz"] if self._listeners else 0.0
-        self.simulator.set_demand(rate, False, _DEMAND)
+        self.want()
         self._sequence = -1
         self._nudged.set()
+
+    def want(self, states_hz: Optional[float] = None) -> None:
+        """Ask the engine for poses while somebody listens, and for whole states so often."""
+        self._states_hz = self._states_hz if states_hz is None else states_hz
+        rate = self.protocol.limits["frames_hz"]
+        self.simulator.set_demand(_DEMAND, poses_hz=rate if self._listeners else 0.0,
+                                  states_hz=self._states_hz if self._listeners else 0.0)
 
     def now(self) -> Tuple[Optional[Poses], int]:
         """All poses of now, and the revision of the world that clients know.
@@ -175,7 +182,7 @@ class Hub:
     async def _tick(self) -> None:
         if self.simulator.revision != self._mirror.revision:
             await self._look()
-        sequence = self.simulator.ring.latest
+        sequence = self.simulator.ring.changes
         moved = sequence != self._sequence or self._behind()
         if moved:
             self._sequence = sequence

@@ -22,7 +22,7 @@ class PoseReader:
         """
         import numpy as np
 
-        layout, _, raw = self._simulator.raw_states()
+        layout, raw = self._simulator.raw_poses()
         if layout.revision != revision:
             return None
         step, clock = self._simulator.ring.clock()

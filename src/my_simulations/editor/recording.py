@@ -75,7 +75,7 @@ class Recorder:
         self._ended = threading.Event()
         self._hz = min(max(_USUAL_HZ, 1.0 / self._period if self._period else 0.0), _MOST_HZ)
         self._writer: Optional[LogWriter] = self._begun(path)
-        simulator.set_demand(self._hz, False, _DEMAND)
+        simulator.set_demand(_DEMAND, poses_hz=self._hz)
         self._thread = threading.Thread(target=self._run, name="state log", daemon=True)
         self._thread.start()
 
@@ -121,7 +121,7 @@ class Recorder:
         if self._simulator.revision != self._revision and not self._describe(writer):
             return
         turn = int(self._now() / self._period + 1e-6) if self._period else -1
-        sequence = self._simulator.ring.latest
+        sequence = self._simulator.ring.changes
         if sequence == self._sequence or (self._period and turn == self._turn):
             return
         poses = self._reader.read(self._revision, 0.0)
@@ -151,7 +151,7 @@ class Recorder:
 
     def _fail(self, writer: LogWriter, reason: str) -> None:
         self._writer = None
-        self._simulator.set_demand(0.0, False, _DEMAND)
+        self._simulator.set_demand(_DEMAND)
         with contextlib.suppress(CommandError):  # that is what is told
             writer.close()
         self._tell(error("log", f"the state log ends here, the world goes on: {reason}"))

@@ -103,6 +103,9 @@ class Backend(Protocol):
     def read(self) -> bool:
         """Bring the tables up to date; False when nothing can have changed since the last time."""
 
+    def read_poses(self) -> bool:
+        """Bring the poses in the link table up to date; the rest may stay as it was."""
+
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used link and joint rows as raw doubles, for the ring."""
 

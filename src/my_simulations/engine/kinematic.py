@@ -83,6 +83,10 @@ class KinematicBackend:
         dirty, self._dirty = self._dirty, False
         return dirty
 
+    def read_poses(self) -> bool:
+        """Whether something may have changed; the next `read` says it again."""
+        return self._dirty
+
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows."""
         links = bytearray(_LINK.size * (max(self.links, default=-1) + 1))

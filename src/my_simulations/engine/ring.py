@@ -6,6 +6,9 @@ body, so a reader that finds both equal to the one it asked for has a whole snap
 that dies in the middle leaves the previous slot untouched. The step count of the control page is
 newer than the latest slot while nothing has moved, or when the read-out is thinned.
 
+Who only wants to see where everything is, is served from a second, smaller ring: its slots hold
+link rows whose poses are new and whose twists may be older. To read twists costs as much again.
+
 The memory is sparse (memfd): capacity costs nothing until rows are used.
 """
 from __future__ import annotations
@@ -20,6 +23,7 @@ from ..geometry import Pose, Twist
 Buffer = Union[bytes, memoryview]
 
 SLOTS = 16
+POSE_SLOTS = 4
 LINKS = 16384
 JOINTS = 16384
 LINK_WIDTH = 13   # position 3, orientation 4 (x y z w), linear 3, angular 3: world, link origin
@@ -30,11 +34,11 @@ _PAGE = 4096
 _LINK_WORDS = LINKS * LINK_WIDTH
 _JOINT_WORDS = JOINTS * JOINT_WIDTH
 _SLOT_WORDS = -(-(HEAD_WORDS + _LINK_WORDS + _JOINT_WORDS) * 8 // _PAGE) * _PAGE // 8
-SIZE = _PAGE + SLOTS * _SLOT_WORDS * 8
+SIZE = _PAGE + (SLOTS + POSE_SLOTS) * _SLOT_WORDS * 8
 
 # Words of the control page. The first group is the engine's, the second the simulator's.
-STEP, LATEST, HEARTBEAT, STATUS = 0, 1, 2, 3
-DEMAND_NS, BELL = 8, 9
+STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER = range(6)
+DEMAND_NS, BELL, POSE_DEMAND_NS = 8, 9, 10
 
 # Words of a slot's head.
 SEQ_BEGIN, SEQ_END, SLOT_STEP, EPOCH_STEP, EPOCH_NS, STEP_PS, USED_LINKS, USED_JOINTS = range(8)
@@ -129,6 +133,11 @@ class Memory:
         """First word of the slot that holds snapshot `sequence`."""
         return _PAGE // 8 + (sequence % SLOTS) * _SLOT_WORDS
 
+    @staticmethod
+    def pose_slot(number: int) -> int:
+        """First word of the slot that holds poses number `number`."""
+        return _PAGE // 8 + (SLOTS + number % POSE_SLOTS) * _SLOT_WORDS
+
 
 class RingWriter:
     """The engine's side. `fd` None keeps the ring inside this process."""
@@ -146,10 +155,25 @@ class RingWriter:
 
         `links` and `joints` are the used rows as raw doubles.
         """
+        sequence = self.words[LATEST] + 1
+        self._fill(self.memory.slot(sequence), sequence, step, clock, links, joints)
+        self.words[LATEST] = sequence
+        self.words[POSES_ARE_NEWER] = 0
+        self.words[STEP] = step
+        return sequence
+
+    def write_poses(self, step: int, clock: Clock, links: Buffer) -> None:
+        """Write where the links are; their twists, and the joints, may be older."""
+        number = self.words[LATEST_POSES] + 1
+        self._fill(self.memory.pose_slot(number), number, step, clock, links, b"")
+        self.words[LATEST_POSES] = number
+        self.words[POSES_ARE_NEWER] = 1
+        self.words[STEP] = step
+
+    def _fill(self, slot: int, number: int, step: int, clock: Clock, links: Buffer,
+              joints: Buffer) -> None:
         words = self.words
-        sequence = words[LATEST] + 1
-        slot = self.memory.slot(sequence)
-        words[slot + SEQ_BEGIN] = sequence
+        words[slot + SEQ_BEGIN] = number
         words[slot + SLOT_STEP] = step
         words[slot + EPOCH_STEP] = clock.epoch_step
         words[slot + EPOCH_NS] = clock.epoch_ns
@@ -160,10 +184,7 @@ class RingWriter:
         self.memory.buffer[at:at + len(links)] = links
         at += _LINK_WORDS * 8
         self.memory.buffer[at:at + len(joints)] = joints
-        words[slot + SEQ_END] = sequence
-        words[LATEST] = sequence
-        words[STEP] = step
-        return sequence
+        words[slot + SEQ_END] = number
 
 
 class RingReader:
@@ -177,6 +198,11 @@ class RingReader:
     def latest(self) -> int:
         """Sequence of the newest whole snapshot; 0 before the first."""
         return self.words[LATEST]
+
+    @property
+    def changes(self) -> int:
+        """Grows whenever `raw_poses` may have others to give."""
+        return self.words[LATEST] + self.words[LATEST_POSES]
 
     @property
     def step(self) -> int:
@@ -213,11 +239,24 @@ class RingReader:
         while True:
             sequence = self.words[LATEST]
             slot = self.memory.slot(sequence)
-            at = (slot + HEAD_WORDS) * 8
-            size = self.words[slot + USED_LINKS] * LINK_WIDTH * 8
-            links = bytes(self.memory.buffer[at:at + size])
+            links = self._links_of(slot)
             if self._is_whole(slot, sequence):
                 return sequence, links
+
+    def raw_poses(self) -> bytes:
+        """The used link rows, poses of the newest kind; the twists in them may be older."""
+        while self.words[POSES_ARE_NEWER]:
+            number = self.words[LATEST_POSES]
+            slot = self.memory.pose_slot(number)
+            links = self._links_of(slot)
+            if self._is_whole(slot, number):
+                return links
+        return self.raw_links()[1]
+
+    def _links_of(self, slot: int) -> bytes:
+        at = (slot + HEAD_WORDS) * 8
+        size = self.words[slot + USED_LINKS] * LINK_WIDTH * 8
+        return bytes(self.memory.buffer[at:at + size])
 
     def earlier_links(self, sequence: int) -> "Optional[tuple[int, bytes]]":
         """Step and used link rows of an earlier snapshot; None once it is overwritten."""
@@ -225,9 +264,7 @@ class RingReader:
         if not self._is_whole(slot, sequence):
             return None
         step = self.words[slot + SLOT_STEP]
-        at = (slot + HEAD_WORDS) * 8
-        size = self.words[slot + USED_LINKS] * LINK_WIDTH * 8
-        links = bytes(self.memory.buffer[at:at + size])
+        links = self._links_of(slot)
         return (step, links) if self._is_whole(slot, sequence) else None
 
     def read(self, sequence: Optional[int] = None) -> Optional[Snapshot]:

@@ -28,6 +28,7 @@ from .ring import (
     DEMAND_NS,
     HEARTBEAT,
     LATEST,
+    POSE_DEMAND_NS,
     STATUS,
     STATUS_PAUSED,
     STATUS_RUNNING,
@@ -42,6 +43,7 @@ _IDLE_S = 0.5            # heartbeat while paused
 _MAKE_UP_S = 0.05        # of read-outs that somebody waits for, after a delay
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
+_MOST_OWED_S = 0.01      # or the last read-out, if that took longer: what it costs is made up for
 _HEAVY_S = 0.0003        # a late world with steps like this lets clients that ask in a row go first
 _PATIENCE_S = 0.0015     # how long it waits for the next of a row of commands
 _PATIENT_SHARE = 0.5     # of the wall time at most
@@ -83,6 +85,7 @@ class Runner:
         self._allowance = 0.0
         self._allowed_at = time.perf_counter()
         self._demanded_at = 0.0
+        self._posed_at = 0.0
         self._step_cost = 0.0
         self._patience = 0.0
         self._patient_at = time.perf_counter()
@@ -255,14 +258,21 @@ class Runner:
         now = time.perf_counter()
         self._allowance = min(self._allowance + (now - self._allowed_at) * share, 0.01)
         self._allowed_at = now
-        demand = self._words[DEMAND_NS]
-        demanded = demand > 0 and (now - self._demanded_at) * 1e9 >= demand - 2e5
+        demand, poses = self._words[DEMAND_NS], self._words[POSE_DEMAND_NS]
+        demanded = _is_due(self._demanded_at, demand, now)
         if demanded or self._allowance > 0.0:
             if demanded:
                 # From when it was due: steps that are made up after a delay are shown, too.
                 self._demanded_at = max(self._demanded_at + demand * 1e-9, now - _MAKE_UP_S)
+            self._posed_at = now
             self._write()
-            self._allowance -= time.perf_counter() - now
+            took = time.perf_counter() - now
+            self._allowance = max(self._allowance - took, -max(took, _MOST_OWED_S))
+            self._report_events()
+        elif _is_due(self._posed_at, poses, now):
+            self._posed_at = max(self._posed_at + poses * 1e-9, now - _MAKE_UP_S)
+            if self._backend.read_poses():
+                self._writer.write_poses(self._step, self._clock, self._backend.tables()[0])
             self._report_events()
         if self._words[BELL] and now - self._rung_at >= 0.0005:
             self._rung_at = now
@@ -295,3 +305,8 @@ class Runner:
     def _report_events(self) -> None:
         for event in self._backend.events():
             self._channel.event(event)
+
+
+def _is_due(last: float, every_ns: int, now: float) -> bool:
+    """Whether what is wanted `every_ns` (0: never) and was done at `last` s must be done."""
+    return every_ns > 0 and (now - last) * 1e9 >= every_ns - 2e5

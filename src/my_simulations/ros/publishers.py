@@ -182,7 +182,7 @@ class Publishers:
         demand = (hz, clock_wanted or states_wanted)
         if demand != self._demand:
             self._demand = demand
-            self._simulator.set_demand(*demand)
+            self._simulator.set_demand("topics", states_hz=hz, bell=demand[1])
 
     def _pace(self, began: float, made: int, step: int) -> None:
         """Wait for the next step; in a world of many steps a millisecond, look once in one."""

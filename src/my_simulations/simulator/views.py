@@ -5,7 +5,14 @@ import threading
 from typing import Dict, List, Optional, Tuple
 
 from ..description.model import Link, Model
-from ..engine.ring import BELL, DEMAND_NS, LINK_WIDTH, RingReader, Snapshot
+from ..engine.ring import (
+    BELL,
+    DEMAND_NS,
+    LINK_WIDTH,
+    POSE_DEMAND_NS,
+    RingReader,
+    Snapshot,
+)
 from ..errors import CommandError
 from ..geometry import IDENTITY, Pose, Twist, compose
 from .frames import relative
@@ -24,7 +31,7 @@ class WorldViews:
         self._registry = Registry()
         self._cached: Optional[States] = None
         self._layout: Optional[Layout] = None
-        self._demands: Dict[str, Tuple[float, bool]] = {}
+        self._demands: Dict[str, Tuple[float, float, bool]] = {}
 
     @property
     def engine_pid(self) -> int:
@@ -126,21 +133,31 @@ class WorldViews:
         The layout is the same object until a name changes; a row is `ring.LINK_WIDTH` doubles.
         """
         with self._lock:
-            if self._layout is None or self._layout.revision != self._registry.revision:
-                self._layout = lay_out(self._registry.entities(), self._registry.revision)
-            return (self._layout, *self.ring.raw_links())
+            return (self._laid_out(), *self.ring.raw_links())
 
-    def set_demand(self, hz: float, bell: bool, who: str = "topics") -> None:
-        """Say how often `who` wants states (0: not at all) and whether to ring at each step.
+    def raw_poses(self) -> Tuple[Layout, bytes]:
+        """Who is where, and rows as in `raw_states` of which only the poses are the newest."""
+        with self._lock:
+            return self._laid_out(), self.ring.raw_poses()
 
-        The most that anybody wants is what the engine is asked for.
+    def _laid_out(self) -> Layout:
+        if self._layout is None or self._layout.revision != self._registry.revision:
+            self._layout = lay_out(self._registry.entities(), self._registry.revision)
+        return self._layout
+
+    def set_demand(self, who: str, *, states_hz: float = 0.0, poses_hz: float = 0.0,
+                   bell: bool = False) -> None:
+        """Say how often `who` wants states, or poses only, and whether to ring at each step.
+
+        0 is not at all. The most that anybody wants is what the engine is asked for.
         """
         with self._lock:
-            self._demands[who] = (hz, bell)
-            most = max(hz for hz, _ in self._demands.values())
+            self._demands[who] = (states_hz, poses_hz, bell)
             words = self.ring.words
-            words[DEMAND_NS] = int(1e9 / most) if most > 0.0 else 0
-            words[BELL] = int(any(bell for _, bell in self._demands.values()))
+            for n, word in enumerate((DEMAND_NS, POSE_DEMAND_NS)):
+                most = max(demand[n] for demand in self._demands.values())
+                words[word] = int(1e9 / most) if most > 0.0 else 0
+            words[BELL] = int(any(bell for _, _, bell in self._demands.values()))
 
     def wait_step(self, after_step: int, timeout: float) -> bool:
         """Wait until the step count is not `after_step` any more, or something has changed."""

@@ -133,6 +133,10 @@ class BulletBackend:
         """Bring the tables up to date."""
         return self._readout.read()
 
+    def read_poses(self) -> bool:
+        """Bring the poses in the link table up to date."""
+        return self._readout.read_poses()
+
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows."""
         return self._readout.tables()

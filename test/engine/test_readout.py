@@ -1,0 +1,87 @@
+"""Where bodies are, read without how fast they go."""
+from __future__ import annotations
+
+import math
+
+import pybullet
+from conftest import Lab, arm, ball, box, ground, inertial_of_box
+
+from my_simulations.description.model import JointAxis, Link, Model
+from my_simulations.engine.commands import Restart
+from my_simulations.geometry import Pose
+
+
+def _rows(lab: Lab) -> bytes:
+    return b"".join(bytes(table) for table in lab.backend.tables())
+
+
+def _uneven() -> Model:
+    """A link whose centre of mass is elsewhere, and turned."""
+    return Model("uneven", links=[Link("link", inertial=inertial_of_box(
+        2, 1, 2, 3, Pose((0.4, 0.1, -0.2), (0.6, 0.0, 0.0, 0.8))))])
+
+
+def test_poses_read_alone_are_those_of_a_whole_read_out(lab):
+    uneven, hinged = lab.load(_uneven(), (0, 0, 9)), lab.load(
+        arm("revolute", JointAxis((0, 1, 0))), (5, 0, 9))
+    lab.push(uneven, (1, 2, 3), (4, 5, 6))
+    lab.steps(10)
+    twist = lab.twist(uneven)
+    lab.backend.step(10, 10)
+    assert lab.backend.read_poses()
+    poses = [lab.pose(uneven), lab.pose(hinged, "bob")]
+    assert lab.twist(uneven) == twist   # as it was
+    assert lab.backend.read()
+    assert [lab.pose(uneven), lab.pose(hinged, "bob")] == poses
+    assert lab.twist(uneven) != twist
+
+
+def test_a_body_at_rest_that_was_hit_is_seen_by_who_only_looks(lab):
+    lab.load(ground())
+    sleeper, hitter = lab.load(box("sleeper"), (0, 0, 0.5)), lab.load(ball("hitter"), (-4, 0, 0.5))
+    lab.seconds(4.0)
+    before = lab.pose(sleeper).position[0]
+    lab.push(hitter, (6, 0, 0))
+    for n in range(100):
+        lab.backend.step(5000 + 10 * n, 10)
+        lab.backend.read_poses()
+    assert lab.pose(sleeper).position[0] > before + 0.1
+
+
+def test_reading_poses_changes_nothing_for_the_next_whole_read_out(lab):
+    def run(looking: bool) -> bytes:
+        found = b""
+        for n in range(40):
+            lab.backend.step(20 * n, 20)
+            if looking:
+                lab.backend.read_poses()
+            lab.backend.read()
+            found += _rows(lab)
+        return found
+
+    numbers = [lab.load(ground()), lab.load(box("a"), (0, 0, 0.6)), lab.load(_uneven(), (4, 0, 3)),
+               lab.load(ball(), (0.1, 0, 3))]
+    starts = tuple((number, Pose((0, 0, 0.6 * n))) for n, number in enumerate(numbers))
+    lab.apply(Restart(starts))
+    expected = run(False)
+    lab.apply(Restart(starts))
+    assert run(True) == expected
+
+
+def test_poses_are_read_only_when_something_may_have_moved(lab):
+    lab.load(box(), (0, 0, 5))
+    lab.backend.step(0, 1)
+    assert lab.backend.read_poses() and lab.backend.read()
+    assert not lab.backend.read_poses()
+
+
+def test_a_pose_that_is_no_number_is_put_back_also_when_only_poses_are_read(lab):
+    number = lab.load(box(), (0, 0, 5))
+    lab.steps(1)
+    pybullet.resetBasePositionAndOrientation(pybullet.getBodyUniqueId(0), (math.nan, 0, 5),
+                                             (0, 0, 0, 1))
+    lab.backend.step(1, 1)
+    lab.backend.read_poses()
+    assert lab.pose(number).position == pybullet.getBasePositionAndOrientation(0)[0]
+    assert lab.pose(number).position[2] > 4.9
+    assert [event.kind for event in lab.backend.events()] == ["diverged"]
