@@ -362,6 +362,21 @@ def test_the_joints_panel_turns_a_hinge(editor):
     now = panel.get_by_label("hinge now")
     wait_for(lambda: now.text_content() and abs(float(now.text_content().split()[0])) > 0.05,
              "the hinge's turn")
+    position = panel.get_by_role("textbox", name="hinge position")
+    panel.get_by_role("tab", name="Position").click()
+    for gain, value in (("P gain", "400"), ("D gain", "40")):
+        panel.get_by_role("textbox", name=f"hinge {gain}").fill(value)
+        panel.get_by_role("textbox", name=f"hinge {gain}").press("Enter")
+    position.fill("0.5")
+    position.press("Enter")
+    wait_for(lambda: abs(float(now.text_content().split()[0]) - 0.5) < 0.02, "the hinge at 0.5")
+    # What the panel shows is what the simulator says drives the joint.
+    editor.get("editor.request('undo', {})")
+    wait_for(lambda: position.input_value() == "0", "the loop undone")
+    panel.get_by_role("tab", name="Velocity").click()
+    wait_for(lambda: speed.input_value() == "1", "the speed of before")
+    panel.get_by_role("button", name="Reset").click()
+    wait_for(lambda: speed.input_value() == "0", "nothing asked of the hinge")
     editor.button("Pause").click()
     editor.button("Joints panel").click()
     wait_for(lambda: panel.is_hidden(), "the closed panel")

@@ -15,7 +15,7 @@ from conftest import arm, ball, box, ground
 from my_simulations.description.model import Inertial, JointAxis, Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import InitialState, Physics, World
-from my_simulations.engine.commands import FOREVER, Load
+from my_simulations.engine.commands import FOREVER, Load, Servo
 from my_simulations.engine.process import ProcessEngine
 from my_simulations.errors import CommandError, EngineLost
 from my_simulations.geometry import STILL, Pose, Twist
@@ -197,6 +197,22 @@ def test_a_world_starts_at_its_saved_time_with_its_velocities_and_joint_position
             world.initial_ns = 0
     finally:
         sim.close()
+
+
+def test_a_driven_joint_is_driven_on_after_an_edit_and_a_crash(start):
+    sim = start()
+    sim.spawn(arm("revolute", JointAxis((0, 0, 1))), Pose((0, 0, 2)))
+    sim.drive("arm::hinge", Servo(1.0, p=50.0, i=0.0, d=10.0))
+    for happens in (lambda: None, lambda: kill(sim), lambda: sim.set_link_inertial(
+            "arm::bob", Inertial(1.5, Pose((1, 0, 0)), 0.1, 0, 0, 0.1, 0, 0.1))):
+        happens()
+        sim.set_joints({"arm::hinge": 0.0})
+        sim.advance(3000)
+        assert sim.joint_state("arm::hinge")[0] == pytest.approx(1.0, abs=1e-3)
+    sim.reset_simulation()
+    sim.advance(100)
+    assert sim.joint_state("arm::hinge") == (0.0, 0.0)
+    assert sim.drives("arm::hinge") == ()
 
 
 def test_a_moving_concave_mesh_is_divided_before_it_is_spawned(start, tmp_path, monkeypatch):

@@ -7,6 +7,7 @@ import pytest
 from editor_case import Refused, arm, box, cases, sun
 
 from my_simulations.description.compare import differences
+from my_simulations.engine.commands import Servo
 from my_simulations.geometry import STILL, Pose
 
 case = pytest.fixture(cases)
@@ -68,8 +69,10 @@ EDITS = {
     "set the camera": {"kind": "set", "target": "", "path": "gui_camera.pose", "value": POSE},
     "set the wind": {"kind": "set", "target": "", "path": "wind.linear_velocity",
                      "value": [1, 0, 0]},
-    "put a joint": {"kind": "joint", "joint": "arm::hinge", "mode": "position", "value": 0.3},
-    "turn a joint": {"kind": "joint", "joint": "arm::hinge", "mode": "velocity", "value": 1.0},
+    "drive a joint": {"kind": "joint", "joint": "arm::hinge", "mode": "force", "value": 2.0},
+    "drive a joint to": {"kind": "joint", "joint": "arm::hinge", "mode": "position", "value": 0.3},
+    "turn a joint": {"kind": "joint", "joint": "arm::hinge", "mode": "velocity", "value": 1.0,
+                     "gains": {"p": 9}},
     "reset poses": {"kind": "reset", "what": "poses"},
     "reset the world": {"kind": "reset", "what": "world"},
     "several as one": {"kind": "group", "label": "Two things", "ops": [
@@ -140,6 +143,28 @@ REFUSED = {
         {"kind": "insert", "shape": "box"}, {"kind": "delete", "names": ["a"]},
         {"kind": "delete", "names": ["nix"]}]},
 }
+
+
+def test_one_thing_at_a_time_drives_a_joint_and_undo_gives_the_one_before(case):
+    made = case(arm("arm"))
+    asked = [("force", 2.0, {}), ("position", 0.3, {"gains": {"p": 50, "i": 0, "d": 4}}),
+             ("velocity", -1.0, {}), ("force", 0.0, {})]
+    wanted = [(2.0,), (Servo(0.3, False, 50.0, 0.0, 4.0),), (Servo(-1.0, True),), ()]
+
+    async def drive(browser):
+        for (mode, value, more), expected in zip(asked, wanted):
+            await browser.edit("joint", joint="arm::hinge", mode=mode, value=value, **more)
+            assert made.sim.drives("arm::hinge") == expected
+        for expected in reversed([(), *wanted[:-1]]):
+            await browser.ask("undo")
+            assert made.sim.drives("arm::hinge") == expected
+        for gains in ({"p": -1}, {"d": 1e99}, {"q": 1}):
+            with pytest.raises(Refused):
+                await browser.edit("joint", joint="arm::hinge", mode="position", value=1,
+                                   gains=gains)
+        assert made.sim.drives("arm::hinge") == ()
+
+    made.browse(drive)
 
 
 @pytest.mark.parametrize("op", REFUSED.values(), ids=REFUSED)

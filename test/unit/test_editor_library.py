@@ -196,6 +196,15 @@ def test_plots_joints_and_contacts_are_sent_while_they_are_watched(case):
         assert last(browser, "joints:arm")["joints"] == [
             {"name": "hinge", "axis": 0, "position": 0.0, "rate": 0.0}]
         assert last(browser, "plot:nix.x")["problem"] and last(browser, "joints:nix")["problem"]
+        await browser.edit("joint", joint="arm::hinge", mode="position", value=0.5)
+        await browser.until(lambda: last(browser, "joints:arm")["joints"][0].get("drive") == {
+            "mode": "position", "value": 0.5, "gains": {"p": 1.0, "i": 0.1, "d": 0.01}})
+        await browser.edit("joint", joint="arm::hinge", mode="force", value=3)
+        await browser.until(lambda: last(browser, "joints:arm")["joints"][0].get("drive") == {
+            "mode": "force", "value": 3.0})
+        await browser.ask("undo")
+        await browser.ask("undo")
+        await browser.until(lambda: "drive" not in last(browser, "joints:arm")["joints"][0])
         first = last(browser, "plot:a.x")
         await browser.until(lambda: last(browser, "plot:a.x")["value"] > first["value"])
         assert last(browser, "plot:a.x")["time"] > first["time"]

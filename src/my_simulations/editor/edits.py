@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 from ..description.model import Model
 from ..description.unflatten import unflattened
 from ..description.world import Light
+from ..engine.commands import Servo
 from ..errors import CommandError, Issue
 from ..formats.sdf_write import write_world
 from ..geometry import Pose, compose, inverse, normalised, pose_is_finite
@@ -17,7 +18,6 @@ from ..simulator.operations import (
     AddLight,
     AddModel,
     Drive,
-    EditJoint,
     EditLight,
     EditModel,
     Group,
@@ -27,7 +27,6 @@ from ..simulator.operations import (
     RemoveLight,
     RemoveModel,
     Reset,
-    SetJoints,
     pose_of,
 )
 from ..simulator.simulator import Simulator
@@ -51,6 +50,7 @@ from .targets import property_change
 _MOST_IN_A_GROUP = 5000
 _MOST_STEPS = 1000000
 _DEEPEST_GROUP = 4
+_MOST_GAIN = 1e9
 
 Planned = Tuple[str, Operation, Dict[str, Any]]
 """Words, what to do, and the reply's value."""
@@ -259,18 +259,14 @@ class Edits:
         axis = joint.axis2 if number else joint.axis
         if axis is None:
             raise CommandError(f"joint {joint.name!r} cannot move")
+        if not math.isfinite(value):
+            raise CommandError(f"joint {joint.name!r} cannot be driven with {value!r}")
         mode = op["mode"]
         if mode == "force":
-            return f"Drive {scoped}", Drive(scoped, value), {}
-        if mode == "position":
-            return f"Put {scoped} at {value:g}", SetJoints({scoped: value}), {}
-        gains = op.get("gains") or {}
-        effort = gains.get("max_effort", axis.effort if axis.effort > 0 else 1000.0)
-        if not isinstance(effort, (int, float)) or not math.isfinite(effort) or effort < 0:
-            raise CommandError(f"max_effort must be a number of 0 or more, found {effort!r}")
-        axis = replace(axis, motor_rate=value, friction=float(effort))
-        changed = replace(joint, axis2=axis) if number else replace(joint, axis=axis)
-        return f"Turn {scoped} at {value:g}", EditJoint(owner, changed), {}
+            return f"Drive {scoped}", Drive(scoped, (value,) if value else ()), {}
+        servo = Servo(value, mode == "velocity", **_gains(op.get("gains") or {}))
+        verb = f"Drive {scoped} to" if mode == "position" else f"Turn {scoped} at"
+        return f"{verb} {value:g}", Drive(scoped, (servo,)), {}
 
     # -- several ---------------------------------------------------------------------------------
 
@@ -313,6 +309,16 @@ def _one(parts: List[Operation]) -> Operation:
 def _listed(names: List[str]) -> str:
     shown = ", ".join(names[:3])
     return shown if len(names) <= 3 else f"{shown} and {len(names) - 3} more"
+
+
+def _gains(given: Dict[str, Any]) -> Dict[str, float]:
+    """Those of a PID loop. Raises CommandError for what is no gain."""
+    given = {name: gain for name, gain in given.items() if gain is not None}
+    for name, gain in given.items():
+        if not 0.0 <= gain <= _MOST_GAIN:
+            raise CommandError(f"the gain {name.upper()} must be 0 to {_MOST_GAIN:g}, "
+                               f"found {gain!r}")
+    return {name: float(gain) for name, gain in given.items()}
 
 
 def _vector(values: Any) -> Tuple[float, float, float]:

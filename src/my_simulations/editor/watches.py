@@ -1,11 +1,13 @@
 """What a page watches besides poses: contacts, joints, and values for plots."""
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, List, Tuple
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
+from ..engine.commands import Servo
 from ..engine.ring import Snapshot
 from ..errors import CommandError
 from ..geometry import Pose, Twist, rpy_from_quat
+from ..simulator.loads import Effort
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
 from .clock import RealTime
@@ -65,8 +67,16 @@ class Watches:
         if kind == "contacts":
             return {"contacts": self._contacts()}
         if kind == "joints":
-            return {"joints": list(_joints(_owner(names, rest), snapshot))}
+            return {"joints": self._driven_joints(_owner(names, rest), snapshot)}
         return {"value": self._value(rest, names, snapshot)}
+
+    def _driven_joints(self, entity: Entity, snapshot: Snapshot) -> List[Dict[str, Any]]:
+        found = list(_joints(entity, snapshot))
+        for state, row in zip(found, entity.joint_names):
+            drive = _drive(self._world.drives(f"{entity.model.name}::{row}"))
+            if drive is not None:
+                state["drive"] = drive
+        return found
 
     def _contacts(self) -> List[Dict[str, Any]]:
         return [{"a": a, "b": b, "position": list(one.position), "normal": list(one.normal),
@@ -120,6 +130,17 @@ def _joint_value(names: Dict[str, Entity], name: str, axis: int, which: int,
         if state["name"] == joint and state["axis"] == axis:
             return float(state["rate" if which else "position"])
     raise Gone(f"there is no axis {axis} of a joint {name!r}")
+
+
+def _drive(efforts: Sequence[Effort]) -> Optional[Dict[str, Any]]:
+    """What an axis was asked for last, as a page asks for it."""
+    if not efforts:
+        return None
+    last = efforts[-1]
+    if not isinstance(last, Servo):
+        return {"mode": "force", "value": last}
+    return {"mode": "velocity" if last.rate else "position", "value": last.target,
+            "gains": {"p": last.p, "i": last.i, "d": last.d}}
 
 
 def _joints(entity: Entity, snapshot: Snapshot) -> Iterable[Dict[str, Any]]:

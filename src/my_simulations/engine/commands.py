@@ -52,6 +52,23 @@ class PhysicsSettings:
 
 
 @dataclass(frozen=True)
+class Servo:
+    """A PID loop that drives a joint axis anew in every step (see `engine.bullet.servos`).
+
+    Attributes:
+        target: rad or m, or with `rate` per second.
+        rate: it follows a velocity, else a position.
+        p, i, d: gains: effort by error, by its integral over time, and by its rate.
+    """
+
+    target: float
+    rate: bool = False
+    p: float = 1.0
+    i: float = 0.1
+    d: float = 0.01
+
+
+@dataclass(frozen=True)
 class Load:
     """A wrench on a link or an effort on a joint axis, exact to the step.
 
@@ -62,6 +79,7 @@ class Load:
         row: link row, or joint row when `effort` is not None.
         force, torque: world axes, N and N m, at the centre of mass (link loads).
         effort: N m or N (joint loads).
+        servo: what the effort follows instead (joint loads, whose `effort` is 0 then).
         start, stop: step counts; `stop` FOREVER for until cleared.
         in_link_axes: force and torque turn with the link (link loads).
         point: where the force attacks, from the centre of mass, same axes as the force.
@@ -74,6 +92,7 @@ class Load:
     force: Vec3 = (0.0, 0.0, 0.0)
     torque: Vec3 = (0.0, 0.0, 0.0)
     effort: Optional[float] = None
+    servo: Optional[Servo] = None
     in_link_axes: bool = False
     point: Vec3 = (0.0, 0.0, 0.0)
 

@@ -2,15 +2,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import List
+from typing import List, Tuple, Union
 
-from ..engine.commands import FOREVER, AddLoads, ClearLoads, Load
+from ..engine.commands import FOREVER, AddLoads, ClearLoads, Load, Servo
 from ..engine.ring import Clock
 from ..errors import CommandError
 from ..geometry import ZERO3, Vec3, compose, inverse, rotate, subtract, transform
 from .surroundings import Surroundings
 
 NANOSECOND_PS = 1000
+
+Effort = Union[float, Servo]
+"""N m or N, or what finds it in every step."""
 
 
 class TimedLoads(Surroundings):
@@ -76,9 +79,9 @@ class TimedLoads(Surroundings):
                 self.add_loads([Load(0, row, start, stop, force, torque,
                                      in_link_axes=anchor is not None, point=point)], whole=True)
 
-    def drive(self, joint: str, effort: float, *, start_ns: int = 0,
+    def drive(self, joint: str, effort: Effort, *, start_ns: int = 0,
               duration_ns: int = -1) -> None:
-        """Let an effort (N m or N) act on a joint's axis for a time; see `push` for the times.
+        """Let an effort act on a joint's axis for a time; see `push` for the times.
 
         Raises:
             UnknownEntity: no such joint.
@@ -88,7 +91,17 @@ class TimedLoads(Surroundings):
             row = self._axis_row(joint)
             if duration_ns:
                 start, stop = self._span(start_ns, duration_ns)
-                self.add_loads([Load(0, row, start, stop, effort=effort)], whole=True)
+                servo = effort if isinstance(effort, Servo) else None
+                self.add_loads([Load(0, row, start, stop, servo=servo,
+                                     effort=0.0 if isinstance(effort, Servo) else effort)],
+                               whole=True)
+
+    def drives(self, joint: str) -> Tuple[Effort, ...]:
+        """What drives a joint's axis until it is cleared. Raises CommandError as `drive` does."""
+        row = self._axis_row(joint)
+        return tuple(load.effort if load.servo is None else load.servo
+                     for load in self._loads.values()
+                     if load.row == row and load.effort is not None and load.stop == FOREVER)
 
     def clear_pushes(self, link: str) -> None:
         """End every wrench on a link. Raises UnknownEntity."""

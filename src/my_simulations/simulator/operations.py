@@ -14,6 +14,7 @@ from ..description.world import Light, Physics
 from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
+from .loads import Effort
 from .moments import Moment
 from .simulator import Simulator
 
@@ -312,29 +313,16 @@ class _PutModelBack:
 
 
 @dataclass(frozen=True)
-class SetJoints:
-    """Joint axes (scoped names) go to positions, rad or m."""
-
-    positions: Dict[str, float]
-
-    def apply(self, world: Simulator) -> Operation:
-        """Set them, at rest."""
-        back = {name: world.joint_state(name)[0] for name in self.positions}
-        world.set_joints(self.positions)
-        return SetJoints(back)
-
-
-@dataclass(frozen=True)
 class Drive:
-    """An effort (N m or N) on a joint axis, until another comes; 0 lets go."""
+    """What drives a joint axis until something else does; nothing lets go of it."""
 
     joint: str
-    effort: float
-    before: float = 0.0
+    efforts: Tuple[Effort, ...] = ()
 
     def apply(self, world: Simulator) -> Operation:
-        """Replace the effort."""
+        """Replace what drives it."""
+        before = world.drives(self.joint)
         world.clear_drives(self.joint)
-        if self.effort:
-            world.drive(self.joint, self.effort)
-        return Drive(self.joint, self.before, self.effort)
+        for effort in self.efforts:
+            world.drive(self.joint, effort)
+        return Drive(self.joint, before)

@@ -13,7 +13,8 @@ const MODES = [
   ['position', 'Position'],
   ['velocity', 'Velocity'],
 ];
-const GAINS = {position: {p: 1, i: 0.1, d: 0.01}, velocity: {p: 1, i: 0.1, d: 0.01}};
+/** As gzclient's. */
+const GAINS = {p: 1, i: 0.1, d: 0.01};
 
 /** Joints that can be driven, with their units in each mode. Pure. */
 export function drivenJoints(model) {
@@ -68,9 +69,7 @@ export class JointsPanel {
   #model = null;
   #off = null;
   #signature = '';
-  #present = new Map();
-  /** What was last asked for, by joint and mode. */
-  #wanted = new Map();
+  #rows = new Map();
   #degrees = false;
 
   /** Opens or closes the panel: a closed one asks for nothing. */
@@ -99,7 +98,7 @@ export class JointsPanel {
   }
 
   #build() {
-    this.#present.clear();
+    this.#rows.clear();
     for (const tab of this.#tabs) {
       tab.setAttribute('aria-selected', String(tab.dataset.mode === this.#mode));
     }
@@ -154,47 +153,50 @@ export class JointsPanel {
     const degrees = this.#degrees && units.position === 'rad' && mode !== 'force';
     const factor = degrees ? Math.PI / 180 : 1;
     const unit = degrees ? units[mode].replace('rad', '°') : units[mode];
-    const key = `${scoped} ${mode}`;
-    const gains = {...GAINS[mode]};
     const note = h('span', {class: 'field-note', role: 'alert'});
-    const send = async (value) => {
-      note.textContent = '';
-      const op = {kind: 'joint', joint: scoped, mode, value: value * factor};
-      if (mode !== 'force') op.gains = gains;
-      const outcome = await this.page.actions.ask('edit', {op}, {quiet: true});
-      if (outcome.ok) this.#wanted.set(key, value * factor);
-      else note.textContent = outcome.issues[0].message;
-      input.show((this.#wanted.get(key) ?? 0) / factor);
-    };
-    const input = makeInput({type: 'number', label: `${joint.name} ${mode}`}, send, (text) => {
+    const say = (text) => {
       note.textContent = text;
+    };
+    const gains = mode === 'force' ? null : {...GAINS};
+    const send = async (value) => {
+      say('');
+      const op = {kind: 'joint', joint: scoped, mode, value};
+      if (gains) op.gains = gains;
+      const outcome = await this.page.actions.ask('edit', {op}, {quiet: true});
+      if (!outcome.ok) say(outcome.issues[0].message);
+      row.show(row.drive);
+    };
+    const label = (name) => ({type: 'number', label: `${joint.name} ${name}`});
+    const input = makeInput(label(mode), (value) => send(value * factor), say);
+    const gainInputs = Object.keys(gains ?? {}).map((name) => {
+      const gain = makeInput(
+        label(`${name.toUpperCase()} gain`),
+        (value) => {
+          gains[name] = value;
+          gain.show(value);
+          if (row.drive?.mode === mode) send(row.drive.value);
+        },
+        say,
+      );
+      return [name, gain];
     });
-    input.show((this.#wanted.get(key) ?? 0) / factor);
     const present = h('output', {class: 'soft', 'aria-label': `${joint.name} now`});
-    this.#present.set(joint.name, {present, units, factor, unit: degrees ? '°' : units.position});
-    const gainInputs =
-      mode === 'force'
-        ? []
-        : ['p', 'i', 'd'].map((name) => {
-            const gain = makeInput(
-              {type: 'number', label: `${joint.name} ${name.toUpperCase()} gain`},
-              (value) => {
-                gains[name] = value;
-                gain.show(value);
-                if (this.#wanted.has(key)) send(this.#wanted.get(key) / factor);
-              },
-              (text) => {
-                note.textContent = text;
-              },
-            );
-            gain.show(gains[name]);
-            return h(
-              'span',
-              {class: 'part'},
-              h('i', {text: name.toUpperCase(), 'aria-hidden': 'true'}),
-              gain.element,
-            );
-          });
+    const row = {
+      present,
+      factor,
+      unit: degrees ? '°' : units.position,
+      drive: undefined,
+      /** Shows what the simulator says it drives the joint with. */
+      show(drive) {
+        this.drive = drive;
+        const mine = drive?.mode === mode ? drive : null;
+        Object.assign(gains ?? {}, mine?.gains);
+        input.show((mine?.value ?? 0) / factor);
+        for (const [name, gain] of gainInputs) gain.show(gains[name]);
+      },
+    };
+    row.show();
+    this.#rows.set(joint.name, row);
     return h(
       'div',
       {class: 'joint-row'},
@@ -205,19 +207,19 @@ export class JointsPanel {
         present,
       ),
       h('div', {class: 'row'}, input.element, h('span', {class: 'unit', text: unit})),
-      gainInputs.length && h('div', {class: 'vector-input'}, ...gainInputs),
+      gainInputs.length && h('div', {class: 'vector-input'}, ...gainInputs.map(gainPart)),
       note,
     );
   }
 
   #showStates({topic, joints}) {
     if (!this.#model || topic !== `joints:${this.#model.name}`) return;
-    for (const {name, axis, position, rate} of joints ?? []) {
-      const row =
-        axis === 0 && (this.#present.get(name) ?? this.#present.get(name.split('::').pop()));
+    for (const {name, axis, position, rate, drive} of joints ?? []) {
+      const row = axis === 0 && (this.#rows.get(name) ?? this.#rows.get(name.split('::').pop()));
       if (!row) continue;
       const at = (value) => numberText(Math.round((value / row.factor) * 1e4) / 1e4);
       row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;
+      if (JSON.stringify(drive) !== JSON.stringify(row.drive)) row.show(drive);
     }
   }
 
@@ -225,9 +227,15 @@ export class JointsPanel {
   async #reset(joints) {
     for (const {joint} of joints) {
       const scoped = `${this.#model.name}::${joint.name}`;
-      for (const [mode] of MODES) this.#wanted.delete(`${scoped} ${mode}`);
       await this.page.actions.edit({kind: 'joint', joint: scoped, mode: 'force', value: 0});
     }
-    this.#build();
   }
 }
+
+const gainPart = ([name, gain]) =>
+  h(
+    'span',
+    {class: 'part'},
+    h('i', {text: name.toUpperCase(), 'aria-hidden': 'true'}),
+    gain.element,
+  );

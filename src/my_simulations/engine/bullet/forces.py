@@ -13,6 +13,7 @@ from ..commands import Load
 from ..plan import BASE
 from .bodies import Axis, Body, Part
 from .implicit import ImplicitAxes
+from .servos import MOST_EFFORT, Loop
 
 _NOTHING = (0.0, 0.0, 0.0)
 
@@ -24,6 +25,7 @@ class Forces:
         self._wake = wake
         self._loads: Dict[int, Load] = {}
         self._acting: Dict[int, Load] = {}
+        self._loops: Dict[int, Loop] = {}
         self._parts: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
@@ -87,11 +89,12 @@ class Forces:
         for load_id in load_ids:
             self._loads.pop(load_id, None)
             self._acting.pop(load_id, None)
+            self._loops.pop(load_id, None)
 
     def clear_all(self) -> None:
         """Drop every load."""
-        self._loads.clear()
-        self._acting.clear()
+        for table in (self._loads, self._acting, self._loops):
+            table.clear()
 
     @property
     def idle(self) -> bool:
@@ -112,7 +115,7 @@ class Forces:
                 if load.effort is None:
                     self._push(load, dt)
                 else:
-                    efforts[load.row] = efforts.get(load.row, 0.0) + self._allowed(load)
+                    efforts[load.row] = efforts.get(load.row, 0.0) + self._allowed(load, dt)
         for implicit in self._implicit.values():
             implicit.add_to(efforts)
         for row, effort in efforts.items():
@@ -129,20 +132,25 @@ class Forces:
         """A step was made without `apply`."""
         self._placed.clear()
 
-    def _allowed(self, load: Load) -> float:
+    def _allowed(self, load: Load, dt: float) -> float:
         """An effort within the limits of its axis, each load by itself as in Gazebo.
 
         Nothing in the direction in which the axis moves faster than its velocity limit.
         """
         effort = load.effort or 0.0
         effort_limit, rate_limit = self._limits.get(load.row, (-1.0, -1.0))
+        rate = 0.0
+        if load.servo is not None or rate_limit >= 0.0:
+            body, axis = self._axes[load.row]
+            position, rate = pybullet.getJointState(body.uid, axis.index)[:2]
+        if load.servo is not None:
+            loop = self._loops.setdefault(load.load_id, Loop(load.servo))
+            most = effort_limit if effort_limit >= 0.0 else MOST_EFFORT
+            effort = loop.effort(position, rate, dt, most)
         if effort_limit >= 0.0:
             effort = max(-effort_limit, min(effort_limit, effort))
-        if rate_limit >= 0.0:
-            body, axis = self._axes[load.row]
-            rate = pybullet.getJointState(body.uid, axis.index)[1]
-            if abs(rate) > rate_limit and rate * effort > 0.0:
-                return 0.0
+        if rate_limit >= 0.0 and abs(rate) > rate_limit and rate * effort > 0.0:
+            return 0.0
         return effort
 
     def _turn_over(self, step: int) -> None:
