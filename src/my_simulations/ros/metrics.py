@@ -1,7 +1,6 @@
 """`performance_metrics`: how fast the world runs, five times a second while somebody listens."""
 from __future__ import annotations
 
-import threading
 import time
 from typing import Any
 
@@ -12,38 +11,26 @@ from .convert import seconds_and_nanoseconds
 from .interface import PUBLISHES, row_of
 from .listeners import Arrivals
 from .registration import class_of, publisher
+from .sleeper import Sleeper
 
 TOPIC = "performance_metrics"
 PERIOD_SECONDS = 0.2
 """Gazebo behaviour: 5 Hz at most."""
 
 
-class Metrics:
-    """A thread that sleeps until there is a subscriber."""
+class Metrics(Sleeper):
+    """Sleeps until there is a subscriber."""
 
     def __init__(self, simulator: Simulator) -> None:
+        super().__init__("metrics")
         self._simulator = simulator
         self._message: Any = class_of(row_of(TOPIC, PUBLISHES))()
-        self._wake, self._stop = threading.Event(), threading.Event()
         self._publisher = publisher(TOPIC, queue_size=10,
                                     subscriber_listener=Arrivals(self._wake.set))
-        self._thread = threading.Thread(target=self._run, name="metrics", daemon=True)
-
-    def start(self) -> None:
-        """Begin to publish."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """End, and wait for the end."""
-        self._stop.set()
-        self._wake.set()
-        if self._thread.is_alive():
-            self._thread.join(2.0)
 
     def _run(self) -> None:
         while not self._stop.is_set():
-            self._wake.wait()
-            self._wake.clear()
+            self._sleep()
             self._measure()
 
     def _measure(self) -> None:

@@ -19,6 +19,7 @@ from .buffers import StatesBuffer, packed_time
 from .listeners import Arrivals
 from .pacing import StateGate, StepSelector, TokenBucket
 from .registration import publisher
+from .sleeper import Sleeper
 
 LOOK_SECONDS = 0.001
 """Between two looks at a world that makes many steps in that time."""
@@ -104,7 +105,7 @@ class Channel:
         self._gate.sent((layout.revision, sequence))
 
 
-class Publishers:
+class Publishers(Sleeper):
     """The thread behind the three topics."""
 
     def __init__(self, simulator: Simulator, clock: rospy.Publisher, *, clock_hz: float = 0.0,
@@ -118,11 +119,10 @@ class Publishers:
             states_hz: likewise for the state topics.
             states: False leaves the state topics out.
         """
+        super().__init__("publishers")
         self._simulator = simulator
         self._clock_period_ns = round(1e9 / clock_hz) if clock_hz > 0.0 else 0
         self._states_hz = states_hz
-        self._wake = threading.Event()
-        self._stop = threading.Event()
         self._demand = (-1.0, False)
         self._spare = TokenBucket(STATES_PER_SECOND, STATES_QUEUE, time.monotonic())
         self._sent = (-1, 0, 0)  # revision, sequence and step of the newest states that went out
@@ -139,18 +139,6 @@ class Publishers:
                         lambda layout: (layout.link_names, layout.link_places), states_hz,
                         self._wake),
             ]
-        self._thread = threading.Thread(target=self._run, name="publishers", daemon=True)
-
-    def start(self) -> None:
-        """Begin to publish."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """End, and wait for the end."""
-        self._stop.set()
-        self._wake.set()
-        if self._thread.is_alive():
-            self._thread.join(2.0)
 
     def _run(self) -> None:
         step, clock = self._simulator.ring.clock()
@@ -160,8 +148,7 @@ class Publishers:
             states_wanted = any(channel.wanted for channel in self._channels)
             self._set_demand(clock_wanted, states_wanted)
             if not (clock_wanted or states_wanted):
-                self._wake.wait()
-                self._wake.clear()
+                self._sleep()
                 step, clock = self._simulator.ring.clock()
                 selector = StepSelector(step, clock.sim_ns(step), time.monotonic(),
                                         self._clock_period_ns)
