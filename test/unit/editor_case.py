@@ -187,6 +187,9 @@ class Browser:
                 for name, value in message.get(kind, {}).items():
                     kept = [one for one in self.document[kind] if one["name"] != name]
                     self.document[kind] = kept + ([value] if value else [])
+            places = {name: n for n, name in enumerate(message.get("order", ()))}
+            for kind in ("models", "lights") if places else ():
+                self.document[kind].sort(key=lambda one: places.get(one["name"], len(places)))
 
 
 def sun():

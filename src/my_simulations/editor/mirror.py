@@ -51,7 +51,7 @@ class Mirror:
         if self.revision < 0 or rest != self._rest:
             document = self._document(entities, snapshot)
             news = News({"type": "world", "revision": revision, "document": document}, None)
-            self._remember(revision, entities, document)
+            self._remember(revision, entities, document, self._ordered(entities))
         else:
             news = self._difference(revision, entities, snapshot)
         self._rest = rest
@@ -66,11 +66,17 @@ class Mirror:
         simulator = self._simulator
         return self._documents.surroundings(simulator.world, simulator.physics, simulator.gravity)
 
-    def _remember(self, revision: int, entities: List[Entity], document: Dict[str, Any]) -> None:
+    def _ordered(self, entities: List[Entity]) -> List[str]:
+        """All models, then all lights, as they stand in the world."""
+        return [*(entity.model.name for entity in entities),
+                *(light.name for light in self._simulator.lights())]
+
+    def _remember(self, revision: int, entities: List[Entity], document: Dict[str, Any],
+                  order: List[str]) -> None:
         self.revision = revision
         self._entities = {entity.model.name: entity for entity in entities}
         self._poses = {entity.model.name: entity.pose for entity in entities}
-        self._order = list(self._entities)
+        self._order = order
         self._lights = {light.name: light for light in self._simulator.lights()}
         self._around = {name: value for name, value in document.items()
                         if name not in ("models", "lights", "roads", "actors")}
@@ -96,10 +102,10 @@ class Mirror:
         around = self._surroundings()
         world = {name: value for name, value in around.items()
                  if self._around.get(name) != value}
-        order = [entity.model.name for entity in entities]
+        order = self._ordered(entities)
         if order != self._order:
             push["order"] = order
         push.update({name: value for name, value in (
             ("models", models), ("lights", lights), ("world", world)) if value})
-        self._remember(revision, entities, around)
+        self._remember(revision, entities, around, order)
         return News(push, links)

@@ -16,6 +16,7 @@ from ..errors import CommandError
 from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
 from .loads import Effort
 from .moments import Moment
+from .order import Turn
 from .simulator import Simulator
 
 
@@ -47,16 +48,20 @@ class Group:
 
 @dataclass(frozen=True)
 class AddModel:
-    """A model comes, at `pose`, or with the state it had."""
+    """A model comes, at `pose`, or with the state it had; last, or where its turn is."""
 
     model: Model
     pose: Pose
     meshes: MeshTable = field(default_factory=dict)
     state: Optional[ModelState] = None
+    turn: Optional[Turn] = None
 
     def apply(self, world: Simulator) -> Operation:
         """Put it in."""
-        world.spawn(self.model, self.pose, meshes=self.meshes, state=self.state)
+        if self.turn is None:
+            world.spawn(self.model, self.pose, meshes=self.meshes, state=self.state)
+        else:
+            world.bring_back(self.model, self.pose, self.meshes, self.state, self.turn)
         return RemoveModel(self.model.name)
 
 
@@ -72,7 +77,8 @@ class RemoveModel:
         entities, snapshot = world.moment()
         entity = next(one for one in entities if one.model.name == self.name)
         state = entity.saved(snapshot) if entity.link_names else None
-        back = AddModel(entity.model, entity.initial_pose, entity.meshes, state)
+        turn = Turn.of([one.model.name for one in entities], self.name)
+        back = AddModel(entity.model, entity.initial_pose, entity.meshes, state, turn)
         pose = entity.pose
         world.delete(self.name)
         return back if state is not None else Group((back, Place({self.name: pose})))
@@ -159,13 +165,14 @@ def place(world: Simulator, name: str, pose: Pose) -> None:
 
 @dataclass(frozen=True)
 class AddLight:
-    """A light comes."""
+    """A light comes: last, or where its turn is."""
 
     light: Light
+    turn: Optional[Turn] = None
 
     def apply(self, world: Simulator) -> Operation:
         """Put it in."""
-        world.add_light(self.light)
+        world.add_light(self.light, turn=self.turn)
         return RemoveLight(self.light.name)
 
 
@@ -177,7 +184,8 @@ class RemoveLight:
 
     def apply(self, world: Simulator) -> Operation:
         """Take it out."""
-        return AddLight(world.delete_light(self.name))
+        names = [light.name for light in world.lights()]
+        return AddLight(world.delete_light(self.name), Turn.of(names, self.name))
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from ..engine.ring import Snapshot
 from ..engine.rows import AXES, axis_rows, row_name
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
+from .order import Turn
 
 WORLD_FRAMES = ("", "world", "map", "/map")
 """The names of the world frame (Gazebo behaviour)."""
@@ -190,7 +191,23 @@ class Registry:
         for index, link in enumerate(new.link_names):
             self._plain_links.setdefault(link, []).append((new, index))
         self._plain_links = {link: found for link, found in self._plain_links.items() if found}
+        self._sort_links(new)
         self.revision += 1
+
+    def put(self, name: str, turn: Turn) -> None:
+        """A model goes to a place in the order. Raises UnknownEntity."""
+        entity = self.model(name)
+        names = [one for one in self._entities if one != name]
+        names.insert(turn.among(names), name)
+        self._entities = {one: self._entities[one] for one in names}
+        self._sort_links(entity)
+        self.revision += 1
+
+    def _sort_links(self, moved: Entity) -> None:
+        """The first model in the order is the one that a plain link name means."""
+        places = {name: place for place, name in enumerate(self._entities)}
+        for link in moved.link_names:
+            self._plain_links[link].sort(key=lambda pair: places[pair[0].model.name])
 
     def remove(self, name: str) -> Entity:
         """A model has gone."""

@@ -1,9 +1,14 @@
-"""What a world holds besides models: lights, scene, camera, wind, air, place on the globe."""
+"""What a world holds besides models: lights, scene, camera, wind, air, place on the globe.
+
+And what comes back to its place in the order of models and lights.
+"""
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any, List, Optional, Tuple
 
+from ..description.model import Model
+from ..description.shapes import MeshTable
 from ..description.world import (
     Atmosphere,
     GuiCamera,
@@ -12,15 +17,28 @@ from ..description.world import (
     SphericalCoordinates,
     Wind,
 )
+from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..formats.surroundings import with_surroundings
 from ..geometry import Pose, Vec3, compose, normalised, pose_is_finite
 from .editing import ModelEdits
+from .order import Turn
 from .registry import Entity, UnknownEntity
 
 
 class Surroundings(ModelEdits):
     """Everything the engine need not know."""
+
+    def bring_back(self, model: Model, pose: Pose, meshes: MeshTable,
+                   state: Optional[ModelState], turn: Turn) -> None:
+        """Spawn a model (see there) that has been here before, at its place in the order.
+
+        Raises CommandError.
+        """
+        with self._order:
+            self.spawn(model, pose, meshes=meshes, state=state)
+            with self._lock:
+                self._registry.put(model.name, turn)
 
     # -- lights ----------------------------------------------------------------------------------
 
@@ -36,8 +54,8 @@ class Surroundings(ModelEdits):
                 return light
         raise UnknownEntity(f"there is no light '{name}'")
 
-    def add_light(self, light: Light, frame: str = "") -> None:
-        """Put a light into the world, its pose given in `frame`.
+    def add_light(self, light: Light, frame: str = "", turn: Optional[Turn] = None) -> None:
+        """Put a light into the world, its pose given in `frame`; last, or where its turn is.
 
         Raises CommandError: empty or taken name, unknown frame, a pose that is not finite.
         """
@@ -49,7 +67,10 @@ class Surroundings(ModelEdits):
             pose = _usable(light)
             if anchor is not None:
                 pose = compose(anchor.state(self._snapshot())[0], pose)
-            self._surround(lights=self.world.lights + [replace(light, pose=pose)])
+            lights = list(self.world.lights)
+            at = len(lights) if turn is None else turn.among([one.name for one in lights])
+            lights.insert(at, replace(light, pose=pose))
+            self._surround(lights=lights)
 
     def set_light(self, name: str, light: Light) -> None:
         """Give a light other properties; another name renames it. Raises CommandError."""

@@ -1,0 +1,178 @@
+"""What was deleted comes back to its former place among models and lights."""
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from editor_case import box as shown_box
+from editor_case import cases
+from test_simulator import box, case, close  # noqa: F401
+
+from my_simulations.description.model import Model
+from my_simulations.description.world import Light
+from my_simulations.errors import CommandError
+from my_simulations.geometry import STILL, Pose
+from my_simulations.simulator.history import History
+from my_simulations.simulator.operations import (
+    AddLight,
+    AddModel,
+    Group,
+    RemoveLight,
+    RemoveModel,
+)
+from my_simulations.simulator.saving import present_world
+
+edited = pytest.fixture(cases)
+
+
+def light_names(sim):
+    return [light.name for light in sim.lights()]
+
+
+def four_lights(sim):
+    for name in "klmn":
+        sim.add_light(Light(name))
+
+
+@pytest.mark.parametrize("name", ["a", "b", "d"])
+def test_a_deleted_model_comes_back_to_its_place(case, name):
+    sim = case(box("a"), box("b"), box("c"), box("d")).sim
+    history = History(sim)
+    history.do("delete", RemoveModel(name))
+    before = sim.revision
+    history.undo()
+    assert sim.revision > before
+    assert sim.model_names() == ["a", "b", "c", "d"]
+    assert [model.name for model in present_world(sim).models] == ["a", "b", "c", "d"]
+    assert sim.states().model_names == ["a", "b", "c", "d"]
+    history.redo()
+    assert name not in sim.model_names()
+    history.undo()
+    assert sim.model_names() == ["a", "b", "c", "d"]
+
+
+def test_a_model_without_links_comes_back_to_its_place(case):
+    sim = case(Model("a"), box("b")).sim
+    sim.set_model_state("a", Pose((1, 2, 3)), STILL)
+    history = History(sim)
+    history.do("delete", RemoveModel("a"))
+    history.undo()
+    assert sim.model_names() == ["a", "b"]
+    close(sim.model_state("a")[0], (1, 2, 3))
+
+
+@pytest.mark.parametrize("name", ["k", "l", "n"])
+def test_a_deleted_light_comes_back_to_its_place(case, name):
+    sim = case().sim
+    four_lights(sim)
+    history = History(sim)
+    history.do("delete", RemoveLight(name))
+    for _ in range(2):
+        history.undo()
+        assert light_names(sim) == list("klmn")
+        history.redo()
+        assert name not in light_names(sim)
+
+
+@pytest.mark.parametrize("names", ["ab", "ba", "dac", "abcd", "bd"])
+def test_several_that_were_deleted_as_one_come_back_to_their_places(case, names):
+    sim = case(box("a"), box("b"), box("c"), box("d")).sim
+    four_lights(sim)
+    lights = [chr(ord(name) + 10) for name in names]
+    history = History(sim)
+    history.do("delete", Group(tuple(
+        operation for model, light in zip(names, lights)
+        for operation in (RemoveModel(model), RemoveLight(light)))))
+    for _ in range(2):
+        history.undo()
+        assert sim.model_names() == list("abcd")
+        assert light_names(sim) == list("klmn")
+        history.redo()
+        assert not set(names) & set(sim.model_names())
+
+
+def test_chains_of_undo_and_redo_pass_the_same_orders_both_ways(case):
+    sim = case(box("a"), box("b"), box("c")).sim
+    history = History(sim)
+    orders = [sim.model_names()]
+    for operation in (RemoveModel("b"), AddModel(box("e"), Pose()), RemoveModel("a"),
+                      AddModel(box("b"), Pose()), RemoveModel("e"), RemoveModel("c")):
+        history.do("edit", operation)
+        orders.append(sim.model_names())
+    for order in reversed(orders[:-1]):
+        history.undo()
+        assert sim.model_names() == order
+    for order in orders[1:]:
+        history.redo()
+        assert sim.model_names() == order
+
+
+def test_a_group_that_fails_half_way_leaves_the_order_as_it_was(case):
+    sim = case(box("a"), box("b")).sim
+    four_lights(sim)
+    with pytest.raises(CommandError):
+        Group((RemoveModel("a"), RemoveLight("k"), RemoveModel("nobody"))).apply(sim)
+    assert sim.model_names() == ["a", "b"]
+    assert light_names(sim) == list("klmn")
+
+
+def test_it_comes_back_behind_its_neighbour_whatever_others_did_meanwhile(case):
+    sim = case(box("a"), box("b"), box("c")).sim
+    four_lights(sim)
+    history = History(sim)
+    history.do("delete", Group((RemoveModel("c"), RemoveLight("m"))))
+    sim.delete("a")
+    sim.spawn(box("x"))
+    sim.delete_light("k")
+    sim.add_light(Light("x-lamp"))
+    history.undo()
+    assert sim.model_names() == ["b", "c", "x"]
+    assert light_names(sim) == ["l", "m", "n", "x-lamp"]
+
+
+def test_it_comes_back_when_its_neighbours_have_gone(case):
+    sim = case(box("a"), box("b"), box("c")).sim
+    history = History(sim)
+    history.do("delete", RemoveModel("c"))
+    sim.delete("a")
+    sim.delete("b")
+    history.undo()
+    assert sim.model_names() == ["c"]
+
+
+def test_what_is_added_anew_comes_last(case):
+    sim = case(box("a")).sim
+    four_lights(sim)
+    history = History(sim)
+    history.do("insert", Group((AddModel(box("0"), Pose()), AddLight(Light("0-lamp")))))
+    assert sim.model_names() == ["a", "0"]
+    assert light_names(sim) == ["k", "l", "m", "n", "0-lamp"]
+
+
+def test_a_plain_link_name_means_the_same_link_after_an_undo_and_after_an_edit(case):
+    sim = case(box("a", ("x",), pose=Pose((1, 0, 0))), box("b", ("x",), pose=Pose((2, 0, 0)))).sim
+    history = History(sim)
+    history.do("delete", RemoveModel("a"))
+    history.undo()
+    close(sim.link_state("x")[0], (1, 0, 0))
+    sim.edit_model("a", replace(sim.model("a"), self_collide=True))
+    close(sim.link_state("x")[0], (1, 0, 0))
+
+
+def test_pages_hear_of_the_order_of_models_and_lights(edited):
+    made = edited(shown_box("a"), shown_box("b"), shown_box("c"),
+                  lights=[Light(name) for name in "klm"])
+
+    def names(browser, kind):
+        return [one["name"] for one in browser.document[kind]]
+
+    async def edit(browser):
+        await browser.edit("delete", names=["a", "l", "b"])
+        await browser.until(lambda: names(browser, "models") == ["c"])
+        await browser.ask("undo")
+        await browser.until(lambda: names(browser, "models") == ["a", "b", "c"]
+                            and names(browser, "lights") == ["k", "l", "m"])
+        await browser.edit("rename", name="k", to="z")
+        await browser.until(lambda: names(browser, "lights") == ["z", "l", "m"])
+
+    made.browse(edit)
