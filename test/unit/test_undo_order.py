@@ -1,6 +1,7 @@
 """What was deleted comes back to its former place among models and lights."""
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 
 import pytest
@@ -138,6 +139,37 @@ def test_it_comes_back_when_its_neighbours_have_gone(case):
     sim.delete("b")
     history.undo()
     assert sim.model_names() == ["c"]
+
+
+def test_nobody_sees_it_elsewhere_before(case):
+    sim = case(box("a"), box("b"), box("c")).sim
+    history = History(sim)
+    seen, stop = set(), threading.Event()
+
+    def watch():
+        while not stop.is_set():
+            seen.add(tuple(sim.model_names()))
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    for _ in range(100):
+        history.do("delete", RemoveModel("a"))
+        history.undo()
+    stop.set()
+    watcher.join()
+    assert seen <= {("a", "b", "c"), ("b", "c")}
+
+
+def test_one_that_could_not_come_back_goes_last_when_it_comes_anew(case):
+    sim = case(box("a"), box("b")).sim
+    history = History(sim)
+    history.do("delete", RemoveModel("a"))
+    sim.spawn(box("a"))
+    with pytest.raises(CommandError):
+        history.undo()
+    sim.delete("a")
+    sim.spawn(box("a"))
+    assert sim.model_names() == ["b", "a"]
 
 
 def test_what_is_added_anew_comes_last(case):

@@ -157,6 +157,7 @@ class Registry:
         self.ambiguous: Callable[[str], object] = _nobody
         self._told: Set[Tuple[str, str]] = set()
         self._entities: Dict[str, Entity] = {}
+        self._turns: Dict[str, Turn] = {}
         self._plain_links: Dict[str, List[Tuple[Entity, int]]] = {}
         self.revision = 0
 
@@ -172,13 +173,26 @@ class Registry:
         return list(self._entities.values())
 
     def add(self, entity: Entity) -> None:
-        """A model has come; it goes last, also when it replaces one of its name."""
+        """A model has come; it goes last, also when it replaces one of its name.
+
+        One that is `awaited` goes to its place at once, so that nobody sees it elsewhere.
+        """
         if entity.model.name in self._entities:
             self.remove(entity.model.name)
         self._entities[entity.model.name] = entity
         for index, link in enumerate(entity.link_names):
             self._plain_links.setdefault(link, []).append((entity, index))
+        turn = self._turns.get(entity.model.name)
+        if turn is not None:
+            self._put(entity, turn)
         self.revision += 1
+
+    def awaited(self, name: str, turn: Optional[Turn]) -> None:
+        """Where a model of that name goes when it comes; None: it is not awaited any more."""
+        if turn is not None:
+            self._turns[name] = turn
+        else:
+            self._turns.pop(name, None)
 
     def swap(self, old: Entity, new: Entity) -> None:
         """A model has become another, in the same place of the order."""
@@ -194,14 +208,12 @@ class Registry:
         self._sort_links(new)
         self.revision += 1
 
-    def put(self, name: str, turn: Turn) -> None:
-        """A model goes to a place in the order. Raises UnknownEntity."""
-        entity = self.model(name)
+    def _put(self, entity: Entity, turn: Turn) -> None:
+        name = entity.model.name
         names = [one for one in self._entities if one != name]
         names.insert(turn.among(names), name)
         self._entities = {one: self._entities[one] for one in names}
         self._sort_links(entity)
-        self.revision += 1
 
     def _sort_links(self, moved: Entity) -> None:
         """The first model in the order is the one that a plain link name means."""

@@ -36,9 +36,13 @@ class Surroundings(ModelEdits):
         Raises CommandError.
         """
         with self._order:
-            self.spawn(model, pose, meshes=meshes, state=state)
             with self._lock:
-                self._registry.put(model.name, turn)
+                self._registry.awaited(model.name, turn)
+            try:
+                self.spawn(model, pose, meshes=meshes, state=state)
+            finally:
+                with self._lock:
+                    self._registry.awaited(model.name, None)
 
     # -- lights ----------------------------------------------------------------------------------
 
