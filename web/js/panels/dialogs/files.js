@@ -109,7 +109,7 @@ class FolderList {
 }
 
 /** A file's path below a folder. */
-export function joined(folder, name) {
+function joined(folder, name) {
   return `${folder.replace(/\/$/, '')}/${name}`;
 }
 
@@ -119,19 +119,25 @@ export function withEnding(name) {
 }
 
 /**
- * Asks for a name and saves; asks again before it overwrites.
+ * A window with a field for a name above the list of files.
  *
- * @param {import('../panels.js').Page} page
- * @returns {Promise<string|undefined>} the path, undefined when cancelled
+ * @param {(type: string, fields: any) => Promise<any>} request
+ * @param {Object} options
+ * @param {string} options.title
+ * @param {string} options.button  what its button says
+ * @param {string} options.nameless  said where no name was given
+ * @param {Object<string, any>} options.field  attributes of the field
+ * @param {(path: string) => Promise<string|false>} options.run  as a button's, for the chosen path
+ * @returns {Promise<string|undefined>} what `run` answered, undefined when cancelled
  */
-export async function saveAsDialog({store, request}) {
+async function filesDialog(request, {title, button, nameless, field, run}) {
   const name = h('input', {
     type: 'text',
-    value: baseName(store.history?.file || store.document?.file) || 'untitled.world',
     spellcheck: 'false',
     autocomplete: 'off',
     autofocus: true,
     'aria-label': 'File name',
+    ...field,
   });
   const folders = new FolderList(request, {
     onFile: (file) => {
@@ -143,28 +149,43 @@ export async function saveAsDialog({store, request}) {
     },
     onFault: (fault) => dialog.say(fault ? faultText(fault) : ''),
   });
-  const save = async () => {
+  const chosen = async () => {
     const wanted = name.value.trim();
     if (!wanted) {
-      dialog.say('Give the file a name.');
+      dialog.say(nameless);
       return false;
     }
-    const path =
-      wanted.startsWith('/') || !folders.listing
-        ? withEnding(wanted)
-        : joined(folders.listing.path, withEnding(wanted));
-    return saveTo(request, path);
+    const whole = wanted.startsWith('/') || !folders.listing;
+    return run(whole ? wanted : joined(folders.listing.path, wanted));
   };
   const dialog = new Dialog({
-    title: 'Save World As',
+    title,
     name: 'files',
     content: [labelled('File name', name), folders.element],
-    buttons: [{title: 'Cancel'}, {title: 'Save', primary: true, run: save}],
+    buttons: [{title: 'Cancel'}, {title: button, primary: true, run: chosen}],
   });
-  const opened = dialog.open();
-  await folders.go();
+  const closed = dialog.open();
+  // Typing replaces the name and leaves the ending.
   name.setSelectionRange(0, name.value.replace(ENDINGS, '').length);
-  return opened;
+  await folders.go();
+  return closed;
+}
+
+/**
+ * Asks for a name and saves; asks again before it overwrites.
+ *
+ * @param {import('../panels.js').Page} page
+ * @returns {Promise<string|undefined>} the path, undefined when cancelled
+ */
+export function saveAsDialog({store, request}) {
+  const file = baseName(store.history?.file || store.document?.file);
+  return filesDialog(request, {
+    title: 'Save World As',
+    button: 'Save',
+    nameless: 'Give the file a name.',
+    field: {value: file || 'untitled.world'},
+    run: (path) => saveTo(request, withEnding(path)),
+  });
 }
 
 async function saveTo(request, path) {
@@ -193,44 +214,16 @@ function baseName(path) {
 export async function openDialog({store, request}) {
   const discard = await mayDiscard({store, request});
   if (!discard) return undefined;
-  const name = h('input', {
-    type: 'text',
-    spellcheck: 'false',
-    autocomplete: 'off',
-    autofocus: true,
-    'aria-label': 'File name',
-    placeholder: 'a name from the list, or a path',
-  });
-  const folders = new FolderList(request, {
-    onFile: (file) => {
-      name.value = file;
-    },
-    onOpen: (file) => {
-      name.value = file;
-      dialog.submit();
-    },
-    onFault: (fault) => dialog.say(fault ? faultText(fault) : ''),
-  });
-  const open = async () => {
-    const wanted = name.value.trim();
-    if (!wanted) {
-      dialog.say('Choose a file.');
-      return false;
-    }
-    const path =
-      wanted.startsWith('/') || !folders.listing ? wanted : joined(folders.listing.path, wanted);
-    await request('open', {path, discard: true});
-    return path;
-  };
-  const dialog = new Dialog({
+  return filesDialog(request, {
     title: 'Open World',
-    name: 'files',
-    content: [labelled('File name', name), folders.element],
-    buttons: [{title: 'Cancel'}, {title: 'Open', primary: true, run: open}],
+    button: 'Open',
+    nameless: 'Choose a file.',
+    field: {placeholder: 'a name from the list, or a path'},
+    async run(path) {
+      await request('open', {path, discard: true});
+      return path;
+    },
   });
-  const opened = dialog.open();
-  await folders.go();
-  return opened;
 }
 
 /**
