@@ -45,58 +45,48 @@ export function numberFault(field, value) {
   return '';
 }
 
-function numberInput(field, commit, refuse) {
+/**
+ * A field of one line. What is typed counts on Enter or when the focus leaves; Escape drops it.
+ *
+ * @param {import('./properties_table.js').Field} field
+ * @param {Object<string, any>} attributes
+ * @param {(value: any) => string} textOf
+ * @param {(text: string, shown: any) => boolean} take  gets what was typed; false: the field goes
+ *   back to the value before
+ * @returns {Input & {type: (text: string) => void}}
+ */
+function lineInput(field, attributes, textOf, take) {
   let shown = null;
+  let edited = false;
   const element = h('input', {
     type: 'text',
-    inputmode: 'decimal',
-    class: 'number',
     autocomplete: 'off',
     spellcheck: 'false',
     'aria-label': field.label,
     readOnly: Boolean(field.fixed),
     title: field.hint,
+    ...attributes,
   });
-  let edited = false;
   const restore = () => {
     edited = false;
-    const text = numberText(shown);
+    const text = textOf(shown);
     if (element.value !== text) element.value = text;
   };
-  const take = () => {
+  const finish = () => {
     if (!edited) return;
     edited = false;
-    const value = parseNumber(element.value);
-    const fault = numberFault(field, value);
-    if (fault) {
-      refuse(`${field.label}: ${fault}`);
-      restore();
-      return;
-    }
-    if (value !== shown) commit(value);
-    else restore();
+    if (!take(element.value, shown)) restore();
   };
   element.addEventListener('input', () => {
     edited = true;
   });
-  element.addEventListener('blur', take);
+  element.addEventListener('blur', finish);
   element.addEventListener('focus', () => element.select());
   element.addEventListener('keydown', (event) => {
-    if (event.key === 'Enter') {
-      event.preventDefault();
-      take();
-      element.select();
-    } else if (event.key === 'Escape' && edited) {
+    if (event.key === 'Enter') finish();
+    else if (event.key === 'Escape' && edited) {
       event.stopPropagation();
       restore();
-    } else if ((event.key === 'ArrowUp' || event.key === 'ArrowDown') && !field.fixed) {
-      event.preventDefault();
-      const size = event.ctrlKey ? 0.01 : event.shiftKey ? 1 : 0.1;
-      const step = field.type === 'integer' ? 1 : size;
-      const value = (parseNumber(element.value) || 0) + (event.key === 'ArrowUp' ? step : -step);
-      const limited = Math.min(Math.max(value, field.min ?? -Infinity), field.max ?? Infinity);
-      element.value = numberText(Math.round(limited * 1e6) / 1e6);
-      edited = true;
     }
   });
   return {
@@ -105,44 +95,53 @@ function numberInput(field, commit, refuse) {
       shown = value ?? null;
       if (!edited) restore();
     },
+    type(text) {
+      element.value = text;
+      edited = true;
+    },
   };
 }
 
-function textInput(field, commit) {
-  let shown = '';
-  const element = h('input', {
-    type: 'text',
-    class: 'text',
-    autocomplete: 'off',
-    spellcheck: 'false',
-    'aria-label': field.label,
-    readOnly: Boolean(field.fixed),
-    title: field.hint,
-  });
-  let edited = false;
-  const take = () => {
-    if (edited && element.value !== shown) commit(element.value);
-    edited = false;
+function numberInput(field, commit, refuse) {
+  const take = (text, shown) => {
+    const value = parseNumber(text);
+    const fault = numberFault(field, value);
+    if (fault) refuse(`${field.label}: ${fault}`);
+    if (fault || value === shown) return false;
+    commit(value);
+    return true;
   };
-  element.addEventListener('input', () => {
-    edited = true;
-  });
-  element.addEventListener('blur', take);
-  element.addEventListener('focus', () => element.select());
+  const line = lineInput(field, {inputmode: 'decimal', class: 'number'}, numberText, take);
+  const {element} = line;
   element.addEventListener('keydown', (event) => {
-    if (event.key === 'Enter') take();
-    if (event.key === 'Escape' && edited) {
-      event.stopPropagation();
-      edited = false;
-      element.value = shown;
+    if (event.key === 'Enter') {
+      event.preventDefault();
+      element.select();
+    } else if ((event.key === 'ArrowUp' || event.key === 'ArrowDown') && !field.fixed) {
+      event.preventDefault();
+      const size = event.ctrlKey ? 0.01 : event.shiftKey ? 1 : 0.1;
+      const step = field.type === 'integer' ? 1 : size;
+      const value = (parseNumber(element.value) || 0) + (event.key === 'ArrowUp' ? step : -step);
+      const limited = Math.min(Math.max(value, field.min ?? -Infinity), field.max ?? Infinity);
+      line.type(numberText(Math.round(limited * 1e6) / 1e6));
     }
   });
+  return line;
+}
+
+function textInput(field, commit) {
+  const textOf = (value) => String(value ?? '');
+  const take = (text, shown) => {
+    if (text === textOf(shown)) return false;
+    commit(text);
+    return true;
+  };
+  const {element, show} = lineInput(field, {class: 'text'}, textOf, take);
   return {
     element,
     show(value) {
-      shown = value === null || value === undefined ? '' : String(value);
-      if (!edited) element.value = shown;
-      if (field.fixed) element.title = shown;
+      show(value);
+      if (field.fixed) element.title = textOf(value);
     },
   };
 }
