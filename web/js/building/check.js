@@ -3,7 +3,7 @@ import {crossing, isSimple, side} from './geometry.js';
 import {linkName, placeOf, wallLength} from './plan.js';
 import {neighbours} from './rooms.js';
 
-export const SHORTEST = 0.01;
+const SHORTEST = 0.01;
 const SLACK = 1e-6;
 const known = new WeakMap();
 
@@ -76,13 +76,21 @@ export function openingFault(opening, wall) {
 }
 
 /** True when two openings of one wall share more than an edge. */
-export const overlap = (a, b) => a.wall !== null && a.wall === b.wall &&
+const overlap = (a, b) => a.wall !== null && a.wall === b.wall &&
   Math.abs(a.along - b.along) < (a.width + b.width) / 2 - SLACK &&
   a.elevation + a.height > b.elevation + SLACK && b.elevation + b.height > a.elevation + SLACK;
 
 /** Every opening of a level, with its ref. */
-export const openingsOf = (level) => ['windows', 'doors'].flatMap((kind) =>
+const openingsOf = (level) => ['windows', 'doors'].flatMap((kind) =>
   level[kind].map((item) => ({ref: {kind, id: item.id}, item})));
+
+/** Why an opening cannot stay where it is; '' where it can, or where it stands free. */
+export function openingTrouble(level, opening) {
+  const wall = level.walls.find(({id}) => id === opening?.wall);
+  if (!wall) return '';
+  const other = openingsOf(level).some(({item}) => item !== opening && overlap(item, opening));
+  return openingFault(opening, wall) || (other ? 'overlaps another' : '');
+}
 
 function openingFaults(level) {
   const found = [];

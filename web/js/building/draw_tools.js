@@ -1,12 +1,5 @@
-/**
- * Tools that put new things into the plan. A tool gets what the mouse does in metres of the plan:
- * `press`, `move`, `release`, `double`, `typed` (a length) and `cancel` (Esc, right button), and shows
- * what it is about to do in `session.draft`.
- *
- * @typedef {{point: import('./geometry.js').Point, shift: boolean, alt: boolean, ctrl: boolean,
- *            tolerance: number}} Mouse
- */
-import {openingFault, overlap, openingsOf} from './check.js';
+/** Tools that put new things into the plan. */
+import {openingTrouble} from './check.js';
 import {direction, distance, inPolygon, isSimple, polar, same, tidyPoint} from './geometry.js';
 import {wallNear} from './hit.js';
 import {
@@ -14,13 +7,12 @@ import {
 } from './plan.js';
 import {roomsOf} from './rooms.js';
 import {snapEnd, snapPolar, snapStart} from './snap.js';
+import {Tool} from './tool.js';
 
-export class WallTool {
+export class WallTool extends Tool {
   name = 'wall';
   hint = 'Click where the wall starts. Shift: no snapping.';
   #from = null;
-
-  constructor(session) { this.session = session; }
 
   press(mouse) {
     const {session} = this;
@@ -47,8 +39,6 @@ export class WallTool {
     }
     session.changed();
   }
-
-  release() {}
 
   /** The second click of a double click has already put the wall. */
   double() { this.cancel(); }
@@ -93,28 +83,24 @@ export class WallTool {
 }
 
 /** Puts windows and doors into walls, or to stand free. */
-export class OpeningTool {
+export class OpeningTool extends Tool {
   #kind;
 
   constructor(session, kind) {
-    this.session = session;
+    super(session);
     this.#kind = kind;
     this.name = kind === 'windows' ? 'window' : 'door';
     this.hint = `Move over a wall and click to put the ${this.name} there.`;
   }
 
   press(mouse) {
-    const {session} = this;
     const {opening, fault} = this.#at(mouse.point);
     if (fault) {
-      session.say(`The ${this.name} ${fault}.`);
+      this.session.say(`The ${this.name} ${fault}.`);
       return;
     }
     const {id: _, ...fields} = opening;
-    const {plan, ref} = add(session.history.plan, session.at, this.#kind, fields);
-    session.commit(plan, this.name);
-    session.endTool();
-    session.select([ref]);
+    this.insert(this.#kind, fields, this.name);
   }
 
   move(mouse) {
@@ -123,52 +109,24 @@ export class OpeningTool {
     this.session.changed();
   }
 
-  release() {}
-  double() {}
-  typed() {}
-
-  cancel() {
-    this.session.draft = {};
-    return false;
-  }
-
   #at(point) {
     const {level} = this.session;
     const fresh = {id: -1, ...DEFAULTS[this.#kind]};
     const near = wallNear(level, point);
-    if (!near) return {opening: detached(fresh, point, 0), fault: ''};
-    const opening = attached(fresh, near.wall, near.along);
-    const other = openingsOf(level).find(({item}) => overlap(item, opening));
-    return {opening, fault: openingFault(opening, near.wall) || (other ? 'overlaps another' : '')};
+    const opening = near ? attached(fresh, near.wall, near.along) : detached(fresh, point, 0);
+    return {opening, fault: openingTrouble(level, opening)};
   }
 }
 
-export class StairsTool {
+export class StairsTool extends Tool {
   name = 'stairs';
   hint = 'Click to put the stairs; turn and resize them by their handles.';
 
-  constructor(session) { this.session = session; }
-
-  press(mouse) {
-    const {session} = this;
-    const {plan, ref} = add(session.history.plan, session.at, 'stairs', this.#at(mouse));
-    session.commit(plan, 'stairs');
-    session.endTool();
-    session.select([ref]);
-  }
+  press(mouse) { this.insert('stairs', this.#at(mouse), 'stairs'); }
 
   move(mouse) {
     this.session.draft = {stairs: {...DEFAULTS.stairs, ...this.#at(mouse)}};
     this.session.changed();
-  }
-
-  release() {}
-  double() {}
-  typed() {}
-
-  cancel() {
-    this.session.draft = {};
-    return false;
   }
 
   #at(mouse) {
@@ -177,12 +135,10 @@ export class StairsTool {
 }
 
 /** Floors: a click in a closed room fills it; clicks elsewhere draw corner after corner. */
-export class FloorTool {
+export class FloorTool extends Tool {
   name = 'floor';
   hint = 'Click in a room to fill it, or click the corners of a floor. Alt: corners in a room, too.';
   #points = [];
-
-  constructor(session) { this.session = session; }
 
   press(mouse) {
     const room = !this.#points.length && !mouse.alt && this.#room(mouse.point);
@@ -208,8 +164,6 @@ export class FloorTool {
       : {polygon: {points: [...this.#points, this.#snapped(mouse)]}};
     session.changed();
   }
-
-  release() {}
 
   double() {
     if (this.#points.length >= 3) this.#close();
@@ -252,23 +206,19 @@ export class FloorTool {
   }
 
   #put(outline, label) {
-    const {session} = this;
-    const thickness = session.at === 0 ? GROUND_FLOOR_THICKNESS : DEFAULTS.floors.thickness;
-    const {plan, ref} = add(session.history.plan, session.at, 'floors', {outline, thickness});
-    session.commit(plan, label);
-    session.endTool();
-    session.select([ref]);
+    const thickness = this.session.at === 0 ? GROUND_FLOOR_THICKNESS : DEFAULTS.floors.thickness;
+    this.insert('floors', {outline, thickness}, label);
   }
 }
 
 /** A line over a known length of the floor plan; `done(metres)` gets what it measures at present. */
-export class MeasureTool {
+export class MeasureTool extends Tool {
   name = 'measure';
   hint = 'Draw a line over a length that you know: press at one end, let go at the other.';
   #from = null;
 
   constructor(session, done) {
-    this.session = session;
+    super(session);
     this.done = done;
   }
 
@@ -286,9 +236,6 @@ export class MeasureTool {
   release(mouse) {
     if (this.#from && distance(this.#from, mouse.point) > 2 * mouse.tolerance) this.#finish(mouse);
   }
-
-  double() {}
-  typed() {}
 
   cancel() {
     const busy = this.#from !== null;

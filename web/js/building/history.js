@@ -23,18 +23,18 @@ export class History {
 
   /** @returns {string|null} what was undone */
   undo() {
-    const step = this.#past.pop();
-    if (!step) return null;
-    this.#future.push({...step, plan: this.plan});
-    this.plan = step.plan;
-    return step.label;
+    return this.#step(this.#past, this.#future);
   }
 
   /** @returns {string|null} what was done again */
   redo() {
-    const step = this.#future.pop();
+    return this.#step(this.#future, this.#past);
+  }
+
+  #step(from, to) {
+    const step = from.pop();
     if (!step) return null;
-    this.#past.push({...step, plan: this.plan});
+    to.push({...step, plan: this.plan});
     this.plan = step.plan;
     return step.label;
   }

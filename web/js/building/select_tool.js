@@ -1,5 +1,5 @@
 /** Selecting, moving, stretching and turning, and painting. */
-import {openingFault, openingsOf, overlap} from './check.js';
+import {openingTrouble} from './check.js';
 import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './geometry.js';
 import {hitOf, itemsWithin, wallNear} from './hit.js';
 import {
@@ -7,17 +7,16 @@ import {
 } from './plan.js';
 import {NAMES} from './session.js';
 import {SNAP_ANGLE, snapPolar} from './snap.js';
+import {Tool} from './tool.js';
 
 const QUARTER = Math.PI / 2;
 
-export class SelectTool {
+export class SelectTool extends Tool {
   name = 'select';
   hint = 'Click to select, drag to move, double click for the inspector.';
   /** @type {{ref: import('./plan.js').Ref, part: string, from: any, plan: any, moved: boolean}|null} */
   #drag = null;
   #box = null;
-
-  constructor(session) { this.session = session; }
 
   press(mouse) {
     const {session} = this;
@@ -70,7 +69,8 @@ export class SelectTool {
     this.#drag = null;
     if (!drag?.moved) return;
     const plan = dragged(drag, mouse, session);
-    const fault = drag.part === 'body' ? openingTrouble(plan, session.at, drag.ref) : '';
+    const fault = drag.part === 'body'
+      ? openingTrouble(plan.levels[session.at], itemOf(plan, session.at, drag.ref)) : '';
     if (fault) {
       session.preview(null);
       session.say(`Not there: the ${NAMES[drag.ref.kind]} ${fault}.`);
@@ -78,9 +78,6 @@ export class SelectTool {
     }
     session.commit(plan, `${VERBS[drag.part] ?? 'stretch'} ${NAMES[drag.ref.kind]}`);
   }
-
-  double() {}
-  typed() {}
 
   /** Esc: first the drag, then the selection. */
   cancel() {
@@ -158,24 +155,14 @@ function alongBy(wall, by) {
   return by[0] * Math.cos(yaw) + by[1] * Math.sin(yaw);
 }
 
-/** Why an opening cannot stay where it is, '' when it can. */
-export function openingTrouble(plan, at, ref) {
-  const item = itemOf(plan, at, ref);
-  if (!item || item.wall === undefined || item.wall === null) return '';
-  const level = plan.levels[at];
-  const wall = level.walls.find(({id}) => id === item.wall);
-  const other = openingsOf(level).find((one) => one.item !== item && overlap(one.item, item));
-  return openingFault(item, wall) || (other ? 'overlaps another' : '');
-}
-
 /** Paints the wall, stairs or floor that is clicked, here or in the 3D view, once. */
-export class PaintTool {
+export class PaintTool extends Tool {
   name = 'paint';
   hint = 'Click a wall, floor or stairs, here or in the 3D view, to paint it.';
 
   /** @param {any} session @param {{color?: string, texture?: string}} look */
   constructor(session, look) {
-    this.session = session;
+    super(session);
     this.look = look;
   }
 
@@ -202,10 +189,6 @@ export class PaintTool {
       `${this.look.texture ? 'texture' : 'colour'} of ${NAMES[ref.kind]}`);
     session.endTool();
   }
-
-  release() {}
-  double() {}
-  typed() {}
 
   cancel() {
     this.session.preview(null);
