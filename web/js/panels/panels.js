@@ -27,7 +27,7 @@ import {contextMenu, menus} from './menus.js';
 import {Notices} from './notices.js';
 import {Plots} from './plots.js';
 import {openMenu} from './popup.js';
-import {splitter} from './splitter.js';
+import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
 import {mountToolBar} from './toolbar.js';
@@ -215,13 +215,7 @@ class Windows {
   #togglePlots() {
     const dock = document.getElementById('dock');
     if (!this.#plots) {
-      const bar = h('div', {
-        class: 'splitter horizontal',
-        role: 'separator',
-        tabindex: 0,
-        'aria-label': 'Height of the plots',
-        'aria-orientation': 'horizontal',
-      });
+      const bar = lyingBar('Height of the plots');
       dock.before(bar);
       splitter(bar, {
         key: 'dock-height',

@@ -1,5 +1,16 @@
 /** Bars that change the size of a panel, by mouse or arrow keys; the size is remembered. */
-import {remembered} from './dom.js';
+import {h, remembered} from './dom.js';
+
+/** A bar that lies between two panels, for `splitter`. @param {string} label */
+export function lyingBar(label) {
+  return h('div', {
+    class: 'splitter horizontal',
+    role: 'separator',
+    tabindex: 0,
+    'aria-label': label,
+    'aria-orientation': 'horizontal',
+  });
+}
 
 /**
  * @param {HTMLElement} bar

@@ -3,7 +3,7 @@ import {fill, h, onceAFrame, remembered} from './dom.js';
 import {Properties} from './properties.js';
 import {Tree} from './tree.js';
 import {rowOf, worldRows} from './world_rows.js';
-import {splitter} from './splitter.js';
+import {lyingBar, splitter} from './splitter.js';
 
 export class WorldTab {
   /**
@@ -25,13 +25,7 @@ export class WorldTab {
     });
     const tree = h('div', {class: 'world-tree'});
     const properties = h('section', {class: 'properties', 'aria-label': 'Properties'});
-    const bar = h('div', {
-      class: 'splitter horizontal',
-      role: 'separator',
-      tabindex: 0,
-      'aria-label': 'Height of the properties',
-      'aria-orientation': 'horizontal',
-    });
+    const bar = lyingBar('Height of the properties');
     fill(element, h('div', {class: 'filter'}, this.#filter), tree, bar, properties);
     splitter(bar, {
       key: 'properties-height',

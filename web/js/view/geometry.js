@@ -1,7 +1,7 @@
 /** What a visual or a collision is drawn with: geometries, where they sit, their materials. */
 import {
   Box3, BoxGeometry, BufferGeometry, CapsuleGeometry, ConeGeometry, CylinderGeometry,
-  ExtrudeGeometry, Matrix4, Path, PlaneGeometry, Quaternion, Shape, SphereGeometry, Vector3,
+  ExtrudeGeometry, Matrix4, Mesh, Path, PlaneGeometry, Quaternion, Shape, SphereGeometry, Vector3,
 } from 'three';
 import {matrixOf} from './convert.js';
 import {Materials} from './materials.js';
@@ -117,6 +117,14 @@ export function visualParts(shape, stock, look = {}) {
   const basic = basicParts(shape.geometry, stock.meshes);
   const finish = (parts) => parts.map((part) => finished(part, shape, stock.materials, look));
   return basic instanceof Promise ? basic.then(finish) : finish(basic);
+}
+
+/** A part as a mesh that stays where the part is. @param {Part} part */
+export function meshOf({geometry, material, matrix}) {
+  const mesh = new Mesh(geometry, material);
+  mesh.matrixAutoUpdate = false;
+  mesh.matrix.copy(matrix);
+  return mesh;
 }
 
 function finished(part, shape, materials, {material, opacity = 1, wireframe = false}) {

@@ -5,7 +5,7 @@ import {
 } from 'three';
 import {equivalentBox} from '../inertia_math.js';
 import {place} from './convert.js';
-import {visualParts} from './geometry.js';
+import {meshOf, visualParts} from './geometry.js';
 import {arrow, ball, boxLines, empty, segments, through, triad} from './marks.js';
 import {patternCanvas} from './textures.js';
 
@@ -171,10 +171,8 @@ export class Overlays {
   #addCollisions(group, link) {
     for (const collision of link.collisions) {
       const add = (parts) => {
-        for (const {geometry, material, matrix} of parts) {
-          const mesh = new Mesh(geometry, material);
-          mesh.matrixAutoUpdate = false;
-          mesh.matrix.copy(matrix);
+        for (const part of parts) {
+          const mesh = meshOf(part);
           mesh.renderOrder = 5;
           group.add(mesh);
         }

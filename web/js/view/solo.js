@@ -1,7 +1,7 @@
 /** A model drawn by itself, outside of the world: ghosts, previews, thumbnails. */
-import {Group, Mesh} from 'three';
+import {Group} from 'three';
 import {place} from './convert.js';
-import {visualParts} from './geometry.js';
+import {meshOf, visualParts} from './geometry.js';
 
 /**
  * @param {any} model  document
@@ -20,10 +20,8 @@ export function soloModel(model, stock, look = {}) {
     group.add(linkGroup);
     for (const visual of link.visuals) {
       const add = (parts) => {
-        for (const {geometry, material, matrix} of parts) {
-          const mesh = new Mesh(geometry, material);
-          mesh.matrixAutoUpdate = false;
-          mesh.matrix.copy(matrix);
+        for (const part of parts) {
+          const mesh = meshOf(part);
           mesh.castShadow = visual.cast_shadows;
           mesh.receiveShadow = true;
           linkGroup.add(mesh);
