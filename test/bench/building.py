@@ -26,6 +26,7 @@ SDF_SECONDS, SHARE, EDIT_MS = 0.5, 0.85, 50.0
 
 EDITS = """async (plan) => {
   const {mount} = await import('/js/building/building.js');
+  const {onSheet} = await import('/js/building/svg.js');
   const element = document.getElementById('building');
   element.hidden = false;
   document.body.classList.add('building');
@@ -44,7 +45,10 @@ EDITS = """async (plan) => {
   const sheet = canvas.element;
   sheet.setPointerCapture = () => {};
   const send = (type, point) => {
-    const [clientX, clientY] = canvas.toClient(point);
+    const {left, top} = sheet.getBoundingClientRect();
+    const {x: across, y: down, zoom} = canvas.view;
+    const [x, y] = onSheet(point);
+    const [clientX, clientY] = [left + across + x * zoom, top + down + y * zoom];
     const began = performance.now();
     sheet.dispatchEvent(new PointerEvent(type, {clientX, clientY, button: 0, bubbles: true}));
     spent += performance.now() - began;

@@ -6,9 +6,9 @@ import {add, axisAngle, cross, dot, length, rotate, scale, subtract} from './pos
 
 /** @typedef {{position: number[], yaw: number, pitch: number}} View */
 
-export const RADIANS_PER_PIXEL = 0.004;
-export const LOOK_PER_PIXEL = Math.PI / 1800;
-export const HORIZONTAL_FOV = Math.PI / 3;
+const RADIANS_PER_PIXEL = 0.004;
+const LOOK_PER_PIXEL = Math.PI / 1800;
+const HORIZONTAL_FOV = Math.PI / 3;
 /** Pixels per metre of an orthographic view at first. */
 export const ORTHOGRAPHIC_ZOOM = 100;
 const STEEPEST = Math.PI / 2 - 1e-4;
@@ -33,12 +33,6 @@ export function lookAt(position, point) {
 export function fromPose(pose) {
   const ahead = rotate(pose.slice(3), [1, 0, 0]);
   return lookAt(pose.slice(0, 3), add(pose.slice(0, 3), ahead));
-}
-
-/** The inverse of `fromPose`. @returns {number[]} pose7 */
-export function toPose({position, yaw, pitch}) {
-  const half = [Math.cos(yaw / 2), Math.sin(yaw / 2), Math.cos(-pitch / 2), Math.sin(-pitch / 2)];
-  return [...position, -half[1] * half[3], half[0] * half[3], half[1] * half[2], half[0] * half[2]];
 }
 
 /** Gazebo's first view. */

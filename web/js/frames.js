@@ -1,7 +1,7 @@
 /** Binary pose frames: what moved since the last one. The layout is in protocol.json. */
 
 export const LIVE = 1;
-export const REPLAY = 2;
+const REPLAY = 2;
 
 const FRAME_START = 40;
 const RECORD = 32;

@@ -7,8 +7,6 @@
 /** @typedef {number[]} Quat */
 /** @typedef {number[]|Float64Array} Pose7 */
 
-export const IDENTITY = Object.freeze([0, 0, 0, 0, 0, 0, 1]);
-
 /** @returns {Vec3} */
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 /** @returns {Vec3} */

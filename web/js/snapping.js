@@ -1,8 +1,8 @@
 /** What Ctrl does to a drag: positions, turns and sizes stick to round values, as in Gazebo. */
 
-export const METRE = 1;
-export const SENSITIVITY = 0.4;
-export const TURN = Math.PI / 4;
+const METRE = 1;
+const SENSITIVITY = 0.4;
+const TURN = Math.PI / 4;
 export const SMALLEST_SIZE = 1e-4;
 
 /**

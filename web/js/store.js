@@ -4,7 +4,7 @@ import {compose, inverse} from './pose.js';
 
 /** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'insert'} Mode */
 
-export const OVERLAY_FLAGS = Object.freeze([
+const OVERLAY_FLAGS = Object.freeze([
   'grid', 'origin', 'transparent', 'wireframe', 'collisions', 'joints', 'com', 'inertia',
   'contacts', 'frames',
 ]);
@@ -50,7 +50,8 @@ export class Store extends EventTarget {
   /** A model document shown beside the world, e.g. a building being drawn. */
   preview = null;
 
-  #links = new Map();
+  /** From a link's id to the document of its model. */
+  #owners = new Map();
 
   /** @param {import('./connection.js').Connection} [connection] */
   constructor(connection) {
@@ -110,7 +111,7 @@ export class Store extends EventTarget {
     this.revision = revision;
     this.document = document;
     this.poses.clear();
-    this.#links.clear();
+    this.#owners.clear();
     for (const model of document.models) this.#index(model);
     this.emit('document');
     this.#dropGone();
@@ -144,15 +145,15 @@ export class Store extends EventTarget {
   }
 
   #reindex(name, model) {
-    const before = [...this.#links].filter(([, {model: owner}]) => owner.name === name);
-    for (const [id] of before) this.#links.delete(id);
+    const before = [...this.#owners].filter(([, owner]) => owner.name === name);
+    for (const [id] of before) this.#owners.delete(id);
     if (model) this.#index(model);
-    for (const [id] of before) if (!this.#links.has(id)) this.poses.delete(id);
+    for (const [id] of before) if (!this.#owners.has(id)) this.poses.delete(id);
   }
 
   #index(model) {
     for (const link of model.links) {
-      this.#links.set(link.id, {model, link});
+      this.#owners.set(link.id, model);
       if (!this.poses.has(link.id)) {
         this.poses.set(link.id, Float64Array.from(compose(model.pose, link.pose)));
       }
@@ -198,11 +199,6 @@ export class Store extends EventTarget {
       if (link) return {kind: 'link', model: owner, link};
     }
     return null;
-  }
-
-  /** The model and link documents of a link id, or undefined. */
-  linkOf(id) {
-    return this.#links.get(id);
   }
 
   /**

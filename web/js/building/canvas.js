@@ -73,13 +73,6 @@ export class Canvas {
       -(clientY - box.top - this.view.y) / this.view.zoom / SCALE];
   }
 
-  /** A point of the plan in the window. */
-  toClient(point) {
-    const box = this.element.getBoundingClientRect();
-    const [x, y] = onSheet(point);
-    return [box.left + this.view.x + x * this.view.zoom, box.top + this.view.y + y * this.view.zoom];
-  }
-
   /** Metres that a few pixels of the screen are. */
   get tolerance() { return 6 / this.view.zoom / SCALE; }
 

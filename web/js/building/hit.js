@@ -4,7 +4,7 @@ import {itemOf, placeOf, wallLength, wallYaw} from './plan.js';
 import {REACH} from './snap.js';
 
 /** How far above stairs their turning handle stands, in metres. */
-export const STEM = 0.4;
+const STEM = 0.4;
 
 /**
  * The handles of what is selected.

@@ -12,11 +12,11 @@
 import {direction, distance, minus, plus, polar, same, tidy, tidyPoint} from './geometry.js';
 import {outlineOf} from './rooms.js';
 
-export const FORMAT = 1;
-export const WHITE = '#ffffff';
+const FORMAT = 1;
+const WHITE = '#ffffff';
 
 /** From the list of a level to the name of its counter. */
-export const COUNTERS = Object.freeze({
+const COUNTERS = Object.freeze({
   walls: 'wall', windows: 'window', doors: 'door', stairs: 'stairs', floors: 'floor',
 });
 export const KINDS = Object.freeze(Object.keys(COUNTERS));
@@ -162,7 +162,7 @@ function setEnds(plan, at, ends) {
 }
 
 /** The ends of walls that lie on a point: [wall, 'start'|'end']. */
-export function endsAt(level, point) {
+function endsAt(level, point) {
   return level.walls.flatMap((wall) => ['start', 'end']
     .filter((end) => same(wall[end], point)).map((end) => [wall, end]));
 }
@@ -184,7 +184,7 @@ export function moveEnd(plan, at, id, end, point, {alone = false} = {}) {
 }
 
 /** Moves walls as they are; what is linked with them is stretched. */
-export function moveWalls(plan, at, ids, by) {
+function moveWalls(plan, at, ids, by) {
   const level = plan.levels[at];
   const ends = new Map();
   for (const wall of level.walls.filter(({id}) => ids.includes(id))) {

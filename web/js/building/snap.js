@@ -2,11 +2,11 @@
 import {crossing, direction, distance, nearest, polar, tidyPoint} from './geometry.js';
 
 export const SNAP_ANGLE = Math.PI / 12;
-export const SNAP_LENGTH = 0.25;
+const SNAP_LENGTH = 0.25;
 /** Metres within which an end is drawn to another one, and an opening to a wall. */
 export const REACH = 0.3;
 /** Metres within which a click is one on the spot: the second of a double click draws no wall. */
-export const SPOT = 0.12;
+const SPOT = 0.12;
 
 /**
  * The nearest end of a wall within reach, or null.
@@ -14,7 +14,7 @@ export const SPOT = 0.12;
  * @param {import('./geometry.js').Point} point
  * @param {(wall: any, end: 'start'|'end') => boolean} [wanted]
  */
-export function nearEnd(walls, point, wanted = () => true) {
+function nearEnd(walls, point, wanted = () => true) {
   let best = null;
   let least = REACH;
   for (const wall of walls) {

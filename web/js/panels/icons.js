@@ -97,11 +97,8 @@ const SHAPES = {
   building: ['M3 17V8l7-5 7 5v9z', 'M8 17v-5h4v5'],
 };
 
-/** The names there are, for tests. */
-export const ICONS = Object.keys(SHAPES);
-
 /**
- * @param {string} name one of `ICONS`
+ * @param {string} name one of `SHAPES`
  * @param {number} [size] in px
  * @returns {SVGSVGElement}
  */

@@ -9,7 +9,7 @@ import {icon} from './icons.js';
 const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 
 /** The mean of the last factors of real time, as Gazebo's 20 statistics. */
-export class Mean {
+class Mean {
   constructor(kept = 20) {
     this.kept = kept;
     this.values = [];

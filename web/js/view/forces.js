@@ -1,6 +1,8 @@
 /** Arrows for the force dialog; their tips can be dragged to turn them. */
 import {Group} from 'three';
-import {length, normalized, scale, subtract, transform, rotate, orientation} from '../pose.js';
+import {
+  conjugate, length, normalized, orientation, rotate, scale, subtract, transform,
+} from '../pose.js';
 import {arrow, empty, point, through} from './marks.js';
 
 const COLOR = {force: 0xff7a00, torque: 0xb5179e};
@@ -87,10 +89,7 @@ export class Forces {
     const ray = this.#picker.ray(event.clientX, event.clientY);
     const radius = PIXELS * this.#rig.unitAt(frame.place);
     let way = onSphere(ray, frame.place, radius);
-    if (this.#wrench.in_link_axes) {
-      const [x, y, z, w] = frame.axes;
-      way = rotate([-x, -y, -z, w], way);
-    }
+    if (this.#wrench.in_link_axes) way = rotate(conjugate(frame.axes), way);
     const turned = scale(way, length(this.#wrench[this.#held]));
     this.#wrench = {...this.#wrench, [this.#held]: turned};
     this.#onTurned?.({[this.#held]: turned});

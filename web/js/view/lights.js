@@ -67,7 +67,7 @@ export function lightIcon(light) {
  * three dims by a power of the distance only: the power and strength that come nearest to
  * 1 / (constant + linear d + quadratic d^2) about a third of the range away.
  */
-export function dimming({constant, linear, quadratic, range}) {
+function dimming({constant, linear, quadratic, range}) {
   const near = Math.min(3, Math.max(range / 3, 0.1));
   const divisor = constant + linear * near + quadratic * near * near || 1;
   const decay = (linear * near + 2 * quadratic * near * near) / divisor;

@@ -7,12 +7,12 @@ import {makeInput} from '../inputs.js';
 import {modelOf} from '../world_rows.js';
 
 /** Length of a vector. */
-export function magnitude(vector) {
+function magnitude(vector) {
   return Math.hypot(...vector);
 }
 
 /** The vector of that direction, or along x where it has none, with another length. */
-export function withMagnitude(vector, length) {
+function withMagnitude(vector, length) {
   const old = magnitude(vector);
   if (!old) return [length, 0, 0];
   return vector.map((part) => (part / old) * length);
