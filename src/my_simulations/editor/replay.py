@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import os
 import re
 from concurrent.futures import ThreadPoolExecutor
@@ -239,7 +240,7 @@ class Logs:
         if client.replay is not replay:
             return
         if number != replay.shown:
-            document = await loop.run_in_executor(self._disk, replay.reader.document, number)
+            document = await loop.run_in_executor(self._disk, self._document, replay, number)
             if client.replay is not replay:
                 return
             replay.shown = number
@@ -249,6 +250,13 @@ class Logs:
         frame = client.sent.frame(LOG, number, poses)
         if frame:
             client.append(frame)
+
+    def _document(self, replay: Replay, number: int) -> Dict[str, Any]:
+        """A world of a log; the files it names are served from now on, where they may be."""
+        text = replay.reader.text(number)
+        document: Dict[str, Any] = json.loads(text)
+        self._hub.documents.served.serve_again(text, os.path.dirname(document.get("file") or ""))
+        return document
 
     @staticmethod
     def _replay(client: Client) -> Replay:

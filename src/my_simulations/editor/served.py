@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import threading
 from typing import Dict, List, Optional
 from urllib.parse import quote
@@ -21,6 +22,7 @@ SERVED = MESHES | PICTURES
 
 _BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials", "textures"),
            "textures", os.path.join("..", "textures"))
+_ID = re.compile(rb'"/resource/([0-9a-f]+)/')
 
 
 class ServedFiles:
@@ -47,6 +49,27 @@ class ServedFiles:
         if root is None:
             return None
         return f"/resource/{self._id(root)}/{quote(os.path.relpath(real, root))}"
+
+    def serve_again(self, document: bytes, beside: str = "") -> None:
+        """Serve what a JSON document of an earlier session names, as far as it may be served.
+
+        An id cannot be turned back into its root: it is looked for among all that there are now,
+        which may take a look at all ROS packages. `beside`: the folder of that session's world,
+        which counts where it lies below one of those.
+        """
+        with self._lock:
+            wanted = {known.decode() for known in _ID.findall(document)}.difference(self._roots)
+        if not wanted:
+            return
+        roots = self._resolver.all_folders()
+        with self._lock:
+            roots += self._more
+        if beside and "\0" not in beside:
+            inside = os.path.join(os.path.realpath(beside), "any")
+            roots += [beside] if self._root_of(inside) is not None else []
+        for root in map(os.path.realpath, roots):
+            if _id_of(root) in wanted:
+                self._id(root)
 
     def path(self, root_id: str, inside: str) -> Optional[str]:
         """The file of a URL's two parts; None where there is none that may be served.
@@ -112,10 +135,14 @@ class ServedFiles:
         return package if package and self._resolver.knows_package(package) else None
 
     def _id(self, root: str) -> str:
-        known = hashlib.sha256(root.encode()).hexdigest()[:10]
+        known = _id_of(root)
         with self._lock:
             self._roots[known] = root
         return known
+
+
+def _id_of(root: str) -> str:
+    return hashlib.sha256(root.encode()).hexdigest()[:10]
 
 
 def _is_below(path: str, root: str) -> bool:

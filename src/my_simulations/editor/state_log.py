@@ -159,10 +159,14 @@ class LogReader:
 
     def document(self, number: int) -> Dict[str, Any]:
         """The world document of that number."""
+        found: Dict[str, Any] = json.loads(self.text(number))
+        return found
+
+    def text(self, number: int) -> bytes:
+        """The JSON of the world document of that number."""
         if number < 0:
             raise CommandError("the log holds no world")
-        found: Dict[str, Any] = json.loads(self._bytes(self._records[number]))
-        return found
+        return self._bytes(self._records[number])
 
     def _start(self, target: int) -> int:
         """The last record with all poses, up to `target`."""

@@ -43,14 +43,17 @@ class PackageIndex:
         except self._unknown:
             return None
 
+    def folders(self) -> List[str]:
+        """Where all packages lie, in the order rospkg lists them."""
+        rospack = self._get()
+        found = [self.find(name) for name in (rospack.list() if rospack is not None else ())]
+        return [folder for folder in found if folder]
+
     def exported(self) -> ExportedPaths:
         """What all packages export, in the order rospkg lists them."""
-        rospack = self._get()
         paths = ExportedPaths()
-        for name in rospack.list() if rospack is not None else ():
-            folder = self.find(name)
-            if folder:
-                _add_exports(os.path.join(folder, "package.xml"), folder, paths)
+        for folder in self.folders():
+            _add_exports(os.path.join(folder, "package.xml"), folder, paths)
         return paths
 
     def _get(self) -> Optional[Any]:

@@ -62,6 +62,7 @@ class Resolver:
         find_package: from a ROS package's name to its folder; never called for other URIs.
         exported: more of both lists, asked for once, when the first ones hold no answer.
         missing: asked for models that are nowhere here, None for nobody.
+        packages: the folders of all ROS packages.
     """
 
     def __init__(
@@ -71,12 +72,14 @@ class Resolver:
         find_package: FindPackage = lambda name: None,
         exported: Callable[[], ExportedPaths] = ExportedPaths,
         missing: Optional[MissingModels] = None,
+        packages: Callable[[], List[str]] = list,
     ) -> None:
         self._model_paths = list(model_paths)
         self._resource_paths = list(resource_paths)
         self._find_package = find_package
         self._exported = exported
         self._missing = missing
+        self._packages = packages
         self._late: Optional[ExportedPaths] = None
 
     @classmethod
@@ -106,7 +109,8 @@ class Resolver:
             from .database import ModelDatabase
 
             missing = ModelDatabase.from_environment(progress)
-        return cls(models, resources, find, packages.exported, missing)
+        return cls(models, resources, find, packages.exported, missing,
+                   lambda: packages.folders() + ([own] if own else []))
 
     def model_folders(self) -> List[str]:
         """Folders whose children are models, best first, as far as they were needed yet."""
@@ -115,6 +119,10 @@ class Resolver:
     def resource_folders(self) -> List[str]:
         """Folders that relative paths start from, as far as they were needed yet."""
         return self._resource_paths + (self._late.media if self._late else [])
+
+    def all_folders(self) -> List[str]:
+        """Model and resource folders, whether or not they were needed yet, and ROS packages."""
+        return [*self._all("models"), *self._all("media"), *self._packages()]
 
     def add_model_folder(self, folder: str) -> None:
         """Look for models in one more folder, after the others."""
