@@ -369,7 +369,8 @@ def test_the_joints_panel_turns_a_hinge(editor):
         panel.get_by_role("textbox", name=f"hinge {gain}").press("Enter")
     position.fill("0.5")
     position.press("Enter")
-    wait_for(lambda: abs(float(now.text_content().split()[0]) - 0.5) < 0.02, "the hinge at 0.5")
+    wait_for(lambda: now.text_content() and abs(float(now.text_content().split()[0]) - 0.5) < 0.02,
+             "the hinge at 0.5")
     # What the panel shows is what the simulator says drives the joint.
     editor.get("editor.request('undo', {})")
     wait_for(lambda: position.input_value() == "0", "the loop undone")

@@ -17,6 +17,8 @@ from my_simulations.engine.api import Refused
 from my_simulations.engine.commands import Clear, Connect
 from my_simulations.engine.process import ProcessEngine
 from my_simulations.geometry import Pose, Twist, compose, inverse, quat_from_rpy, transform
+from my_simulations.simulator.history import History
+from my_simulations.simulator.operations import RemoveModel
 from my_simulations.simulator.simulator import Simulator
 
 Y = (0.0, 1.0, 0.0)
@@ -227,6 +229,23 @@ def test_a_joint_of_the_world_survives_resets_edits_and_a_crash(start):
     assert sim.joints_between_models == []
     sim.advance(500)
     assert sim.model_state("gate")[0].position[2] < 1.5
+
+
+@pytest.mark.parametrize("gone", [["post"], ["door"], ["post", "door"], ["door", "post"]])
+def test_a_joint_of_the_world_comes_back_with_its_models(start, gone):
+    sim = start(_world())
+    joints, names = sim.joints_between_models, sim.model_names()
+    history = History(sim)
+    for name in gone:
+        history.do("delete", RemoveModel(name))
+    assert sim.joints_between_models == []
+    for _ in gone:
+        history.undo()
+    assert (sim.joints_between_models, sim.model_names()) == (joints, names)
+    sim.advance(300)
+    assert _hangs(sim)
+    history.redo()
+    assert sim.joints_between_models == []
 
 
 def test_an_edit_that_takes_the_link_away_ends_the_joint(start):

@@ -9,6 +9,7 @@ from ..engine.commands import Connect
 from ..engine.plan import TIE_TYPES
 from ..errors import Issue, warning
 from ..geometry import IDENTITY, Pose, compose, inverse
+from .order import Turn
 from .registry import Entity, Registry, UnknownEntity
 
 _WORLD_ROW = -1
@@ -41,6 +42,14 @@ class Connections:
     def without(self, model: str) -> "Connections":
         """What is left when a model goes."""
         return self._of([one for one in self._all if not _touches(one.joint, model)])
+
+    def of(self, model: str) -> "Connections":
+        """Those that go when a model does."""
+        return self._of([one for one in self._all if _touches(one.joint, model)])
+
+    def joined(self, others: "Connections") -> "Connections":
+        """These and others."""
+        return self._of(self._all + others._all)
 
     def renamed(self, old: str, new: str) -> "Connections":
         """The same when a model is named otherwise."""
@@ -91,6 +100,14 @@ class Connections:
         made = Connections()
         made._all = connections
         return made
+
+
+@dataclass(frozen=True)
+class Departed:
+    """What a model that has gone finds again when it comes back: its place, and its joints."""
+
+    turn: Turn
+    ties: Connections
 
 
 def _touches(joint: Joint, model: str) -> bool:

@@ -31,8 +31,9 @@ from ..engine.rows import axis_rows
 from ..errors import CommandError, Issue, Severity, error, warning
 from ..formats.meshes import without_missing_meshes
 from ..geometry import Pose, Vec3, compose, normalised
-from .connections import Connections
+from .connections import Connections, Departed
 from .initial import initial_commands
+from .order import Turn
 from .registry import Entity, Rows
 from .solids import ConvexParts
 from .supervisor import Supervisor
@@ -132,7 +133,7 @@ class WorldCore(WorldViews):
 
     def spawn(self, model: Model, pose: Optional[Pose] = None, frame: str = "",
               meshes: Optional[MeshTable] = None, replace: bool = False,
-              state: Optional[ModelState] = None) -> None:
+              state: Optional[ModelState] = None, back: Optional[Departed] = None) -> None:
         """Put a model into the world; returns when it is there.
 
         Args:
@@ -142,6 +143,7 @@ class WorldCore(WorldViews):
             meshes: its loaded collision meshes by `mesh_key`.
             replace: take the place of a model of that name, in one step.
             state: where its links and joints are, instead of at rest at `pose`.
+            back: what `delete` answered: it comes back to its place, and is joined again.
 
         Raises:
             CommandError: empty or taken name, unknown frame, or the engine refused it.
@@ -151,6 +153,8 @@ class WorldCore(WorldViews):
         model = flattened(model)
         meshes = self._solids.of(model, meshes or {})
         with self._order:
+            ties = Connections() if back is None else back.ties
+            connections = self._connections.joined(ties)
             with self._lock:
                 old = self._old(model.name, replace)
                 anchor = self._registry.frame(frame)
@@ -158,32 +162,38 @@ class WorldCore(WorldViews):
                 at = Pose(at.position, normalised(at.orientation))
                 if anchor is not None:
                     at = compose(anchor.state(self._snapshot())[0], at)
-                entity = self._make(model, at, meshes)
+                entity = self._make(model, at, meshes, connections)
             try:
                 self._call(Batch(tuple([
                     self._loading(entity, state),
                     *initial_commands(entity, self._starts.pop(model.name, None)),
+                    *ties.commands(self._registry, model.name, entity),
                     *([] if old is None else [RemoveModel(old.model_id)])])))
             except CommandError:
                 with self._lock:
                     self._free(entity)
                 raise
             with self._lock:
-                self._registry.add(entity)
+                self._registry.add(entity, None if back is None else back.turn)
+                if back is not None:
+                    self._connections = connections.present(self._registry)
                 if old is not None:
                     self._connections = self._connections.without(model.name)
                     self._free(old)
 
-    def delete(self, name: str) -> None:
-        """Take a model out; returns when it is gone. Raises UnknownEntity."""
+    def delete(self, name: str) -> Departed:
+        """Take a model out; returns when it is gone, for its return. Raises UnknownEntity."""
         with self._order:
             with self._lock:
                 entity = self._registry.model(name)
             self._call(RemoveModel(entity.model_id))
             with self._lock:
+                departed = Departed(Turn.of(self._registry.names(), name),
+                                    self._connections.of(name))
                 self._registry.remove(name)
                 self._connections = self._connections.without(name)
                 self._free(entity)
+                return departed
 
     def _old(self, name: str, may_replace: bool) -> Optional[Entity]:
         old = self._registry.model(name) if name in self._registry else None
@@ -191,7 +201,8 @@ class WorldCore(WorldViews):
             raise CommandError(f"there is a model '{name}' already")
         return old
 
-    def _make(self, model: Model, pose: Pose, meshes: MeshTable) -> Entity:
+    def _make(self, model: Model, pose: Pose, meshes: MeshTable,
+              connections: Connections) -> Entity:
         """An entity with a number and rows of its own. Raises CommandError when there are none."""
         links, joints = len(model.links), len(axis_rows(model))
         first_link = self._link_rows.take(links)
@@ -203,7 +214,7 @@ class WorldCore(WorldViews):
                                "are its limit")
         self._next_id += 1
         return Entity(self._next_id, model, pose, first_link, first_joint, meshes,
-                      articulated=self._connections.slides(model.name))
+                      articulated=connections.slides(model.name))
 
     def _free(self, entity: Entity) -> None:
         """Its rows are for others now: what the engine forgets, is forgotten here too."""

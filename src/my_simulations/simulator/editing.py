@@ -50,7 +50,7 @@ class ModelEdits(WorldCore):
                     self._check_free(model.name)
             parts = self._solids.of(model, {**old.meshes, **(meshes or {})})
             with self._lock:
-                entity = self._make(model, old.initial_pose, parts)
+                entity = self._make(model, old.initial_pose, parts, self._connections)
             entity.pose, entity.articulated = old.pose, old.articulated
             loads = self._loads_of(old, entity)
             commands: List[Command] = [replace(self._loading(entity), inherit=old.model_id),

@@ -14,6 +14,7 @@ from ..description.world import Light, Physics
 from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
+from .connections import Departed
 from .loads import Effort
 from .moments import Moment
 from .order import Turn
@@ -48,20 +49,17 @@ class Group:
 
 @dataclass(frozen=True)
 class AddModel:
-    """A model comes, at `pose`, or with the state it had; last, or where its turn is."""
+    """A model comes, at `pose`, or with the state it had; or it comes back."""
 
     model: Model
     pose: Pose
     meshes: MeshTable = field(default_factory=dict)
     state: Optional[ModelState] = None
-    turn: Optional[Turn] = None
+    back: Optional[Departed] = None
 
     def apply(self, world: Simulator) -> Operation:
         """Put it in."""
-        if self.turn is None:
-            world.spawn(self.model, self.pose, meshes=self.meshes, state=self.state)
-        else:
-            world.bring_back(self.model, self.pose, self.meshes, self.state, self.turn)
+        world.spawn(self.model, self.pose, meshes=self.meshes, state=self.state, back=self.back)
         return RemoveModel(self.model.name)
 
 
@@ -77,10 +75,9 @@ class RemoveModel:
         entities, snapshot = world.moment()
         entity = next(one for one in entities if one.model.name == self.name)
         state = entity.saved(snapshot) if entity.link_names else None
-        turn = Turn.of([one.model.name for one in entities], self.name)
-        back = AddModel(entity.model, entity.initial_pose, entity.meshes, state, turn)
         pose = entity.pose
-        world.delete(self.name)
+        back = AddModel(entity.model, entity.initial_pose, entity.meshes, state,
+                        world.delete(self.name))
         return back if state is not None else Group((back, Place({self.name: pose})))
 
 

@@ -157,7 +157,6 @@ class Registry:
         self.ambiguous: Callable[[str], object] = _nobody
         self._told: Set[Tuple[str, str]] = set()
         self._entities: Dict[str, Entity] = {}
-        self._turns: Dict[str, Turn] = {}
         self._plain_links: Dict[str, List[Tuple[Entity, int]]] = {}
         self.revision = 0
 
@@ -172,27 +171,16 @@ class Registry:
         """All entities, in order."""
         return list(self._entities.values())
 
-    def add(self, entity: Entity) -> None:
-        """A model has come; it goes last, also when it replaces one of its name.
-
-        One that is `awaited` goes to its place at once, so that nobody sees it elsewhere.
-        """
+    def add(self, entity: Entity, turn: Optional[Turn] = None) -> None:
+        """A model has come: where its turn is, or last, also when it replaces one of its name."""
         if entity.model.name in self._entities:
             self.remove(entity.model.name)
         self._entities[entity.model.name] = entity
         for index, link in enumerate(entity.link_names):
             self._plain_links.setdefault(link, []).append((entity, index))
-        turn = self._turns.get(entity.model.name)
         if turn is not None:
             self._put(entity, turn)
         self.revision += 1
-
-    def awaited(self, name: str, turn: Optional[Turn]) -> None:
-        """Where a model of that name goes when it comes; None: it is not awaited any more."""
-        if turn is not None:
-            self._turns[name] = turn
-        else:
-            self._turns.pop(name, None)
 
     def swap(self, old: Entity, new: Entity) -> None:
         """A model has become another, in the same place of the order."""

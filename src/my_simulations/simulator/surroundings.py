@@ -7,8 +7,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, List, Optional, Tuple
 
-from ..description.model import Model
-from ..description.shapes import MeshTable
 from ..description.world import (
     Atmosphere,
     GuiCamera,
@@ -17,7 +15,6 @@ from ..description.world import (
     SphericalCoordinates,
     Wind,
 )
-from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..formats.surroundings import with_surroundings
 from ..geometry import Pose, Vec3, compose, normalised, pose_is_finite
@@ -28,21 +25,6 @@ from .registry import Entity, UnknownEntity
 
 class Surroundings(ModelEdits):
     """Everything the engine need not know."""
-
-    def bring_back(self, model: Model, pose: Pose, meshes: MeshTable,
-                   state: Optional[ModelState], turn: Turn) -> None:
-        """Spawn a model (see there) that has been here before, at its place in the order.
-
-        Raises CommandError.
-        """
-        with self._order:
-            with self._lock:
-                self._registry.awaited(model.name, turn)
-            try:
-                self.spawn(model, pose, meshes=meshes, state=state)
-            finally:
-                with self._lock:
-                    self._registry.awaited(model.name, None)
 
     # -- lights ----------------------------------------------------------------------------------
 
