@@ -215,6 +215,38 @@ def test_a_driven_joint_is_driven_on_after_an_edit_and_a_crash(start):
     assert sim.drives("arm::hinge") == ()
 
 
+def test_a_world_whose_files_have_gone_is_reset_by_another_engine(start, tmp_path, monkeypatch):
+    from test_contact import _cube_mesh
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    mesh = Mesh("cube", "/cube")
+    sim = start()
+    sim.spawn(Model("cube", links=[Link("link", inertial=Inertial(1, Pose(), 1, 0, 0, 1, 0, 1),
+                                        collisions=[Collision("c", mesh)])]),
+              Pose((0, 0, 5)), meshes={mesh_key(mesh): _cube_mesh()})
+
+    def lose_files():
+        found = list(tmp_path.glob("my_simulations_scratch_*/*.obj"))
+        assert found
+        for file in found:
+            file.unlink()
+
+    lose_files()
+    sim.advance(300)
+    with pytest.raises(EngineLost):
+        sim.reset_simulation()
+    assert sim.model_state("cube")[0].position[2] == pytest.approx(5 - 0.441, abs=0.01)
+    sim.reset_simulation()
+    sim.advance(300)
+    lose_files()
+    sim.reset_simulation()   # known how it looks, and built at the next step
+    assert sim.model_state("cube")[0].position == (0, 0, 5)
+    with pytest.raises(EngineLost):
+        sim.advance(1)
+    assert sim.model_state("cube")[0].position == (0, 0, 5)
+    sim.advance(300)
+    assert sim.model_state("cube")[0].position[2] == pytest.approx(5 - 0.441, abs=0.01)
+
+
 def test_a_moving_concave_mesh_is_divided_before_it_is_spawned(start, tmp_path, monkeypatch):
     from test_contact import _cube_mesh
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))

@@ -1,6 +1,7 @@
 """A world that begins anew without being loaded again."""
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from typing import Dict
 
@@ -11,7 +12,7 @@ from test_contact import _cube_mesh
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh, mesh_key
-from my_simulations.engine.api import Refused
+from my_simulations.engine.api import Broken, Refused
 from my_simulations.engine.commands import Clear, Restart, SetAxes, SetJoints
 from my_simulations.geometry import Pose
 
@@ -55,8 +56,9 @@ def _run(lab: Lab) -> bytes:
 def test_a_world_restarted_gives_the_same_bits(lab):
     starts = tuple(_filled(lab).items())
     expected = _run(lab)
-    for _ in range(2):
-        lab.apply(Restart(starts))
+    for times in (1, 1, 3):
+        for _ in range(times):
+            lab.apply(Restart(starts))
         assert _run(lab) == expected
 
 
@@ -79,6 +81,68 @@ def test_models_come_back_where_the_restart_says_and_no_others(lab):
     with pytest.raises(Refused, match="not there"):
         lab.remove(gone)
     assert pybullet.getNumBodies() == 1
+
+
+def test_a_world_known_to_begin_so_is_shown_at_once_and_built_when_it_is_used(lab, monkeypatch):
+    number = lab.load(arm("revolute", JointAxis((0, 1, 0))), (0, 0, 4))
+    falls = lab.load(box(), (0, 0, 9))
+    restart = Restart(((number, Pose((0, 0, 4))), (falls, Pose((0, 0, 9)))))
+    lab.apply(restart)
+    lab.backend.read()
+    begun = [bytes(table) for table in lab.backend.tables()]
+    made = []
+    new_world = pybullet.resetSimulation
+    monkeypatch.setattr(pybullet, "resetSimulation", lambda: made.append(1) or new_world())
+    uses = [lambda: lab.steps(1), lambda: lab.push(falls, (1, 0, 0)),
+            lambda: lab.configure(gravity=(0, 0, -1)), lambda: lab.load(box("other"), (5, 0, 0))]
+    for n, use in enumerate(uses, 1):
+        lab.steps(50)
+        for _ in range(3):
+            lab.apply(restart)
+            assert lab.backend.read() and lab.backend.read_poses()
+            assert [bytes(table) for table in lab.backend.tables()] == begun
+            assert len(made) == n - 1
+        use()
+        assert len(made) == n
+    assert lab.pose(falls).position == (0, 0, 9)
+
+
+def test_a_world_begins_where_the_restart_says_though_it_has_begun_elsewhere_before(lab):
+    number = lab.load(box(), (0, 0, 9))
+    for z in (9.0, 9.0, 7.0, 7.0, 9.0):
+        lab.apply(Restart(((number, Pose((0, 0, z))),)))
+        lab.backend.read()
+        assert lab.pose(number).position == (0, 0, z)
+        lab.steps(1)
+        assert z - 1e-4 < lab.pose(number).position[2] < z
+
+
+def test_a_restart_takes_out_what_it_does_not_name_also_when_it_was_made_before(lab):
+    kept, gone = lab.load(box("kept")), lab.load(box("gone"), (5, 0, 0))
+    both = Restart(((kept, Pose()), (gone, Pose((5, 0, 0)))))
+    lab.apply(both)
+    lab.apply(both)
+    lab.apply(Restart(((kept, Pose()),)))
+    lab.steps(1)
+    assert pybullet.getNumBodies() == 1
+
+
+def test_an_emptied_world_is_not_filled_again(lab):
+    number = lab.load(box())
+    restart = Restart(((number, Pose()),))
+    lab.apply(restart)
+    lab.apply(restart)
+    lab.apply(Clear())
+    lab.steps(1)
+    assert pybullet.getNumBodies() == 0
+
+
+def test_an_engine_that_cannot_build_a_world_again_ends(lab):
+    _filled(lab)
+    for path in lab.backend._shapes._files.values():
+        os.remove(path)
+    with pytest.raises(Broken, match="built again"):
+        lab.apply(Restart(tuple((number, Pose()) for number in lab.backend._models)))
 
 
 def test_a_restart_with_a_model_that_is_not_there_changes_nothing(lab):

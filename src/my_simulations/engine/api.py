@@ -88,11 +88,18 @@ class Refused(Exception):
     """A command that cannot be carried out; the message is one sentence for the user."""
 
 
+class Broken(Exception):
+    """The world is lost half way through a change: this engine ends, and another takes over."""
+
+
 class Backend(Protocol):
     """Who moves the bodies, one step at a time; `engine.runner` drives it."""
 
     def apply(self, command: Command) -> object:
-        """Carry out a command that changes the world; raises `Refused`, then nothing changed."""
+        """Carry out a command that changes the world.
+
+        Raises `Refused`, then nothing changed, or `Broken`.
+        """
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use other settings from the next step on."""

@@ -259,7 +259,8 @@ class Clear(Command):
 class Restart(Command):
     """As `Clear`, and then these models in again as they are described, in this order, at rest.
 
-    Quicker than loading each: nothing has to be read or worked out again.
+    Quicker than loading each: nothing has to be read or worked out again, and an engine that knows
+    how the world looks when it begins may answer before it has built it.
 
     Attributes:
         models: numbers and world poses of the model frames. What is not named stays out.

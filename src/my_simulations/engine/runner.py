@@ -10,7 +10,7 @@ import time
 import traceback
 from typing import List, Optional, Protocol, Tuple
 
-from .api import Backend, Event, Refused, Reply
+from .api import Backend, Broken, Event, Refused, Reply
 from .commands import (
     AddLoads,
     Advance,
@@ -129,6 +129,8 @@ class Runner:
                     answers.append((number, value, ""))
             except Refused as refusal:
                 answers.append((number, None, str(refusal)))
+            except Broken:
+                raise
             except Exception as fault:  # a fault of the engine's own must not end the world
                 traceback.print_exc()
                 answers.append((number, None, f"the physics engine failed: {fault!r}"))

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Tuple, Type
+from typing import Any, Callable, Dict, List, Optional, Tuple, Type
 
 import pybullet
 
@@ -11,7 +11,7 @@ from ...geometry import (
     Pose,
     pose_is_finite,
 )
-from ..api import Event, Refused
+from ..api import Broken, Event, Refused
 from ..commands import (
     AddLoads,
     Clear,
@@ -46,6 +46,7 @@ from .readout import Readout
 from .restore import Entry, inherited, restore
 from .shapes import ShapeError, ShapeFactory
 from .spin import SpinKeeper
+from .starts import Starts
 from .ties import Ties
 from .wake import Waker
 
@@ -75,9 +76,11 @@ class BulletBackend:
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
                          self._decay, self._readout)
         self._events: List[Event] = []
+        self._starts = Starts(self._readout)
+        self._put_off: Optional[Restart] = None
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
-            Restart: self._restart,
+            Restart: self._put_off_restart,
             SetModelState: lambda command: self._mover.set_model(
                 command, self._entry(command.model_id)),
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
@@ -92,10 +95,13 @@ class BulletBackend:
 
     def apply(self, command: Command) -> object:
         """Carry out a command; raises `Refused`."""
+        if not isinstance(command, (Restart, Clear)):
+            self._settle()
         return self._appliers[type(command)](command)
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use other settings from the next step on; a changed gravity wakes everything."""
+        self._settle()
         before, self._settings = self._settings, settings
         if settings.gravity != before.gravity:
             self._waker.everything()  # first: Bullet tells only awake bodies of a new gravity
@@ -110,6 +116,7 @@ class BulletBackend:
 
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
+        self._settle()
         self._readout.stepped()
         one = pybullet.stepSimulation
         if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
@@ -131,11 +138,11 @@ class BulletBackend:
 
     def read(self) -> bool:
         """Bring the tables up to date."""
-        return self._readout.read()
+        return self._put_off is not None or self._readout.read()
 
     def read_poses(self) -> bool:
         """Bring the poses in the link table up to date."""
-        return self._readout.read_poses()
+        return self._put_off is not None or self._readout.read_poses()
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows."""
@@ -198,11 +205,33 @@ class BulletBackend:
             joints.set_up(body, model, self._forces, dt)
         return entry
 
+    def _put_off_restart(self, command: Restart) -> None:
+        """Show the world as it begins at once, where that is known, and build it when it is used.
+
+        Whoever asked need not wait for that, and several resets in a row build it once. What the
+        tables show is also what another engine would begin with, should this one end on the way.
+        """
+        entries = [(self._entry(number), pose) for number, pose in command.models]
+        if len(entries) == len(self._models) and self._starts.show(entries):
+            self._put_off = command
+            return
+        self._restart(command)
+        self._starts.keep([(self._entry(number), pose) for number, pose in command.models])
+
+    def _settle(self) -> None:
+        """Do what was put off."""
+        if self._put_off is not None:
+            command, self._put_off = self._put_off, None
+            self._restart(command)
+
     def _restart(self, command: Restart) -> None:
         before = [(number, self._entry(number), pose) for number, pose in command.models]
         self._clear(Clear())
-        for number, entry, pose in before:
-            self._enter(number, entry.builder, entry.model, entry.first_row, pose)
+        try:
+            for number, entry, pose in before:
+                self._enter(number, entry.builder, entry.model, entry.first_row, pose)
+        except (Refused, pybullet.error) as fault:  # what could be built before: files have gone
+            raise Broken(f"the world could not be built again: {fault}") from fault
 
     def _inherited(self, command: LoadModel) -> ModelState:
         self._readout.read()
@@ -253,6 +282,7 @@ class BulletBackend:
                             if row >= 0])
 
     def _clear(self, _: Clear) -> None:
+        self._put_off = None
         for entry in self._models.values():
             for body in entry.bodies:
                 self._readout.forget(body)

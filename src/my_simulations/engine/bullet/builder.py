@@ -60,6 +60,7 @@ class Builder:
 
     Attributes:
         plans: which links make a body.
+        link_rows, joint_rows: those of the tables that are the model's.
     """
 
     def __init__(self, command: LoadModel, shapes: ShapeFactory) -> None:
@@ -71,6 +72,10 @@ class Builder:
         self._shapes = shapes
         self._axis_rows = {row.name: command.first_joint_row + n
                            for n, row in enumerate(axis_rows(command.model))}
+        self.link_rows = slice(command.first_link_row,
+                               command.first_link_row + len(command.model.links))
+        self.joint_rows = slice(command.first_joint_row,
+                                command.first_joint_row + len(self._axis_rows))
         self._eases: Dict[int, float] = {}
         self.plans = plan_bodies(command.model)
         self._prints = [self._rigid(plan, command.meshes) if self._is_rigid(plan)
