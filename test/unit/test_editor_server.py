@@ -5,7 +5,7 @@ import asyncio
 
 import aiohttp
 import pytest
-from editor_case import Browser, Case, Refused, arm, box, cases, sun
+from editor_case import DEADLINE, Browser, Case, Refused, arm, box, cases, sun
 
 from my_simulations.errors import CommandError, error
 from my_simulations.geometry import STILL, Pose, Twist
@@ -62,6 +62,33 @@ def test_poses_of_what_moves_come_and_of_nothing_else(case):
         await browser.until(lambda: browser.link_pose("flying")[0] > first + 0.2)
         assert {frame[3] for frame in browser.frames[count:]} == {1}
         assert browser.frames[-1][0] == 1
+
+    made.browse(watch)
+
+
+def test_a_world_that_stands_still_is_looked_at_less_often_until_something_happens(case):
+    made = case(box("a"))
+    hub = made.server._editor.hub
+
+    async def quiet():
+        deadline = asyncio.get_running_loop().time() + DEADLINE
+        while not hub._quiet():
+            assert asyncio.get_running_loop().time() < deadline, "it never comes to rest"
+            await asyncio.sleep(0.01)
+
+    async def watch(browser):
+        await quiet()
+        made.sim.spawn(box("b"))          # by somebody else
+        await browser.until(lambda: browser.model("b"))
+        assert not hub._quiet()
+        await quiet()
+        await browser.ask("folders")      # by a page
+        assert not hub._quiet()
+        await quiet()
+        made.sim.unpause()
+        assert not hub._quiet()
+        made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((1.0, 0.0, 0.0)))
+        await browser.until(lambda: browser.link_pose("a")[0] > 0.1)
 
     made.browse(watch)
 

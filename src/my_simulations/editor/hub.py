@@ -23,6 +23,12 @@ from .protocol import Protocol
 
 _KEPT_ISSUES = 100
 _DEMAND = "editor"
+_QUIET_S = 1.0
+_QUIET_PERIOD_S = 0.2
+"""How often a world that stands still, and has for `_QUIET_S`, is looked at.
+
+Waking a sleeping processor costs more than the look does. What pages do ends the quiet at once.
+"""
 
 
 class Hub:
@@ -48,6 +54,7 @@ class Hub:
         self._loop = asyncio.get_running_loop()
         self._writer = ThreadPoolExecutor(1, "editor documents")
         self._nudged = asyncio.Event()
+        self._news_at = 0.0
         self._sequence = -1
         self._listeners = 0
         self._states_hz = 0.0
@@ -81,6 +88,12 @@ class Hub:
     def nudge(self) -> None:
         """Something may have changed: look now; safe from any thread."""
         self._soon(self._nudged.set)
+
+    def stir(self) -> None:
+        """A page does something: look often again."""
+        quiet, self._news_at = self._quiet(), self._loop.time()
+        if quiet:
+            self._nudged.set()
 
     def stats_soon(self) -> None:
         """Tell the time now; safe from any thread."""
@@ -168,7 +181,11 @@ class Hub:
                 self._loop.call_exception_handler(
                     {"message": "the editor failed to follow the world", "exception": defect})
                 await asyncio.sleep(1.0)
-            await self._pause(started + period)
+            await self._pause(started + (_QUIET_PERIOD_S if self._quiet() else period))
+
+    def _quiet(self) -> bool:
+        """Whether nothing has happened for a while, and nothing will by itself."""
+        return self.simulator.paused and self._loop.time() > self._news_at + _QUIET_S
 
     async def _pause(self, until: float) -> None:
         left = until - self._loop.time()
@@ -185,6 +202,7 @@ class Hub:
         sequence = self.simulator.ring.changes
         moved = sequence != self._sequence or self._behind()
         if moved:
+            self._news_at = self._loop.time()
             self._sequence = sequence
             # None: names have changed that clients have not heard of.
             self._poses, _ = self.now()

@@ -59,6 +59,7 @@ class Sockets:
         try:
             async for message in socket:
                 if message.type == WSMsgType.TEXT:
+                    self._hub.stir()
                     task = asyncio.ensure_future(self._handle(client, message.data))
                     tasks.add(task)
                     task.add_done_callback(tasks.discard)
