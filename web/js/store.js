@@ -6,7 +6,7 @@ import {compose, inverse} from './pose.js';
 
 const OVERLAY_FLAGS = Object.freeze([
   'grid', 'origin', 'transparent', 'wireframe', 'collisions', 'joints', 'com', 'inertia',
-  'contacts', 'frames',
+  'contacts', 'frames', 'skeleton',
 ]);
 
 /** What is never mentioned in a world file: how much of it the user wants to see. */

@@ -18,6 +18,7 @@ const OVERLAYS = [
   ['inertia', 'Inertias'],
   ['contacts', 'Contacts'],
   ['frames', 'Link Frames'],
+  ['skeleton', 'Skeletons'],
 ];
 
 /** Those of one model: no grid, no origin, no contacts. */

@@ -4,15 +4,17 @@ import {
   MeshBasicMaterial, MeshPhongMaterial, Quaternion, SRGBColorSpace, Vector3,
 } from 'three';
 import {equivalentBox} from '../inertia_math.js';
+import {skeletonOf} from '../skeleton.js';
 import {place} from './convert.js';
 import {meshOf, visualParts} from './geometry.js';
 import {arrow, ball, boxLines, empty, segments, through, triad} from './marks.js';
 import {patternCanvas} from './textures.js';
 
-const PER_MODEL = ['collisions', 'joints', 'com', 'inertia', 'frames'];
+const PER_MODEL = ['collisions', 'joints', 'com', 'inertia', 'frames', 'skeleton'];
 /** Density of lead: a ball of the link's mass is then small enough to see round. */
 const LEAD = 11340;
 const FRAME_SIZE = 0.25;
+const SOCKET_SIZE = 0.02;
 
 const collisionMaterial = new MeshPhongMaterial({color: 0xff8c1a, opacity: 0.4, transparent: true,
   depthWrite: false, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: -1,
@@ -23,6 +25,8 @@ const crossMaterial = new LineBasicMaterial({color: 0x33cc66, depthTest: false, 
 const contactMaterial = through(0x2563eb, 0.9);
 const normalMaterial = new LineBasicMaterial({color: 0x22d3ee, depthTest: false,
   transparent: true});
+const socketMaterial = through(0xf5f5f5, 0.9);
+const boneMaterial = new LineBasicMaterial({color: 0xf5f5f5, depthTest: false, transparent: true});
 const unitBox = new BoxGeometry(1, 1, 1);
 
 function massMaterial() {
@@ -70,6 +74,21 @@ function jointMark(joint) {
     if (!axis) continue;
     const mark = arrow(axis.xyz, axisMaterial);
     mark.scale.setScalar(0.45);
+    group.add(mark);
+  }
+  return group;
+}
+
+function skeletonMark(model, link) {
+  const {bones, sockets} = skeletonOf(model, link);
+  if (!bones.length) return null;
+  const group = new Group();
+  group.add(segments(bones.flat(), boneMaterial));
+  for (const at of sockets) {
+    const mark = new Mesh(ball, socketMaterial);
+    mark.position.set(...at);
+    mark.scale.setScalar(SOCKET_SIZE);
+    mark.renderOrder = 52;
     group.add(mark);
   }
   return group;
@@ -157,6 +176,7 @@ export class Overlays {
   #fill(group, flag, model, link) {
     const add = (mark) => mark && group.add(mark);
     if (flag === 'frames') add(triad(FRAME_SIZE));
+    else if (flag === 'skeleton') add(skeletonMark(model, link));
     else if (flag === 'collisions') this.#addCollisions(group, link);
     else if (flag === 'joints') {
       for (const joint of model.joints) if (joint.child === link.name) add(jointMark(joint));
