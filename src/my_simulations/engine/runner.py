@@ -39,7 +39,7 @@ from .ring import (
 
 _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
-_IDLE_S = 0.5            # heartbeat while paused
+_IDLE_S = 2.0            # heartbeat while paused
 _MAKE_UP_S = 0.05        # of read-outs that somebody waits for, after a delay
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled

@@ -28,7 +28,7 @@ NODE = "gazebo"
 END_SECONDS = 3.0
 """Longest orderly end; a thread that is stuck in a network call does not keep the process."""
 
-UPKEEP_SECONDS = 0.5
+UPKEEP_SECONDS = 1.0
 CLOCK_QUEUE = 1000
 """Messages a subscriber to `/clock` may be behind by: a second in real time."""
 
