@@ -4,12 +4,13 @@ from __future__ import annotations
 import asyncio
 import http.server
 import io
+import json
 import tarfile
 import threading
 
 import pytest
 from building_plans import two_rooms
-from editor_case import Case, Refused, arm, box
+from editor_case import Refused, arm, box, cases
 
 from my_simulations.building.plan_json import plan_to_json
 from my_simulations.editor.state_log import MAGIC, LogReader, LogWriter
@@ -24,17 +25,9 @@ SDF = ("<sdf version='1.7'><model name='{}'><link name='l'><visual name='v'><geo
 
 @pytest.fixture
 def case(tmp_path, monkeypatch):
-    made = []
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     monkeypatch.delenv("GAZEBO_MODEL_PATH", raising=False)
-
-    def make(*models, **options):
-        made.append(Case(tmp_path, models, **options))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
+    yield from cases(tmp_path)
 
 
 def model_folder(parent, name, title=""):
@@ -364,7 +357,7 @@ def test_a_log_that_was_cut_off_is_good_up_to_there(case, tmp_path):
     part = LogReader(str(cut))
     assert part.begin == whole.begin and part.end <= whole.end
     number, poses = part.seek(part.end)
-    assert part.document(number)["models"] and len(poses.ids)
+    assert json.loads(part.text(number))["models"] and len(poses.ids)
     for reader in (whole, part):
         reader.close()
 

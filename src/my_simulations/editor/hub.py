@@ -138,13 +138,17 @@ class Hub:
     def listen(self, more: int) -> None:
         """So many more (fewer) want poses."""
         self._listeners += more
-        self.want()
+        self._ask()
         self._sequence = -1
         self._nudged.set()
 
-    def want(self, states_hz: Optional[float] = None) -> None:
-        """Ask the engine for poses while somebody listens, and for whole states so often."""
-        self._states_hz = self._states_hz if states_hz is None else states_hz
+    def want(self, states_hz: float) -> None:
+        """Have the engine read whole states so often, not only poses, while somebody listens."""
+        if states_hz != self._states_hz:
+            self._states_hz = states_hz
+            self._ask()
+
+    def _ask(self) -> None:
         rate = self.protocol.limits["frames_hz"]
         self.simulator.set_demand(_DEMAND, poses_hz=rate if self._listeners else 0.0,
                                   states_hz=self._states_hz if self._listeners else 0.0)

@@ -157,11 +157,6 @@ class LogReader:
         shown = min(max(time, self.begin), self.end)
         return self._document_at(target), Poses(ids, values, position, shown, shown)
 
-    def document(self, number: int) -> Dict[str, Any]:
-        """The world document of that number."""
-        found: Dict[str, Any] = json.loads(self.text(number))
-        return found
-
     def text(self, number: int) -> bytes:
         """The JSON of the world document of that number."""
         if number < 0:

@@ -24,7 +24,6 @@ class Watching:
         self._task: "Optional[asyncio.Future[None]]" = None
         self._told: Tuple[int, int] = (-1, -1)
         self._fresh = False
-        self._wanted = False
         hub.on_tick.append(self._tick)
 
     def routes(self) -> Dict[str, Route]:
@@ -50,7 +49,8 @@ class Watching:
         for client in self._hub.clients.values():
             if client.live:
                 topics |= client.topics
-        self._demand(bool(topics))
+        # Twists and joints are read for frames only when they happen to be.
+        self._hub.want(self._hub.protocol.limits["watch_hz"] if topics else 0.0)
         ring = self._hub.simulator.ring
         now = (ring.step, ring.latest)
         if not topics or (now == self._told and not self._fresh):
@@ -58,12 +58,6 @@ class Watching:
         self._told, self._fresh = now, False
         self._due = loop.time() + 1.0 / self._hub.protocol.limits["watch_hz"]
         self._task = asyncio.ensure_future(self._send(topics))
-
-    def _demand(self, wanted: bool) -> None:
-        """Twists and joints are read for frames only when they happen to be: ask for them."""
-        if wanted != self._wanted:
-            self._wanted = wanted
-            self._hub.want(self._hub.protocol.limits["watch_hz"] if wanted else 0.0)
 
     async def _send(self, topics: Set[str]) -> None:
         loop = asyncio.get_running_loop()

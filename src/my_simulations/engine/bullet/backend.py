@@ -7,10 +7,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple, Type
 import pybullet
 
 from ...description.model import Model
-from ...geometry import (
-    Pose,
-    pose_is_finite,
-)
+from ...geometry import Pose, pose_is_finite
 from ..api import Broken, Event, Refused
 from ..commands import (
     AddLoads,
@@ -46,7 +43,7 @@ from .readout import Readout
 from .restore import Entry, inherited, restore
 from .shapes import ShapeError, ShapeFactory
 from .spin import SpinKeeper
-from .starts import Starts
+from .starts import Start, Starts
 from .ties import Ties
 from .wake import Waker
 
@@ -77,10 +74,10 @@ class BulletBackend:
                          self._decay, self._readout)
         self._events: List[Event] = []
         self._starts = Starts(self._readout)
-        self._put_off: Optional[Restart] = None
+        self._put_off: Optional[List[Start]] = None
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
-            Restart: self._put_off_restart,
+            Restart: self._restart,
             SetModelState: lambda command: self._mover.set_model(
                 command, self._entry(command.model_id)),
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
@@ -179,17 +176,15 @@ class BulletBackend:
             builder = Builder(command, self._shapes)
         except (PlanError, ShapeError) as fault:
             raise Refused(str(fault)) from fault
-        entry = self._enter(command.model_id, builder, command.model, command.first_link_row,
-                            command.pose)
+        entry = self._enter(builder, command.model, command.pose)
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
             restore(entry, state)
         self._waker.around(entry.bodies)
 
-    def _enter(self, model_id: int, builder: Builder, model: Model, first_row: int,
-               pose: Pose) -> Entry:
+    def _enter(self, builder: Builder, model: Model, pose: Pose) -> Entry:
         """Build a model and know it."""
-        dt = self._settings.step_size
+        dt, first_row = self._settings.step_size, builder.link_rows.start
         try:
             built = builder.build(pose, dt)
         except ShapeError as fault:
@@ -197,7 +192,7 @@ class BulletBackend:
         constraints = Constraints(model, builder.plans, built, pose,
                                   open_joints(model, builder.plans), first_row)
         entry = Entry(model, builder, built, first_row, pose, constraints)
-        self._models[model_id] = entry
+        self._models[builder.model_id] = entry
         for body in built:
             self._register(body)
             for part in body.parts:
@@ -205,31 +200,29 @@ class BulletBackend:
             joints.set_up(body, model, self._forces, dt)
         return entry
 
-    def _put_off_restart(self, command: Restart) -> None:
+    def _restart(self, command: Restart) -> None:
         """Show the world as it begins at once, where that is known, and build it when it is used.
 
         Whoever asked need not wait for that, and several resets in a row build it once. What the
         tables show is also what another engine would begin with, should this one end on the way.
         """
-        entries = [(self._entry(number), pose) for number, pose in command.models]
-        if len(entries) == len(self._models) and self._starts.show(entries):
-            self._put_off = command
-            return
-        self._restart(command)
-        self._starts.keep([(self._entry(number), pose) for number, pose in command.models])
+        starts = [(self._entry(number), pose) for number, pose in command.models]
+        if len(starts) == len(self._models) and self._starts.show(starts):
+            self._put_off = starts
+        else:
+            self._build_again(starts)
+            self._starts.keep(starts)
 
     def _settle(self) -> None:
         """Do what was put off."""
         if self._put_off is not None:
-            command, self._put_off = self._put_off, None
-            self._restart(command)
+            self._build_again(self._put_off)
 
-    def _restart(self, command: Restart) -> None:
-        before = [(number, self._entry(number), pose) for number, pose in command.models]
+    def _build_again(self, starts: List[Start]) -> None:
         self._clear(Clear())
         try:
-            for number, entry, pose in before:
-                self._enter(number, entry.builder, entry.model, entry.first_row, pose)
+            for entry, pose in starts:
+                self._enter(entry.builder, entry.model, pose)
         except (Refused, pybullet.error) as fault:  # what could be built before: files have gone
             raise Broken(f"the world could not be built again: {fault}") from fault
 

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -50,7 +50,7 @@ class _Tree:
 
     plan: BodyPlan
     masses: Tuple[_Masses, ...]
-    shapes: Tuple[Union[Recipe, None], ...]
+    shapes: Tuple[Optional[Recipe], ...]
     model_from_base: Pose
     arguments: Dict[str, Any]
 
@@ -59,6 +59,7 @@ class Builder:
     """What a model becomes: everything about its bodies that no pose changes.
 
     Attributes:
+        model_id: the model's number.
         plans: which links make a body.
         link_rows, joint_rows: those of the tables that are the model's.
     """
@@ -66,7 +67,7 @@ class Builder:
     def __init__(self, command: LoadModel, shapes: ShapeFactory) -> None:
         """Raises PlanError, ShapeError."""
         self._model: Model = command.model
-        self._model_id = command.model_id
+        self.model_id = command.model_id
         self._first_row = command.first_link_row
         self._articulated = command.articulated
         self._shapes = shapes
@@ -125,7 +126,7 @@ class Builder:
             for shape in ([piece.make() for piece in rigid.pieces] or [-1])
         ]
         part = self._part(rigid.number, BASE, masses)
-        body = Body(uids[0], self._model_id, [part], more=tuple(uids[1:]),
+        body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
                     may_sleep=self._may_sleep(link))
         for uid in uids:
@@ -182,7 +183,7 @@ class Builder:
         inertial = self._model.links[plan.links[n].index].inertial
         return _Masses(inertial.mass, *principal(inertial))
 
-    def _tree_shape(self, node: TreeLink, meshes: MeshTable) -> Union[Recipe, None]:
+    def _tree_shape(self, node: TreeLink, meshes: MeshTable) -> Optional[Recipe]:
         if node.index == NO_LINK:
             return None
         link = self._model.links[node.index]
@@ -220,7 +221,7 @@ class Builder:
         if tree.plan.fixed_base:
             pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
         self._ease(uid, axes)
-        return Body(uid, self._model_id, parts, axes, rigid=False, may_sleep=False,
+        return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
                     balls=tuple(balls))
 
     def _ease(self, uid: int, axes: Sequence[Axis]) -> None:

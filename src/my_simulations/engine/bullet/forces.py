@@ -144,9 +144,8 @@ class Forces:
             body, axis = self._axes[load.row]
             position, rate = pybullet.getJointState(body.uid, axis.index)[:2]
         if load.servo is not None:
-            loop = self._loops.setdefault(load.load_id, Loop(load.servo))
             most = effort_limit if effort_limit >= 0.0 else MOST_EFFORT
-            effort = loop.effort(position, rate, dt, most)
+            effort = self._loops[load.load_id].effort(position, rate, dt, most)
         if effort_limit >= 0.0:
             effort = max(-effort_limit, min(effort_limit, effort))
         if rate_limit >= 0.0 and abs(rate) > rate_limit and rate * effort > 0.0:
@@ -160,6 +159,8 @@ class Forces:
                 self.clear([load_id])
             elif step >= load.start and load_id not in self._acting:
                 self._acting[load_id] = load
+                if load.servo is not None:
+                    self._loops[load_id] = Loop(load.servo)
                 starting.append(load)
         if starting:
             self._wake([self._target(load) for load in starting])

@@ -109,14 +109,18 @@ class Readout:
             return False
         offset_rows: List[int] = []
         self._read_all(list(rigid.values()), offset_rows)
+        self._read_rest(trees, offset_rows)
+        self._stepped = False
+        return True
+
+    def _read_rest(self, trees: Dict[int, Body], offset_rows: List[int]) -> None:
+        """Trees, and what they and the rigid bodies may have woken; all rows to link frames."""
         for body in list(trees.values()):
             self._read_tree(body, offset_rows)
         if self._resting and self._stepped:
             self._look_around(offset_rows)
         if offset_rows:
             self._to_link_frames(offset_rows)
-        self._stepped = False
-        return True
 
     def read_poses(self) -> bool:
         """As `read`, for who only looks: twists of rigid bodies stay those of the last `read`.
@@ -126,16 +130,10 @@ class Readout:
         if not self._stepped and not self._touched:
             return False
         places: List[int] = []
-        offset_rows: List[int] = []
         self._read_places(list(self._awake.values()), places)
-        for body in list(self._trees.values()):
-            self._read_tree(body, offset_rows)
-        if self._resting and self._stepped:
-            self._look_around(offset_rows)
         if places:
             self._to_link_frames(places, twists=False)
-        if offset_rows:
-            self._to_link_frames(offset_rows)
+        self._read_rest(self._trees, [])
         return True
 
     def _read_places(self, todo: List[Body], offset_rows: List[int]) -> None:
