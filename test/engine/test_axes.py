@@ -9,7 +9,7 @@ from conftest import Lab, arm
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.engine.commands import FOREVER, AddLoads, Load, SetJoints
+from my_simulations.engine.commands import FOREVER, AddTimedForces, SetJoints, TimedEffort
 from my_simulations.geometry import Pose
 
 G = 9.8
@@ -30,7 +30,7 @@ def _felt(kind: str, mass: float) -> float:
 
 
 def _push(lab: Lab, model: int, effort: float) -> None:
-    lab.apply(AddLoads((Load(model, lab.joint_rows[model, "hinge"], lab.step, FOREVER,
+    lab.apply(AddTimedForces((TimedEffort(model, lab.joint_rows[model, "hinge"], lab.step, FOREVER,
                              effort=effort),)))
 
 

@@ -23,7 +23,13 @@ from my_simulations.description.shapes import (
     Surface,
     mesh_key,
 )
-from my_simulations.engine.commands import FOREVER, AddLoads, Load, SetJoints, SetModelState
+from my_simulations.engine.commands import (
+    FOREVER,
+    AddTimedForces,
+    SetJoints,
+    SetModelState,
+    TimedWrench,
+)
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
 G = 9.8
@@ -294,7 +300,7 @@ def test_a_sleeper_moves_when_a_static_body_is_put_into_it(lab: Lab):
 
 def test_a_sleeper_answers_a_wrench(lab: Lab):
     sleeper = _sleeper(lab)
-    lab.apply(AddLoads((Load(1, lab.rows[sleeper, "link"], lab.step, FOREVER,
+    lab.apply(AddTimedForces((TimedWrench(1, lab.rows[sleeper, "link"], lab.step, FOREVER,
                              force=(0, 0, 20.0)),)))
     lab.steps(500)
     assert lab.pose(sleeper).position[2] > 0.9

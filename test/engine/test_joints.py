@@ -11,13 +11,14 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.engine.api import Refused
 from my_simulations.engine.commands import (
     FOREVER,
-    AddLoads,
+    AddTimedForces,
     LinkState,
-    Load,
     ModelState,
     SetJoints,
     SetLinkState,
     SetModelState,
+    TimedEffort,
+    TimedWrench,
 )
 from my_simulations.geometry import (
     IDENTITY,
@@ -78,7 +79,9 @@ def test_a_joint_effort_accelerates_by_torque_over_inertia_for_its_steps(lab: La
     lab.configure(gravity=(0.0, 0.0, 0.0))
     model = lab.load(arm("revolute", JointAxis((0, 0, 1)), mass=2.0, moment=0.5))
     row = lab.joint_rows[model, "hinge"]
-    lab.apply(AddLoads((Load(1, row, 100, 200, effort=3.0), Load(2, row, 150, 200, effort=2.0))))
+    lab.apply(AddTimedForces((TimedEffort(1, row, 100, 200, effort=3.0), TimedEffort(2, row, 150,
+                                                                                     200,
+                                                                                     effort=2.0))))
     lab.steps(100)
     assert lab.joint(model)[1] == 0.0
     lab.steps(500)
@@ -89,9 +92,9 @@ def test_wrenches_add_up_and_act_exactly_in_their_steps(lab: Lab):
     lab.configure(gravity=(0.0, 0.0, 0.0))
     model = lab.load(box(mass=2.0))
     row = lab.rows[model, "link"]
-    lab.apply(AddLoads((Load(1, row, 10, 20, force=(4, 0, 0)),
-                        Load(2, row, 15, 20, force=(4, 0, 0)),
-                        Load(3, row, 10, 11, torque=(0, 0, 1)))))
+    lab.apply(AddTimedForces((TimedWrench(1, row, 10, 20, force=(4, 0, 0)),
+                        TimedWrench(2, row, 15, 20, force=(4, 0, 0)),
+                        TimedWrench(3, row, 10, 11, torque=(0, 0, 1)))))
     lab.steps(10)
     assert lab.twist(model) == Twist()
     lab.steps(50)
@@ -110,7 +113,7 @@ def test_wrenches_are_in_world_axes_or_in_link_axes_as_asked(lab: Lab, jointed: 
         model.joints.append(Joint("hinge", "revolute", "link", "tip", axis=JointAxis()))
     for in_link_axes, expected in ((False, (1, 0, 0)), (True, (0, 1, 0))):
         one = lab.load(model, (20.0 * in_link_axes, 0, 0), turned)
-        lab.apply(AddLoads((Load(one, lab.rows[one, "link"], lab.step, lab.step + 1,
+        lab.apply(AddTimedForces((TimedWrench(one, lab.rows[one, "link"], lab.step, lab.step + 1,
                                  force=(1000, 0, 0), torque=(100, 0, 0),
                                  in_link_axes=in_link_axes),)))
         lab.steps(1)
@@ -121,7 +124,7 @@ def test_wrenches_are_in_world_axes_or_in_link_axes_as_asked(lab: Lab, jointed: 
 def test_a_force_off_the_centre_turns_the_body(lab: Lab):
     lab.configure(gravity=(0.0, 0.0, 0.0))
     model = lab.load(box())
-    lab.apply(AddLoads((Load(1, lab.rows[model, "link"], 0, 1, force=(0, 10, 0),
+    lab.apply(AddTimedForces((TimedWrench(1, lab.rows[model, "link"], 0, 1, force=(0, 10, 0),
                              point=(0.5, 0, 0)),)))
     lab.steps(1)
     assert lab.twist(model).angular == pytest.approx((0, 0, 5e-3 * 6), abs=1e-9)
@@ -133,7 +136,9 @@ def test_a_torque_right_after_a_turn_meets_the_inertia_of_the_new_attitude(lab: 
     model = lab.load(rod)
     lab.steps(5)
     lab.apply(SetModelState(model, Pose((0, 0, 0), quat_from_rpy(math.pi / 2, 0, 0)), Twist()))
-    lab.apply(AddLoads((Load(1, lab.rows[model, "link"], 5, 6, torque=(0, 0, 100.0)),)))
+    lab.apply(
+        AddTimedForces((TimedWrench(1, lab.rows[model, "link"], 5, 6, torque=(0, 0, 100.0)),))
+    )
     lab.steps(1)
     assert lab.twist(model).angular == pytest.approx((0, 0, 0.1 / 2.0), abs=1e-9)
 
@@ -246,7 +251,9 @@ def test_a_state_is_restored_whole(lab: Lab):
 
 def test_loads_end_with_their_model(lab: Lab):
     model = lab.load(box())
-    lab.apply(AddLoads((Load(1, lab.rows[model, "link"], 0, FOREVER, force=(1, 0, 0)),)))
+    lab.apply(
+        AddTimedForces((TimedWrench(1, lab.rows[model, "link"], 0, FOREVER, force=(1, 0, 0)),))
+    )
     lab.remove(model)
     assert lab.backend._forces.idle
     lab.steps(5)
@@ -308,7 +315,7 @@ def test_a_gearbox_turns_the_other_wheel_the_other_way_by_its_ratio(lab: Lab):
               Joint("box", "gearbox", "a", "b", gearbox_ratio=3.0, gearbox_reference="frame",
                     axis=JointAxis(), axis2=JointAxis())]
     model = lab.load(Model("gears", links=links, joints=joints))
-    lab.apply(AddLoads((Load(1, lab.joint_rows[model, "ja"], 0, 500, effort=0.05),)))
+    lab.apply(AddTimedForces((TimedEffort(1, lab.joint_rows[model, "ja"], 0, 500, effort=0.05),)))
     lab.seconds(1)
     assert lab.joint(model, "ja")[0] > 0.1
     assert lab.joint(model, "jb")[0] == pytest.approx(-3.0 * lab.joint(model, "ja")[0], rel=1e-2)
@@ -323,7 +330,7 @@ def test_a_mimic_axis_follows_with_multiplier_and_offset(lab: Lab):
               Joint("jb", "prismatic", "frame", "b",
                     axis=JointAxis(mimic=Mimic("ja", -2.0, 0.1)))]
     model = lab.load(Model("grip", links=links, joints=joints))
-    lab.apply(AddLoads((Load(1, lab.joint_rows[model, "ja"], 0, 500, effort=2.0),)))
+    lab.apply(AddTimedForces((TimedEffort(1, lab.joint_rows[model, "ja"], 0, 500, effort=2.0),)))
     lab.seconds(1)
     leader = lab.joint(model, "ja")[0]
     assert leader > 0.05
@@ -357,7 +364,9 @@ def test_a_ball_joint_is_restored_with_its_turn_and_spin(lab: Lab):
                   joints=[Joint("socket", "ball", "a", "b",
                                 Pose((-0.3, 0, 0), quat_from_rpy(0.3, 0, 0)))])
     first = lab.load(model, (0, 0, 3))
-    lab.apply(AddLoads((Load(1, lab.rows[first, "b"], 0, 100, torque=(0.3, 0.2, 0.5)),)))
+    lab.apply(
+        AddTimedForces((TimedWrench(1, lab.rows[first, "b"], 0, 100, torque=(0.3, 0.2, 0.5)),))
+    )
     lab.steps(300)
     state = ModelState(tuple(LinkState(lab.pose(first, n), lab.twist(first, n)) for n in "ab"))
     assert max(map(abs, state.links[1].twist.angular)) > 0.3
@@ -376,8 +385,9 @@ def test_efforts_stay_within_the_limits_of_their_axis(lab: Lab):
     lab.configure(gravity=(0.0, 0.0, 0.0))
     weak = lab.load(arm("revolute", JointAxis((0, 0, 1), effort=1.0)))
     slow = lab.load(arm("revolute", JointAxis((0, 0, 1), velocity=0.5)), (5, 0, 0))
-    lab.apply(AddLoads(tuple(Load(n, lab.joint_rows[model, "hinge"], 0, FOREVER, effort=10.0)
-                             for n, model in enumerate((weak, slow)))))
+    lab.apply(AddTimedForces(tuple(TimedEffort(n, lab.joint_rows[model, "hinge"], 0, FOREVER,
+                                               effort=10.0) for n, model in enumerate((weak,
+                                                                                       slow)))))
     lab.steps(200)
     assert lab.joint(weak)[1] == pytest.approx(0.2 / 1.001, rel=1e-3)
     assert 0.5 < lab.joint(slow)[1] < 0.52
@@ -417,7 +427,7 @@ def test_a_spring_works_again_after_an_effort_beyond_all_numbers(lab: Lab):
     axis = JointAxis((0, 0, 1), spring_stiffness=0.05, damping=0.02)
     model = lab.load(arm("prismatic", axis, mass=1e-3, moment=1e-6))
     row = lab.joint_rows[model, "hinge"]
-    lab.apply(AddLoads((Load(1, row, 10, 20, effort=1e308),)))
+    lab.apply(AddTimedForces((TimedEffort(1, row, 10, 20, effort=1e308),)))
     lab.steps(30)
     assert abs(lab.joint(model)[0]) > 1e3
     lab.apply(SetJoints(((row, 0.0, 0.0),)))

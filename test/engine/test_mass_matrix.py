@@ -93,12 +93,12 @@ def test_a_body_that_comes_where_another_has_gone_has_its_own_masses():
     seen = {}
     for turn in range(30):
         count, mass = 1 + turn % 3, 1.0 + turn % 2
-        sim.spawn(chain(count, mass))
-        sim.drive("chain::j0", 1.0, start_ns=0, duration_ns=-1)
-        sim.advance(50)
-        rate = sim.joint_states("j0")[0][1]
+        sim.models.spawn(chain(count, mass))
+        sim.wrenches.apply_effort("chain::j0", 1.0, start_ns=0, duration_ns=-1)
+        sim.clock.advance(50)
+        rate = sim.joints.states("j0")[0][1]
         assert seen.setdefault((count, mass), rate) == pytest.approx(rate, rel=1e-9)
-        sim.delete("chain")
+        sim.models.delete("chain")
     sim.close()
     assert not faults
     assert len(set(seen.values())) == 6
@@ -111,13 +111,13 @@ def test_a_stiff_axis_keeps_its_law_when_a_lighter_body_was_there_before():
     damped = JointAxis((0, 0, 1), damping=1000.0)
     for mass in (0.01, 100.0):
         model = replace(arm("revolute", damped, mass=mass, gravity=False), name="arm")
-        sim.spawn(model)
-        entity = sim.inventory()[1][-1]
-        sim.drive("arm::hinge", 1000.0, start_ns=0, duration_ns=-1)
-        sim.advance(3000)
+        sim.models.spawn(model)
+        entity = sim.models.inventory()[1][-1]
+        sim.wrenches.apply_effort("arm::hinge", 1000.0, start_ns=0, duration_ns=-1)
+        sim.clock.advance(3000)
         inertia = mass + 1e-3
         assert entity.joint_names == ["hinge"]
-        assert sim.joint_states("hinge")[0][1] == pytest.approx(
+        assert sim.joints.states("hinge")[0][1] == pytest.approx(
             1.0 - math.exp(-3.0 * 1000.0 / inertia), rel=0.02)
-        sim.delete("arm")
+        sim.models.delete("arm")
     sim.close()

@@ -22,8 +22,8 @@ def swinging(axis, seconds=0.2):
                     paused=True, log=faults.append)
     try:
         sim.start()
-        sim.advance(round(seconds * 1000))
-        ((position, rate),) = sim.joint_states("j")
+        sim.clock.advance(round(seconds * 1000))
+        ((position, rate),) = sim.joints.states("j")
     finally:
         sim.close()
     assert faults == []
@@ -58,14 +58,14 @@ def thrown_arm(inertial, seconds=0.5):
                     engine_factory=lambda: InlineEngine(BulletBackend), log=faults.append)
     try:
         sim.start()
-        sim.set_model_state("m", Pose((0, 0, 9)), Twist((1.0, 0.0, 4.0), (3.0, -2.0, 5.0)))
-        sim.drive("second", 0.5)
-        sim.advance(round(seconds * 1000))
-        found = [number for n in range(3) for pose, twist in [sim.link_state(f"m::l{n}")]
+        sim.states.set_model_state("m", Pose((0, 0, 9)), Twist((1.0, 0.0, 4.0), (3.0, -2.0, 5.0)))
+        sim.wrenches.apply_effort("second", 0.5)
+        sim.clock.advance(round(seconds * 1000))
+        found = [number for n in range(3) for pose, twist in [sim.states.link_state(f"m::l{n}")]
                  for number in (*pose.position, *rotate(pose.orientation, (1, 0, 0)),
                                 *rotate(pose.orientation, (0, 1, 0)), *twist.angular)]
         found += [number for joint in ("first", "second")
-                  for number in sim.joint_states(joint)[0]]
+                  for number in sim.joints.states(joint)[0]]
     finally:
         sim.close()
     assert faults == []
@@ -111,18 +111,20 @@ def test_each_link_and_joint_of_a_branching_robot_is_itself(depth, width):
     sim = Simulator(World(gravity=(0, 0, 0)), engine_factory=lambda: InlineEngine(BulletBackend),
                     paused=True, log=lambda issue: None)
     sim.start()
-    sim.spawn(model)
+    sim.models.spawn(model)
     for link in model.links:
-        assert sim.link_state(f"tree::{link.name}")[0].position == pytest.approx(
+        assert sim.states.link_state(f"tree::{link.name}")[0].position == pytest.approx(
             link.pose.position, abs=1e-9)
     for joint in model.joints:
         if joint.type != "prismatic":
             continue
-        before = {link.name: sim.link_state(link.name)[0].position[2] for link in model.links}
-        sim.set_joints({joint.name: 0.25})
+        before = {
+            link.name: sim.states.link_state(link.name)[0].position[2] for link in model.links
+        }
+        sim.joints.set_positions({joint.name: 0.25})
         for link in model.links:
             carried = 0.25 if link.name.startswith(joint.child) else 0.0
-            assert sim.link_state(link.name)[0].position[2] == pytest.approx(
+            assert sim.states.link_state(link.name)[0].position[2] == pytest.approx(
                 before[link.name] + carried, abs=1e-9), (joint.name, link.name)
     sim.close()
 
@@ -132,17 +134,17 @@ def test_an_effort_on_a_branching_robot_meets_the_mass_of_its_own_link():
     sim = Simulator(World(gravity=(0, 0, 0)), engine_factory=lambda: InlineEngine(BulletBackend),
                     paused=True, log=lambda issue: None)
     sim.start()
-    sim.spawn(model)
+    sim.models.spawn(model)
     leaf = next(joint for joint in model.joints
                 if joint.type == "prismatic" and joint.child.count("_") == 2)
     mass = next(link for link in model.links if link.name == leaf.child).inertial.mass
     rest = sum(link.inertial.mass for link in model.links) - mass
-    sim.drive(leaf.name, 1.0, start_ns=0, duration_ns=-1)
-    sim.advance(1)
+    sim.wrenches.apply_effort(leaf.name, 1.0, start_ns=0, duration_ns=-1)
+    sim.clock.advance(1)
     # The leaf goes up by F / m; the rest, were it one body, down by F / M, and it gives way at
     # its other joints: the rate is at least the one of two rigid bodies.
-    rate = sim.joint_states(leaf.name)[0][1]
+    rate = sim.joints.states(leaf.name)[0][1]
     assert rate >= 1e-3 * (1.0 / mass + 1.0 / rest) * (1 - 1e-9)
-    velocity = sim.link_state(leaf.child)[1].linear[2]
+    velocity = sim.states.link_state(leaf.child)[1].linear[2]
     assert velocity == pytest.approx(1e-3 / mass, rel=1e-6)
     sim.close()

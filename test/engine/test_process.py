@@ -15,7 +15,7 @@ from conftest import arm, ball, box, ground
 from my_simulations.description.model import Inertial, JointAxis, Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import InitialState, Physics, World
-from my_simulations.engine.commands import FOREVER, Load, Servo
+from my_simulations.engine.commands import FOREVER, Servo, TimedWrench
 from my_simulations.engine.process import ProcessEngine
 from my_simulations.errors import CommandError, EngineLost
 from my_simulations.geometry import STILL, Pose, Twist
@@ -43,55 +43,57 @@ def start():
 def kill(sim: Simulator) -> int:
     pid = sim.engine_pid
     os.kill(pid, signal.SIGKILL)
-    deadline = time.monotonic() + 20
-    while sim.engine_pid == pid or not sim._supervisor._ready.is_set():
-        assert time.monotonic() < deadline, "no new engine came"
-        time.sleep(0.005)
+    until(lambda: sim.engine_pid != pid and sim._session.supervisor._ready.is_set(),
+          "no new engine came")
     return pid
 
 
+def until(condition, failure: str, seconds: float = 20.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, failure
+        time.sleep(0.005)
+
+
 def whole_state(sim: Simulator):
-    states = sim.states()
-    return states.model_poses, states.model_twists, states.link_poses, states.link_twists
+    return memoryview(sim.feed.states()[2]).cast("d").tolist()
 
 
 def test_a_killed_engine_comes_back_with_poses_twists_joints_time_and_loads(start):
     pendulum = arm("revolute", JointAxis((0, 1, 0)))
     sim = start(box(), ball(), pendulum)
-    sim.set_model_state("ball", Pose((3, 0, 5)), Twist((1, 2, 3), (4, 5, 6)))
-    sim.add_loads([Load(0, sim._registry.link("box::link")[0].first_link_row, 0, 400,
-                        force=(0, 0, 30.0))])
-    sim.advance(300)
-    before, joints = whole_state(sim), sim.joint_state("hinge")
-    clock = sim.sim_ns(), sim.step()
+    sim.states.set_model_state("ball", Pose((3, 0, 5)), Twist((1, 2, 3), (4, 5, 6)))
+    sim.wrenches.add([TimedWrench(0, sim._session.registry.link("box::link")[0].first_link_row, 0,
+                                  400, force=(0, 0, 30.0))])
+    sim.clock.advance(300)
+    before, joints = whole_state(sim), sim.joints.states("hinge")[0]
+    clock = sim.clock.sim_ns, sim.clock.step
     kill(sim)
-    for was, now in zip(before, whole_state(sim)):
-        for a, b in zip(was, now):
-            assert [v for part in b for v in part] == pytest.approx(
-                [v for part in a for v in part], abs=1e-9)
-    assert sim.joint_state("hinge") == pytest.approx(joints, abs=1e-12)
+    assert whole_state(sim) == pytest.approx(before, abs=1e-9)
+    assert sim.joints.states("hinge")[0] == pytest.approx(joints, abs=1e-12)
     assert joints[1] > 1.0
-    assert (sim.sim_ns(), sim.step()) == clock
+    assert (sim.clock.sim_ns, sim.clock.step) == clock
     assert sim.issues and "SIGKILL" in sim.issues[0].message
     # The pending 100 steps of the load still act, and no more than they.
-    speed = sim.model_state("box")[1].linear[2]
-    sim.advance(100)
-    assert sim.model_state("box")[1].linear[2] - speed == pytest.approx(0.1 * (30 - 9.8), rel=1e-6)
-    sim.advance(100)
-    assert sim.model_state("box")[1].linear[2] - speed == pytest.approx(
+    speed = sim.states.model_state("box")[1].linear[2]
+    sim.clock.advance(100)
+    assert sim.states.model_state("box")[1].linear[2] - speed == pytest.approx(0.1 * (30 - 9.8),
+                                                                               rel=1e-6)
+    sim.clock.advance(100)
+    assert sim.states.model_state("box")[1].linear[2] - speed == pytest.approx(
         0.1 * (30 - 9.8) - 0.98, rel=1e-6)
 
 
 def test_a_running_world_goes_on_after_a_crash_and_reads_never_fail(start):
     sim = start(ball(), paused=False)
-    sim.set_model_state("ball", Pose((0, 0, 50)), STILL)
+    sim.states.set_model_state("ball", Pose((0, 0, 50)), STILL)
     pid = sim.engine_pid
     os.kill(pid, signal.SIGKILL)
-    at, deadline = sim.step(), time.monotonic() + 20
-    while sim.engine_pid == pid or sim.step() <= at + 50:
-        assert 0.4 < sim.model_state("ball")[0].position[2] <= 50.0
+    at, deadline = sim.clock.step, time.monotonic() + 20
+    while sim.engine_pid == pid or sim.clock.step <= at + 50:
+        assert 0.4 < sim.states.model_state("ball")[0].position[2] <= 50.0
         assert time.monotonic() < deadline
-    assert sim.model_state("ball")[1].linear[2] < -0.01
+    assert sim.states.model_state("ball")[1].linear[2] < -0.01
 
 
 def test_a_command_that_kills_the_engine_is_answered_with_an_error(start):
@@ -101,29 +103,30 @@ def test_a_command_that_kills_the_engine_is_answered_with_an_error(start):
     import threading
     threading.Timer(0.3, os.kill, (pid, signal.SIGKILL)).start()
     with pytest.raises(EngineLost, match="SIGKILL"):
-        sim.set_model_state("box", Pose((5, 0, 0.5)), STILL)
-    assert sim.model_state("box")[0].position[0] == pytest.approx(0.0, abs=0.1)
-    sim.set_model_state("box", Pose((5, 0, 0.5)), STILL)
-    assert sim.model_state("box")[0].position[0] == pytest.approx(5.0, abs=0.1)
+        sim.states.set_model_state("box", Pose((5, 0, 0.5)), STILL)
+    assert sim.states.model_state("box")[0].position[0] == pytest.approx(0.0, abs=0.1)
+    sim.states.set_model_state("box", Pose((5, 0, 0.5)), STILL)
+    assert sim.states.model_state("box")[0].position[0] == pytest.approx(5.0, abs=0.1)
 
 
 def test_a_refused_model_leaves_nothing_behind(start):
     from test_joints import _chain
     sim = start()
     with pytest.raises(CommandError, match="129"):
-        sim.spawn(_chain(129))
-    assert sim.model_names() == ["ground"]
-    sim.spawn(_chain(3))
+        sim.models.spawn(_chain(129))
+    assert sim.models.names() == ["ground"]
+    sim.models.spawn(_chain(3))
 
 
 def test_a_state_that_becomes_infinite_is_put_back_and_reported(start):
     sim = start(box())
-    sim.advance(10)
-    sim.add_loads([Load(0, sim._registry.link("box::link")[0].first_link_row, 0, FOREVER,
-                        force=(1e308, 1e308, 0.0))])
-    sim.advance(20)
-    assert all(abs(v) < 1e300 for v in sim.model_state("box")[0].position)
-    assert any(issue.code == "state-diverged" for issue in sim.issues)
+    sim.clock.advance(10)
+    sim.wrenches.add([TimedWrench(0, sim._session.registry.link("box::link")[0].first_link_row, 0,
+                                  FOREVER, force=(1e308, 1e308, 0.0))])
+    sim.clock.advance(20)
+    assert all(abs(v) < 1e300 for v in sim.states.model_state("box")[0].position)
+    until(lambda: any(issue.code == "state-diverged" for issue in sim.issues),
+          "nobody was told of the infinite state")
 
 
 def test_the_engine_ends_with_its_parent():
@@ -151,7 +154,7 @@ def _state(pid: int) -> str:
 def _run(sim: Simulator) -> str:
     digest = hashlib.sha256()
     for _ in range(40):
-        sim.advance(50)
+        sim.clock.advance(50)
         digest.update(repr(whole_state(sim)).encode())
     return digest.hexdigest()
 
@@ -161,22 +164,22 @@ def test_the_same_world_and_commands_give_the_same_bits_in_another_process_and_a
     def build():
         sim = start(paused=True)
         for n in range(9):
-            sim.spawn(box(f"b{n}"), Pose((0.03 * n, 0.0, 0.5 + n)))
+            sim.models.spawn(box(f"b{n}"), Pose((0.03 * n, 0.0, 0.5 + n)))
         for n in range(3):   # slippery, in a ring of contacts
-            sim.spawn(box(f"s{n}", surface=Surface(mu=0.4)), Pose((5.0 + n, 0.0, 0.5)))
-        sim.spawn(arm("revolute", JointAxis((0, 1, 0), spring_stiffness=30.0, damping=2.0)),
+            sim.models.spawn(box(f"s{n}", surface=Surface(mu=0.4)), Pose((5.0 + n, 0.0, 0.5)))
+        sim.models.spawn(arm("revolute", JointAxis((0, 1, 0), spring_stiffness=30.0, damping=2.0)),
                   Pose((0, 6, 2)))
-        sim.spawn(ball("hitter"), Pose((-4, 0, 3)))
-        sim.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
-        sim.set_model_state("s0", Pose((5, 0, 0.5)), Twist((1, 0.5, 0)))
+        sim.models.spawn(ball("hitter"), Pose((-4, 0, 3)))
+        sim.states.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
+        sim.states.set_model_state("s0", Pose((5, 0, 0.5)), Twist((1, 0.5, 0)))
         return sim
 
     first, second = build(), build()
     expected = _run(first)
     assert _run(second) == expected
-    first.reset_simulation()
-    first.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
-    first.set_model_state("s0", Pose((5, 0, 0.5)), Twist((1, 0.5, 0)))
+    first.resets.reset_simulation()
+    first.states.set_model_state("hitter", Pose((-4, 0, 3)), Twist((9, 0, 0)))
+    first.states.set_model_state("s0", Pose((5, 0, 0.5)), Twist((1, 0.5, 0)))
     assert _run(first) == expected
 
 
@@ -189,11 +192,11 @@ def test_a_world_starts_at_its_saved_time_with_its_velocities_and_joint_position
     try:
         sim.start()
         for _ in range(2):   # again after a reset, which goes back to time 0
-            assert sim.model_state("ball")[1] == Twist((1, 0, 0), (0, 0, 2))
-            assert sim.joint_state("hinge") == (0.4, 0.0)
-            assert sim.sim_ns() == world.initial_ns
-            sim.advance(10)
-            sim.reset_simulation()
+            assert sim.states.model_state("ball")[1] == Twist((1, 0, 0), (0, 0, 2))
+            assert sim.joints.states("hinge")[0] == (0.4, 0.0)
+            assert sim.clock.sim_ns == world.initial_ns
+            sim.clock.advance(10)
+            sim.resets.reset_simulation()
             world.initial_ns = 0
     finally:
         sim.close()
@@ -201,18 +204,18 @@ def test_a_world_starts_at_its_saved_time_with_its_velocities_and_joint_position
 
 def test_a_driven_joint_is_driven_on_after_an_edit_and_a_crash(start):
     sim = start()
-    sim.spawn(arm("revolute", JointAxis((0, 0, 1))), Pose((0, 0, 2)))
-    sim.drive("arm::hinge", Servo(1.0, p=50.0, i=0.0, d=10.0))
-    for happens in (lambda: None, lambda: kill(sim), lambda: sim.set_link_inertial(
+    sim.models.spawn(arm("revolute", JointAxis((0, 0, 1))), Pose((0, 0, 2)))
+    sim.wrenches.apply_effort("arm::hinge", Servo(1.0, p=50.0, i=0.0, d=10.0))
+    for happens in (lambda: None, lambda: kill(sim), lambda: sim.models.set_link_inertial(
             "arm::bob", Inertial(1.5, Pose((1, 0, 0)), 0.1, 0, 0, 0.1, 0, 0.1))):
         happens()
-        sim.set_joints({"arm::hinge": 0.0})
-        sim.advance(3000)
-        assert sim.joint_state("arm::hinge")[0] == pytest.approx(1.0, abs=1e-3)
-    sim.reset_simulation()
-    sim.advance(100)
-    assert sim.joint_state("arm::hinge") == (0.0, 0.0)
-    assert sim.drives("arm::hinge") == ()
+        sim.joints.set_positions({"arm::hinge": 0.0})
+        sim.clock.advance(3000)
+        assert sim.joints.states("arm::hinge")[0][0] == pytest.approx(1.0, abs=1e-3)
+    sim.resets.reset_simulation()
+    sim.clock.advance(100)
+    assert sim.joints.states("arm::hinge")[0] == (0.0, 0.0)
+    assert sim.wrenches.efforts_on("arm::hinge") == ()
 
 
 def test_a_world_whose_files_have_gone_is_reset_by_another_engine(start, tmp_path, monkeypatch):
@@ -220,9 +223,11 @@ def test_a_world_whose_files_have_gone_is_reset_by_another_engine(start, tmp_pat
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     mesh = Mesh("cube", "/cube")
     sim = start()
-    sim.spawn(Model("cube", links=[Link("link", inertial=Inertial(1, Pose(), 1, 0, 0, 1, 0, 1),
-                                        collisions=[Collision("c", mesh)])]),
-              Pose((0, 0, 5)), meshes={mesh_key(mesh): _cube_mesh()})
+    sim.models.spawn(Model("cube", links=[Link("link", inertial=Inertial(1, Pose(), 1, 0, 0, 1, 0,
+                                                                         1),
+                                               collisions=[Collision("c", mesh)])]), Pose((0, 0,
+                                                                                           5)),
+                     meshes={mesh_key(mesh): _cube_mesh()})
 
     def lose_files():
         found = list(tmp_path.glob("my_simulations_scratch_*/*.obj"))
@@ -231,20 +236,20 @@ def test_a_world_whose_files_have_gone_is_reset_by_another_engine(start, tmp_pat
             file.unlink()
 
     lose_files()
-    sim.advance(300)
+    sim.clock.advance(300)
     with pytest.raises(EngineLost):
-        sim.reset_simulation()
-    assert sim.model_state("cube")[0].position[2] == pytest.approx(5 - 0.441, abs=0.01)
-    sim.reset_simulation()
-    sim.advance(300)
+        sim.resets.reset_simulation()
+    assert sim.states.model_state("cube")[0].position[2] == pytest.approx(5 - 0.441, abs=0.01)
+    sim.resets.reset_simulation()
+    sim.clock.advance(300)
     lose_files()
-    sim.reset_simulation()   # known how it looks, and built at the next step
-    assert sim.model_state("cube")[0].position == (0, 0, 5)
+    sim.resets.reset_simulation()   # known how it looks, and built at the next step
+    assert sim.states.model_state("cube")[0].position == (0, 0, 5)
     with pytest.raises(EngineLost):
-        sim.advance(1)
-    assert sim.model_state("cube")[0].position == (0, 0, 5)
-    sim.advance(300)
-    assert sim.model_state("cube")[0].position[2] == pytest.approx(5 - 0.441, abs=0.01)
+        sim.clock.advance(1)
+    assert sim.states.model_state("cube")[0].position == (0, 0, 5)
+    sim.clock.advance(300)
+    assert sim.states.model_state("cube")[0].position[2] == pytest.approx(5 - 0.441, abs=0.01)
 
 
 def test_a_moving_concave_mesh_is_divided_before_it_is_spawned(start, tmp_path, monkeypatch):
@@ -256,9 +261,9 @@ def test_a_moving_concave_mesh_is_divided_before_it_is_spawned(start, tmp_path, 
                  np.concatenate([cube.triangles + 8 * n for n in range(3)]))
     mesh = Mesh("u", "/u")
     sim = start()
-    sim.spawn(Model("u", links=[Link("link", inertial=Inertial(50, Pose(), 9, 0, 0, 9, 0, 9),
+    sim.models.spawn(Model("u", links=[Link("link", inertial=Inertial(50, Pose(), 9, 0, 0, 9, 0, 9),
                                      collisions=[Collision("c", mesh)])]),
               Pose((0, 0, 0.1)), meshes={mesh_key(mesh): u})
-    sim.spawn(ball(radius=0.3), Pose((0, 0, 1.2)))
-    sim.advance(2000)
-    assert sim.model_state("ball")[0].position[2] == pytest.approx(0.5, abs=0.05)
+    sim.models.spawn(ball(radius=0.3), Pose((0, 0, 1.2)))
+    sim.clock.advance(2000)
+    assert sim.states.model_state("ball")[0].position[2] == pytest.approx(0.5, abs=0.05)

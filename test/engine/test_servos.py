@@ -6,15 +6,29 @@ from closed_forms import oscillator
 from conftest import Lab, arm
 
 from my_simulations.description.model import JointAxis
-from my_simulations.engine.commands import FOREVER, AddLoads, ClearLoads, Load, Restart, Servo
+from my_simulations.engine.commands import (
+    FOREVER,
+    AddTimedForces,
+    ClearTimedForces,
+    Restart,
+    Servo,
+    TimedEffort,
+)
 from my_simulations.geometry import Pose
 
 UP = JointAxis((0, 0, 1))
 
 
 def _drive(lab: Lab, model: int, servo: Servo, number: int = 1) -> None:
-    lab.apply(AddLoads((Load(number, lab.joint_rows[model, "hinge"], lab.step, FOREVER, effort=0.0,
-                             servo=servo),)))
+    lab.apply(
+        AddTimedForces(
+            (
+                TimedEffort(
+                    number, lab.joint_rows[model, "hinge"], lab.step, FOREVER, effort=0.0, pid=servo
+                ),
+            )
+        )
+    )
 
 
 @pytest.mark.parametrize("p, d", [(4.0, 0.4), (100.0, 20.0), (400.0, 8.0)])
@@ -54,7 +68,7 @@ def test_a_loop_drives_no_harder_than_the_axis_may_be_driven(lab):
 
 def test_a_loop_ends_when_it_is_cleared_or_the_world_begins_anew(lab):
     model = lab.load(arm("revolute", UP))
-    for end in (lambda: lab.apply(ClearLoads((1,))),
+    for end in (lambda: lab.apply(ClearTimedForces((1,))),
                 lambda: lab.apply(Restart(((model, Pose()),)))):
         _drive(lab, model, Servo(5.0, rate=True))
         lab.steps(100)

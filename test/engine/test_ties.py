@@ -202,58 +202,58 @@ def start():
 
 def _hangs(sim: Simulator, name: str = "door") -> bool:
     """Whether the door's hinge is where it was, and it swings."""
-    pose, twist = sim.model_state(name)
+    pose, twist = sim.states.model_state(name)
     return pose.position == pytest.approx((0, 0, 2), abs=5e-3) and abs(twist.angular[1]) > 0.01
 
 
 def test_a_joint_of_the_world_survives_resets_edits_and_a_crash(start):
     sim = start(_world())
-    sim.advance(300)
+    sim.clock.advance(300)
     assert _hangs(sim)
-    sim.reset_simulation()
-    sim.advance(300)
+    sim.resets.reset_simulation()
+    sim.clock.advance(300)
     assert _hangs(sim)
-    sim.edit_model("door", replace(sim.model("door"), name="gate"))
-    sim.advance(100)
+    sim.models.edit("door", replace(sim.models.get("door"), name="gate"))
+    sim.clock.advance(100)
     assert _hangs(sim, "gate")
-    assert [joint.child for joint in sim.joints_between_models] == ["gate::l"]
+    assert [joint.child for joint in sim.models.inter_model_joints] == ["gate::l"]
     pid = sim.engine_pid
     os.kill(pid, signal.SIGKILL)
     deadline = time.monotonic() + 20
     while sim.engine_pid == pid:
         assert time.monotonic() < deadline
         time.sleep(0.005)
-    sim.advance(100)
+    sim.clock.advance(100)
     assert _hangs(sim, "gate")
-    sim.delete("post")
-    assert sim.joints_between_models == []
-    sim.advance(500)
-    assert sim.model_state("gate")[0].position[2] < 1.5
+    sim.models.delete("post")
+    assert sim.models.inter_model_joints == []
+    sim.clock.advance(500)
+    assert sim.states.model_state("gate")[0].position[2] < 1.5
 
 
 @pytest.mark.parametrize("gone", [["post"], ["door"], ["post", "door"], ["door", "post"]])
 def test_a_joint_of_the_world_comes_back_with_its_models(start, gone):
     sim = start(_world())
-    joints, names = sim.joints_between_models, sim.model_names()
+    joints, names = sim.models.inter_model_joints, sim.models.names()
     history = History(sim)
     for name in gone:
         history.do("delete", RemoveModel(name))
-    assert sim.joints_between_models == []
+    assert sim.models.inter_model_joints == []
     for _ in gone:
         history.undo()
-    assert (sim.joints_between_models, sim.model_names()) == (joints, names)
-    sim.advance(300)
+    assert (sim.models.inter_model_joints, sim.models.names()) == (joints, names)
+    sim.clock.advance(300)
     assert _hangs(sim)
     history.redo()
-    assert sim.joints_between_models == []
+    assert sim.models.inter_model_joints == []
 
 
 def test_an_edit_that_takes_the_link_away_ends_the_joint(start):
     sim = start(_world())
-    sim.edit_model("post", replace(sim.model("post"), links=[Link("other")]))
-    assert sim.joints_between_models == []
-    sim.advance(500)
-    assert sim.model_state("door")[0].position[2] < 1.5
+    sim.models.edit("post", replace(sim.models.get("post"), links=[Link("other")]))
+    assert sim.models.inter_model_joints == []
+    sim.clock.advance(500)
+    assert sim.states.model_state("door")[0].position[2] < 1.5
 
 
 def test_a_sliding_joint_of_the_world_makes_its_models_articulated(start):
@@ -261,9 +261,9 @@ def test_a_sliding_joint_of_the_world_makes_its_models_articulated(start):
     world.joints[0].type = "prismatic"
     world.joints[0].axis = JointAxis((1, 0, 0))
     sim = start(world)
-    sim.set_model_state("door", sim.model_state("door")[0], Twist((1, 0, 0)))
-    sim.advance(1000)
-    assert sim.model_state("door")[0].position == pytest.approx((1, 0, 2), abs=5e-3)
+    sim.states.set_model_state("door", sim.states.model_state("door")[0], Twist((1, 0, 0)))
+    sim.clock.advance(1000)
+    assert sim.states.model_state("door")[0].position == pytest.approx((1, 0, 2), abs=5e-3)
 
 
 def test_a_joint_between_models_of_a_type_that_cannot_hold_is_told():
@@ -273,6 +273,6 @@ def test_a_joint_between_models_of_a_type_that_cannot_hold_is_told():
     try:
         sim.start()
         assert [issue.code for issue in issues] == ["joint-not-held"]
-        assert sim.joints_between_models == []
+        assert sim.models.inter_model_joints == []
     finally:
         sim.close()

@@ -35,7 +35,7 @@ def sim():
 
 
 def said(sim, model):
-    sim.spawn(model, model.pose)
+    sim.models.spawn(model, model.pose)
     return [(one.code, one.message) for one in arrival_advice(sim, model.name, {})]
 
 
@@ -52,7 +52,7 @@ def test_a_model_inside_others_is_told_with_them_and_them_alone(sim):
 
 
 def test_others_count_where_they_are_now(sim):
-    sim.set_model_state("high", Pose((9, 0, 5)), sim.model_state("high")[1])
+    sim.states.set_model_state("high", Pose((9, 0, 5)), sim.states.model_state("high")[1])
     assert said(sim, cube("new", 4.5)) == []
 
 

@@ -15,11 +15,26 @@ case = pytest.fixture(cases)
 
 def state(sim):
     """Descriptions and poses of everything."""
-    return ({name: (sim.model(name), sim.model_state(name)[0]) for name in sim.model_names()},
-            {light.name: light for light in sim.lights()}, sim.physics, sim.gravity,
-            {name: getattr(sim.world, name) for name in (
-                "scene", "gui_camera", "wind", "atmosphere", "magnetic_field",
-                "spherical_coordinates")})
+    return (
+        {
+            name: (sim.models.get(name), sim.states.model_state(name)[0])
+            for name in sim.models.names()
+        },
+        {light.name: light for light in sim.lights.all()},
+        sim.physics.settings,
+        sim.physics.gravity,
+        {
+            name: getattr(sim.world, name)
+            for name in (
+                "scene",
+                "gui_camera",
+                "wind",
+                "atmosphere",
+                "magnetic_field",
+                "spherical_coordinates",
+            )
+        },
+    )
 
 
 def same(a, b):
@@ -83,10 +98,10 @@ EDITS = {
 @pytest.mark.parametrize("op", EDITS.values(), ids=[name.replace(" ", "_") for name in EDITS])
 def test_an_edit_is_one_step_that_can_be_undone_and_done_again(case, op):
     made = case(box("a"), arm("arm"), lights=[sun()])
-    made.sim.set_model_state("a", Pose((0.0, 5.0, 0.5)), STILL)
+    made.sim.states.set_model_state("a", Pose((0.0, 5.0, 0.5)), STILL)
 
     async def edit(browser):
-        before = state(made.sim), made.sim.joint_states("arm::hinge")
+        before = state(made.sim), made.sim.joints.states("arm::hinge")
         await browser.ask("edit", op=op)
         after = state(made.sim)
         labels = browser.last("history")["undo"]
@@ -94,14 +109,14 @@ def test_an_edit_is_one_step_that_can_be_undone_and_done_again(case, op):
         assert browser.last("history")["dirty"]
         await browser.ask("undo")
         same(state(made.sim), before[0])
-        assert made.sim.joint_states("arm::hinge") == before[1]
+        assert made.sim.joints.states("arm::hinge") == before[1]
         assert browser.last("history")["undo"] == []
         assert not browser.last("history")["dirty"]
         await browser.ask("redo")
         same(state(made.sim), after)
         # What the page was told is what a page that comes now is told.
         await browser.until(lambda: {one["name"] for one in browser.document["models"]}
-                            == set(made.sim.model_names()))
+                            == set(made.sim.models.names()))
 
     made.browse(edit)
 
@@ -154,15 +169,15 @@ def test_one_thing_at_a_time_drives_a_joint_and_undo_gives_the_one_before(case):
     async def drive(browser):
         for (mode, value, more), expected in zip(asked, wanted):
             await browser.edit("joint", joint="arm::hinge", mode=mode, value=value, **more)
-            assert made.sim.drives("arm::hinge") == expected
+            assert made.sim.wrenches.efforts_on("arm::hinge") == expected
         for expected in reversed([(), *wanted[:-1]]):
             await browser.ask("undo")
-            assert made.sim.drives("arm::hinge") == expected
+            assert made.sim.wrenches.efforts_on("arm::hinge") == expected
         for gains in ({"p": -1}, {"d": 1e99}, {"q": 1}):
             with pytest.raises(Refused):
                 await browser.edit("joint", joint="arm::hinge", mode="position", value=1,
                                    gains=gains)
-        assert made.sim.drives("arm::hinge") == ()
+        assert made.sim.wrenches.efforts_on("arm::hinge") == ()
 
     made.browse(drive)
 
@@ -199,13 +214,13 @@ def test_a_unit_shape_has_gazebos_size_and_inertia(case):
     async def insert(browser):
         for shape in ("box", "sphere", "cylinder"):
             await browser.edit("insert", shape=shape)
-        moments = {name: made.sim.model(f"unit_{name}").links[0].inertial for name in (
+        moments = {name: made.sim.models.get(f"unit_{name}").links[0].inertial for name in (
             "box", "sphere", "cylinder")}
         assert moments["box"].ixx == pytest.approx(1 / 6)
         assert moments["sphere"].izz == pytest.approx(0.1)
         assert moments["cylinder"].ixx == pytest.approx(0.1458, abs=1e-4)
         assert moments["cylinder"].izz == pytest.approx(0.125)
-        assert made.sim.model_state("unit_box")[0].position == (0.0, 0.0, 0.5)
+        assert made.sim.states.model_state("unit_box")[0].position == (0.0, 0.0, 0.5)
         await browser.until(lambda: browser.model("unit_box"))
         material = browser.model("unit_box")["links"][0]["visuals"][0]["material"]
         assert material["diffuse"] == [0.7, 0.7, 0.7, 1.0]
@@ -218,13 +233,13 @@ def test_a_scale_writes_real_sizes_and_keeps_the_mass(case):
 
     async def scale(browser):
         await browser.edit("scale", name="a", scale=[2, 3, 4])
-        link = made.sim.model("a").links[0]
+        link = made.sim.models.get("a").links[0]
         assert link.collisions[0].geometry.size == (2, 3, 4) == link.visuals[0].geometry.size
         assert link.inertial.mass == 1.0
         assert link.inertial.ixx == pytest.approx((9 + 16) / 12)
         assert link.inertial.iyy == pytest.approx((4 + 16) / 12)
         await browser.edit("scale", name="a", scale=[0.5, 1, 1])
-        assert made.sim.model("a").links[0].collisions[0].geometry.size == (1, 3, 4)
+        assert made.sim.models.get("a").links[0].collisions[0].geometry.size == (1, 3, 4)
 
     made.browse(scale)
 
@@ -235,11 +250,11 @@ def test_what_is_copied_can_be_pasted_together_with_its_places(case):
     async def paste(browser):
         text = (await browser.ask("copy", names=["a", "b"]))["text"]
         assert (await browser.edit("paste", text=text))["names"] == ["a_clone", "b_clone"]
-        assert made.sim.model_state("a_clone")[0].position == (1.0, 0.0, 0.5)
+        assert made.sim.states.model_state("a_clone")[0].position == (1.0, 0.0, 0.5)
         names = (await browser.edit("paste", text=text, pose=[0, 7, 0.5, 0, 0, 0, 1]))["names"]
         assert names == ["a_clone_0", "b_clone_0"]
-        assert made.sim.model_state("b_clone_0")[0].position == pytest.approx((0, 7, 0.5))
-        assert made.sim.model_state("a_clone_0")[0].position == pytest.approx((-2, 7, 0.5))
+        assert made.sim.states.model_state("b_clone_0")[0].position == pytest.approx((0, 7, 0.5))
+        assert made.sim.states.model_state("a_clone_0")[0].position == pytest.approx((-2, 7, 0.5))
         light = (await browser.ask("copy", names=["sun"]))["text"]
         assert (await browser.edit("paste", text=light))["name"] == "sun_clone"
         for names in ([], ["nix"]):
@@ -257,9 +272,9 @@ def test_a_model_with_nested_ones_is_copied_with_them(case):
     async def paste(browser):
         text = (await browser.ask("copy", names=["outer"]))["text"]
         await browser.edit("paste", text=text, pose=[5, 0, 0.5, 0, 0, 0, 1])
-        links = made.sim.model("outer_clone").links
+        links = made.sim.models.get("outer_clone").links
         assert [link.name for link in links] == ["link", "inner::link"]
-        assert made.sim.link_state("outer_clone::inner::link")[0].position == (5.0, 0.0, 2.5)
+        assert made.sim.states.link_state("outer_clone::inner::link")[0].position == (5.0, 0.0, 2.5)
 
     made.browse(paste)
 
@@ -271,9 +286,9 @@ def test_history_goes_back_and_forth_to_a_chosen_step(case):
         for _ in range(4):
             await browser.edit("insert", shape="box")
         assert (await browser.ask("undo", to=2))["label"] == "Insert unit_box_0"
-        assert made.sim.model_names() == ["unit_box"]
+        assert made.sim.models.names() == ["unit_box"]
         assert (await browser.ask("redo", to=1))["label"] == "Insert unit_box_1"
-        assert made.sim.model_names() == ["unit_box", "unit_box_0", "unit_box_1"]
+        assert made.sim.models.names() == ["unit_box", "unit_box_0", "unit_box_1"]
         await browser.edit("insert", shape="sphere")
         assert browser.last("history")["redo"] == []
         with pytest.raises(Refused):
@@ -290,7 +305,7 @@ def test_a_step_that_cannot_be_undone_any_more_is_told_and_forgotten(case):
     async def lose(browser):
         await browser.edit("insert", shape="box")
         await browser.edit("insert", shape="sphere")
-        made.sim.delete("unit_sphere")
+        made.sim.models.delete("unit_sphere")
         with pytest.raises(Refused, match="unit_sphere"):
             await browser.ask("undo")
         assert (await browser.ask("undo"))["label"] == "Insert unit_box"
@@ -302,15 +317,15 @@ def test_a_force_is_undone_with_what_it_did(case):
     made = case(box("a"), paused=False)
 
     async def push(browser):
-        before = made.sim.model_state("a")[0]
+        before = made.sim.states.model_state("a")[0]
         await browser.edit("wrench", link="a::link", force=[10, 0, 0], torque=[0, 0, 0], steps=5,
                            point=[0, 0, 0.5])
-        [load] = made.engine.backend.loads.values()
+        [load] = made.engine.backend.timed_forces.values()
         assert load.stop - load.start == 5
         assert load.force == (10, 0, 0) and load.point == pytest.approx((0, 0, 0.5))
-        made.sim.set_model_state("a", Pose((8, 0, 0)), STILL)
+        made.sim.states.set_model_state("a", Pose((8, 0, 0)), STILL)
         await browser.ask("undo")
-        assert made.sim.model_state("a")[0] == before
+        assert made.sim.states.model_state("a")[0] == before
 
     made.browse(push)
 
@@ -323,11 +338,11 @@ def test_names_shared_by_a_collision_and_a_visual_can_be_told_apart(case):
     async def colour(browser):
         await browser.edit("set", target="a::link::visual:collision", path="pose",
                            value=[0, 0, 1, 0, 0, 0, 1])
-        link = made.sim.model("a").links[0]
+        link = made.sim.models.get("a").links[0]
         assert link.visuals[0].pose.position == (0, 0, 1)
         assert link.collisions[0].pose.position == (0, 0, 0)
         await browser.edit("set", target="a::link::collision", path="transparency", value=0.5)
-        assert made.sim.model("a").links[0].visuals[0].transparency == 0.5
+        assert made.sim.models.get("a").links[0].visuals[0].transparency == 0.5
 
     made.browse(colour)
 
@@ -337,6 +352,6 @@ def test_edits_of_one_browser_are_carried_out_in_their_order(case):
 
     async def many(browser):
         await asyncio.gather(*(browser.edit("insert", shape="box") for _ in range(30)))
-        assert made.sim.model_names() == ["unit_box"] + [f"unit_box_{n}" for n in range(29)]
+        assert made.sim.models.names() == ["unit_box"] + [f"unit_box_{n}" for n in range(29)]
 
     made.browse(many)

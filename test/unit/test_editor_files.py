@@ -78,11 +78,11 @@ def test_a_saved_world_is_opened_as_it_was(case):
             await browser.ask("open", path="one.world")
         assert refused.value.code == "unsaved"
         await browser.ask("open", path="one.world", discard=True)
-        assert made.sim.model_state("a")[0].position == (1.0, 2.0, 0.5)
+        assert made.sim.states.model_state("a")[0].position == (1.0, 2.0, 0.5)
         await browser.until(lambda: browser.last("history")["undo"] == []
                             and not browser.last("history")["dirty"])
         await browser.ask("new")
-        assert made.sim.model_names() == ["ground_plane"]
+        assert made.sim.models.names() == ["ground_plane"]
         await browser.until(lambda: browser.last("history")["file"] == "")
 
     made.browse(run)
@@ -96,7 +96,7 @@ def test_a_file_that_is_no_world_leaves_the_old_one(case):
         for path in ("bad.world", "missing.world", "/etc/passwd"):
             with pytest.raises(Refused):
                 await browser.ask("open", path=path)
-        assert made.sim.model_names() == ["a"]
+        assert made.sim.models.names() == ["a"]
 
     made.browse(run)
 
@@ -164,7 +164,7 @@ def test_unsaved_edits_of_a_server_that_was_killed_are_offered_and_restored(case
         await browser.until(lambda: browser.last("autosave"))
         assert browser.last("autosave")["found"]
         await browser.ask("autosave", action="restore")
-        assert second.sim.model_state("unit_box")[0].position == (1, 1, 0.5)
+        assert second.sim.states.model_state("unit_box")[0].position == (1, 1, 0.5)
         await browser.until(lambda: browser.last("history")["dirty"])
         await browser.until(lambda: not browser.last("autosave")["found"])
         other = await Browser.open(browser.session, second.url)

@@ -172,7 +172,7 @@ def test_a_database_that_cannot_be_reached_is_told_and_holds_nobody_up(case, mon
 
 def test_plots_joints_and_contacts_are_sent_while_they_are_watched(case):
     made = case(box("a"), arm("arm"), paused=False)
-    made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
+    made.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
 
     def last(browser, topic):
         return next((push for push in reversed(browser.pushes)
@@ -215,7 +215,7 @@ def test_plots_joints_and_contacts_are_sent_while_they_are_watched(case):
 
 def test_the_engine_reads_whole_states_for_pages_only_while_something_is_watched(case):
     made = case(box("a"), paused=False)
-    words = made.sim.ring.words
+    words = made.sim._session.ring.words
 
     async def until(states, poses):
         for _ in range(1000):
@@ -259,7 +259,7 @@ def test_time_is_plotted_and_recorded_also_while_nothing_moves(case):
 
 def record(made, name="flight"):
     """A log in which `a` flies along x and a box comes in the middle; its path."""
-    made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
+    made.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
 
     async def fly(browser):
         assert (await browser.ask("log_start", name=name))["name"] == name
@@ -280,7 +280,7 @@ def record(made, name="flight"):
 
 def test_a_log_ends_where_steps_made_at_once_have_led(case):
     made = case(box("a"))
-    made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
+    made.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
 
     async def leap(browser):
         await browser.ask("log_start", name="leap")

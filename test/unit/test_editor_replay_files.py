@@ -55,7 +55,7 @@ def test_a_log_of_an_earlier_session_finds_its_meshes_and_textures(places, tmp_p
     texture = str(tmp_path / "models" / "m" / "bark.png")
     first = Case(tmp_path, [mesh_model(places["model"], texture=texture), *shown],
                  resolver=resolver(models, tmp_path / "robots"))
-    first.sim.world = replace(first.sim.world, file=str(places["near"].parent / "x.world"))
+    first.sim._session.world = replace(first.sim.world, file=str(places["near"].parent / "x.world"))
 
     async def record(browser):
         await browser.ask("log_start", name="flight")

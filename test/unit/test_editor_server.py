@@ -15,7 +15,7 @@ case = pytest.fixture(cases)
 
 def test_a_browser_gets_the_whole_world_with_present_poses(case):
     made = case(box("a", (1.0, 2.0, 3.0)), arm("b"), lights=[sun()])
-    made.sim.set_model_state("a", Pose((5.0, 0.0, 1.0)), STILL)
+    made.sim.states.set_model_state("a", Pose((5.0, 0.0, 1.0)), STILL)
 
     async def look(browser):
         assert [model["name"] for model in browser.document["models"]] == ["a", "b"]
@@ -40,11 +40,11 @@ def test_what_others_do_to_the_world_arrives_as_changes(case):
     made = case(box("a"))
 
     async def watch(browser):
-        made.sim.spawn(box("b"))
+        made.sim.models.spawn(box("b"))
         await browser.until(lambda: browser.model("b"))
-        made.sim.delete("a")
+        made.sim.models.delete("a")
         await browser.until(lambda: not browser.model("a"))
-        made.sim.add_light(sun())
+        made.sim.lights.add(sun())
         await browser.until(lambda: browser.light("sun"))
         assert browser.last("world") is browser.pushes[0]  # all of it was told by differences
 
@@ -53,7 +53,7 @@ def test_what_others_do_to_the_world_arrives_as_changes(case):
 
 def test_poses_of_what_moves_come_and_of_nothing_else(case):
     made = case(box("still"), box("flying"), paused=False)
-    made.sim.set_model_state("flying", Pose((0, 0, 9)), Twist((1.0, 0.0, 0.0)))
+    made.sim.states.set_model_state("flying", Pose((0, 0, 9)), Twist((1.0, 0.0, 0.0)))
 
     async def watch(browser):
         await browser.until(lambda: len(browser.poses) == 2)
@@ -78,16 +78,16 @@ def test_a_world_that_stands_still_is_looked_at_less_often_until_something_happe
 
     async def watch(browser):
         await quiet()
-        made.sim.spawn(box("b"))          # by somebody else
+        made.sim.models.spawn(box("b"))          # by somebody else
         await browser.until(lambda: browser.model("b"))
         assert not hub._quiet()
         await quiet()
         await browser.ask("folders")      # by a page
         assert not hub._quiet()
         await quiet()
-        made.sim.unpause()
+        made.sim.clock.unpause()
         assert not hub._quiet()
-        made.sim.set_model_state("a", Pose((0, 0, 9)), Twist((1.0, 0.0, 0.0)))
+        made.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((1.0, 0.0, 0.0)))
         await browser.until(lambda: browser.link_pose("a")[0] > 0.1)
 
     made.browse(watch)
@@ -127,11 +127,11 @@ def test_time_stands_and_goes_on_request(case):
 
     async def run(browser):
         step = (await browser.ask("step", steps=7))["step"]
-        assert step == 7 == made.sim.step()
+        assert step == 7 == made.sim.clock.step
         await browser.until(lambda: browser.last("stats")["iterations"] == 7)
         await browser.ask("play")
         await browser.until(lambda: not browser.last("stats")["paused"])
-        assert not made.sim.paused
+        assert not made.sim.clock.paused
         await browser.until(lambda: browser.last("stats")["factor"] > 0)
         await browser.ask("pause")
         await browser.until(lambda: browser.last("stats")["paused"])
@@ -223,11 +223,11 @@ def test_a_dragged_body_moves_live_and_a_move_is_one_step_from_where_it_was(case
         await browser.until(lambda: browser.link_pose("a") == pytest.approx([3.0, 0.0, 0.5]))
         assert browser.last("history")["undo"] == []
         await browser.edit("move", poses={"a": [4, 0, 0.5, 0, 0, 0, 1]}, label="translate")
-        assert made.sim.model_state("a")[0].position[0] == pytest.approx(4.0)
+        assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(4.0)
         await browser.ask("undo")
-        assert made.sim.model_state("a")[0].position[0] == pytest.approx(0.0)
+        assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(0.0)
         await browser.ask("redo")
-        assert made.sim.model_state("a")[0].position[0] == pytest.approx(4.0)
+        assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(4.0)
 
     made.browse(drag)
 
@@ -241,7 +241,7 @@ def test_a_drag_that_is_broken_off_goes_back(case):
         await browser.until(lambda: browser.light("sun")["pose"][0] == 7)
         await browser.tell("drag_end")
         await browser.until(lambda: browser.light("sun")["pose"][0] == 0)
-        assert made.sim.model_state("a")[0].position[0] == pytest.approx(0.0)
+        assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(0.0)
         other = await Browser.open(browser.session, made.url)
         await other.tell("drag", names=["a"], poses=[[9, 0, 0.5, 0, 0, 0, 1]])
         await browser.until(lambda: (browser.link_pose("a") or [0])[0] == pytest.approx(9.0))

@@ -25,12 +25,12 @@ def sim():
 
 
 def test_states_are_told_and_set_in_the_frame_of_a_light(sim):
-    sim.set_model_state("box", Pose((1.0, 0.0, 0.0)), STILL, "lamp")
-    assert sim.model_state("box")[0].position == pytest.approx((1.0, 3.0, 3.0))
-    assert sim.link_state("box::link", "lamp")[0].position == pytest.approx((1.0, 0.0, 0.0))
+    sim.states.set_model_state("box", Pose((1.0, 0.0, 0.0)), STILL, "lamp")
+    assert sim.states.model_state("box")[0].position == pytest.approx((1.0, 3.0, 3.0))
+    assert sim.states.link_state("box::link", "lamp")[0].position == pytest.approx((1.0, 0.0, 0.0))
 
 
 def test_a_light_that_is_gone_is_no_frame(sim):
-    sim.delete_light("lamp")
+    sim.lights.delete("lamp")
     with pytest.raises(UnknownFrame):
-        sim.model_state("box", "lamp")
+        sim.states.model_state("box", "lamp")

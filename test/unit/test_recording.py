@@ -48,13 +48,13 @@ class Running:
         self.sim = Simulator(World(models=[box("a")]), paused=True, log=self.issues.append,
                              engine_factory=lambda: InlineEngine(KinematicBackend), **options)
         self.sim.start()
-        self.sim.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
+        self.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
         self.recorder = Recorder(self.sim, Resolver.from_environment(), self.path, period,
                                  self.issues.append)
 
     def run_until(self, seconds):
-        self.sim.unpause()
-        wait_for(lambda: self.sim.sim_ns() >= seconds * 1e9)
+        self.sim.clock.unpause()
+        wait_for(lambda: self.sim.clock.sim_ns >= seconds * 1e9)
 
 
 @pytest.fixture
@@ -79,11 +79,11 @@ def x_at(log, seconds):
 def test_a_log_begins_before_the_first_step_and_ends_with_the_last(running):
     world = running()
     world.run_until(0.5)
-    world.sim.pause()
+    world.sim.clock.pause()
     world.recorder.stop()
     log = LogReader(world.path)
     assert log.begin == 0.0 and x_at(log, 0.0) == 0.0
-    assert log.end == pytest.approx(world.sim.sim_ns() * 1e-9)
+    assert log.end == pytest.approx(world.sim.clock.sim_ns * 1e-9)
     assert x_at(log, log.end) == pytest.approx(2.0 * log.end, abs=1e-3)
     assert document(log, log.seek(0.0)[0])["models"][0]["name"] == "a"
     log.close()
@@ -92,7 +92,7 @@ def test_a_log_begins_before_the_first_step_and_ends_with_the_last(running):
 def test_the_period_is_sim_time_between_states(running):
     world = running(0.25)
     world.run_until(1.1)
-    world.sim.pause()
+    world.sim.clock.pause()
     world.recorder.stop()
     log = LogReader(world.path)
     # 0, 0.25, 0.5, 0.75 and 1 s, the end, and until when nothing has moved since.
@@ -103,10 +103,10 @@ def test_the_period_is_sim_time_between_states(running):
 def test_models_that_come_and_go_are_in_the_log(running):
     world = running()
     world.run_until(0.2)
-    world.sim.spawn(box("b"))
-    came = world.sim.sim_ns() * 1e-9
+    world.sim.models.spawn(box("b"))
+    came = world.sim.clock.sim_ns * 1e-9
     world.run_until(came + 0.5)
-    world.sim.delete("b")
+    world.sim.models.delete("b")
     world.run_until(came + 1.0)
     world.recorder.stop()
     log = LogReader(world.path)
@@ -140,12 +140,12 @@ def test_a_world_that_stands_still_after_its_steps_is_recorded_to_the_last(runni
 
 def test_an_empty_world_has_a_log_with_times(running):
     world = running()
-    world.sim.delete("a")
+    world.sim.models.delete("a")
     world.run_until(0.2)
-    world.sim.pause()
+    world.sim.clock.pause()
     world.recorder.stop()
     log = LogReader(world.path)
-    assert log.end == pytest.approx(world.sim.sim_ns() * 1e-9)
+    assert log.end == pytest.approx(world.sim.clock.sim_ns * 1e-9)
     assert document(log, log.seek(log.end)[0])["models"] == []
     log.close()
 
@@ -158,8 +158,8 @@ def test_a_full_disk_is_one_error_and_the_world_goes_on(running):
     wait_for(lambda: world.issues)
     (issue,) = world.issues
     assert issue.severity is Severity.ERROR and "No space left" in issue.message
-    now = world.sim.sim_ns()
-    wait_for(lambda: world.sim.sim_ns() > now)
+    now = world.sim.clock.sim_ns
+    wait_for(lambda: world.sim.clock.sim_ns > now)
     world.recorder.stop()
     assert world.issues == [issue]
     log = LogReader(world.path)  # what was written before is good

@@ -79,7 +79,7 @@ def test_it_reads_a_running_world_with_joints_and_nested_models(faults, tmp_path
                     log=lambda issue: pytest.fail(str(issue)))
     try:
         sim.start()
-        sim.advance(7)
+        sim.clock.advance(7)
         path = save_world(sim, "s.world", roots=[str(tmp_path)])
     finally:
         sim.close()

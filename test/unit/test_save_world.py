@@ -75,21 +75,24 @@ def load(path):
 
 def test_a_world_that_was_saved_loads_with_the_same_poses_and_description(running, tmp_path):
     sim = running(box("crate"), arm("arm"), box("wall", static=True))
-    sim.set_model_state("crate", AWAY, Twist())
-    sim.set_model_state("wall", Pose((0, 0, 5.0)), Twist())
-    sim.advance(10)
+    sim.states.set_model_state("crate", AWAY, Twist())
+    sim.states.set_model_state("wall", Pose((0, 0, 5.0)), Twist())
+    sim.clock.advance(10)
     path = save_world(sim, "saved.world", roots=[str(tmp_path)])
     world = apply_state(load(path))
     again = running(world=world)
-    for name in sim.model_names():
-        assert differences(sim.model_state(name)[0], again.model_state(name)[0], 1e-6) == []
+    for name in sim.models.names():
+        assert (
+            differences(sim.states.model_state(name)[0], again.states.model_state(name)[0], 1e-6)
+            == []
+        )
     assert differences(present_world(sim).models, world.models, 1e-9) == []
-    assert world.initial_ns == sim.sim_ns() == 10_000_000
+    assert world.initial_ns == sim.clock.sim_ns == 10_000_000
 
 
 def test_saving_twice_gives_the_same_bytes(running, tmp_path):
     sim = running(box("crate"), arm("arm"))
-    sim.set_model_state("crate", AWAY, Twist())
+    sim.states.set_model_state("crate", AWAY, Twist())
     paths = [save_world(sim, name, roots=[str(tmp_path)]) for name in ("a.world", "b.world")]
     first, second = (open(path, "rb").read() for path in paths)
     assert first == second
@@ -97,7 +100,7 @@ def test_saving_twice_gives_the_same_bytes(running, tmp_path):
 
 def test_the_final_pose_stands_in_the_model_and_in_the_state(running, tmp_path):
     sim = running(box("crate"))
-    sim.set_model_state("crate", Pose((3.0, 2.0, 1.0)), Twist())
+    sim.states.set_model_state("crate", Pose((3.0, 2.0, 1.0)), Twist())
     root = etree.parse(save_world(sim, "s.sdf", roots=[str(tmp_path)])).getroot()
     assert root.findtext("world/model/pose") == "3 2 1 0 0 0"
     assert root.findtext("world/state/model/pose") == "3 2 1 0 0 0"
@@ -107,7 +110,7 @@ def test_the_final_pose_stands_in_the_model_and_in_the_state(running, tmp_path):
 
 def test_joint_positions_are_saved(running, tmp_path):
     sim = running(arm("arm"))
-    sim.set_joints({"hinge": 0.5})
+    sim.joints.set_positions({"hinge": 0.5})
     root = etree.parse(save_world(sim, "s.sdf", roots=[str(tmp_path)])).getroot()
     angle = root.find("world/state/model/joint/angle")
     assert (angle.get("axis"), angle.text) == ("0", "0.5")
@@ -115,15 +118,15 @@ def test_joint_positions_are_saved(running, tmp_path):
 
 def test_models_that_came_later_are_saved_and_those_that_went_are_not(running, tmp_path):
     sim = running(box("early"))
-    sim.spawn(box("late"), Pose((0, 0, 9.0)))
-    sim.delete("early")
+    sim.models.spawn(box("late"), Pose((0, 0, 9.0)))
+    sim.models.delete("early")
     world = load(save_world(sim, "s.sdf", roots=[str(tmp_path)]))
     assert [model.name for model in world.models] == ["late"]
 
 
 def test_nested_models_come_back_nested(running, tmp_path):
     sim = running(cabinet("cabinet"))
-    sim.spawn(flattened(cabinet("spare")), Pose((4.0, 0, 0)))
+    sim.models.spawn(flattened(cabinet("spare")), Pose((4.0, 0, 0)))
     world = load(save_world(sim, "s.sdf", roots=[str(tmp_path)]))
     assert differences(world.models[0], cabinet("cabinet"), 1e-12) == []
     assert [link.name for link in flattened(world.models[1]).links] == [
@@ -139,8 +142,8 @@ def test_nested_models_keep_what_is_theirs_when_they_come_later_and_when_renamed
     whole.models[0].plugins.append(PluginSpec("p", "libp.so", '<plugin name="p" filename="l"/>'))
     sim = running() if later else running(whole)
     if later:
-        sim.spawn(whole, AWAY)
-    sim.edit_model("cabinet", replace(sim.model("cabinet"), name="cupboard"))
+        sim.models.spawn(whole, AWAY)
+    sim.models.edit("cabinet", replace(sim.models.get("cabinet"), name="cupboard"))
     copy = load(save_world(sim, "w.world", roots=[str(tmp_path)])).models[0]
     assert copy.name == "cupboard" and copy.models[0].plugins[0].name == "p"
     assert differences(copy.models[0].pose, whole.models[0].pose, 1e-12) == []
@@ -150,8 +153,8 @@ def test_joints_between_models_and_moved_lights_are_saved(running, tmp_path):
     tie = Joint("tie", "ball", "a::link", "b::link", Pose((0, 0, 0.5)))
     sim = running(world=World("lab", models=[box("a"), box("b"), box("c")], joints=[
         tie, replace(tie, name="gone", parent="c::link")], lights=[Light("sun")]))
-    sim.set_light("sun", Light("sun", pose=AWAY))
-    sim.delete("c")
+    sim.lights.set("sun", Light("sun", pose=AWAY))
+    sim.models.delete("c")
     copy = load(save_world(sim, "w.world", roots=[str(tmp_path)]))
     assert copy.joints == [tie]
     assert differences(copy.lights[0].pose, AWAY, 1e-12) == []
@@ -161,7 +164,7 @@ def test_joints_between_models_and_moved_lights_are_saved(running, tmp_path):
 def test_a_state_near_a_pitch_of_90_degrees_comes_back(running, tmp_path, pitch):
     sim = running(arm("arm"))
     pose = Pose((1, 2, 3), quat_from_rpy(0.7, pitch, -2.0))
-    sim.set_model_state("arm", pose, Twist())
+    sim.states.set_model_state("arm", pose, Twist())
     path = save_world(sim, "w.world", roots=[str(tmp_path)])
     again = running(world=apply_state(load(path)))
     assert differences(present_world(again).models[0].pose, pose, 1e-8) == []
@@ -180,7 +183,7 @@ def test_a_file_is_replaced_only_when_asked(running, tmp_path):
     sim = running(box("crate"))
     path = save_world(sim, "s.sdf", roots=[str(tmp_path)])
     before = open(path, "rb").read()
-    sim.set_model_state("crate", AWAY, Twist())
+    sim.states.set_model_state("crate", AWAY, Twist())
     with pytest.raises(CommandError, match="exists already"):
         save_world(sim, "s.sdf", roots=[str(tmp_path)])
     assert open(path, "rb").read() == before
@@ -252,7 +255,7 @@ def test_an_unchanged_include_is_one_again(running, tmp_path):
     resolver = Resolver.from_environment()
     world, _ = read_world(str(tmp_path / "in.world"), resolver)
     sim = running(world=world)
-    sim.set_model_state("b", Pose((7.0, 0, 0)), Twist())
+    sim.states.set_model_state("b", Pose((7.0, 0, 0)), Twist())
     path = save_world(sim, "out.world", roots=[str(tmp_path)], resolver=resolver, inline=False)
     include = etree.parse(path).getroot().find("world/include")
     assert include.findtext("uri") == "model://box"

@@ -10,11 +10,12 @@ import pytest
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh
 from my_simulations.description.world import World
-from my_simulations.engine.commands import FOREVER, Load
+from my_simulations.engine.commands import FOREVER, TimedWrench
 from my_simulations.engine.inline import InlineEngine
 from my_simulations.engine.kinematic import KinematicBackend
 from my_simulations.errors import CommandError, EngineLost
 from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
+from my_simulations.simulator.feeds import ROW_WIDTH
 from my_simulations.simulator.registry import Rows, UnknownEntity, UnknownFrame
 from my_simulations.simulator.simulator import Simulator
 
@@ -60,33 +61,33 @@ def close(pose, position, orientation=(0, 0, 0, 1)):
 
 def test_the_worlds_models_are_there_in_order(case):
     sim = case(box("b"), box("a"), box("c")).sim
-    assert sim.model_names() == ["b", "a", "c"]
+    assert sim.models.names() == ["b", "a", "c"]
 
 
 def test_a_model_the_world_names_twice_is_logged_and_the_rest_loaded(case):
     made = case(box("a"), box("a"), box("b"))
-    assert made.sim.model_names() == ["a", "b"]
+    assert made.sim.models.names() == ["a", "b"]
     assert [issue.code for issue in made.issues] == ["model-refused"]
 
 
 def test_a_spawned_model_is_where_it_was_asked_for(case):
     sim = case().sim
-    sim.spawn(box("a"), Pose((1, 2, 3), (0, 0, 0, 2)))
-    close(sim.model_state("a")[0], (1, 2, 3))
+    sim.models.spawn(box("a"), Pose((1, 2, 3), (0, 0, 0, 2)))
+    close(sim.states.model_state("a")[0], (1, 2, 3))
 
 
 def test_a_spawn_pose_may_be_given_in_a_models_frame(case):
     sim = case(box("base", pose=Pose((5, 0, 0), quat_from_rpy(0, 0, math.pi / 2)))).sim
-    sim.spawn(box("a"), Pose((1, 0, 0)), "base")
-    close(sim.model_state("a")[0], (5, 1, 0), quat_from_rpy(0, 0, math.pi / 2))
+    sim.models.spawn(box("a"), Pose((1, 0, 0)), "base")
+    close(sim.states.model_state("a")[0], (5, 1, 0), quat_from_rpy(0, 0, math.pi / 2))
 
 
 @pytest.mark.parametrize("name", ["", "taken"])
 def test_an_empty_or_taken_name_is_refused(case, name):
     sim = case(box("taken")).sim
     with pytest.raises(CommandError):
-        sim.spawn(box(name))
-    assert sim.model_names() == ["taken"]
+        sim.models.spawn(box(name))
+    assert sim.models.names() == ["taken"]
 
 
 def test_a_replaced_model_goes_last_and_is_never_absent(case):
@@ -96,45 +97,45 @@ def test_a_replaced_model_goes_last_and_is_never_absent(case):
 
     def watch():
         while not stop.is_set():
-            if not sim.has_model("a"):
+            if not sim.models.has("a"):
                 absent.append(True)
 
     watcher = threading.Thread(target=watch)
     watcher.start()
     for n in range(50):
-        sim.spawn(box("a"), Pose((float(n), 0, 0)), replace=True)
+        sim.models.spawn(box("a"), Pose((float(n), 0, 0)), replace=True)
     stop.set()
     watcher.join()
     assert not absent
-    assert sim.model_names() == ["b", "a"]
-    close(sim.model_state("a")[0], (49, 0, 0))
+    assert sim.models.names() == ["b", "a"]
+    close(sim.states.model_state("a")[0], (49, 0, 0))
 
 
 def test_a_deleted_model_is_gone_and_its_rows_are_used_again(case):
     sim = case().sim
     for _ in range(3):
-        sim.spawn(box("a"))
-        sim.delete("a")
-        assert not sim.has_model("a")
+        sim.models.spawn(box("a"))
+        sim.models.delete("a")
+        assert not sim.models.has("a")
         with pytest.raises(UnknownEntity):
-            sim.model_state("a")
-    sim.spawn(box("b"))
-    assert sim._registry.model("b").first_link_row == 0
+            sim.states.model_state("a")
+    sim.models.spawn(box("b"))
+    assert sim._session.registry.model("b").first_link_row == 0
 
 
 def test_an_unknown_name_is_answered_with_the_closest(case):
     sim = case(box("cylinder")).sim
     with pytest.raises(UnknownEntity, match="did you mean cylinder"):
-        sim.delete("cilinder")
+        sim.models.delete("cilinder")
 
 
 def test_links_are_found_by_scoped_and_by_plain_name(case):
     sim = case(box("a", ("x", "y")), box("b", ("y", "z"))).sim
-    close(sim.link_state("b::y")[0], (0, 0, 0))
-    close(sim.link_state("y")[0], (1, 0, 0))   # the first in the world
-    close(sim.link_state("z")[0], (1, 0, 0))
+    close(sim.states.link_state("b::y")[0], (0, 0, 0))
+    close(sim.states.link_state("y")[0], (1, 0, 0))   # the first in the world
+    close(sim.states.link_state("z")[0], (1, 0, 0))
     with pytest.raises(UnknownEntity):
-        sim.link_state("a::z")
+        sim.states.link_state("a::z")
 
 
 def test_a_plain_name_of_several_models_is_warned_about_once(case):
@@ -142,10 +143,10 @@ def test_a_plain_name_of_several_models_is_warned_about_once(case):
     sim = made.sim
     for _ in range(3):
         for name in ("a::y", "b::y", "x", "z", "y"):
-            sim.link_state(name)
-        sim.model_state("c", "base")
-        sim.joint_state("hinge")
-        sim.find_joint("hinge")
+            sim.states.link_state(name)
+        sim.states.model_state("c", "base")
+        sim.joints.states("hinge")[0]
+        sim.joints.find("hinge")
     assert [str(issue.severity.name) for issue in made.issues] == ["WARNING"] * 3
     links, base, joints = (issue.message for issue in made.issues)
     assert "'a' and 'b' have a link 'y'; that of 'a' is taken; write 'a::y'" in links
@@ -155,21 +156,21 @@ def test_a_plain_name_of_several_models_is_warned_about_once(case):
 
 def test_scoped_and_single_names_are_not_warned_about(case):
     made = case(arm("a"), arm("b"))
-    made.sim.joint_state("b::hinge")
-    made.sim.find_joint("a::hinge")
-    made.sim.link_state("a::tip", "b::tip")
-    made.sim.delete("a")
-    made.sim.joint_state("hinge")
-    made.sim.link_state("tip")
+    made.sim.joints.states("b::hinge")[0]
+    made.sim.joints.find("a::hinge")
+    made.sim.states.link_state("a::tip", "b::tip")
+    made.sim.models.delete("a")
+    made.sim.joints.states("hinge")[0]
+    made.sim.states.link_state("tip")
     assert made.issues == []
 
 
 def test_relative_states_turn_pose_and_velocity_difference_into_the_frame(case):
     sim = case(box("a"), box("b")).sim
     quarter = quat_from_rpy(0, 0, math.pi / 2)
-    sim.set_model_state("a", Pose((1, 0, 0), quarter), Twist((0, 1, 0), (0, 0, 1)))
-    sim.set_model_state("b", Pose((1, 2, 0), quarter), Twist((3, 1, 0), (0, 0, 2)))
-    pose, twist = sim.model_state("b", "a")
+    sim.states.set_model_state("a", Pose((1, 0, 0), quarter), Twist((0, 1, 0), (0, 0, 1)))
+    sim.states.set_model_state("b", Pose((1, 2, 0), quarter), Twist((3, 1, 0), (0, 0, 2)))
+    pose, twist = sim.states.model_state("b", "a")
     close(pose, (2, 0, 0))
     assert twist.linear == pytest.approx((0, -3, 0))
     assert twist.angular == pytest.approx((0, 0, 1))
@@ -177,122 +178,129 @@ def test_relative_states_turn_pose_and_velocity_difference_into_the_frame(case):
 
 @pytest.mark.parametrize("frame", ["", "world", "map", "/map"])
 def test_the_world_frame_has_four_names(case, frame):
-    close(case(box("a", pose=Pose((1, 0, 0)))).sim.model_state("a", frame)[0], (1, 0, 0))
+    close(case(box("a", pose=Pose((1, 0, 0)))).sim.states.model_state("a", frame)[0], (1, 0, 0))
 
 
 def test_links_and_collisions_are_frames_and_tf_names_are_not(case):
     sim = case(box("a", ("x", "y")), box("b")).sim
-    close(sim.model_state("b", "a::y")[0], (-1, 0, 0))
-    close(sim.model_state("b", "a::y::c")[0], (-1, 0, -2))
+    close(sim.states.model_state("b", "a::y")[0], (-1, 0, 0))
+    close(sim.states.model_state("b", "a::y::c")[0], (-1, 0, -2))
     for unknown in ("/world", "base_link", "a::nothing"):
         with pytest.raises(UnknownFrame):
-            sim.model_state("b", unknown)
+            sim.states.model_state("b", unknown)
 
 
 def test_an_entity_called_world_shadows_the_literal(case):
     sim = case(box("world", pose=Pose((1, 0, 0))), box("b")).sim
-    close(sim.model_state("b", "world")[0], (-1, 0, 0))
+    close(sim.states.model_state("b", "world")[0], (-1, 0, 0))
 
 
 def test_a_model_moves_relative_to_its_own_link(case):
     sim = case(box("a", ("x", "y"))).sim
     for _ in range(3):
-        sim.set_model_state("a", Pose((0.1, 0, 0)), STILL, "a::x")
-    close(sim.model_state("a")[0], (0.3, 0, 0))
-    close(sim.link_state("a::y")[0], (1.3, 0, 0))
+        sim.states.set_model_state("a", Pose((0.1, 0, 0)), STILL, "a::x")
+    close(sim.states.model_state("a")[0], (0.3, 0, 0))
+    close(sim.states.link_state("a::y")[0], (1.3, 0, 0))
 
 
 @pytest.mark.parametrize("bad", [Pose((math.nan, 0, 0)), Pose((0, 0, 0), (0, 0, math.inf, 1))])
 def test_numbers_that_are_none_are_refused_and_nothing_moves(case, bad):
     sim = case(box("a", pose=Pose((1, 0, 0)))).sim
-    for setter in (sim.set_model_state, sim.set_link_state):
+    for setter in (sim.states.set_model_state, sim.states.set_link_state):
         with pytest.raises(CommandError, match="finite"):
-            setter("a" if setter == sim.set_model_state else "a::link", bad, STILL)
+            setter("a" if setter == sim.states.set_model_state else "a::link", bad, STILL)
     with pytest.raises(CommandError, match="finite"):
-        sim.set_model_state("a", IDENTITY, Twist((math.nan, 0, 0)))
-    close(sim.model_state("a")[0], (1, 0, 0))
+        sim.states.set_model_state("a", IDENTITY, Twist((math.nan, 0, 0)))
+    close(sim.states.model_state("a")[0], (1, 0, 0))
 
 
 def test_a_zero_quaternion_is_identity(case):
     sim = case(box("a")).sim
-    sim.set_model_state("a", Pose((1, 0, 0), (0, 0, 0, 0)), STILL)
-    close(sim.model_state("a")[0], (1, 0, 0))
+    sim.states.set_model_state("a", Pose((1, 0, 0), (0, 0, 0, 0)), STILL)
+    close(sim.states.model_state("a")[0], (1, 0, 0))
 
 
 def test_a_model_without_links_is_listed_and_can_be_moved(case):
     sim = case(Model("world_urdf", pose=Pose((1, 0, 0))), box("b")).sim
-    assert sim.model_names() == ["world_urdf", "b"]
-    sim.set_model_state("world_urdf", Pose((2, 0, 0)), STILL)
-    close(sim.model_state("world_urdf")[0], (2, 0, 0))
-    close(sim.model_state("b", "world_urdf")[0], (-2, 0, 0))
-    sim.delete("world_urdf")
+    assert sim.models.names() == ["world_urdf", "b"]
+    sim.states.set_model_state("world_urdf", Pose((2, 0, 0)), STILL)
+    close(sim.states.model_state("world_urdf")[0], (2, 0, 0))
+    close(sim.states.model_state("b", "world_urdf")[0], (-2, 0, 0))
+    sim.models.delete("world_urdf")
 
 
 def test_states_are_parallel_lists_in_load_order(case):
     sim = case(box("a", ("x", "y")), Model("empty"), box("b")).sim
-    states = sim.states()
-    assert states.model_names == ["a", "empty", "b"]
-    assert states.link_names == ["a::x", "a::y", "b::link"]
-    assert len(states.model_poses) == len(states.model_twists) == 3
-    assert len(states.link_poses) == len(states.link_twists) == 3
-    assert sim.states() is states
-    sim.set_model_state("b", Pose((1, 0, 0)), STILL)
-    assert sim.states() is not states
+    layout, sequence, rows = sim.feed.states()
+    assert layout.model_names == ["a", "empty", "b"]
+    assert layout.link_names == ["a::x", "a::y", "b::link"]
+    assert len(layout.model_places) == len(layout.link_places) == 3
+    assert len(rows) == 3 * 8 * ROW_WIDTH
+    sim.states.set_model_state("b", Pose((1, 0, 0)), STILL)
+    again, later, _ = sim.feed.states()
+    assert again is layout and later > sequence
 
 
 def test_reset_world_keeps_time_and_joints(case):
     sim = case(arm("a"), paused=True).sim
-    sim.set_joints({"hinge": 0.7})
-    sim.set_model_state("a", Pose((3, 0, 0)), Twist((1, 0, 0)))
-    sim.advance(10)
-    sim.reset_world()
-    close(sim.model_state("a")[0], (0, 0, 0))
-    assert sim.model_state("a")[1] == STILL
-    assert sim.joint_state("a::hinge")[0] == 0.7
-    assert sim.sim_ns() == 10_000_000
+    sim.joints.set_positions({"hinge": 0.7})
+    sim.states.set_model_state("a", Pose((3, 0, 0)), Twist((1, 0, 0)))
+    sim.clock.advance(10)
+    sim.resets.reset_world()
+    close(sim.states.model_state("a")[0], (0, 0, 0))
+    assert sim.states.model_state("a")[1] == STILL
+    assert sim.joints.states("a::hinge")[0][0] == 0.7
+    assert sim.clock.sim_ns == 10_000_000
 
 
 def test_reset_simulation_restores_joints_and_time_and_keeps_what_was_spawned(case):
     sim = case(arm("a"), box("gone")).sim
-    sim.spawn(box("late"), Pose((4, 0, 0)))
-    sim.delete("gone")
-    sim.set_joints({"hinge": 0.7})
-    sim.set_model_state("late", Pose((9, 9, 9)), STILL)
-    sim.add_loads([Load(0, 0, 0, FOREVER)])
-    sim.advance(10)
-    sim.reset_simulation()
-    assert sim.model_names() == ["a", "late"]
-    assert sim.joint_state("hinge") == (0.0, 0.0)
-    close(sim.model_state("late")[0], (4, 0, 0))
-    assert (sim.sim_ns(), sim.step()) == (0, 0)
-    assert not sim._loads
+    sim.models.spawn(box("late"), Pose((4, 0, 0)))
+    sim.models.delete("gone")
+    sim.joints.set_positions({"hinge": 0.7})
+    sim.states.set_model_state("late", Pose((9, 9, 9)), STILL)
+    sim.wrenches.add([TimedWrench(0, 0, 0, FOREVER)])
+    sim.clock.advance(10)
+    sim.resets.reset_simulation()
+    assert sim.models.names() == ["a", "late"]
+    assert sim.joints.states("hinge")[0] == (0.0, 0.0)
+    close(sim.states.model_state("late")[0], (4, 0, 0))
+    assert (sim.clock.sim_ns, sim.clock.step) == (0, 0)
+    assert not sim.wrenches.ids
 
 
 def test_a_dead_engine_is_replaced_and_everything_is_as_in_the_last_snapshot(case):
     made = case(arm("a"), box("b"))
     sim = made.sim
-    sim.set_model_state("b", Pose((1, 2, 3), quat_from_rpy(0, 0, 1)), Twist((4, 5, 6), (7, 8, 9)))
-    sim.set_joints({"hinge": 0.5})
-    [kept] = sim.add_loads([Load(0, 0, 0, FOREVER)])
-    sim.add_loads([Load(0, 0, 0, 5)])   # over by the time of the crash
-    sim.advance(10)
-    before = sim.model_state("b"), sim.joint_state("hinge"), sim.sim_ns(), sim.step()
+    sim.states.set_model_state("b", Pose((1, 2, 3), quat_from_rpy(0, 0, 1)), Twist((4, 5, 6), (7, 8,
+                                                                                               9)))
+    sim.joints.set_positions({"hinge": 0.5})
+    [kept] = sim.wrenches.add([TimedWrench(0, 0, 0, FOREVER)])
+    sim.wrenches.add([TimedWrench(0, 0, 0, 5)])   # over by the time of the crash
+    sim.clock.advance(10)
+    before = (sim.states.model_state("b"), sim.joints.states("hinge")[0], sim.clock.sim_ns,
+              sim.clock.step)
     first = made.engine.backend
     made.engine.kill()
-    sim.advance(0)
+    sim.clock.advance(0)
     assert made.engine.backend is not first
-    assert (sim.model_state("b"), sim.joint_state("hinge"), sim.sim_ns(), sim.step()) == before
-    assert list(made.engine.backend.loads) == [kept]
+    assert (
+        sim.states.model_state("b"),
+        sim.joints.states("hinge")[0],
+        sim.clock.sim_ns,
+        sim.clock.step,
+    ) == before
+    assert list(made.engine.backend.timed_forces) == [kept]
     assert [issue.code for issue in made.issues] == ["engine-died"]
 
 
 def test_a_restarted_world_runs_on_unless_it_was_paused(case):
     made = case(box("a"), paused=False)
     made.engine.kill()
-    made.sim.set_model_state("a", IDENTITY, STILL)
-    at = made.sim.step()
+    made.sim.states.set_model_state("a", IDENTITY, STILL)
+    at = made.sim.clock.step
     deadline = time.monotonic() + 10
-    while made.sim.step() == at:
+    while made.sim.clock.step == at:
         assert time.monotonic() < deadline
 
 
@@ -312,11 +320,11 @@ def test_the_command_that_killed_the_engine_fails_and_others_are_sent_again(case
     kinematic.KinematicBackend.step = blow_up
     try:
         with pytest.raises(EngineLost, match="killed"):
-            made.sim.advance(5)
+            made.sim.clock.advance(5)
     finally:
         kinematic.KinematicBackend.step = original
-    made.sim.set_model_state("a", Pose((1, 0, 0)), STILL)
-    close(made.sim.model_state("a")[0], (1, 0, 0))
+    made.sim.states.set_model_state("a", Pose((1, 0, 0)), STILL)
+    close(made.sim.states.model_state("a")[0], (1, 0, 0))
 
 
 def test_many_threads_may_spawn_move_and_delete_at_once(case):
@@ -327,10 +335,10 @@ def test_many_threads_may_spawn_move_and_delete_at_once(case):
         try:
             for turn in range(20):
                 name = f"m{number}_{turn}"
-                sim.spawn(box(name), Pose((number, turn, 0)))
-                sim.set_model_state(name, Pose((number, turn, 1)), STILL)
-                close(sim.model_state(name)[0], (number, turn, 1))
-                sim.delete(name)
+                sim.models.spawn(box(name), Pose((number, turn, 0)))
+                sim.states.set_model_state(name, Pose((number, turn, 1)), STILL)
+                close(sim.states.model_state(name)[0], (number, turn, 1))
+                sim.models.delete(name)
         except Exception as fault:
             faults.append(fault)
 
@@ -340,7 +348,7 @@ def test_many_threads_may_spawn_move_and_delete_at_once(case):
     for thread in threads:
         thread.join(60)
     assert not faults
-    assert sim.model_names() == []
+    assert sim.models.names() == []
 
 
 def test_rows_are_handed_out_first_fit_and_merge_when_freed():
@@ -355,7 +363,7 @@ def test_a_collision_without_its_mesh_stays_in_the_description_and_out_of_the_en
     made = case()
     model = box("a")
     model.links[0].collisions.append(Collision("lost", Mesh("model://gone/lost.dae")))
-    made.sim.spawn(model)
-    assert [c.name for c in made.sim.model("a").links[0].collisions] == ["c", "lost"]
+    made.sim.models.spawn(model)
+    assert [c.name for c in made.sim.models.get("a").links[0].collisions] == ["c", "lost"]
     [loaded] = made.engine.backend.models.values()
     assert [c.name for c in loaded[0].links[0].collisions] == ["c"]

@@ -130,16 +130,16 @@ def test_a_world_starts_paused_with_its_seed_and_preset_and_stands_after_its_ste
     sim = start_world(str(tmp_path / "a.world"), Resolver(), lambda: engine, told.append, seed=3,
                       profile="fast", steps=20, read=lambda: told.append("read"))
     try:
-        assert (sim.paused, sim.step(), told) == (True, 0, ["read"])
-        assert sim.physics.max_step_size == 0.004
+        assert (sim.clock.paused, sim.clock.step, told) == (True, 0, ["read"])
+        assert sim.physics.settings.max_step_size == 0.004
         again, _ = load_world(str(tmp_path / "a.world"), Resolver(), lambda issue: None, seed=3)
-        assert [sim.model(name).pose for name in sim.model_names()] == [
+        assert [sim.models.get(name).pose for name in sim.models.names()] == [
             model.pose for model in again.models]
-        sim.unpause()
+        sim.clock.unpause()
         deadline = time.monotonic() + 10
-        while sim.step() < 20:
+        while sim.clock.step < 20:
             assert time.monotonic() < deadline, "it stands too early"
-            sim.wait_step(sim.step(), 0.1)
-        assert sim.advance(0) == 20
+            sim.clock.wait_step(sim.clock.step, 0.1)
+        assert sim.clock.advance(0) == 20
     finally:
         sim.close()

@@ -7,15 +7,15 @@ import pytest
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.commands import FOREVER, Load
+from my_simulations.engine.commands import FOREVER, TimedWrench
 from my_simulations.engine.inline import InlineEngine
 from my_simulations.engine.kinematic import KinematicBackend
 from my_simulations.engine.ring import Clock
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
-from my_simulations.simulator.loads import first_step, steps_of
 from my_simulations.simulator.registry import UnknownEntity, UnknownFrame
 from my_simulations.simulator.simulator import Simulator
+from my_simulations.simulator.wrenches import first_step, steps_of
 
 MS = 1000000
 QUARTER = quat_from_rpy(0, 0, math.pi / 2)
@@ -44,7 +44,7 @@ class Case:
 
     @property
     def loads(self):
-        return list(self.backends[-1].loads.values())
+        return list(self.backends[-1].timed_forces.values())
 
 
 @pytest.fixture
@@ -62,8 +62,8 @@ def case():
 
 def test_a_load_of_now_begins_with_the_next_step_and_lasts_its_steps(case):
     made = case(arm("a"))
-    made.sim.advance(5)
-    made.sim.push("a::base", (1, 0, 0), (0, 0, 2), duration_ns=10 * MS)
+    made.sim.clock.advance(5)
+    made.sim.wrenches.apply_wrench("a::base", (1, 0, 0), (0, 0, 2), duration_ns=10 * MS)
     [load] = made.loads
     assert (load.start, load.stop) == (5, 15)
     assert (load.force, load.torque, load.in_link_axes) == ((1, 0, 0), (0, 0, 2), False)
@@ -71,7 +71,7 @@ def test_a_load_of_now_begins_with_the_next_step_and_lasts_its_steps(case):
 
 def test_a_load_of_the_future_begins_at_its_time(case):
     made = case(arm("a"))
-    made.sim.drive("a::hinge", 3.0, start_ns=20 * MS, duration_ns=MS)
+    made.sim.wrenches.apply_effort("a::hinge", 3.0, start_ns=20 * MS, duration_ns=MS)
     [load] = made.loads
     assert (load.start, load.stop, load.effort) == (20, 21, 3.0)
 
@@ -80,22 +80,23 @@ def test_a_load_of_the_future_begins_at_its_time(case):
                                              (1600000, 2), (10 * MS, 10)])
 def test_durations_are_rounded_to_steps_and_are_one_at_least(case, duration, steps):
     made = case(arm("a"))
-    made.sim.push("base", (1, 0, 0), (0, 0, 0), duration_ns=duration)
+    made.sim.wrenches.apply_wrench("base", (1, 0, 0), (0, 0, 0), duration_ns=duration)
     assert made.loads[0].stop - made.loads[0].start == steps
 
 
 def test_no_duration_does_nothing_and_a_negative_one_has_no_end(case):
     made = case(arm("a"))
-    made.sim.push("base", (1, 0, 0), (0, 0, 0), duration_ns=0)
+    made.sim.wrenches.apply_wrench("base", (1, 0, 0), (0, 0, 0), duration_ns=0)
     assert made.loads == []
-    made.sim.push("base", (1, 0, 0), (0, 0, 0), duration_ns=-1)
+    made.sim.wrenches.apply_wrench("base", (1, 0, 0), (0, 0, 0), duration_ns=-1)
     assert made.loads[0].stop == FOREVER
 
 
 def test_a_wrench_in_a_links_own_frame_attacks_at_its_origin_and_turns_along(case):
     made = case(arm("a", com=(0.5, 0, 0)))
-    made.sim.set_model_state("a", Pose((3, 0, 0), QUARTER), Twist())
-    made.sim.push("a::base", (1, 0, 0), (0, 0, 0), frame="a::base", point=(0, 2, 0))
+    made.sim.states.set_model_state("a", Pose((3, 0, 0), QUARTER), Twist())
+    made.sim.wrenches.apply_wrench("a::base", (1, 0, 0), (0, 0, 0), frame="a::base", point=(0, 2,
+                                                                                            0))
     [load] = made.loads
     assert load.in_link_axes
     assert load.force == pytest.approx((1, 0, 0))
@@ -104,8 +105,8 @@ def test_a_wrench_in_a_links_own_frame_attacks_at_its_origin_and_turns_along(cas
 
 def test_a_wrench_in_another_frame_is_turned_into_the_link(case):
     made = case(arm("a"), arm("b"))
-    made.sim.set_model_state("b", Pose((3, 0, 0), QUARTER), Twist())
-    made.sim.push("a::base", (1, 0, 0), (0, 1, 0), frame="b", point=(1, 0, 0))
+    made.sim.states.set_model_state("b", Pose((3, 0, 0), QUARTER), Twist())
+    made.sim.wrenches.apply_wrench("a::base", (1, 0, 0), (0, 1, 0), frame="b", point=(1, 0, 0))
     [load] = made.loads
     assert load.force == pytest.approx((0, 1, 0))
     assert load.torque == pytest.approx((-1, 0, 0))
@@ -115,49 +116,49 @@ def test_a_wrench_in_another_frame_is_turned_into_the_link(case):
 def test_loads_are_cleared_by_either_form_of_the_name(case):
     made = case(arm("a"), arm("b"))
     for name in ("a::base", "b::base"):
-        made.sim.push(name, (1, 0, 0), (0, 0, 0))
-    made.sim.drive("b::hinge", 1.0)
-    made.sim.clear_pushes("b::base")
+        made.sim.wrenches.apply_wrench(name, (1, 0, 0), (0, 0, 0))
+    made.sim.wrenches.apply_effort("b::hinge", 1.0)
+    made.sim.wrenches.clear_wrenches("b::base")
     assert len(made.loads) == 2
-    made.sim.clear_pushes("base")
+    made.sim.wrenches.clear_wrenches("base")
     assert [load.effort for load in made.loads] == [1.0]
-    made.sim.clear_drives("hinge")   # the first one in the world
+    made.sim.wrenches.clear_efforts("hinge")   # the first one in the world
     assert len(made.loads) == 1
-    made.sim.clear_drives("b::hinge")
+    made.sim.wrenches.clear_efforts("b::hinge")
     assert made.loads == []
 
 
 def test_unknown_names_and_joints_without_axis_are_refused(case):
     made = case(arm("a"))
     with pytest.raises(UnknownEntity):
-        made.sim.push("none", (1, 0, 0), (0, 0, 0))
+        made.sim.wrenches.apply_wrench("none", (1, 0, 0), (0, 0, 0))
     with pytest.raises(UnknownFrame):
-        made.sim.push("base", (1, 0, 0), (0, 0, 0), frame="none")
+        made.sim.wrenches.apply_wrench("base", (1, 0, 0), (0, 0, 0), frame="none")
     with pytest.raises(UnknownEntity):
-        made.sim.drive("none", 1.0)
+        made.sim.wrenches.apply_effort("none", 1.0)
     with pytest.raises(CommandError, match="no axis"):
-        made.sim.drive("weld", 1.0)
+        made.sim.wrenches.apply_effort("weld", 1.0)
     assert made.loads == []
 
 
 def test_a_restarted_engine_gets_no_load_of_a_deleted_model(case):
     made = case(arm("a"), arm("b"))
-    made.sim.push("a::base", (1, 0, 0), (0, 0, 0))
-    made.sim.push("b::base", (2, 0, 0), (0, 0, 0))
-    made.sim.delete("a")
-    assert [load.force for load in made.sim._loads.values()] == [(2, 0, 0)]
+    made.sim.wrenches.apply_wrench("a::base", (1, 0, 0), (0, 0, 0))
+    made.sim.wrenches.apply_wrench("b::base", (2, 0, 0), (0, 0, 0))
+    made.sim.models.delete("a")
+    assert [load.force for load in made.sim.wrenches.pending(0)] == [(2, 0, 0)]
 
 
 def test_in_lockstep_time_goes_on_by_request_only(case):
     made = case(arm("a"))
-    made.sim.set_lockstep(True)
-    made.sim.unpause()
-    assert not made.sim.paused and not made.sim.ring.running
-    assert made.sim.advance(7) == 7
-    made.sim.reset_time()
-    assert made.sim.step() == 0 and not made.sim.ring.running
-    made.sim.set_lockstep(False)
-    assert made.sim.ring.running
+    made.sim.clock.set_manual_stepping(True)
+    made.sim.clock.unpause()
+    assert not made.sim.clock.paused and not made.sim.clock.running
+    assert made.sim.clock.advance(7) == 7
+    made.sim.resets.reset_time()
+    assert made.sim.clock.step == 0 and not made.sim.clock.running
+    made.sim.clock.set_manual_stepping(False)
+    assert made.sim.clock.running
 
 
 def test_times_that_are_rounded_to_nanoseconds_find_their_step():
@@ -169,7 +170,7 @@ def test_times_that_are_rounded_to_nanoseconds_find_their_step():
 
 
 def test_a_load_that_is_late_keeps_its_length():
-    load = Load(0, 0, 3, 10)
-    assert load.begun(5) == Load(0, 0, 5, 12)
+    load = TimedWrench(0, 0, 3, 10)
+    assert load.begun(5) == TimedWrench(0, 0, 5, 12)
     assert load.begun(2) is load
-    assert Load(0, 0, 3, FOREVER).begun(5).stop == FOREVER
+    assert TimedWrench(0, 0, 3, FOREVER).begun(5).stop == FOREVER

@@ -27,12 +27,12 @@ edited = pytest.fixture(cases)
 
 
 def light_names(sim):
-    return [light.name for light in sim.lights()]
+    return [light.name for light in sim.lights.all()]
 
 
 def four_lights(sim):
     for name in "klmn":
-        sim.add_light(Light(name))
+        sim.lights.add(Light(name))
 
 
 @pytest.mark.parametrize("name", ["a", "b", "d"])
@@ -40,26 +40,26 @@ def test_a_deleted_model_comes_back_to_its_place(case, name):
     sim = case(box("a"), box("b"), box("c"), box("d")).sim
     history = History(sim)
     history.do("delete", RemoveModel(name))
-    before = sim.revision
+    before = sim.models.revision
     history.undo()
-    assert sim.revision > before
-    assert sim.model_names() == ["a", "b", "c", "d"]
+    assert sim.models.revision > before
+    assert sim.models.names() == ["a", "b", "c", "d"]
     assert [model.name for model in present_world(sim).models] == ["a", "b", "c", "d"]
-    assert sim.states().model_names == ["a", "b", "c", "d"]
+    assert sim.feed.states()[0].model_names == ["a", "b", "c", "d"]
     history.redo()
-    assert name not in sim.model_names()
+    assert name not in sim.models.names()
     history.undo()
-    assert sim.model_names() == ["a", "b", "c", "d"]
+    assert sim.models.names() == ["a", "b", "c", "d"]
 
 
 def test_a_model_without_links_comes_back_to_its_place(case):
     sim = case(Model("a"), box("b")).sim
-    sim.set_model_state("a", Pose((1, 2, 3)), STILL)
+    sim.states.set_model_state("a", Pose((1, 2, 3)), STILL)
     history = History(sim)
     history.do("delete", RemoveModel("a"))
     history.undo()
-    assert sim.model_names() == ["a", "b"]
-    close(sim.model_state("a")[0], (1, 2, 3))
+    assert sim.models.names() == ["a", "b"]
+    close(sim.states.model_state("a")[0], (1, 2, 3))
 
 
 @pytest.mark.parametrize("name", ["k", "l", "n"])
@@ -86,26 +86,26 @@ def test_several_that_were_deleted_as_one_come_back_to_their_places(case, names)
         for operation in (RemoveModel(model), RemoveLight(light)))))
     for _ in range(2):
         history.undo()
-        assert sim.model_names() == list("abcd")
+        assert sim.models.names() == list("abcd")
         assert light_names(sim) == list("klmn")
         history.redo()
-        assert not set(names) & set(sim.model_names())
+        assert not set(names) & set(sim.models.names())
 
 
 def test_chains_of_undo_and_redo_pass_the_same_orders_both_ways(case):
     sim = case(box("a"), box("b"), box("c")).sim
     history = History(sim)
-    orders = [sim.model_names()]
+    orders = [sim.models.names()]
     for operation in (RemoveModel("b"), AddModel(box("e"), Pose()), RemoveModel("a"),
                       AddModel(box("b"), Pose()), RemoveModel("e"), RemoveModel("c")):
         history.do("edit", operation)
-        orders.append(sim.model_names())
+        orders.append(sim.models.names())
     for order in reversed(orders[:-1]):
         history.undo()
-        assert sim.model_names() == order
+        assert sim.models.names() == order
     for order in orders[1:]:
         history.redo()
-        assert sim.model_names() == order
+        assert sim.models.names() == order
 
 
 def test_a_group_that_fails_half_way_leaves_the_order_as_it_was(case):
@@ -113,7 +113,7 @@ def test_a_group_that_fails_half_way_leaves_the_order_as_it_was(case):
     four_lights(sim)
     with pytest.raises(CommandError):
         Group((RemoveModel("a"), RemoveLight("k"), RemoveModel("nobody"))).apply(sim)
-    assert sim.model_names() == ["a", "b"]
+    assert sim.models.names() == ["a", "b"]
     assert light_names(sim) == list("klmn")
 
 
@@ -122,12 +122,12 @@ def test_it_comes_back_behind_its_neighbour_whatever_others_did_meanwhile(case):
     four_lights(sim)
     history = History(sim)
     history.do("delete", Group((RemoveModel("c"), RemoveLight("m"))))
-    sim.delete("a")
-    sim.spawn(box("x"))
-    sim.delete_light("k")
-    sim.add_light(Light("x-lamp"))
+    sim.models.delete("a")
+    sim.models.spawn(box("x"))
+    sim.lights.delete("k")
+    sim.lights.add(Light("x-lamp"))
     history.undo()
-    assert sim.model_names() == ["b", "c", "x"]
+    assert sim.models.names() == ["b", "c", "x"]
     assert light_names(sim) == ["l", "m", "n", "x-lamp"]
 
 
@@ -135,10 +135,10 @@ def test_it_comes_back_when_its_neighbours_have_gone(case):
     sim = case(box("a"), box("b"), box("c")).sim
     history = History(sim)
     history.do("delete", RemoveModel("c"))
-    sim.delete("a")
-    sim.delete("b")
+    sim.models.delete("a")
+    sim.models.delete("b")
     history.undo()
-    assert sim.model_names() == ["c"]
+    assert sim.models.names() == ["c"]
 
 
 def test_nobody_sees_it_elsewhere_before(case):
@@ -148,7 +148,7 @@ def test_nobody_sees_it_elsewhere_before(case):
 
     def watch():
         while not stop.is_set():
-            seen.add(tuple(sim.model_names()))
+            seen.add(tuple(sim.models.names()))
 
     watcher = threading.Thread(target=watch)
     watcher.start()
@@ -164,12 +164,12 @@ def test_one_that_could_not_come_back_goes_last_when_it_comes_anew(case):
     sim = case(box("a"), box("b")).sim
     history = History(sim)
     history.do("delete", RemoveModel("a"))
-    sim.spawn(box("a"))
+    sim.models.spawn(box("a"))
     with pytest.raises(CommandError):
         history.undo()
-    sim.delete("a")
-    sim.spawn(box("a"))
-    assert sim.model_names() == ["b", "a"]
+    sim.models.delete("a")
+    sim.models.spawn(box("a"))
+    assert sim.models.names() == ["b", "a"]
 
 
 def test_what_is_added_anew_comes_last(case):
@@ -177,7 +177,7 @@ def test_what_is_added_anew_comes_last(case):
     four_lights(sim)
     history = History(sim)
     history.do("insert", Group((AddModel(box("0"), Pose()), AddLight(Light("0-lamp")))))
-    assert sim.model_names() == ["a", "0"]
+    assert sim.models.names() == ["a", "0"]
     assert light_names(sim) == ["k", "l", "m", "n", "0-lamp"]
 
 
@@ -186,9 +186,9 @@ def test_a_plain_link_name_means_the_same_link_after_an_undo_and_after_an_edit(c
     history = History(sim)
     history.do("delete", RemoveModel("a"))
     history.undo()
-    close(sim.link_state("x")[0], (1, 0, 0))
-    sim.edit_model("a", replace(sim.model("a"), self_collide=True))
-    close(sim.link_state("x")[0], (1, 0, 0))
+    close(sim.states.link_state("x")[0], (1, 0, 0))
+    sim.models.edit("a", replace(sim.models.get("a"), self_collide=True))
+    close(sim.states.link_state("x")[0], (1, 0, 0))
 
 
 def test_pages_hear_of_the_order_of_models_and_lights(edited):

@@ -66,7 +66,7 @@ def main(words: List[str], program: str) -> int:
     recorder = _record(faces, simulator, resolver, options.recording, say)
     try:
         if not options.paused:
-            simulator.unpause()
+            simulator.clock.unpause()
         editor = faces.edit(simulator, resolver, {"log": lambda issue: say(issue)})
         log.also(editor.tell)
         show(editor.url, program)

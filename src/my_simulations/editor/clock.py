@@ -18,9 +18,9 @@ class RealTime:
         self._simulator = simulator
         self._at = time.monotonic_ns()
         # The world may have run before anybody looked: as if in real time.
-        self._real_ns = simulator.sim_ns()
-        self._sim_ns = simulator.sim_ns()
-        self._paused = simulator.paused
+        self._real_ns = simulator.clock.sim_ns
+        self._sim_ns = simulator.clock.sim_ns
+        self._paused = simulator.clock.paused
         self._readings: Deque[Tuple[int, int]] = deque(maxlen=_WINDOW)
         self._told: Optional[Tuple[int, bool]] = None
 
@@ -36,7 +36,8 @@ class RealTime:
 
     def read(self) -> Dict[str, Any]:
         """The push `stats` as of now."""
-        now, sim_ns, paused = time.monotonic_ns(), self._simulator.sim_ns(), self._simulator.paused
+        now, sim_ns, paused = (time.monotonic_ns(), self._simulator.clock.sim_ns,
+                               self._simulator.clock.paused)
         if not self._paused:
             self._real_ns += now - self._at
         if sim_ns < self._sim_ns:  # time was reset
@@ -48,7 +49,8 @@ class RealTime:
         else:
             self._readings.append((self._real_ns, sim_ns))
         return {"type": "stats", "sim_ns": sim_ns, "real_ns": self._real_ns,
-                "factor": self._factor(), "iterations": self._simulator.step(), "paused": paused}
+                "factor": self._factor(), "iterations": self._simulator.clock.step,
+                "paused": paused}
 
     def news(self) -> Optional[Dict[str, Any]]:
         """As `read`; None when nothing has changed since it was last told."""

@@ -60,10 +60,10 @@ class Drags:
 
     def _hold(self) -> None:
         names = {self._model_of(name) for before in self._before.values() for name in before}
-        self._world.hold([name for name in sorted(names) if self._world.has_model(name)])
+        self._world.models.pin([name for name in sorted(names) if self._world.models.has(name)])
 
     def _model_of(self, name: str) -> str:
         at = name.find("::")
-        while at > 0 and not self._world.has_model(name[:at]):
+        while at > 0 and not self._world.models.has(name[:at]):
             at = name.find("::", at + 2)
         return name[:at] if at > 0 else name

@@ -92,11 +92,11 @@ class Edits:
         models: List[Model] = []
         lights: List[Light] = []
         for name in names:
-            if self._world.has_model(name):
-                model = unflattened(self._world.model(name))
-                models.append(replace(model, pose=self._world.model_state(name)[0]))
+            if self._world.models.has(name):
+                model = unflattened(self._world.models.get(name))
+                models.append(replace(model, pose=self._world.states.model_state(name)[0]))
             else:
-                lights.append(self._world.light(name))
+                lights.append(self._world.lights.get(name))
         if not models and not lights:
             raise CommandError("nothing is selected that could be copied")
         return write_world(world_of(models, lights)).decode()
@@ -166,11 +166,11 @@ class Edits:
         names = list(dict.fromkeys(op["names"]))
         if not names:
             raise CommandError("nothing is selected")
-        lights = {light.name for light in self._world.lights()}
+        lights = {light.name for light in self._world.lights.all()}
         parts: List[Operation] = []
         for name in names:
             if name not in lights:
-                self._world.model(name)
+                self._world.models.get(name)
             parts.append(RemoveLight(name) if name in lights else RemoveModel(name))
         return f"Delete {_listed(names)}", _one(parts), {"names": names}
 
@@ -209,7 +209,7 @@ class Edits:
         return f"{label.capitalize()} {_listed(list(poses))}", operation, {}
 
     def _scale(self, op: Dict[str, Any]) -> Planned:
-        model = self._world.model(op["name"])
+        model = self._world.models.get(op["name"])
         x, y, z = op["scale"]
         new = resized(model, (float(x), float(y), float(z)))
         meshes, _ = checked(new)
@@ -220,9 +220,10 @@ class Edits:
         if not to or "::" in to or to in ("world", "default"):
             raise CommandError(f"{to!r} is no name for a model or a light")
         label = f"Rename {name} to {to}"
-        if any(light.name == name for light in self._world.lights()):
-            return label, EditLight(name, replace(self._world.light(name), name=to)), {"name": to}
-        model = self._world.model(name)
+        if any(light.name == name for light in self._world.lights.all()):
+            return (label, EditLight(name, replace(self._world.lights.get(name), name=to)),
+                    {"name": to})
+        model = self._world.models.get(name)
         return label, EditModel(name, replace(model, name=to)), {"name": to}
 
     def _set(self, op: Dict[str, Any]) -> Planned:
@@ -241,8 +242,8 @@ class Edits:
         if not 0 < steps <= _MOST_STEPS:
             raise CommandError(f"a force acts for 1 to {_MOST_STEPS} steps, not {steps}")
         link = op["link"]
-        if self._world.has_model(link):
-            model = self._world.model(link)
+        if self._world.models.has(link):
+            model = self._world.models.get(link)
             if not model.links:
                 raise CommandError(f"model {link!r} has no links")
             link = f"{link}::{model.canonical_link or model.links[0].name}"
@@ -254,7 +255,7 @@ class Edits:
 
     def _joint(self, op: Dict[str, Any]) -> Planned:
         name, value = op["joint"], float(op["value"])
-        owner, joint, number = self._world.find_joint(name)
+        owner, joint, number = self._world.joints.find(name)
         scoped = f"{owner}::{joint.name}" + ("::1" if number else "")
         axis = joint.axis2 if number else joint.axis
         if axis is None:

@@ -150,7 +150,7 @@ class Hub:
 
     def _ask(self) -> None:
         rate = self.protocol.limits["frames_hz"]
-        self.simulator.set_demand(_DEMAND, poses_hz=rate if self._listeners else 0.0,
+        self.simulator.feed.request(_DEMAND, poses_hz=rate if self._listeners else 0.0,
                                   states_hz=self._states_hz if self._listeners else 0.0)
 
     def now(self) -> Tuple[Optional[Poses], int]:
@@ -189,7 +189,7 @@ class Hub:
 
     def _quiet(self) -> bool:
         """Whether nothing has happened for a while, and nothing will by itself."""
-        return self.simulator.paused and self._loop.time() > self._news_at + _QUIET_S
+        return self.simulator.clock.paused and self._loop.time() > self._news_at + _QUIET_S
 
     async def _pause(self, until: float) -> None:
         left = until - self._loop.time()
@@ -201,9 +201,9 @@ class Hub:
         timer.cancel()
 
     async def _tick(self) -> None:
-        if self.simulator.revision != self._mirror.revision:
+        if self.simulator.models.revision != self._mirror.revision:
             await self._look()
-        sequence = self.simulator.ring.changes
+        sequence = self.simulator.feed.changes
         moved = sequence != self._sequence or self._behind()
         if moved:
             self._news_at = self._loop.time()

@@ -93,7 +93,7 @@ def checked(model: Model) -> Tuple[MeshTable, List[Issue]]:
 
 def taken_names(simulator: Simulator) -> Collection[str]:
     """Names of all models and lights."""
-    return {*simulator.model_names(), *(light.name for light in simulator.lights())}
+    return {*simulator.models.names(), *(light.name for light in simulator.lights.all())}
 
 
 def free_name(wanted: str, taken: Collection[str]) -> str:

@@ -35,17 +35,17 @@ class Mirror:
 
     def whole(self) -> Dict[str, Any]:
         """The push `world`, of now; what it says counts as told to everybody only after `news`."""
-        revision, _ = self._simulator.inventory()
-        entities, snapshot = self._simulator.moment()
+        revision, _ = self._simulator.models.inventory()
+        entities, snapshot = self._simulator.states.latest()
         return {"type": "world", "revision": revision,
                 "document": self._document(entities, snapshot)}
 
     def news(self) -> Optional[News]:
         """What has changed since the last call; None when nothing has."""
-        revision, _ = self._simulator.inventory()
+        revision, _ = self._simulator.models.inventory()
         if revision == self.revision:
             return None
-        entities, snapshot = self._simulator.moment()
+        entities, snapshot = self._simulator.states.latest()
         world = self._simulator.world
         rest = (world.plugins, world.roads, world.actors, world.file)
         if self.revision < 0 or rest != self._rest:
@@ -60,16 +60,18 @@ class Mirror:
     def _document(self, entities: List[Entity], snapshot: Snapshot) -> Dict[str, Any]:
         simulator = self._simulator
         models = [self._documents.entity(entity, snapshot) for entity in entities]
-        return self._documents.world(simulator.world, simulator.physics, simulator.gravity, models)
+        return self._documents.world(simulator.world, simulator.physics.settings,
+                                     simulator.physics.gravity, models)
 
     def _surroundings(self) -> Dict[str, Any]:
         simulator = self._simulator
-        return self._documents.surroundings(simulator.world, simulator.physics, simulator.gravity)
+        return self._documents.surroundings(simulator.world, simulator.physics.settings,
+                                            simulator.physics.gravity)
 
     def _ordered(self, entities: List[Entity]) -> List[str]:
         """All models, then all lights, as they stand in the world."""
         return [*(entity.model.name for entity in entities),
-                *(light.name for light in self._simulator.lights())]
+                *(light.name for light in self._simulator.lights.all())]
 
     def _remember(self, revision: int, entities: List[Entity], document: Dict[str, Any],
                   order: List[str]) -> None:
@@ -77,7 +79,7 @@ class Mirror:
         self._entities = {entity.model.name: entity for entity in entities}
         self._poses = {entity.model.name: entity.pose for entity in entities}
         self._order = order
-        self._lights = {light.name: light for light in self._simulator.lights()}
+        self._lights = {light.name: light for light in self._simulator.lights.all()}
         self._around = {name: value for name, value in document.items()
                         if name not in ("models", "lights", "roads", "actors")}
 
@@ -94,7 +96,7 @@ class Mirror:
             models[name] = self._documents.entity(entity, snapshot)
             links += range(entity.first_link_row, entity.first_link_row + len(entity.link_names))
         lights: Dict[str, Any] = {name: None for name in self._lights}
-        for light in self._simulator.lights():
+        for light in self._simulator.lights.all():
             if self._lights.get(light.name) is light:
                 del lights[light.name]
             else:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
+from ..simulator.feeds import ROW_WIDTH
 from ..simulator.simulator import Simulator
 from .frames import Poses
 
@@ -22,16 +23,16 @@ class PoseReader:
         """
         import numpy as np
 
-        layout, raw = self._simulator.raw_poses()
+        layout, raw = self._simulator.feed.poses()
         if layout.revision != revision:
             return None
-        step, clock = self._simulator.ring.clock()
+        step, clock = self._simulator.clock.now()
         if layout is not self._layout:
             self._layout = layout
             self._ids = np.fromiter((row for row, _ in layout.link_places), dtype=np.int64,
                                     count=len(layout.link_places))
         ids = self._ids
-        table = np.frombuffer(raw, dtype=np.float64).reshape(-1, 13)
+        table = np.frombuffer(raw, dtype=np.float64).reshape(-1, ROW_WIDTH)
         if len(ids) and int(ids.max()) >= len(table):
             return None
         return Poses(ids, table[ids, :7].astype(np.float32), step, clock.sim_ns(step) * 1e-9,

@@ -75,7 +75,7 @@ class Recorder:
         self._ended = threading.Event()
         self._hz = min(max(_USUAL_HZ, 1.0 / self._period if self._period else 0.0), _MOST_HZ)
         self._writer: Optional[LogWriter] = self._begun(path)
-        simulator.set_demand(_DEMAND, poses_hz=self._hz)
+        simulator.feed.request(_DEMAND, poses_hz=self._hz)
         self._thread = threading.Thread(target=self._run, name="state log", daemon=True)
         self._thread.start()
 
@@ -118,10 +118,10 @@ class Recorder:
 
     def _look(self, writer: LogWriter) -> None:
         """Write what has changed. Raises CommandError."""
-        if self._simulator.revision != self._revision and not self._describe(writer):
+        if self._simulator.models.revision != self._revision and not self._describe(writer):
             return
         turn = int(self._now() / self._period + 1e-6) if self._period else -1
-        sequence = self._simulator.ring.changes
+        sequence = self._simulator.feed.changes
         if sequence == self._sequence or (self._period and turn == self._turn):
             return
         poses = self._reader.read(self._revision, 0.0)
@@ -151,10 +151,10 @@ class Recorder:
 
     def _fail(self, writer: LogWriter, reason: str) -> None:
         self._writer = None
-        self._simulator.set_demand(_DEMAND)
+        self._simulator.feed.request(_DEMAND)
         with contextlib.suppress(CommandError):  # that is what is told
             writer.close()
         self._tell(error("log", f"the state log ends here, the world goes on: {reason}"))
 
     def _now(self) -> float:
-        return self._simulator.sim_ns() * 1e-9
+        return self._simulator.clock.sim_ns * 1e-9

@@ -120,7 +120,7 @@ class Logs:
             await self._fetching
             self._tick(*self._hub.now())
         try:
-            self.close(self._hub.simulator.sim_ns() * 1e-9)
+            self.close(self._hub.simulator.clock.sim_ns * 1e-9)
         finally:
             self._hub.listen(-1)
             self._hub.push(self.state())
@@ -145,7 +145,7 @@ class Logs:
         """Write the world's description into the log."""
         try:
             message = await self._hub.whole()
-            writer.document(self._hub.simulator.sim_ns() * 1e-9, message["document"])
+            writer.document(self._hub.simulator.clock.sim_ns * 1e-9, message["document"])
             self._revision = message["revision"]
             self._hub.again()
         except (CommandError, ValueError) as fault:  # ValueError: it was closed meanwhile

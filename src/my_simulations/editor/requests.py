@@ -130,18 +130,18 @@ class Requests:
     # -- time ------------------------------------------------------------------------------------
 
     def _play(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
-        self._world.unpause()
+        self._world.clock.unpause()
         return self._time()
 
     def _pause(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
-        self._world.pause()
+        self._world.clock.pause()
         return self._time()
 
     def _step(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         steps = message["steps"]
         if not 0 < steps <= _MOST_STEPS:
             raise CommandError(f"steps must be 1 to {_MOST_STEPS}, not {steps}")
-        step = self._world.advance(steps)
+        step = self._world.clock.advance(steps)
         self._time()
         return {"step": step}
 

@@ -48,9 +48,9 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
     """
     if not target:
         return _of_world(world, path, value)
-    if any(light.name == target for light in world.lights()):
+    if any(light.name == target for light in world.lights.all()):
         _refuse_name(path)
-        return EditLight(target, with_value(world.light(target), path, value))
+        return EditLight(target, with_value(world.lights.get(target), path, value))
     owner, rest = split_target(world, target)
     if not rest:
         return _of_model(owner, path, value)
@@ -66,20 +66,20 @@ def split_target(world: Simulator, target: str) -> Tuple[Model, str]:
     """The model a scoped name begins with, and what follows. Raises UnknownEntity."""
     at = target.find("::")
     while at > 0:
-        if world.has_model(target[:at]):
-            return world.model(target[:at]), target[at + 2:]
+        if world.models.has(target[:at]):
+            return world.models.get(target[:at]), target[at + 2:]
         at = target.find("::", at + 2)
-    return world.model(target), ""
+    return world.models.get(target), ""
 
 
 def _of_world(world: Simulator, path: str, value: Any) -> Operation:
     name, _, rest = path.partition(".")
     if name == "physics":
-        return SetPhysics(with_value(replace(world.world, physics=world.physics), path,
-                                     value).physics, world.gravity)
+        return SetPhysics(with_value(replace(world.world, physics=world.physics.settings), path,
+                                     value).physics, world.physics.gravity)
     if name == "gravity":
-        holder = with_value(replace(world.world, gravity=world.gravity), path, value)
-        return SetPhysics(world.physics, holder.gravity)
+        holder = with_value(replace(world.world, gravity=world.physics.gravity), path, value)
+        return SetPhysics(world.physics.settings, holder.gravity)
     if name not in SETTERS:
         raise CommandError(f"{path!r} cannot be set; there are physics, gravity, "
                            + ", ".join(SETTERS))

@@ -7,9 +7,9 @@ from ..engine.commands import Servo
 from ..engine.ring import Snapshot
 from ..errors import CommandError
 from ..geometry import Pose, Twist, rpy_from_quat
-from ..simulator.loads import Effort
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
+from ..simulator.wrenches import Effort
 from .clock import RealTime
 
 MOST_TOPICS = 200
@@ -47,10 +47,10 @@ class Watches:
 
     def pushes(self, topics: Iterable[str]) -> Dict[str, Dict[str, Any]]:
         """The push of each topic, now."""
-        entities, snapshot = self._world.moment()
+        entities, snapshot = self._world.states.latest()
         names = {entity.model.name: entity for entity in entities}
         # The snapshot may be older than the clock: while nothing moves, none is written.
-        self._step, clock = self._world.ring.clock()
+        self._step, clock = self._world.clock.now()
         self._time = time = clock.sim_ns(self._step) * 1e-9
         found = {}
         for topic in topics:
@@ -73,14 +73,15 @@ class Watches:
     def _driven_joints(self, entity: Entity, snapshot: Snapshot) -> List[Dict[str, Any]]:
         found = list(_joints(entity, snapshot))
         for state, row in zip(found, entity.joint_names):
-            drive = _drive(self._world.drives(f"{entity.model.name}::{row}"))
+            drive = _drive(self._world.wrenches.efforts_on(f"{entity.model.name}::{row}"))
             if drive is not None:
                 state["drive"] = drive
         return found
 
     def _contacts(self) -> List[Dict[str, Any]]:
         return [{"a": a, "b": b, "position": list(one.position), "normal": list(one.normal),
-                 "depth": one.depth, "force": one.force} for a, b, one in self._world.contacts()]
+                 "depth": one.depth, "force": one.force} for a, b,
+                one in self._world.states.contacts()]
 
     def _value(self, variable: str, names: Dict[str, Entity], snapshot: Snapshot) -> float:
         if variable in _WORLD:

@@ -51,8 +51,8 @@ class Watching:
                 topics |= client.topics
         # Twists and joints are read for frames only when they happen to be.
         self._hub.want(self._hub.protocol.limits["watch_hz"] if topics else 0.0)
-        ring = self._hub.simulator.ring
-        now = (ring.step, ring.latest)
+        simulator = self._hub.simulator
+        now = (simulator.clock.step, simulator.feed.latest)
         if not topics or (now == self._told and not self._fresh):
             return
         self._told, self._fresh = now, False

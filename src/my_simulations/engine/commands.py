@@ -7,7 +7,7 @@ axis by its row in the joint table.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Dict, Optional, Tuple
+from typing import Dict, Optional, Tuple, TypeVar, Union
 
 from ..description.model import Joint, Model
 from ..description.shapes import MeshData
@@ -69,40 +69,68 @@ class Servo:
 
 
 @dataclass(frozen=True)
-class Load:
-    """A wrench on a link or an effort on a joint axis, exact to the step.
+class TimedWrench:
+    """A wrench on a link, exact to the step.
 
     Acts in steps `start` (the first step whose beginning is at this count) to `stop` - 1.
 
     Attributes:
-        load_id: to clear it by.
-        row: link row, or joint row when `effort` is not None.
-        force, torque: world axes, N and N m, at the centre of mass (link loads).
-        effort: N m or N (joint loads).
-        servo: what the effort follows instead (joint loads, whose `effort` is 0 then).
+        force_id: to clear it by.
+        row: link row.
         start, stop: step counts; `stop` FOREVER for until cleared.
-        in_link_axes: force and torque turn with the link (link loads).
-        point: where the force attacks, from the centre of mass, same axes as the force.
+        force, torque: N and N m, world axes, at the centre of mass.
+        in_link_axes: force, torque and point are in link axes and turn with the link.
+        point: m, from the centre of mass to where the force is applied, same axes as the force.
     """
 
-    load_id: int
+    force_id: int
     row: int
     start: int
     stop: int
     force: Vec3 = (0.0, 0.0, 0.0)
     torque: Vec3 = (0.0, 0.0, 0.0)
-    effort: Optional[float] = None
-    servo: Optional[Servo] = None
     in_link_axes: bool = False
     point: Vec3 = (0.0, 0.0, 0.0)
 
-    def begun(self, step: int) -> "Load":
+    def begun(self, step: int) -> "TimedWrench":
         """As it acts when it is queued whole at `step`: none of its steps lies in the past."""
-        late = step - self.start
-        if late <= 0:
-            return self
-        return replace(self, start=step,
-                       stop=FOREVER if self.stop == FOREVER else self.stop + late)
+        return _begun(self, step)
+
+
+@dataclass(frozen=True)
+class TimedEffort:
+    """An effort on a joint axis, exact to the step.
+
+    Attributes:
+        force_id: to clear it by.
+        row: joint row.
+        start, stop: as of `TimedWrench`.
+        effort: N m or N; ignored with `pid`.
+        pid: computes the effort in every step.
+    """
+
+    force_id: int
+    row: int
+    start: int
+    stop: int
+    effort: float = 0.0
+    pid: Optional[Servo] = None
+
+    def begun(self, step: int) -> "TimedEffort":
+        """As it acts when it is queued whole at `step`: none of its steps lies in the past."""
+        return _begun(self, step)
+
+
+TimedForce = Union[TimedWrench, TimedEffort]
+_Timed = TypeVar("_Timed", TimedWrench, TimedEffort)
+
+
+def _begun(force: _Timed, step: int) -> _Timed:
+    late = step - force.start
+    if late <= 0:
+        return force
+    return replace(force, start=step,
+                   stop=FOREVER if force.stop == FOREVER else force.stop + late)
 
 
 class Command:
@@ -315,22 +343,22 @@ class Advance(Command):
 
 
 @dataclass(frozen=True)
-class AddLoads(Command):
-    """Add timed wrenches and efforts; loads on one target add up.
+class AddTimedForces(Command):
+    """Add timed wrenches and efforts; those on one link or axis add up.
 
-    With `whole`, a load whose start has passed begins with the next step and acts as many steps as
-    it would have.
+    With `whole`, one whose start has passed begins with the next step and lasts as many steps as
+    it would have lasted.
     """
 
-    loads: Tuple[Load, ...]
+    forces: Tuple[TimedForce, ...]
     whole: bool = False
 
 
 @dataclass(frozen=True)
-class ClearLoads(Command):
-    """Remove loads by id; unknown ids are ignored, they have run out."""
+class ClearTimedForces(Command):
+    """Clear timed wrenches and efforts by id; unknown ids have run out and are ignored."""
 
-    load_ids: Tuple[int, ...]
+    force_ids: Tuple[int, ...]
 
 
 @dataclass(frozen=True)

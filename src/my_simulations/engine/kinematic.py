@@ -9,9 +9,9 @@ from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
 from .api import Event, Refused
 from .commands import (
-    AddLoads,
+    AddTimedForces,
     Clear,
-    ClearLoads,
+    ClearTimedForces,
     Command,
     Connect,
     Hold,
@@ -33,26 +33,36 @@ _LINK = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class KinematicBackend:
-    """Links fly straight on with their twists; no gravity, no contacts; loads are counted only."""
+    """Links fly straight on with their twists; no gravity or contacts. Timed forces are kept."""
 
     def __init__(self) -> None:
         self.settings = PhysicsSettings()
         self.links: Dict[int, LinkState] = {}
         self.joints: Dict[int, Tuple[float, float]] = {}
         self.models: Dict[int, Tuple[Model, int, int, bool]] = {}
-        self.loads: Dict[int, object] = {}
+        self.timed_forces: Dict[int, object] = {}
         self.held: Tuple[int, ...] = ()
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
-            LoadModel: self._load, RemoveModel: lambda c: self._remove(c.model_id),
-            Clear: self._clear, Restart: self._restart,
-            SetModelState: self._set_model, SetLinkState: self._set_link,
-            SetJoints: lambda c: self.joints.update({row: (at, rate)
-                                                     for row, at, rate in c.joints}),
-            SetAxes: self._set_axes, Hold: self._hold, ReadContacts: lambda _: (),
+            LoadModel: self._load,
+            RemoveModel: lambda c: self._remove(c.model_id),
+            Clear: self._clear,
+            Restart: self._restart,
+            SetModelState: self._set_model,
+            SetLinkState: self._set_link,
+            SetJoints: lambda c: self.joints.update(
+                {row: (at, rate) for row, at, rate in c.joints}
+            ),
+            SetAxes: self._set_axes,
+            Hold: self._hold,
+            ReadContacts: lambda _: (),
             Connect: lambda _: None,
-            AddLoads: lambda c: self.loads.update({load.load_id: load for load in c.loads}),
-            ClearLoads: lambda c: [self.loads.pop(number, None) for number in c.load_ids],
+            AddTimedForces: lambda c: self.timed_forces.update(
+                {force.force_id: force for force in c.forces}
+            ),
+            ClearTimedForces: lambda c: [
+                self.timed_forces.pop(number, None) for number in c.force_ids
+            ],
         }
 
     def apply(self, command: Command) -> object:
@@ -108,7 +118,7 @@ class KinematicBackend:
     def _clear(self, _: Clear) -> None:
         for model_id in list(self.models):
             self._remove(model_id)
-        self.loads.clear()
+        self.timed_forces.clear()
 
     def _restart(self, command: Restart) -> None:
         before = {number: self.models[number] for number, _ in command.models}

@@ -12,7 +12,7 @@ from typing import List, Optional, Protocol, Tuple
 
 from .api import Backend, Broken, Event, Refused, Reply
 from .commands import (
-    AddLoads,
+    AddTimedForces,
     Advance,
     Batch,
     Command,
@@ -166,8 +166,8 @@ class Runner:
             return None
         if isinstance(command, Ping):
             return None
-        if isinstance(command, AddLoads) and command.whole:
-            command = AddLoads(tuple(load.begun(self._step) for load in command.loads))
+        if isinstance(command, AddTimedForces) and command.whole:
+            command = AddTimedForces(tuple(force.begun(self._step) for force in command.forces))
         return self._backend.apply(command)
 
     def _configure(self, settings: PhysicsSettings) -> None:

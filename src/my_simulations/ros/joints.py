@@ -49,8 +49,8 @@ class JointServices:
         A joint without an axis has the one position NaN and the one rate 0 (Gazebo behaviour).
         """
         with in_gazebos_words(NO_JOINT):
-            _, joint, _ = self._simulator.find_joint(request.joint_name)
-            states = self._simulator.joint_states(request.joint_name)
+            _, joint, _ = self._simulator.joints.find(request.joint_name)
+            states = self._simulator.joints.states(request.joint_name)
         response.type = TYPES["continuous" if _is_continuous(joint) else joint.type]
         response.damping = [axis.damping for axis in _axes(joint)]
         response.position = [position for position, _ in states] or [math.nan]
@@ -61,7 +61,7 @@ class JointServices:
         """Only arrays that hold something act, one element an axis."""
         config = request.ode_joint_config
         with in_gazebos_words(NO_JOINT):
-            owner, joint, _ = self._simulator.find_joint(request.joint_name)
+            owner, joint, _ = self._simulator.joints.find(request.joint_name)
         count = AXES.get(joint.type, 0)
         for name in (*ACTING, *KEPT_OUT):
             values = getattr(config, name)
@@ -73,7 +73,7 @@ class JointServices:
                 raise CommandError(f"{name} has a number that is not finite: {tuple(values)}")
         axes = [_changed(axis, config, number) for number, axis in enumerate(_axes(joint)[:count])]
         if any(getattr(config, name) for name in ACTING):
-            self._simulator.edit_joint(f"{owner}::{joint.name}", _with_axes(joint, axes))
+            self._simulator.joints.edit(f"{owner}::{joint.name}", _with_axes(joint, axes))
         idle = [name for name in KEPT_OUT if getattr(config, name)]
         return "properties set" + (f"; without effect: {', '.join(idle)}" if idle else "")
 
@@ -81,7 +81,7 @@ class JointServices:
         """Put joints at positions, at rest and within their limits."""
         names, positions = request.joint_names, request.joint_positions
         with in_gazebos_words("model does not exist"):
-            model = self._simulator.model(request.model_name)
+            model = self._simulator.models.get(request.model_name)
         if len(names) != len(positions):
             raise CommandError("joint name and position list have different lengths: "
                                f"{len(names)} and {len(positions)}")
@@ -99,7 +99,7 @@ class JointServices:
             axis = joint.axis or JointAxis()
             wanted[scope + plain] = max(axis.lower, min(axis.upper, position))
         if wanted:
-            self._simulator.set_joints(wanted)
+            self._simulator.joints.set_positions(wanted)
         return "success" + (f"; left out, no joints that can be set: {', '.join(left)}"
                             if left else "")
 

@@ -50,20 +50,20 @@ class LightServices:
         if norm(direction) > 0.0:
             changes["direction"] = scale(direction, 1.0 / norm(direction))
         changes["pose"] = _pose(request.pose, light)
-        self._simulator.set_light(light.name, replace(light, **changes))
+        self._simulator.lights.set(light.name, replace(light, **changes))
         return "properties set"
 
     def delete(self, request: Any, _response: Any) -> str:
         """Take it out of the world."""
         name = self._light(request.light_name).name
-        self._simulator.delete_light(name)
+        self._simulator.lights.delete(name)
         return f"{name} successfully deleted"
 
     def _light(self, name: str) -> Light:
         try:
-            return self._simulator.light(name)
+            return self._simulator.lights.get(name)
         except UnknownEntity as fault:
-            lights = ", ".join(light.name for light in self._simulator.lights())
+            lights = ", ".join(light.name for light in self._simulator.lights.all())
             raise CommandError(f"Requested light {name} not found! The world has "
                                f"{lights or 'no light'}") from fault
 

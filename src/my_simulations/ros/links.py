@@ -26,7 +26,7 @@ class LinkServices:
     def get(self, request: Any, response: Any) -> str:
         """Mass (kg), centre of mass and axes of inertia in the link frame, moments (kg m^2)."""
         with in_gazebos_words("link not found"):
-            link = self._simulator.link(request.link_name)
+            link = self._simulator.models.link(request.link_name)
         fill_pose(response.com, link.inertial.pose)
         response.gravity_mode, response.mass = link.gravity, link.inertial.mass
         for name in MOMENTS:
@@ -36,7 +36,7 @@ class LinkServices:
     def set(self, request: Any, _response: Any) -> str:
         """All of them at once; the moments are about the centre of mass, along `com`'s axes."""
         with in_gazebos_words("link not found"):
-            link = self._simulator.link(request.link_name)
+            link = self._simulator.models.link(request.link_name)
         inertial = replace(
             link.inertial, mass=between(request.mass, -HEAVIEST, HEAVIEST, "mass", "kg"),
             pose=pose_from_message(request.com, "com"),
@@ -45,5 +45,6 @@ class LinkServices:
         for fault in inertial_faults(inertial, link.name):
             raise CommandError(fault.message)
         with in_gazebos_words("link not found"):
-            self._simulator.set_link_inertial(request.link_name, inertial, request.gravity_mode)
+            self._simulator.models.set_link_inertial(request.link_name, inertial,
+                                                     request.gravity_mode)
         return "properties set"

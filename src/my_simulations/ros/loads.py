@@ -15,7 +15,7 @@ NO_TIME = "; the duration is 0, so nothing happens"
 
 
 class LoadServices:
-    """What acts on links and joints for a time; see `simulator.loads` for frames and times."""
+    """What acts on links and joints for a time; see `simulator.wrenches` for frames and times."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
@@ -26,16 +26,17 @@ class LoadServices:
         torque = within(vector(request.wrench.torque), FORCE, "N m", "wrench.torque")
         point = within(vector(request.reference_point), LENGTH, "m", "reference_point")
         with in_gazebos_words("body does not exist", "reference_frame not found"):
-            self._simulator.push(request.body_name, force, torque, frame=request.reference_frame,
-                                 point=point, start_ns=request.start_time.to_nsec(),
-                                 duration_ns=request.duration.to_nsec())
+            self._simulator.wrenches.apply_wrench(request.body_name, force, torque,
+                                                  frame=request.reference_frame, point=point,
+                                                  start_ns=request.start_time.to_nsec(),
+                                                  duration_ns=request.duration.to_nsec())
         return "wrench set" + ("" if request.duration.to_nsec() else NO_TIME)
 
     def apply_effort(self, request: Any, _response: Any) -> str:
         """An effort on the first axis of a joint."""
         effort = between(request.effort, -FORCE, FORCE, "effort", "N m or N")
         with in_gazebos_words("joint not found"):
-            self._simulator.drive(request.joint_name, effort,
+            self._simulator.wrenches.apply_effort(request.joint_name, effort,
                                   start_ns=request.start_time.to_nsec(),
                                   duration_ns=request.duration.to_nsec())
         return "effort set" + ("" if request.duration.to_nsec() else NO_TIME)
@@ -43,7 +44,7 @@ class LoadServices:
     def clear_wrenches(self, request: Any, _response: Any) -> str:
         """End all wrenches on a link; an unknown one has none (Gazebo behaviour)."""
         try:
-            self._simulator.clear_pushes(request.body_name)
+            self._simulator.wrenches.clear_wrenches(request.body_name)
         except UnknownEntity as fault:
             rospy.logwarn_throttle_identical(1.0, f"ClearBodyWrenches: {fault}")
         return ""
@@ -51,11 +52,11 @@ class LoadServices:
     def clear_efforts(self, request: Any, _response: Any) -> str:
         """End all efforts on a joint; a plain name means it in every model (Gazebo behaviour)."""
         name = request.joint_name
-        scoped = [f"{model}::{name}" for model in self._simulator.model_names()
-                  if any(joint.name == name for joint in self._simulator.model(model).joints)]
+        scoped = [f"{model}::{name}" for model in self._simulator.models.names()
+                  if any(joint.name == name for joint in self._simulator.models.get(model).joints)]
         for joint in scoped or [name]:
             try:
-                self._simulator.clear_drives(joint)
+                self._simulator.wrenches.clear_efforts(joint)
             except CommandError as fault:
                 rospy.logwarn_throttle_identical(1.0, f"ClearJointForces: {fault}")
         return ""

@@ -35,9 +35,9 @@ class Metrics(Sleeper):
 
     def _measure(self) -> None:
         """Publish until nobody listens any more."""
-        sim, real = self._simulator.sim_ns(), time.monotonic()
+        sim, real = self._simulator.clock.sim_ns, time.monotonic()
         while not self._stop.wait(PERIOD_SECONDS) and self._publisher.get_num_connections():
-            sim_now, real_now = self._simulator.sim_ns(), time.monotonic()
+            sim_now, real_now = self._simulator.clock.sim_ns, time.monotonic()
             if sim_now > sim:
                 self._tell(sim_now, (sim_now - sim) * 1e-9 / (real_now - real))
             sim, real = sim_now, real_now

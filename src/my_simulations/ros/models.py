@@ -45,7 +45,7 @@ class ModelServices:
         name = checked_name(request.model_name)
         initial = pose_from_message(request.initial_pose, "initial_pose")
         replaces = asks_to_replace(root_of(request.model_xml)[1])
-        if not replaces and self._simulator.has_model(name):
+        if not replaces and self._simulator.models.has(name):
             raise CommandError(f"Failure - entity already exists. (model {name!r})")
         return self.spawn_text(request.model_xml, name, initial,
                                frame=request.reference_frame, namespace=request.robot_namespace,
@@ -88,7 +88,7 @@ class ModelServices:
         where = compose(initial, model.pose)
         within(where.position, LENGTH, "m", "the model's position")
         with in_gazebos_words("", NO_FRAME):
-            self._simulator.spawn(model, where, frame, meshes, replace)
+            self._simulator.models.spawn(model, where, frame, meshes, replace)
         self._report(arrival_advice(self._simulator, model.name, meshes))
         remarks = sum(issue.severity is not Severity.NOTE for issue in issues)
         warnings = f" ({remarks} remarks in the log)" if remarks else ""
@@ -97,10 +97,10 @@ class ModelServices:
     def _spawn_light(self, light: Light, name: Optional[str], initial: Pose, frame: str) -> str:
         light = with_changes(light, name=light.name if name is None else name,
                              pose=compose(initial, light.pose))
-        if any(one.name == light.name for one in self._simulator.lights()):
+        if any(one.name == light.name for one in self._simulator.lights.all()):
             raise CommandError(f"Failure - entity already exists. (light {light.name!r})")
         with in_gazebos_words("", NO_FRAME):
-            self._simulator.add_light(light, frame)
+            self._simulator.lights.add(light, frame)
         return "Successfully spawned entity"
 
     def _report(self, issues: List[Issue]) -> None:
@@ -110,7 +110,7 @@ class ModelServices:
     def delete(self, request: Any, _response: Any) -> str:
         """Take a model out; it is in no list any more when this answers."""
         with in_gazebos_words("model does not exist"):
-            self._simulator.delete(request.model_name)
+            self._simulator.models.delete(request.model_name)
         return "successfully deleted model"
 
 

@@ -54,7 +54,7 @@ class Node:
         from .registration import register
 
         if _flag(self._parameters, "lockstep", False):
-            self._simulator.set_lockstep(True)
+            self._simulator.clock.set_manual_stepping(True)
         self._publishers = Publishers(
             self._simulator, self._clock, states=self._network,
             clock_hz=_number(self._parameters, "pub_clock_frequency", 0.0),

@@ -72,7 +72,7 @@ ODE = tuple(parameter for parameter in PARAMETERS if parameter.ode)
 
 def present(simulator: Simulator) -> Dict[str, Value]:
     """All 15 as they are now, each in its parameter's type."""
-    physics, gravity = simulator.physics, simulator.gravity
+    physics, gravity = simulator.physics.settings, simulator.physics.gravity
     found: Dict[str, Value] = {
         "time_step": physics.max_step_size, "max_update_rate": physics.real_time_update_rate,
         "gravity_x": gravity[0], "gravity_y": gravity[1], "gravity_z": gravity[2],
@@ -98,7 +98,7 @@ def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
     # What is not changed is not judged: a world file may hold other numbers.
     ode: Dict[str, Any] = {parameter.ode: parameter.checked(values[parameter.name])
                            for parameter in ODE if parameter.name in values}
-    physics = simulator.physics
-    simulator.set_physics(
+    physics = simulator.physics.settings
+    simulator.physics.set(
         replace(physics, max_step_size=step, real_time_update_rate=max(rate, 0.0),
                 ode=replace(physics.ode, **ode)), gravity)

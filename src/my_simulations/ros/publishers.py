@@ -98,7 +98,7 @@ class Channel:
         return self._gate.due(step, sim_ns, owed, standing)
 
     def send(self, layout: Layout, sequence: int, links: bytes) -> None:
-        """Publish what `Simulator.raw_states` gave."""
+        """Publish what `StateFeed.states` gave."""
         names, places = self._entities(layout)
         self._message.packed = self._buffer.pack(layout.revision, sequence, names, places, links)
         self.publisher.publish(self._message)
@@ -141,7 +141,7 @@ class Publishers(Sleeper):
             ]
 
     def _run(self) -> None:
-        step, clock = self._simulator.ring.clock()
+        step, clock = self._simulator.clock.now()
         selector = StepSelector(step, clock.sim_ns(step), time.monotonic(), self._clock_period_ns)
         while not self._stop.is_set():
             clock_wanted = self._clock.get_num_connections() > 0
@@ -149,7 +149,7 @@ class Publishers(Sleeper):
             self._set_demand(clock_wanted, states_wanted)
             if not (clock_wanted or states_wanted):
                 self._sleep()
-                step, clock = self._simulator.ring.clock()
+                step, clock = self._simulator.clock.now()
                 selector = StepSelector(step, clock.sim_ns(step), time.monotonic(),
                                         self._clock_period_ns)
                 continue
@@ -165,11 +165,11 @@ class Publishers(Sleeper):
     def _set_demand(self, clock_wanted: bool, states_wanted: bool) -> None:
         hz = 0.0
         if states_wanted:
-            hz = self._states_hz or 1.0 / self._simulator.physics.max_step_size
+            hz = self._states_hz or 1.0 / self._simulator.physics.settings.max_step_size
         demand = (hz, clock_wanted or states_wanted)
         if demand != self._demand:
             self._demand = demand
-            self._simulator.set_demand("topics", states_hz=hz, bell=demand[1])
+            self._simulator.feed.request("topics", states_hz=hz, notify=demand[1])
 
     def _pace(self, began: float, made: int, step: int) -> None:
         """Wait for the next step; in a world of many steps a millisecond, look once in one."""
@@ -178,10 +178,10 @@ class Publishers(Sleeper):
             if left > 0.0:
                 time.sleep(left)
         else:
-            self._simulator.wait_step(step, PAUSED_LOOK_SECONDS)
+            self._simulator.clock.wait_step(step, PAUSED_LOOK_SECONDS)
 
     def _publish(self, selector: StepSelector, states_wanted: bool) -> None:
-        step, clock = self._simulator.ring.clock()
+        step, clock = self._simulator.clock.now()
         for nanoseconds in selector.times(step, clock.sim_ns, time.monotonic()):
             self._clock_message.packed = packed_time(nanoseconds)
             self._clock.publish(self._clock_message)
@@ -190,7 +190,7 @@ class Publishers(Sleeper):
             due = [channel for channel in self._channels
                    if channel.wanted and channel.is_due(step, sim_ns, self._standing)]
             if due:
-                layout, sequence, links = self._simulator.raw_states()
+                layout, sequence, links = self._simulator.feed.states()
                 passed_by = self._passed_by(layout.revision, sequence, step, len(links))
                 for earlier in passed_by:
                     for channel in due:
@@ -211,10 +211,9 @@ class Publishers(Sleeper):
         missed = min(step - before - 1, PASSED_BY, self._spare.available(time.monotonic()))
         if self._states_hz or revision != known or missed <= 0:
             return []
-        ring = self._simulator.ring
         shown: List[Tuple[int, Tuple[int, bytes]]] = []
         for number in range(max(last, sequence - PASSED_BY), sequence):
-            earlier = ring.earlier_links(number)
+            earlier = self._simulator.feed.earlier_states(number)
             if earlier is not None and len(earlier[1]) == size:
                 shown.append((earlier[0], (number, earlier[1])))
         # A step without a snapshot of its own left everything where it was.
@@ -224,7 +223,7 @@ class Publishers(Sleeper):
 
     def _standing(self) -> Optional[Tuple[int, int]]:
         """What a world that stands still looks like; None while it runs."""
-        if self._simulator.ring.running:
+        if self._simulator.clock.running:
             return None
-        layout, sequence, _ = self._simulator.raw_states()
+        layout, sequence, _ = self._simulator.feed.states()
         return layout.revision, sequence

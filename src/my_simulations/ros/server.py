@@ -232,7 +232,7 @@ class Server:
         node.spawn_robot()
         self._record(loader)
         if not self._options.paused:
-            loader.simulator.unpause()
+            loader.simulator.clock.unpause()
         self._profile.mark("running")
         node.advertise_late()
         # What the start has made stays; without this every full collection walks through it again.

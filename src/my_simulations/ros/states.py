@@ -42,15 +42,15 @@ class StateServices:
         """Pose and twist of a model in a frame; `seq` counts the calls for this model (Gazebo)."""
         name, frame = request.model_name, request.relative_entity_name
         with in_gazebos_words("model does not exist"):
-            self._simulator.model(name)
+            self._simulator.models.get(name)
         with self._lock:
             self._calls[name] += 1
             response.header.seq = self._calls[name]
         response.header.frame_id = frame
         stamp = response.header.stamp
-        stamp.secs, stamp.nsecs = seconds_and_nanoseconds(self._simulator.sim_ns())
+        stamp.secs, stamp.nsecs = seconds_and_nanoseconds(self._simulator.clock.sim_ns)
         with in_gazebos_words("model does not exist", "reference relative_entity_name not found"):
-            pose, twist = self._simulator.model_state(name, frame)
+            pose, twist = self._simulator.states.model_state(name, frame)
         fill_pose(response.pose, pose)
         fill_twist(response.twist, twist)
         return "got properties"
@@ -58,7 +58,8 @@ class StateServices:
     def get_link(self, request: Any, response: Any) -> str:
         """Pose and twist of a link, named scoped or not, in a frame."""
         with in_gazebos_words("link not found", "reference reference_frame not found"):
-            pose, twist = self._simulator.link_state(request.link_name, request.reference_frame)
+            pose, twist = self._simulator.states.link_state(request.link_name,
+                                                            request.reference_frame)
         state = response.link_state
         state.link_name, state.reference_frame = request.link_name, request.reference_frame
         fill_pose(state.pose, pose)
@@ -83,7 +84,8 @@ class StateServices:
         """
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
         with in_gazebos_words("model does not exist", NO_FRAME):
-            self._simulator.set_model_state(state.model_name, pose, twist, state.reference_frame)
+            self._simulator.states.set_model_state(state.model_name, pose, twist,
+                                                   state.reference_frame)
 
     def move_link(self, state: Any) -> None:
         """Apply a gazebo_msgs/LinkState.
@@ -93,7 +95,8 @@ class StateServices:
         """
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
         with in_gazebos_words("link does not exist", NO_FRAME):
-            self._simulator.set_link_state(state.link_name, pose, twist, state.reference_frame)
+            self._simulator.states.set_link_state(state.link_name, pose, twist,
+                                                  state.reference_frame)
 
     def on_model_state(self, state: Any) -> None:
         """What `move_model` does, faults to the log."""

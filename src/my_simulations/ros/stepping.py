@@ -33,8 +33,8 @@ class SteppingService:
                 if rospy.is_shutdown():
                     raise CommandError(f"the node ends, {left} steps were not made")
                 count = min(left, AT_ONCE)
-                self._simulator.advance(count)
+                self._simulator.clock.advance(count)
                 left -= count
-            nanoseconds = self._simulator.sim_ns()
+            nanoseconds = self._simulator.clock.sim_ns
         response.sim_time.secs, response.sim_time.nsecs = divmod(nanoseconds, 1000000000)
         return f"{steps} steps made"

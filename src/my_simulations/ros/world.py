@@ -19,15 +19,15 @@ class WorldServices:
 
     def get_world(self, _request: Any, response: Any) -> str:
         """Sim time in seconds and the names of the models, in load order."""
-        response.sim_time = self._simulator.sim_ns() / 1e9
-        response.model_names = list(self._simulator.model_names())
+        response.sim_time = self._simulator.clock.sim_ns / 1e9
+        response.model_names = list(self._simulator.models.names())
         response.rendering_enabled = True
         return "got properties"
 
     def get_model(self, request: Any, response: Any) -> str:
         """Links, collisions and joints of a model; names unscoped, as in Gazebo."""
         with in_gazebos_words("model does not exist"):
-            model = self._simulator.model(request.model_name)
+            model = self._simulator.models.get(request.model_name)
         links = [link for link in model.links if SCOPE not in link.name]
         response.canonical_body_name = model.canonical_link or (links[0].name if links else "")
         response.body_names = [link.name for link in links]
@@ -42,10 +42,10 @@ class WorldServices:
         """Step size (s), rate (Hz of steps, 0 unthrottled), gravity and the stored ODE values."""
         values = present(self._simulator)
         response.time_step = values["time_step"]
-        response.pause = self._simulator.paused
+        response.pause = self._simulator.clock.paused
         response.max_update_rate = values["max_update_rate"]
         gravity = response.gravity
-        gravity.x, gravity.y, gravity.z = self._simulator.gravity
+        gravity.x, gravity.y, gravity.z = self._simulator.physics.gravity
         for parameter in ODE:
             setattr(response.ode_config, parameter.name, values[parameter.name])
         return "got properties"
@@ -62,25 +62,25 @@ class WorldServices:
 
     def pause(self, _request: Any, _response: Any) -> str:
         """Stop after the running step."""
-        self._simulator.pause()
+        self._simulator.clock.pause()
         return ""
 
     def unpause(self, _request: Any, _response: Any) -> str:
         """Go on."""
-        self._simulator.unpause()
+        self._simulator.clock.unpause()
         return ""
 
     def reset_world(self, _request: Any, _response: Any) -> str:
         """Models to their load poses, velocities zero; joints and sim time stay (Gazebo)."""
-        self._simulator.reset_world()
+        self._simulator.resets.reset_world()
         return ""
 
     def reset_simulation(self, _request: Any, _response: Any) -> str:
         """All of that, joints to their load positions, sim time to zero (Gazebo)."""
-        self._simulator.reset_simulation()
+        self._simulator.resets.reset_simulation()
         return ""
 
     def reset_time(self, _request: Any, _response: Any) -> str:
         """Sim time to zero, everything else goes on as it is."""
-        self._simulator.reset_time()
+        self._simulator.resets.reset_time()
         return ""

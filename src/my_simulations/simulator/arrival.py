@@ -16,12 +16,13 @@ NEIGHBOURS = 64
 
 def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable]) -> List[Issue]:
     """Warnings about odd inertia, shapes without thickness, and what it stands inside of."""
-    if len(simulator.model_names()) > NEIGHBOURS:
+    if len(simulator.models.names()) > NEIGHBOURS:
         try:
-            models = [replace(simulator.model(name), pose=simulator.model_state(name)[0])]
+            models = [replace(simulator.models.get(name),
+                              pose=simulator.states.model_state(name)[0])]
         except UnknownEntity:
             return []  # somebody has taken it out meanwhile
     else:
-        entities, snapshot = simulator.moment()
+        entities, snapshot = simulator.states.latest()
         models = [replace(entity.model, pose=entity.state(snapshot)[0]) for entity in entities]
     return advised(models, {name: meshes or {}}, only=name)

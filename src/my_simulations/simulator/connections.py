@@ -104,10 +104,10 @@ class Connections:
 
 @dataclass(frozen=True)
 class Departed:
-    """What a model that has gone finds again when it comes back: its place, and its joints."""
+    """What a deleted model needs to come back: its place in the order, its joints to others."""
 
-    turn: Turn
-    ties: Connections
+    slot: Turn
+    joints: Connections
 
 
 def _touches(joint: Joint, model: str) -> bool:

@@ -15,10 +15,11 @@ from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
 from .connections import Departed
-from .loads import Effort
 from .moments import Moment
 from .order import Turn
+from .scene import SceneSettings
 from .simulator import Simulator
+from .wrenches import Effort
 
 
 class Operation(Protocol):
@@ -55,11 +56,12 @@ class AddModel:
     pose: Pose
     meshes: MeshTable = field(default_factory=dict)
     state: Optional[ModelState] = None
-    back: Optional[Departed] = None
+    deleted: Optional[Departed] = None
 
     def apply(self, world: Simulator) -> Operation:
         """Put it in."""
-        world.spawn(self.model, self.pose, meshes=self.meshes, state=self.state, back=self.back)
+        world.models.spawn(self.model, self.pose, meshes=self.meshes, state=self.state,
+                           deleted=self.deleted)
         return RemoveModel(self.model.name)
 
 
@@ -71,13 +73,13 @@ class RemoveModel:
 
     def apply(self, world: Simulator) -> Operation:
         """Take it out, remembering where everything of it was."""
-        world.model(self.name)  # says when there is none
-        entities, snapshot = world.moment()
+        world.models.get(self.name)  # says when there is none
+        entities, snapshot = world.states.latest()
         entity = next(one for one in entities if one.model.name == self.name)
         state = entity.saved(snapshot) if entity.link_names else None
         pose = entity.pose
         back = AddModel(entity.model, entity.initial_pose, entity.meshes, state,
-                        world.delete(self.name))
+                        world.models.delete(self.name))
         return back if state is not None else Group((back, Place({self.name: pose})))
 
 
@@ -91,8 +93,8 @@ class EditModel:
 
     def apply(self, world: Simulator) -> Operation:
         """Change it; states stay."""
-        old = world.model(self.name)
-        world.edit_model(self.name, self.model, self.meshes)
+        old = world.models.get(self.name)
+        world.models.edit(self.name, self.model, self.meshes)
         return EditModel(self.model.name, old)
 
 
@@ -106,8 +108,8 @@ class EditJoint:
     def apply(self, world: Simulator) -> Operation:
         """Change it in place where the engine can."""
         scoped = f"{self.model}::{self.joint.name}"
-        _, old, _ = world.find_joint(scoped)
-        world.edit_joint(scoped, self.joint)
+        _, old, _ = world.joints.find(scoped)
+        world.joints.edit(scoped, self.joint)
         return EditJoint(self.model, old)
 
 
@@ -138,26 +140,26 @@ class Place:
 
 def pose_of(world: Simulator, name: str) -> Pose:
     """World pose of a model, light or link. Raises CommandError for none of them."""
-    if world.has_model(name):
-        return world.model_state(name)[0]
-    for light in world.lights():
+    if world.models.has(name):
+        return world.states.model_state(name)[0]
+    for light in world.lights.all():
         if light.name == name:
             return light.pose
     if "::" not in name:
-        world.model(name)  # says that there is none
-    return world.link_state(name)[0]
+        world.models.get(name)  # says that there is none
+    return world.states.link_state(name)[0]
 
 
 def place(world: Simulator, name: str, pose: Pose) -> None:
     """Put a model, light or link at a world pose, at rest. Raises CommandError."""
-    if world.has_model(name):
-        world.set_model_state(name, pose, STILL)
-    elif any(light.name == name for light in world.lights()):
-        world.set_light(name, replace(world.light(name), pose=pose))
+    if world.models.has(name):
+        world.states.set_model_state(name, pose, STILL)
+    elif any(light.name == name for light in world.lights.all()):
+        world.lights.set(name, replace(world.lights.get(name), pose=pose))
     elif "::" in name:
-        world.set_link_state(name, pose, STILL)
+        world.states.set_link_state(name, pose, STILL)
     else:
-        world.model(name)
+        world.models.get(name)
 
 
 @dataclass(frozen=True)
@@ -165,11 +167,11 @@ class AddLight:
     """A light comes: last, or where its turn is."""
 
     light: Light
-    turn: Optional[Turn] = None
+    slot: Optional[Turn] = None
 
     def apply(self, world: Simulator) -> Operation:
         """Put it in."""
-        world.add_light(self.light, turn=self.turn)
+        world.lights.add(self.light, slot=self.slot)
         return RemoveLight(self.light.name)
 
 
@@ -181,8 +183,8 @@ class RemoveLight:
 
     def apply(self, world: Simulator) -> Operation:
         """Take it out."""
-        names = [light.name for light in world.lights()]
-        return AddLight(world.delete_light(self.name), Turn.of(names, self.name))
+        names = [light.name for light in world.lights.all()]
+        return AddLight(world.lights.delete(self.name), Turn.of(names, self.name))
 
 
 @dataclass(frozen=True)
@@ -194,8 +196,8 @@ class EditLight:
 
     def apply(self, world: Simulator) -> Operation:
         """Change it."""
-        old = world.light(self.name)
-        world.set_light(self.name, self.light)
+        old = world.lights.get(self.name)
+        world.lights.set(self.name, self.light)
         return EditLight(self.light.name, old)
 
 
@@ -208,18 +210,18 @@ class SetPhysics:
 
     def apply(self, world: Simulator) -> Operation:
         """Set both."""
-        back = SetPhysics(world.physics, world.gravity)
-        world.set_physics(self.physics, self.gravity)
+        back = SetPhysics(world.physics.settings, world.physics.gravity)
+        world.physics.set(self.physics, self.gravity)
         return back
 
 
-SETTERS: Dict[str, Callable[[Simulator, Any], None]] = {
-    "scene": Simulator.set_scene, "gui_camera": Simulator.set_gui_camera,
-    "wind": Simulator.set_wind, "atmosphere": Simulator.set_atmosphere,
-    "magnetic_field": Simulator.set_magnetic_field,
-    "spherical_coordinates": Simulator.set_spherical_coordinates,
+SETTERS: Dict[str, Callable[[SceneSettings, Any], None]] = {
+    "scene": SceneSettings.set_scene, "gui_camera": SceneSettings.set_gui_camera,
+    "wind": SceneSettings.set_wind, "atmosphere": SceneSettings.set_atmosphere,
+    "magnetic_field": SceneSettings.set_magnetic_field,
+    "spherical_coordinates": SceneSettings.set_spherical_coordinates,
 }
-"""Fields of a world besides models, lights and physics, and who sets them."""
+"""Fields of a world besides models, lights and physics, and what sets them."""
 
 
 @dataclass(frozen=True)
@@ -232,12 +234,8 @@ class SetSurrounding:
     def apply(self, world: Simulator) -> Operation:
         """Set it."""
         back = SetSurrounding(self.name, getattr(world.world, self.name))
-        SETTERS[self.name](world, self.value)
+        SETTERS[self.name](world.scene, self.value)
         return back
-
-
-def _now(world: Simulator) -> Moment:
-    return Moment.of(*world.moment(), world.ring.clock())
 
 
 @dataclass(frozen=True)
@@ -248,8 +246,8 @@ class PutBack:
 
     def apply(self, world: Simulator) -> Operation:
         """Put them back."""
-        back = PutBack(_now(world))
-        world.put_back(self.moment)
+        back = PutBack(world.states.capture())
+        world.states.restore(self.moment)
         return back
 
 
@@ -261,9 +259,9 @@ class Reset:
 
     def apply(self, world: Simulator) -> Operation:
         """Reset it."""
-        back = PutBack(_now(world))
-        {"time": world.reset_time, "poses": world.reset_world,
-         "world": world.reset_simulation}[self.what]()
+        back = PutBack(world.states.capture())
+        {"time": world.resets.reset_time, "poses": world.resets.reset_world,
+         "world": world.resets.reset_simulation}[self.what]()
         return back
 
 
@@ -285,21 +283,21 @@ class Push:
     def apply(self, world: Simulator) -> Operation:
         """Push; undone, the model is where it was, as fast as it was."""
         name, _, plain = self.link.partition("::")
-        model = world.model(name)
+        model = world.models.get(name)
         com = next((link.inertial.pose.position for link in model.links if link.name == plain),
                    None)
-        pose, _ = world.link_state(self.link)
-        back = _now(world)
+        pose, _ = world.states.link_state(self.link)
+        back = world.states.capture()
         if com is None:
             raise CommandError(f"there is no link '{self.link}'")
         lever = ZERO3 if self.point is None else subtract(self.point, com)
-        duration = round(self.steps * world.physics.max_step_size * 1e9)
+        duration = round(self.steps * world.physics.settings.max_step_size * 1e9)
         if self.in_link_axes:
             at = com if self.point is None else self.point
-            world.push(self.link, self.force, self.torque, frame=self.link, point=at,
-                       duration_ns=duration)
+            world.wrenches.apply_wrench(self.link, self.force, self.torque, frame=self.link,
+                                        point=at, duration_ns=duration)
         else:
-            world.push(self.link, self.force, self.torque, duration_ns=duration,
+            world.wrenches.apply_wrench(self.link, self.force, self.torque, duration_ns=duration,
                        point=rotate(pose.orientation, lever))
         return _PutModelBack(Moment(back.step, back.sim_ns, {name: back.models[name]}), self)
 
@@ -313,7 +311,7 @@ class _PutModelBack:
 
     def apply(self, world: Simulator) -> Operation:
         """Put the model back."""
-        world.put_back(self.moment, clock=False)
+        world.states.restore(self.moment, clock=False)
         return self.push
 
 
@@ -326,8 +324,8 @@ class Drive:
 
     def apply(self, world: Simulator) -> Operation:
         """Replace what drives it."""
-        before = world.drives(self.joint)
-        world.clear_drives(self.joint)
+        before = world.wrenches.efforts_on(self.joint)
+        world.wrenches.clear_efforts(self.joint)
         for effort in self.efforts:
-            world.drive(self.joint, effort)
+            world.wrenches.apply_effort(self.joint, effort)
         return Drive(self.joint, before)

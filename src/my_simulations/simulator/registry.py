@@ -148,13 +148,16 @@ class Rows:
 class Registry:
     """The entities in the order in which they came. Not thread safe: its owner locks.
 
-    `lights` tells the lights of the world, which are frames too; `ambiguous` hears once of each
-    plain name that several models have, and of the sentence to say about it.
+    Args:
+        lights: returns the lights of the world, which are reference frames too.
+        on_ambiguous_name: called once for each plain name that several models have, with a
+            sentence about it.
     """
 
-    def __init__(self, lights: Callable[[], List[Light]] = list) -> None:
-        self.lights = lights
-        self.ambiguous: Callable[[str], object] = _nobody
+    def __init__(self, lights: Callable[[], List[Light]] = list,
+                 on_ambiguous_name: Callable[[str], object] = lambda _text: None) -> None:
+        self._lights = lights
+        self._on_ambiguous_name = on_ambiguous_name
         self._told: Set[Tuple[str, str]] = set()
         self._entities: Dict[str, Entity] = {}
         self._plain_links: Dict[str, List[Tuple[Entity, int]]] = {}
@@ -284,7 +287,7 @@ class Registry:
         collision = self._collision(name)
         if collision is not None:
             return collision
-        for light in self.lights():
+        for light in self._lights():
             if light.name == name:
                 return Anchor(-1, light.pose)
         if name in WORLD_FRAMES:
@@ -322,8 +325,10 @@ class Registry:
             return
         self._told.add((kind, name))
         others = f"'{owners[1]}'" if len(owners) == 2 else f"{len(owners) - 1} other models"
-        self.ambiguous(f"'{owners[0]}' and {others} have a {kind} '{name}'; that of '{owners[0]}' "
-                       f"is taken; write '{owners[0]}::{name}' or another model's name before it")
+        self._on_ambiguous_name(
+            f"'{owners[0]}' and {others} have a {kind} '{name}'; that of '{owners[0]}' "
+            f"is taken; write '{owners[0]}::{name}' or another model's name before it"
+        )
 
     def _collision(self, name: str) -> Optional[Anchor]:
         head, _, last = name.rpartition("::")
@@ -339,7 +344,3 @@ class Registry:
     def _nearest(self, name: str) -> str:
         near = difflib.get_close_matches(name, self._entities, n=3)
         return f"; did you mean {' or '.join(near)}?" if near else ""
-
-
-def _nobody(_text: str) -> None:
-    """Nobody listens."""

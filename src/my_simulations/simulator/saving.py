@@ -31,14 +31,14 @@ def present_world(simulator: Simulator) -> World:
 
     Models stand in load order, at the poses of one snapshot; physics and gravity are as last set.
     """
-    entities, snapshot = simulator.look()
+    entities, snapshot = simulator.states.fresh()
     world = simulator.world
     models = [replace(unflattened(entity.model), pose=entity.state(snapshot)[0])
               for entity in entities]
     return replace(
-        world, models=models, lights=simulator.lights(),
-        joints=simulator.joints_between_models, physics=simulator.physics,
-        gravity=simulator.gravity,
+        world, models=models, lights=simulator.lights.all(),
+        joints=simulator.models.inter_model_joints, physics=simulator.physics.settings,
+        gravity=simulator.physics.gravity,
         state=_state(world, entities, snapshot), initial={}, initial_ns=0,
         extra=[xml for xml in world.extra if not xml.lstrip().startswith("<state")],
     )

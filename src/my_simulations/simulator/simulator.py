@@ -1,197 +1,150 @@
-"""The world as the faces see it.
+"""A running world: its parts, its start and its end.
 
-Reads come from the ring and never touch the engine; writes are commands that return once a
-snapshot shows their effect. Safe from any thread.
+Reads come from snapshots and never wait for the engine; changes are commands that return once a
+snapshot shows their effect. All parts are safe from any thread.
 """
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Dict, List, Optional
+from typing import Callable, Dict, List, Optional
 
 from ..description.shapes import MeshTable
-from ..description.world import Physics, World
+from ..description.world import World
+from ..engine.api import Engine, Event, Reply
 from ..engine.commands import (
     FOREVER,
-    AddLoads,
-    Advance,
+    AddTimedForces,
     Batch,
     Clear,
-    ClearLoads,
+    ClearTimedForces,
     Command,
     Pause,
-    Restart,
-    Run,
     SetClock,
-    SetJoints,
-    SetLinkState,
-    SetModelState,
-    SetPhysics,
 )
-from ..geometry import STILL, Pose, Twist, Vec3, compose
-from .frames import in_frame, usable
-from .initial import initial_commands
-from .loads import TimedLoads
-from .moments import Moment
+from ..errors import CommandError, Issue, Severity, error, warning
+from .clock import SimClock
+from .feeds import StateFeed
+from .joints import Joints
+from .lights import Lights
+from .models import Models
+from .physics import WorldPhysics
+from .resets import Resets
+from .scene import SceneSettings
+from .session import Session
+from .solids import ConvexParts
+from .states import States
+from .supervisor import Supervisor
+from .wrenches import Wrenches
 
 
-class Simulator(TimedLoads):
-    """Owns the description, the clock and the engine.
+class Simulator:
+    """The world as front ends see it.
+
+    Attributes:
+        models: spawn, delete, edit, pin; descriptions by name.
+        joints: find, read, set and edit joints.
+        states: poses, twists and contacts; capture and restore.
+        wrenches: timed wrenches on links, efforts and PID controllers on joints.
+        lights: the lights.
+        scene: scene, camera, wind, air, place on Earth.
+        physics: step size, solver and gravity.
+        clock: sim time, pausing, stepping.
+        resets: time, model poses, everything.
+        feed: rows of states for topics and pages.
 
     Args:
         world: what to load.
         engine_factory: makes the engine.
         paused: start paused.
-        log: who hears of issues that no caller waits for.
+        log: receives issues that no caller waits for.
         meshes: the collision meshes of the world's models, by model name.
-        steps: after so many steps from the start time stands still.
+        steps: pause after so many steps from the start.
     """
 
-    # -- time ------------------------------------------------------------------------------------
+    def __init__(self, world: World, *, engine_factory: Callable[[], Engine],
+                 log: Callable[[Issue], None], paused: bool = False,
+                 meshes: Optional[Dict[str, MeshTable]] = None, steps: int = FOREVER) -> None:
+        supervisor = Supervisor(engine_factory, self._restore, log)
+        self._session = session = Session(world, supervisor, log)
+        self._world_meshes = meshes or {}
+        self.clock = SimClock(session, paused, steps)
+        self.physics = WorldPhysics(session)
+        self.wrenches = Wrenches(session)
+        self.models = Models(session, self.wrenches, ConvexParts(
+            log, lambda text: log(Issue(Severity.NOTE, "meshes", text))))
+        self.joints = Joints(session, self.models)
+        self.states = States(session, self.clock)
+        self.lights = Lights(session)
+        self.scene = SceneSettings(session)
+        self.resets = Resets(session, self.models, self.wrenches, self.clock)
+        self.feed = StateFeed(session)
 
     @property
-    def paused(self) -> bool:
-        """True when time stands still on request."""
-        return self._paused
+    def world(self) -> World:
+        """The description: models as loaded; lights, scene and the like as last set."""
+        return self._session.world
 
-    def pause(self) -> None:
-        """Stop after the running step."""
-        with self._order:
-            self._paused = True
-            self._call(Pause())
+    @property
+    def engine_pid(self) -> int:
+        """Process id of the engine."""
+        return self._session.supervisor.engine.pid
 
-    def unpause(self) -> None:
-        """Go on."""
-        with self._order:
-            self._paused = False
-            if self._runs:
-                self._call(Run(self._horizon))
+    def start(self) -> None:
+        """Set the physics, load every model, and run unless paused.
 
-    def set_lockstep(self, lockstep: bool) -> None:
-        """Let time go on only by `advance`, whether paused or not; or by itself again."""
-        with self._order:
-            self._lockstep = lockstep
-            self._call(Run(self._horizon) if self._runs else Pause())
-
-    def advance(self, steps: int) -> int:
-        """Make exactly `steps` steps as fast as possible; returns the step count after them."""
-        return self._call(Advance(steps)).step
-
-    # -- states ----------------------------------------------------------------------------------
-
-    def set_model_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
-        """Move a model; all its links get the rigid body's velocity. Raises CommandError."""
-        pose = usable(pose, twist)
-        with self._lock:
-            entity = self._registry.model(name)
-            anchor = self._registry.frame(frame)
-            if not entity.link_names:
-                if anchor is not None:
-                    pose = compose(anchor.state(self._snapshot())[0], pose)
-                entity.pose = pose
-                self._registry.revision += 1
-                return
-        pose, twist, reference = in_frame(pose, twist, anchor)
-        self._call(SetModelState(entity.model_id, pose, twist, reference))
-
-    def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
-        """Move a link (see `engine.commands.SetLinkState`). Raises CommandError."""
-        pose = usable(pose, twist)
-        with self._lock:
-            entity, index = self._registry.link(name)
-            anchor = self._registry.frame(frame)
-        pose, twist, reference = in_frame(pose, twist, anchor)
-        self._call(SetLinkState(entity.first_link_row + index, pose, twist, reference))
-
-    def set_joints(self, positions: Dict[str, float]) -> None:
-        """Put movable joints (plain or scoped names) at positions, at rest."""
-        with self._lock:
-            rows = tuple((self._registry.joint_row(name), value, 0.0)
-                         for name, value in positions.items())
-        self._call(SetJoints(rows))
-
-    # -- physics ---------------------------------------------------------------------------------
-
-    def set_physics(self, physics: Physics, gravity: Vec3) -> None:
-        """Replace the settings. Raises CommandError, then the old ones stay."""
-        with self._order:
-            self._call(SetPhysics(self._settings(physics, gravity)))
-            with self._lock:
-                self._physics, self._gravity = physics, gravity
-                self._registry.revision += 1
-
-    # -- reset -----------------------------------------------------------------------------------
-
-    def reset_time(self) -> None:
-        """Sim time 0; everything stays where it is, and timed loads go on as long as they had."""
-        with self._order:
-            now = self._call(Pause()).step
-            pending = [replace(load, start=max(0, load.start - now),
-                               stop=load.stop if load.stop == FOREVER else load.stop - now)
-                       for load in self._loads.values() if load.stop > now]
-            self._loads = {load.load_id: load for load in pending}
-            commands: List[Command] = [SetClock(0, 0), AddLoads(tuple(pending))]
-            if self._runs:
-                commands.append(Run(self._horizon))
-            self._call(Batch(tuple(commands)))
-
-    def reset_world(self) -> None:
-        """Every model back to where it was loaded, at rest; joint positions and time stay."""
-        with self._order:
-            entities = self._registry.entities()
-            for entity in entities:
-                entity.pose = entity.initial_pose
-            self._registry.revision += 1
-            self._call(Batch(tuple(
-                SetModelState(entity.model_id, entity.initial_pose, STILL)
-                for entity in entities if entity.link_names)))
-
-    def reset_simulation(self) -> None:
-        """Everything as loaded, joints too, time 0, loads dropped; spawned models stay."""
-        with self._order:
-            entities = self._registry.entities()
-            commands: List[Command] = [
-                Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
-                SetClock(0, 0)]
-            for entity in entities:
-                entity.pose = entity.initial_pose
-                commands += initial_commands(entity, self.world.initial.get(entity.model.name))
-            commands += self._connections.commands(self._registry)
-            self._loads.clear()
-            if self._held:
-                commands.append(self._holding())
-            self._registry.revision += 1
-            self._call(Batch(tuple(commands)))
-
-    def put_back(self, moment: Moment, clock: bool = True) -> None:
-        """Poses, velocities, joints and, with `clock`, the time; what has come since stays.
-
-        Models that have gone or got other links meanwhile are passed over.
+        Faults of single models are logged; the rest is loaded. Raises CommandError when there is
+        no engine.
         """
-        with self._order:
-            with self._lock:
-                commands = moment.commands(self._registry.entities())
-                self._registry.revision += 1
-            time = [SetClock(moment.step, moment.sim_ns)] if clock else []
-            self._call(Batch((Pause(), *time, *commands,
-                              *([Run(self._horizon)] if self._runs else []))))
+        self._fill()
+        self._session.supervisor.engine.on_event(self._on_event)
+        for command in self.clock.resume_commands():
+            self._session.call(command)
+
+    def close(self) -> None:
+        """End the engine."""
+        self._session.supervisor.close()
 
     def load_world(self, world: World, meshes: Optional[Dict[str, MeshTable]] = None) -> None:
-        """Replace everything by another world, as at a start; paused stays what it is.
+        """Replace everything by another world, as at a start; a paused simulator stays paused.
 
-        Faults of single models go to the log; the rest is loaded. Raises CommandError when there
-        is no engine.
+        Faults of single models are logged; the rest is loaded. Raises CommandError when there is
+        no engine.
         """
-        with self._order:
-            self._call(Batch((Pause(), Clear(), ClearLoads(tuple(self._loads)))))
-            with self._lock:
-                for entity in self._registry.entities():
-                    self._registry.remove(entity.model.name)
-                    self._free(entity)
-            self._loads.clear()
-            self._held = []
-            self.world, self._world_meshes = world, meshes or {}
-            self._starts = dict(world.initial)
-            self._physics, self._gravity = world.physics, world.gravity
+        session = self._session
+        with session.structure_lock:
+            session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids))))
+            self.models.forget_all()
+            self.wrenches.replace_all()
+            session.world, self._world_meshes = world, meshes or {}
+            self.physics.adopt_world()
             self._fill()
-            if self._runs:
-                self._call(Run(self._horizon))
+            for command in self.clock.resume_commands():
+                session.call(command)
+
+    def _fill(self) -> None:
+        """Settings, clock and models of the world, into an empty engine."""
+        self._session.call(self.physics.command())
+        self._session.call(self.clock.start_command(
+            self.world.initial_ns, self.physics.settings.max_step_size))
+        self.models.load_all(self._world_meshes)
+
+    def _on_event(self, event: Event) -> None:
+        if event.kind == "diverged":
+            self._session.log(error("state-diverged", event.message))
+        elif event.kind == "log":
+            self._session.log(warning("physics-approximate", event.message))
+
+    def _restore(self, submit: Callable[[Command], Reply], paused: bool) -> None:
+        """Give a new engine the world of the last whole snapshot (see `Supervisor`)."""
+        snapshot = self._session.snapshot()
+        _, clock = self.clock.now()
+        if paused:
+            self.clock.pause_after_recovery()
+        commands: List[Command] = [self.physics.command(),
+                                   SetClock(snapshot.step, clock.sim_ns(snapshot.step)),
+                                   *self.models.restore_commands(snapshot)]
+        pending = self.wrenches.pending(snapshot.step)
+        if pending:
+            commands.append(AddTimedForces(pending))
+        reply = submit(Batch((*commands, *self.clock.resume_commands())))
+        if reply.error:
+            raise CommandError(reply.error)

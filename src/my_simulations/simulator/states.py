@@ -1,46 +1,135 @@
-"""The state of everything, as the state topics show it."""
+"""Poses, twists and contacts of a running world: read from snapshots, set by commands."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import List
+from typing import List, Tuple
 
-from ..engine.ring import Snapshot
-from ..geometry import Pose, Twist
+from ..engine.commands import (
+    Batch,
+    Contact,
+    Pause,
+    Ping,
+    ReadContacts,
+    SetClock,
+    SetLinkState,
+    SetModelState,
+)
+from ..engine.ring import LINK_WIDTH, Snapshot
+from ..geometry import IDENTITY, Pose, Twist, compose
+from .clock import SimClock
+from .frames import in_frame, relative, usable
+from .moments import Moment
 from .registry import Entity
+from .session import Session
 
 
-@dataclass
 class States:
-    """Parallel lists: all models in load order, all their links in the description's order.
+    """States of models and links. Reads never wait for the engine and take the registry lock.
 
-    Poses and twists are in the world frame; twists at the link origins. A model has the twist of
-    its canonical link. `revision` grows when names change, `sequence` when states may have.
+    Poses are those of model or link frames; twists are those of the link origins. Both are in the
+    world frame unless a reference frame is given.
     """
 
-    revision: int
-    sequence: int
-    step: int
-    sim_ns: int
-    model_names: List[str] = field(default_factory=list)
-    model_poses: List[Pose] = field(default_factory=list)
-    model_twists: List[Twist] = field(default_factory=list)
-    link_names: List[str] = field(default_factory=list)
-    link_poses: List[Pose] = field(default_factory=list)
-    link_twists: List[Twist] = field(default_factory=list)
+    def __init__(self, session: Session, clock: SimClock) -> None:
+        self._session = session
+        self._clock = clock
 
+    # -- reading -----------------------------------------------------------------------------------
 
-def collect(entities: List[Entity], snapshot: Snapshot, revision: int) -> States:
-    """The states of `entities` in one snapshot."""
-    states = States(revision, snapshot.sequence, snapshot.step, snapshot.sim_ns)
-    for entity in entities:
-        name = entity.model.name
-        pose, twist = entity.state(snapshot)
-        states.model_names.append(name)
-        states.model_poses.append(pose)
-        states.model_twists.append(twist)
-        for index, link in enumerate(entity.link_names):
-            pose, twist = snapshot.link(entity.first_link_row + index)
-            states.link_names.append(f"{name}::{link}")
-            states.link_poses.append(pose)
-            states.link_twists.append(twist)
-    return states
+    def model_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
+        """Pose and twist of a model frame in `frame` (see `Registry.frame`).
+
+        Raises UnknownEntity, UnknownFrame.
+        """
+        session = self._session
+        with session.registry_lock:
+            entity = session.registry.model(name)
+            anchor = session.registry.frame(frame)
+            if anchor is None and entity.link_names:
+                pose, twist = session.ring.link(entity.canonical_row)
+                if entity.link_from_model != IDENTITY:
+                    pose = compose(pose, entity.link_from_model)
+                return pose, twist
+            snapshot = session.snapshot()
+        return relative(entity.state(snapshot), anchor, snapshot)
+
+    def link_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
+        """Pose and twist of a link in `frame`. Raises UnknownEntity, UnknownFrame."""
+        session = self._session
+        with session.registry_lock:
+            row = session.link_row(name)
+            anchor = session.registry.frame(frame)
+            if anchor is None:
+                return session.ring.link(row)
+            snapshot = session.snapshot()
+        return relative(snapshot.link(row), anchor, snapshot)
+
+    def latest(self) -> Tuple[List[Entity], Snapshot]:
+        """All entities in load order, and the newest snapshot; it is old where nothing moves."""
+        session = self._session
+        with session.registry_lock:
+            entities, snapshot = session.registry.entities(), session.snapshot()
+        # A model that is being deleted may have left the engine, and its rows the table, already.
+        rows = len(snapshot.links) // LINK_WIDTH
+        return [entity for entity in entities
+                if entity.first_link_row + len(entity.link_names) <= rows
+                or not entity.link_names], snapshot
+
+    def fresh(self) -> Tuple[List[Entity], Snapshot]:
+        """As `latest`, after the engine has written a snapshot. Raises CommandError without one."""
+        self._session.call(Ping())
+        return self.latest()
+
+    def capture(self) -> Moment:
+        """States of all models and the clock, for `restore`."""
+        return Moment.of(*self.latest(), self._clock.now())
+
+    def contacts(self) -> List[Tuple[str, str, Contact]]:
+        """The contacts of the last step, with the scoped names of both links."""
+        found = self._session.call(ReadContacts()).value
+        names = {entity.first_link_row + n: f"{entity.model.name}::{link}"
+                 for entity in self._session.entities()
+                 for n, link in enumerate(entity.link_names)}
+        return [(names[contact.row_a], names[contact.row_b], contact)
+                for contact in (found if isinstance(found, tuple) else ())
+                if contact.row_a in names and contact.row_b in names]
+
+    # -- setting -----------------------------------------------------------------------------------
+
+    def set_model_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
+        """Move a model; all its links get the rigid body's velocity. Raises CommandError."""
+        session = self._session
+        pose = usable(pose, twist)
+        with session.registry_lock:
+            entity = session.registry.model(name)
+            anchor = session.registry.frame(frame)
+            if not entity.link_names:
+                if anchor is not None:
+                    pose = compose(anchor.state(session.snapshot())[0], pose)
+                entity.pose = pose
+                session.registry.revision += 1
+                return
+        pose, twist, reference = in_frame(pose, twist, anchor)
+        session.call(SetModelState(entity.model_id, pose, twist, reference))
+
+    def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
+        """Move a link (see `engine.commands.SetLinkState`). Raises CommandError."""
+        session = self._session
+        pose = usable(pose, twist)
+        with session.registry_lock:
+            row = session.link_row(name)
+            anchor = session.registry.frame(frame)
+        pose, twist, reference = in_frame(pose, twist, anchor)
+        session.call(SetLinkState(row, pose, twist, reference))
+
+    def restore(self, state: Moment, clock: bool = True) -> None:
+        """Restore poses, velocities, joints and, with `clock`, the time; models added since stay.
+
+        Models that were deleted, or have other links now, are skipped.
+        """
+        session = self._session
+        with session.structure_lock:
+            with session.registry_lock:
+                commands = state.commands(session.registry.entities())
+                session.registry.revision += 1
+            time = [SetClock(state.step, state.sim_ns)] if clock else []
+            session.call(Batch((Pause(), *time, *commands, *self._clock.resume_commands())))

@@ -10,9 +10,9 @@ from ...description.model import Model
 from ...geometry import Pose, pose_is_finite
 from ..api import Broken, Event, Refused
 from ..commands import (
-    AddLoads,
+    AddTimedForces,
     Clear,
-    ClearLoads,
+    ClearTimedForces,
     Command,
     Connect,
     Hold,
@@ -84,7 +84,8 @@ class BulletBackend:
             SetAxes: self._set_axes, Hold: self._hold,
             Connect: self._connect,
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit),
-            AddLoads: self._add_loads, ClearLoads: self._clear_loads,
+            AddTimedForces: self._add_timed_forces,
+            ClearTimedForces: self._clear_timed_forces,
         }
         self._configure_bullet()
 
@@ -130,7 +131,7 @@ class BulletBackend:
             self._decay.apply(dt)
             free = self._spin.before(step, dt)
             one()
-            self._spin.after(free, self._forces.loaded_links, dt)
+            self._spin.after(free, self._forces.wrenched_links, dt)
             self._holds.apply()
 
     def read(self) -> bool:
@@ -310,15 +311,15 @@ class BulletBackend:
         self._holds.set(body for number in command.model_ids
                         for body in self._entry(number).bodies)
 
-    # -- loads and events ------------------------------------------------------------------------
+    # -- timed forces and events -----------------------------------------------------------------
 
-    def _add_loads(self, command: AddLoads) -> None:
-        refusal = self._forces.add_loads(command.loads)
+    def _add_timed_forces(self, command: AddTimedForces) -> None:
+        refusal = self._forces.add(command.forces)
         if refusal:
             raise Refused(refusal)
 
-    def _clear_loads(self, command: ClearLoads) -> None:
-        self._forces.clear(command.load_ids)
+    def _clear_timed_forces(self, command: ClearTimedForces) -> None:
+        self._forces.clear(command.force_ids)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

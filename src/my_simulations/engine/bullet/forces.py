@@ -1,15 +1,15 @@
-"""What acts on bodies anew in every step: timed loads, weightless links, stiff dampers, springs.
+"""What acts on bodies anew in every step: timed forces, weightless links, dampers, springs.
 
 PyBullet forgets external forces and joint torques after one step.
 """
 from __future__ import annotations
 
-from typing import Callable, Dict, List, Optional, Set, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
-from ..commands import Load
+from ..commands import TimedEffort, TimedForce, TimedWrench
 from ..plan import BASE
 from .bodies import Axis, Body, Part
 from .implicit import ImplicitAxes
@@ -23,8 +23,8 @@ class Forces:
 
     def __init__(self, wake: Callable[[List[Body]], None]) -> None:
         self._wake = wake
-        self._loads: Dict[int, Load] = {}
-        self._acting: Dict[int, Load] = {}
+        self._timed: Dict[int, TimedForce] = {}
+        self._acting: Dict[int, TimedForce] = {}
         self._loops: Dict[int, Loop] = {}
         self._parts: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
@@ -44,7 +44,7 @@ class Forces:
             self._axes[axis.row] = (body, axis)
 
     def set_limits(self, row: int, effort: float, rate: float) -> None:
-        """Limit what loads may do on the axis of `row`; negative: not (SDF, axis/limit)."""
+        """Limit efforts and rate on the axis of `row`; negative for no limit (SDF, axis/limit)."""
         self._limits.pop(row, None)
         if effort >= 0.0 or rate >= 0.0:
             self._limits[row] = (effort, rate)
@@ -62,7 +62,7 @@ class Forces:
             self._implicit[body.uid].disturbed()
 
     def forget(self, body: Body) -> None:
-        """Drop a body and every load on it."""
+        """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
         self._implicit.pop(body.uid, None)
         for part in body.parts:
@@ -73,49 +73,49 @@ class Forces:
             self._limits.pop(axis.row, None)
         rows = {part.row for part in body.parts}
         axes = {axis.row for axis in body.axes}
-        self.clear([load.load_id for load in self._loads.values()
-                    if load.row in (rows if load.effort is None else axes)])
+        self.clear([force.force_id for force in self._timed.values()
+                    if force.row in (rows if isinstance(force, TimedWrench) else axes)])
 
-    def add_loads(self, loads: Tuple[Load, ...]) -> str:
-        """Queue loads; returns why not, or ""."""
-        for load in loads:
-            if load.row not in (self._parts if load.effort is None else self._axes):
-                return "the link or joint of the load does not exist"
-        self._loads.update({load.load_id: load for load in loads})
+    def add(self, forces: Sequence[TimedForce]) -> str:
+        """Queue timed forces; returns why not, or ""."""
+        for force in forces:
+            if force.row not in (self._parts if isinstance(force, TimedWrench) else self._axes):
+                return "the link or joint of the wrench or effort does not exist"
+        self._timed.update({force.force_id: force for force in forces})
         return ""
 
-    def clear(self, load_ids: "List[int] | Tuple[int, ...]") -> None:
-        """Drop loads by id."""
-        for load_id in load_ids:
-            self._loads.pop(load_id, None)
-            self._acting.pop(load_id, None)
-            self._loops.pop(load_id, None)
+    def clear(self, force_ids: Sequence[int]) -> None:
+        """Drop timed forces by id."""
+        for force_id in force_ids:
+            self._timed.pop(force_id, None)
+            self._acting.pop(force_id, None)
+            self._loops.pop(force_id, None)
 
     def clear_all(self) -> None:
-        """Drop every load."""
-        for table in (self._loads, self._acting, self._loops):
+        """Drop every timed force."""
+        for table in (self._timed, self._acting, self._loops):
             table.clear()
 
     @property
     def idle(self) -> bool:
         """True when a step needs nothing from here, now or later."""
-        return not (self._loads or self._weightless or self._implicit)
+        return not (self._timed or self._weightless or self._implicit)
 
     @property
-    def loaded_links(self) -> Set[int]:
-        """Rows of the links that a load acts on in this step."""
-        return {load.row for load in self._acting.values() if load.effort is None}
+    def wrenched_links(self) -> Set[int]:
+        """Rows of the links that a timed wrench acts on in this step."""
+        return {force.row for force in self._acting.values() if isinstance(force, TimedWrench)}
 
     def apply(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
         efforts: Dict[int, float] = {}
-        if self._loads:
-            self._turn_over(step)
-            for load in self._acting.values():
-                if load.effort is None:
-                    self._push(load, dt)
+        if self._timed:
+            self._begin_and_end(step)
+            for force in self._acting.values():
+                if isinstance(force, TimedWrench):
+                    self._apply_wrench(force, dt)
                 else:
-                    efforts[load.row] = efforts.get(load.row, 0.0) + self._allowed(load, dt)
+                    efforts[force.row] = efforts.get(force.row, 0.0) + self._limited(force, dt)
         for implicit in self._implicit.values():
             implicit.add_to(efforts)
         for row, effort in efforts.items():
@@ -132,49 +132,51 @@ class Forces:
         """A step was made without `apply`."""
         self._placed.clear()
 
-    def _allowed(self, load: Load, dt: float) -> float:
-        """An effort within the limits of its axis, each load by itself as in Gazebo.
+    def _limited(self, force: TimedEffort, dt: float) -> float:
+        """An effort within the limits of its axis, each by itself as in Gazebo.
 
         Nothing in the direction in which the axis moves faster than its velocity limit.
         """
-        effort = load.effort or 0.0
-        effort_limit, rate_limit = self._limits.get(load.row, (-1.0, -1.0))
+        effort = force.effort
+        effort_limit, rate_limit = self._limits.get(force.row, (-1.0, -1.0))
         rate = 0.0
-        if load.servo is not None or rate_limit >= 0.0:
-            body, axis = self._axes[load.row]
+        if force.pid is not None or rate_limit >= 0.0:
+            body, axis = self._axes[force.row]
             position, rate = pybullet.getJointState(body.uid, axis.index)[:2]
-        if load.servo is not None:
+        if force.pid is not None:
             most = effort_limit if effort_limit >= 0.0 else MOST_EFFORT
-            effort = self._loops[load.load_id].effort(position, rate, dt, most)
+            effort = self._loops[force.force_id].effort(position, rate, dt, most)
         if effort_limit >= 0.0:
             effort = max(-effort_limit, min(effort_limit, effort))
         if rate_limit >= 0.0 and abs(rate) > rate_limit and rate * effort > 0.0:
             return 0.0
         return effort
 
-    def _turn_over(self, step: int) -> None:
-        starting = []
-        for load_id, load in list(self._loads.items()):
-            if step >= load.stop:
-                self.clear([load_id])
-            elif step >= load.start and load_id not in self._acting:
-                self._acting[load_id] = load
-                if load.servo is not None:
-                    self._loops[load_id] = Loop(load.servo)
-                starting.append(load)
-        if starting:
-            self._wake([self._target(load) for load in starting])
+    def _begin_and_end(self, step: int) -> None:
+        beginning = []
+        for force_id, force in list(self._timed.items()):
+            if step >= force.stop:
+                self.clear([force_id])
+            elif step >= force.start and force_id not in self._acting:
+                self._acting[force_id] = force
+                if isinstance(force, TimedEffort) and force.pid is not None:
+                    self._loops[force_id] = Loop(force.pid)
+                beginning.append(force)
+        if beginning:
+            self._wake([self._target(force) for force in beginning])
 
-    def _target(self, load: Load) -> Body:
-        return (self._parts if load.effort is None else self._axes)[load.row][0]
+    def _target(self, force: TimedForce) -> Body:
+        if isinstance(force, TimedWrench):
+            return self._parts[force.row][0]
+        return self._axes[force.row][0]
 
-    def _push(self, load: Load, dt: float) -> None:
-        body, part = self._parts[load.row]
+    def _apply_wrench(self, wrench: TimedWrench, dt: float) -> None:
+        body, part = self._parts[wrench.row]
         if not body.moves:
             return
         at, turn = self._com(body, part)
-        force, torque, point = load.force, load.torque, load.point
-        if load.in_link_axes:
+        force, torque, point = wrench.force, wrench.torque, wrench.point
+        if wrench.in_link_axes:
             # The link's axes, not the principal ones that PyBullet's frame follows.
             x, y, z, w = part.link_from_com.orientation
             inverse_turn = (-x, -y, -z, w)

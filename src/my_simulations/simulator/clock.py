@@ -1,0 +1,103 @@
+"""Sim time: pausing, stepping, and how far the engine may run by itself."""
+from __future__ import annotations
+
+from typing import List, Tuple
+
+from ..engine.commands import FOREVER, Advance, Command, Pause, Run, SetClock
+from ..engine.ring import Clock
+from .session import Session
+
+
+class SimClock:
+    """Owns whether time goes on. Changes take the session's structure lock; reads take none.
+
+    Args:
+        session: the running world.
+        paused: start paused.
+        steps: pause after this many steps from the start; FOREVER for never.
+    """
+
+    def __init__(self, session: Session, paused: bool = False, steps: int = FOREVER) -> None:
+        self._session = session
+        self._paused = paused
+        self._manual_stepping = False
+        self._steps = steps
+        self._horizon = FOREVER
+
+    @property
+    def step(self) -> int:
+        """Steps since the start or the last reset of the clock."""
+        return self._session.ring.step
+
+    @property
+    def sim_ns(self) -> int:
+        """Sim time, ns."""
+        step, clock = self.now()
+        return clock.sim_ns(step)
+
+    def now(self) -> Tuple[int, Clock]:
+        """The step count, and the clock that turns it into sim time."""
+        return self._session.ring.clock()
+
+    @property
+    def running(self) -> bool:
+        """Whether the engine makes steps now."""
+        return self._session.ring.running
+
+    @property
+    def paused(self) -> bool:
+        """Whether time was paused on request. Manual stepping does not count as paused."""
+        return self._paused
+
+    def pause(self) -> int:
+        """Pause after the running step; returns the step count."""
+        with self._session.structure_lock:
+            self._paused = True
+            return self._session.call(Pause()).step
+
+    def unpause(self) -> None:
+        """Let time go on, unless it is stepped manually."""
+        with self._session.structure_lock:
+            self._paused = False
+            for command in self.resume_commands():
+                self._session.call(command)
+
+    def set_manual_stepping(self, manual: bool) -> None:
+        """Let time go on by `advance` alone, whether paused or not; or by itself again."""
+        with self._session.structure_lock:
+            self._manual_stepping = manual
+            self._session.call((self.resume_commands() or [Pause()])[0])
+
+    def advance(self, steps: int) -> int:
+        """Make exactly `steps` steps as fast as possible; returns the step count after them."""
+        return self._session.call(Advance(steps)).step
+
+    def wait_step(self, after_step: int, timeout: float) -> bool:
+        """Wait until the step count is not `after_step`, or something else has changed.
+
+        Args:
+            after_step: the step count already known.
+            timeout: wall seconds.
+
+        Returns:
+            False after the timeout.
+        """
+        if self._session.ring.step != after_step:
+            return True
+        return self._session.supervisor.engine.wait_bell(timeout)
+
+    # -- for the other parts -----------------------------------------------------------------------
+
+    def resume_commands(self) -> List[Command]:
+        """`Run`, if time goes on by itself, else nothing."""
+        return [] if self._paused or self._manual_stepping else [Run(self._horizon)]
+
+    def pause_after_recovery(self) -> None:
+        """Stay paused when the engine is restored: it keeps crashing while time runs."""
+        self._paused = True
+
+    def start_command(self, start_ns: int, step_size: float) -> Command:
+        """Set the clock to a sim time (ns), and the step at which a limited run pauses."""
+        step = round(start_ns * 1e-9 / step_size)
+        self._horizon = FOREVER if self._steps == FOREVER else step + self._steps
+        return SetClock(step, start_ns)

@@ -1,0 +1,73 @@
+"""Joints of models in a running world: found by name, read, set, edited."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, List, Tuple
+
+from ..description.model import Joint
+from ..engine.commands import SetAxes, SetJoints
+from .models import Models
+from .session import Session
+
+
+class Joints:
+    """Joints by plain or scoped name. Edits take the structure lock, the rest the registry lock."""
+
+    def __init__(self, session: Session, models: Models) -> None:
+        self._session = session
+        self._models = models
+
+    def find(self, name: str) -> Tuple[str, Joint, int]:
+        """Model name, joint and axis number of a joint, fixed ones too.
+
+        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntity.
+        """
+        with self._session.registry_lock:
+            entity, joint, number = self._session.registry.joint(name)
+            return entity.model.name, joint, number
+
+    def states(self, name: str) -> List[Tuple[float, float]]:
+        """Position (rad or m) and rate (rad/s or m/s) of each axis of a joint; none of a fixed one.
+
+        Raises UnknownEntity.
+        """
+        with self._session.registry_lock:
+            entity, joint, _ = self._session.registry.joint(name)
+            snapshot = self._session.snapshot()
+            return [snapshot.joint(row) for row in (entity.axis_row(joint.name, number)
+                                                    for number in (0, 1)) if row is not None]
+
+    def set_positions(self, positions: Dict[str, float]) -> None:
+        """Move joint axes to positions (rad or m), at rest. Raises UnknownEntity, CommandError."""
+        with self._session.registry_lock:
+            rows = tuple((self._session.registry.joint_row(name), value, 0.0)
+                         for name, value in positions.items())
+        self._session.call(SetJoints(rows))
+
+    def edit(self, name: str, joint: Joint) -> None:
+        """Give a joint other axes (limits, friction, damping, spring, motor) or another type.
+
+        Raises CommandError; then nothing has changed.
+        """
+        session = self._session
+        with session.structure_lock:
+            with session.registry_lock:
+                entity, old, _ = session.registry.joint(name)
+            joints = [joint if one.name == old.name else one for one in entity.model.joints]
+            model = replace(entity.model, joints=joints)
+            if _fixed_properties(joint) != _fixed_properties(old):
+                self._models.edit(entity.model.name, model)
+                return
+            session.call(SetAxes(entity.model_id, tuple(joints)))
+            changed = replace(entity, model=model)
+            changed.pose = entity.pose
+            with session.registry_lock:
+                session.registry.swap(entity, changed)
+
+
+def _fixed_properties(joint: Joint) -> tuple:
+    """What of a joint the engine cannot change in place."""
+    return (joint.name, joint.type, joint.parent, joint.child, joint.pose, joint.thread_pitch,
+            joint.gearbox_ratio, joint.gearbox_reference,
+            *((axis.xyz, axis.mimic) if axis is not None else None
+              for axis in (joint.axis, joint.axis2)))

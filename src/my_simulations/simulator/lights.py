@@ -1,0 +1,77 @@
+"""The lights of a running world."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import List, Optional
+
+from ..description.world import Light
+from ..errors import CommandError
+from ..geometry import Pose, compose, normalised, pose_is_finite
+from .order import Turn
+from .registry import UnknownEntity
+from .session import Session
+
+
+class Lights:
+    """Owns the lights, which the engine does not know. Changes take both locks of the session."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def all(self) -> List[Light]:
+        """All lights, in order."""
+        with self._session.registry_lock:
+            return list(self._session.world.lights)
+
+    def get(self, name: str) -> Light:
+        """The light of that name. Raises UnknownEntity."""
+        for light in self.all():
+            if light.name == name:
+                return light
+        raise UnknownEntity(f"there is no light '{name}'")
+
+    def add(self, light: Light, frame: str = "", slot: Optional[Turn] = None) -> None:
+        """Add a light, its pose given in `frame`; last, or at its former place in the order.
+
+        Raises CommandError: empty or taken name, unknown frame, a pose that is not finite.
+        """
+        if not light.name:
+            raise CommandError("a light needs a name")
+        session = self._session
+        with session.structure_lock, session.registry_lock:
+            session.check_name_is_free(light.name)
+            anchor = session.registry.frame(frame)
+            pose = _usable_pose(light)
+            if anchor is not None:
+                pose = compose(anchor.state(session.snapshot())[0], pose)
+            lights = self.all()
+            at = len(lights) if slot is None else slot.among([one.name for one in lights])
+            lights.insert(at, replace(light, pose=pose))
+            session.set_world_fields(lights=lights)
+
+    def set(self, name: str, light: Light) -> None:
+        """Replace a light; another name renames it. Raises CommandError."""
+        session = self._session
+        with session.structure_lock, session.registry_lock:
+            self.get(name)
+            if not light.name:
+                raise CommandError("a light needs a name")
+            if light.name != name:
+                session.check_name_is_free(light.name)
+            light = replace(light, pose=_usable_pose(light))
+            session.set_world_fields(
+                lights=[light if one.name == name else one for one in self.all()])
+
+    def delete(self, name: str) -> Light:
+        """Delete a light; returns what it was. Raises UnknownEntity."""
+        session = self._session
+        with session.structure_lock, session.registry_lock:
+            light = self.get(name)
+            session.set_world_fields(lights=[one for one in self.all() if one.name != name])
+            return light
+
+
+def _usable_pose(light: Light) -> Pose:
+    if not pose_is_finite(light.pose):
+        raise CommandError(f"the pose of light '{light.name}' is not finite")
+    return Pose(light.pose.position, normalised(light.pose.orientation))

@@ -1,0 +1,310 @@
+"""Models that come, go and change in a running world."""
+from __future__ import annotations
+
+from dataclasses import replace as replaced
+from typing import Dict, List, Optional, Tuple
+
+from ..description.flatten import flattened
+from ..description.model import Inertial, Joint, Link, Model
+from ..description.shapes import MeshTable
+from ..engine.commands import (
+    AddTimedForces,
+    Batch,
+    Command,
+    Hold,
+    LoadModel,
+    ModelState,
+    RemoveModel,
+)
+from ..engine.ring import Snapshot
+from ..errors import CommandError, error
+from ..formats.meshes import without_missing_meshes
+from ..geometry import Pose, compose, normalised
+from .connections import Connections, Departed
+from .initial import initial_commands
+from .order import Turn
+from .registry import Entity
+from .session import Session
+from .solids import ConvexParts
+from .wrenches import Wrenches
+
+
+class Models:
+    """Owns the entities, the joints between models, and which models are pinned.
+
+    Changes take the session's structure lock, and the registry lock for the moment in which names
+    and rows change; reads take the registry lock.
+    """
+
+    def __init__(self, session: Session, wrenches: Wrenches, convex_meshes: ConvexParts) -> None:
+        self._session = session
+        self._wrenches = wrenches
+        self._convex_meshes = convex_meshes
+        self._between = Connections()
+        self._pinned: List[str] = []
+        self._saved_starts = dict(session.world.initial)
+
+    # -- reading -----------------------------------------------------------------------------------
+
+    def names(self) -> List[str]:
+        """Names of the top-level models, in load order."""
+        with self._session.registry_lock:
+            return self._session.registry.names()
+
+    def has(self, name: str) -> bool:
+        """Whether there is a model of that name."""
+        with self._session.registry_lock:
+            return name in self._session.registry
+
+    def get(self, name: str) -> Model:
+        """The flattened description of a model. Raises UnknownEntity."""
+        with self._session.registry_lock:
+            return self._session.registry.model(name).model
+
+    def link(self, name: str) -> Link:
+        """The description of a link, by plain or scoped name. Raises UnknownEntity."""
+        with self._session.registry_lock:
+            entity, index = self._session.registry.link(name)
+            return entity.model.links[index]
+
+    @property
+    def revision(self) -> int:
+        """Grows with every change of names, descriptions, lights or scene settings."""
+        with self._session.registry_lock:
+            return self._session.registry.revision
+
+    def inventory(self) -> Tuple[int, List[Entity]]:
+        """The revision and all entities in order; one whose description changes is a new object."""
+        with self._session.registry_lock:
+            return self._session.registry.revision, self._session.registry.entities()
+
+    @property
+    def inter_model_joints(self) -> List[Joint]:
+        """Joints between models that hold now; their ends are scoped link names, or `world`."""
+        return self._between.joints
+
+    # -- spawning and deleting ---------------------------------------------------------------------
+
+    def spawn(self, model: Model, pose: Optional[Pose] = None, frame: str = "",
+              meshes: Optional[MeshTable] = None, replace: bool = False,
+              state: Optional[ModelState] = None, deleted: Optional[Departed] = None) -> None:
+        """Put a model into the world; returns when it is there.
+
+        Args:
+            model: with its name; nested models are flattened.
+            pose: of the model frame in `frame`; None for the model's own.
+            frame: reference frame of `pose`.
+            meshes: its loaded collision meshes by `mesh_key`.
+            replace: replace a model of that name, in one step.
+            state: where its links and joints are, instead of at rest at `pose`.
+            deleted: what `delete` returned: the model gets its place in the order and its joints
+                to other models again.
+
+        Raises:
+            CommandError: empty or taken name, unknown frame, or the engine refused it.
+        """
+        if not model.name:
+            raise CommandError("a model needs a name")
+        model = flattened(model)
+        meshes = self._convex_meshes.of(model, meshes or {})
+        session = self._session
+        with session.structure_lock:
+            again = Connections() if deleted is None else deleted.joints
+            between = self._between.joined(again)
+            with session.registry_lock:
+                old = self._replaceable(model.name, replace)
+                entity = session.new_entity(model, self._world_pose(model, pose, frame), meshes,
+                                            between.slides(model.name))
+            try:
+                session.call(Batch((
+                    load_command(entity, state),
+                    *initial_commands(entity, self._saved_starts.pop(model.name, None)),
+                    *again.commands(session.registry, model.name, entity),
+                    *([] if old is None else [RemoveModel(old.model_id)]))))
+            except CommandError:
+                self._forget(entity)
+                raise
+            with session.registry_lock:
+                session.registry.add(entity, None if deleted is None else deleted.slot)
+                if deleted is not None:
+                    self._between = between.present(session.registry)
+                if old is not None:
+                    self._between = self._between.without(model.name)
+                    self._forget(old)
+
+    def delete(self, name: str) -> Departed:
+        """Delete a model; returns when it is gone, with what brings it back to its place.
+
+        Raises UnknownEntity.
+        """
+        session = self._session
+        with session.structure_lock:
+            with session.registry_lock:
+                entity = session.registry.model(name)
+            session.call(RemoveModel(entity.model_id))
+            with session.registry_lock:
+                deleted = Departed(Turn.of(session.registry.names(), name), self._between.of(name))
+                session.registry.remove(name)
+                self._between = self._between.without(name)
+                self._forget(entity)
+                return deleted
+
+    def _replaceable(self, name: str, may_replace: bool) -> Optional[Entity]:
+        registry = self._session.registry
+        old = registry.model(name) if name in registry else None
+        if old is not None and not may_replace:
+            raise CommandError(f"a model named '{name}' already exists")
+        return old
+
+    def _world_pose(self, model: Model, pose: Optional[Pose], frame: str) -> Pose:
+        anchor = self._session.registry.frame(frame)
+        wanted = model.pose if pose is None else pose
+        wanted = Pose(wanted.position, normalised(wanted.orientation))
+        if anchor is None:
+            return wanted
+        return compose(anchor.state(self._session.snapshot())[0], wanted)
+
+    def _forget(self, entity: Entity) -> None:
+        """An entity that is not in the engine (any more): its rows may be used by others."""
+        with self._session.registry_lock:
+            self._wrenches.forget_entity(entity)
+            self._session.free_rows(entity)
+
+    # -- changing ----------------------------------------------------------------------------------
+
+    def edit(self, name: str, model: Model, meshes: Optional[MeshTable] = None) -> None:
+        """Give a model another description; what is in both keeps its state.
+
+        Links keep pose and twist (moved along when their pose in the model differs), joints
+        position and rate, timed wrenches go on, and bodies that rested on it wake up.
+
+        Args:
+            name: of the model now.
+            model: what it becomes; another name renames it. Its pose is ignored: the model stays,
+                and a reset moves it to where it was loaded.
+            meshes: collision meshes by `mesh_key`; those it has are kept.
+
+        Raises:
+            CommandError: unknown or taken name, or the engine refused it; nothing has changed.
+        """
+        if not model.name:
+            raise CommandError("a model needs a name")
+        model = flattened(model)
+        session = self._session
+        with session.structure_lock:
+            with session.registry_lock:
+                old = session.registry.model(name)
+                if model.name != name:
+                    session.check_name_is_free(model.name)
+            parts = self._convex_meshes.of(model, {**old.meshes, **(meshes or {})})
+            with session.registry_lock:
+                entity = session.new_entity(model, old.initial_pose, parts,
+                                            self._between.slides(model.name))
+            entity.pose, entity.articulated = old.pose, old.articulated
+            forces = self._wrenches.transferred(old, entity)
+            try:
+                session.call(Batch((
+                    replaced(load_command(entity), inherit=old.model_id),
+                    RemoveModel(old.model_id),
+                    *self._between.commands(session.registry, name, entity),
+                    *([AddTimedForces(tuple(forces))] if forces else []))))
+            except CommandError:
+                self._forget(entity)
+                raise
+            with session.registry_lock:
+                session.registry.swap(old, entity)
+                self._between = self._between.renamed(name, model.name).present(session.registry)
+                self._forget(old)
+            self._wrenches.keep(forces)
+            self._pinned = [model.name if pinned == name else pinned for pinned in self._pinned]
+            if model.name in self._pinned:
+                session.call(self._pin_command())
+
+    def set_link_inertial(self, link: str, inertial: Inertial,
+                          gravity: Optional[bool] = None) -> None:
+        """Give a link (plain or scoped name) another inertial; `gravity` None keeps that flag.
+
+        Raises CommandError.
+        """
+        with self._session.structure_lock:
+            with self._session.registry_lock:
+                entity, index = self._session.registry.link(link)
+            links = list(entity.model.links)
+            old = links[index]
+            links[index] = replaced(old, inertial=inertial,
+                                    gravity=old.gravity if gravity is None else gravity)
+            self.edit(entity.model.name, replaced(entity.model, links=links))
+
+    def pin(self, names: List[str]) -> None:
+        """Keep these models at rest where they are put, and release all others.
+
+        Raises UnknownEntity.
+        """
+        with self._session.structure_lock:
+            with self._session.registry_lock:
+                for name in names:
+                    self._session.registry.model(name)
+            self._pinned = list(names)
+            self._session.call(self._pin_command())
+
+    def _pin_command(self) -> Hold:
+        with self._session.registry_lock:
+            registry = self._session.registry
+            return Hold(tuple(registry.model(name).model_id
+                              for name in self._pinned if name in registry))
+
+    # -- whole worlds, for the other parts, which hold the structure lock --------------------------
+
+    def load_all(self, meshes: Dict[str, MeshTable]) -> None:
+        """Load the models of the session's world and join them.
+
+        Faults of single models are logged; the rest is loaded. Raises CommandError when there is
+        no engine.
+        """
+        session = self._session
+        self._saved_starts = dict(session.world.initial)
+        self._between = Connections(session.world.joints)
+        for model in session.world.models:
+            try:
+                self.spawn(model, meshes=meshes.get(model.name))
+            except CommandError as fault:
+                session.log(error("model-refused", str(fault), file=session.world.file))
+        self._between, issues = self._between.located(session.registry)
+        for issue in issues:
+            session.log(replaced(issue, file=session.world.file))
+        for command in self._between.commands(session.registry):
+            try:
+                session.call(command)
+            except CommandError as fault:
+                session.log(error("joint-refused", str(fault), file=session.world.file))
+        self._between = self._between.present(session.registry)
+
+    def forget_all(self) -> None:
+        """Drop every entity from the registry, after the engine was cleared."""
+        session = self._session
+        with session.registry_lock:
+            for entity in session.registry.entities():
+                session.registry.remove(entity.model.name)
+                self._forget(entity)
+        self._pinned = []
+
+    def commands_after_loading(self) -> List[Command]:
+        """What must follow when all models are loaded anew: joints between them, and pins."""
+        commands: List[Command] = list(self._between.commands(self._session.registry))
+        if self._pinned:
+            commands.append(self._pin_command())
+        return commands
+
+    def restore_commands(self, snapshot: Snapshot) -> List[Command]:
+        """What loads every model into a new engine, in the states of a snapshot."""
+        entities = self._session.registry.entities()
+        return [*(load_command(entity, entity.saved(snapshot)) for entity in entities),
+                *self.commands_after_loading()]
+
+
+def load_command(entity: Entity, state: Optional[ModelState] = None) -> LoadModel:
+    """The command that loads an entity, at its initial pose or in a state."""
+    model = without_missing_meshes(entity.model, entity.meshes)
+    return LoadModel(entity.model_id, model, entity.initial_pose,
+                     entity.first_link_row, entity.first_joint_row, entity.meshes, state,
+                     articulated=entity.articulated)

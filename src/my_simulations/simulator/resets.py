@@ -1,0 +1,75 @@
+"""The three resets of Gazebo's services: time, model poses, everything."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import List
+
+from ..engine.commands import (
+    FOREVER,
+    AddTimedForces,
+    Batch,
+    Command,
+    Pause,
+    Restart,
+    SetClock,
+    SetModelState,
+)
+from ..geometry import STILL
+from .clock import SimClock
+from .initial import initial_commands
+from .models import Models
+from .session import Session
+from .wrenches import Wrenches
+
+
+class Resets:
+    """Resets of a running world; each holds the session's structure lock."""
+
+    def __init__(self, session: Session, models: Models, wrenches: Wrenches,
+                 clock: SimClock) -> None:
+        self._session = session
+        self._models = models
+        self._wrenches = wrenches
+        self._clock = clock
+
+    def reset_time(self) -> None:
+        """Set sim time to 0. Models stay; timed wrenches last as long as they would have."""
+        with self._session.structure_lock:
+            now = self._session.call(Pause()).step
+            pending = [replace(force, start=max(0, force.start - now),
+                               stop=force.stop if force.stop == FOREVER else force.stop - now)
+                       for force in self._wrenches.pending(now)]
+            self._wrenches.replace_all(pending)
+            self._session.call(Batch((SetClock(0, 0), AddTimedForces(tuple(pending)),
+                                      *self._clock.resume_commands())))
+
+    def reset_world(self) -> None:
+        """Move every model to where it was loaded, at rest; joint positions and time stay."""
+        session = self._session
+        with session.structure_lock:
+            entities = session.registry.entities()
+            for entity in entities:
+                entity.pose = entity.initial_pose
+            session.registry.revision += 1
+            session.call(Batch(tuple(
+                SetModelState(entity.model_id, entity.initial_pose, STILL)
+                for entity in entities if entity.link_names)))
+
+    def reset_simulation(self) -> None:
+        """Start again: models and joints as loaded, time 0, no timed wrenches; spawned models stay.
+
+        What follows repeats, bit for bit, what followed the start.
+        """
+        session = self._session
+        with session.structure_lock:
+            entities = session.registry.entities()
+            commands: List[Command] = [
+                Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
+                SetClock(0, 0)]
+            for entity in entities:
+                entity.pose = entity.initial_pose
+                commands += initial_commands(entity, session.world.initial.get(entity.model.name))
+            commands += self._models.commands_after_loading()
+            self._wrenches.replace_all()
+            session.registry.revision += 1
+            session.call(Batch(tuple(commands)))

@@ -1,0 +1,128 @@
+"""What the parts of a simulator share: engine, entities, description and locks."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, Callable, List, Optional
+
+from ..description.model import Model
+from ..description.shapes import MeshTable
+from ..description.world import World
+from ..engine.api import Reply
+from ..engine.commands import Command
+from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
+from ..engine.rows import axis_rows
+from ..errors import CommandError, Issue, warning
+from ..formats.surroundings import with_surroundings
+from ..geometry import Pose
+from .registry import Entity, Registry, Rows
+from .supervisor import Supervisor
+
+
+class Session:
+    """One running world, as its parts see it. Front ends use the parts, never this.
+
+    Two locks, taken in this order when both are needed:
+
+    - `structure_lock`: one change of models, clock or settings at a time. It is held while the
+      engine works.
+    - `registry_lock`: names, rows and descriptions. It is never held while the engine works, so
+      that reads are answered meanwhile.
+
+    Attributes:
+        supervisor: runs the engine.
+        world: the description, with lights and scene as last set; models as they were loaded.
+        registry: the entities in the world. Read and changed with `registry_lock` held.
+        log: receives issues that no caller waits for.
+    """
+
+    def __init__(self, world: World, supervisor: Supervisor, log: Callable[[Issue], None]) -> None:
+        self.supervisor = supervisor
+        self.world = world
+        self.log = log
+        self.structure_lock = threading.RLock()
+        self.registry_lock = threading.RLock()
+        self.registry = Registry(lambda: self.world.lights,
+                                 lambda text: log(warning("name-ambiguous", text)))
+        self._link_rows = Rows(LINKS)
+        self._joint_rows = Rows(JOINTS)
+        self._last_id = 0
+
+    def call(self, command: Command) -> Reply:
+        """Carry out an engine command. Raises CommandError, see `Supervisor.call`."""
+        return self.supervisor.call(command)
+
+    @property
+    def ring(self) -> RingReader:
+        """The engine's snapshots."""
+        return self.supervisor.engine.ring
+
+    def snapshot(self) -> Snapshot:
+        """A copy of the newest snapshot. Raises CommandError before the first one."""
+        found = self.ring.read()
+        if found is None:
+            raise CommandError("the physics engine has not started")
+        return found
+
+    def new_id(self) -> int:
+        """A number that no model and no timed force had before. Needs `structure_lock`."""
+        self._last_id += 1
+        return self._last_id
+
+    def new_entity(self, model: Model, initial_pose: Pose, meshes: MeshTable,
+                   articulated: bool) -> Entity:
+        """An entity with an id and rows of its own, not in the registry yet.
+
+        Needs both locks. Raises CommandError when the ring has no rows left.
+        """
+        links, joints = len(model.links), len(axis_rows(model))
+        first_link = self._link_rows.take(links)
+        first_joint = self._joint_rows.take(joints)
+        if first_link is None or first_joint is None:
+            if first_link is not None:
+                self._link_rows.give(first_link, links)
+            raise CommandError(f"the world is full: it can hold {LINKS} links and {JOINTS} "
+                               "joint axes")
+        return Entity(self.new_id(), model, initial_pose, first_link, first_joint, meshes,
+                      articulated=articulated)
+
+    def free_rows(self, entity: Entity) -> None:
+        """Let other entities use the rows of one that has left the engine. Needs both locks."""
+        self._link_rows.give(entity.first_link_row, len(entity.link_names))
+        self._joint_rows.give(entity.first_joint_row, len(entity.joint_names))
+
+    def check_name_is_free(self, name: str) -> None:
+        """Raises CommandError if a model or light has that name. Needs `registry_lock`."""
+        if name in self.registry or any(light.name == name for light in self.world.lights):
+            raise CommandError(f"a model or light named '{name}' already exists")
+
+    def set_world_fields(self, **fields: Any) -> None:
+        """Replace fields of the description that the engine does not simulate."""
+        with self.structure_lock, self.registry_lock:
+            self.world = with_surroundings(self.world, **fields)
+            self.registry.revision += 1
+
+    def entities(self) -> List[Entity]:
+        """All entities in load order."""
+        with self.registry_lock:
+            return self.registry.entities()
+
+    def link_row(self, name: str) -> int:
+        """Row of a link by plain or scoped name. Raises UnknownEntity."""
+        with self.registry_lock:
+            entity, index = self.registry.link(name)
+            return entity.first_link_row + index
+
+    def axis_row(self, joint: str) -> int:
+        """Row of a joint axis (`joint::1` is the second axis).
+
+        Raises:
+            UnknownEntity: no such joint.
+            CommandError: the joint has no axis.
+        """
+        with self.registry_lock:
+            entity, found, number = self.registry.joint(joint)
+            row: Optional[int] = entity.axis_row(found.name, number)
+        if row is None:
+            raise CommandError(f"joint '{joint}' is {found.type} and has no axis")
+        return row

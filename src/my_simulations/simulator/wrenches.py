@@ -1,0 +1,191 @@
+"""Timed wrenches on links and efforts on joint axes, given in sim time and exact to the step."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, List, Sequence, Tuple, Union
+
+from ..engine.commands import (
+    FOREVER,
+    AddTimedForces,
+    ClearTimedForces,
+    Servo,
+    TimedEffort,
+    TimedForce,
+    TimedWrench,
+)
+from ..engine.ring import Clock
+from ..geometry import ZERO3, Vec3, compose, inverse, rotate, subtract, transform
+from .registry import Entity
+from .session import Session
+
+NANOSECOND_PS = 1000
+
+Effort = Union[float, Servo]
+"""N m or N, or the PID controller that computes it in every step."""
+
+
+class Wrenches:
+    """Owns what acts on links and joints for a time. Changes take the session's structure lock.
+
+    Wrenches on one link add up, and so do efforts on one joint axis (Gazebo behaviour).
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._forces: Dict[int, TimedForce] = {}
+
+    def apply_wrench(self, link: str, force: Vec3, torque: Vec3, *, frame: str = "",
+                     point: Vec3 = ZERO3, start_ns: int = 0, duration_ns: int = -1) -> None:
+        """Apply a wrench to a link for a time.
+
+        Args:
+            link: plain or scoped name.
+            force: N, along the axes of `frame`.
+            torque: N m, likewise.
+            frame: "" or another name of the world: the axes stay the world's and the force is
+                applied at the centre of mass. A model or link: the wrench is given in that frame
+                as it is now, is applied at its origin, and from then on turns with the link.
+            point: m, added to the point of application, along the same axes.
+            start_ns: sim time from which it acts; a past one means from the next step on.
+            duration_ns: rounded to steps, at least one; 0 does nothing, negative means until it
+                is cleared.
+
+        Raises:
+            UnknownEntity, UnknownFrame: no such link or frame.
+        """
+        session = self._session
+        with session.structure_lock:
+            with session.registry_lock:
+                entity, index = session.registry.link(link)
+                row = entity.first_link_row + index
+                anchor = session.registry.frame(frame)
+                if anchor is not None:
+                    snapshot = session.snapshot()
+                    here = compose(inverse(snapshot.link(row)[0]), anchor.state(snapshot)[0])
+                    com = entity.model.links[index].inertial.pose.position
+                    point = subtract(transform(here, point), com)
+                    force = rotate(here.orientation, force)
+                    torque = rotate(here.orientation, torque)
+            if duration_ns:
+                self.add([TimedWrench(0, row, *self._span(start_ns, duration_ns), force, torque,
+                                      in_link_axes=anchor is not None, point=point)], whole=True)
+
+    def apply_effort(self, joint: str, effort: Effort, *, start_ns: int = 0,
+                     duration_ns: int = -1) -> None:
+        """Apply an effort to a joint axis for a time; see `apply_wrench` for the times.
+
+        Raises:
+            UnknownEntity: no such joint.
+            CommandError: the joint has no axis.
+        """
+        with self._session.structure_lock:
+            row = self._session.axis_row(joint)
+            if duration_ns:
+                pid = effort if isinstance(effort, Servo) else None
+                self.add([TimedEffort(0, row, *self._span(start_ns, duration_ns),
+                                      0.0 if isinstance(effort, Servo) else effort, pid)],
+                         whole=True)
+
+    def efforts_on(self, joint: str) -> Tuple[Effort, ...]:
+        """What acts on a joint axis until it is cleared. Raises as `apply_effort` does."""
+        row = self._session.axis_row(joint)
+        return tuple(force.effort if force.pid is None else force.pid
+                     for force in list(self._forces.values())
+                     if isinstance(force, TimedEffort) and force.row == row
+                     and force.stop == FOREVER)
+
+    def clear_wrenches(self, link: str) -> None:
+        """Clear every wrench on a link. Raises UnknownEntity."""
+        with self._session.structure_lock:
+            self._clear_row(TimedWrench, self._session.link_row(link))
+
+    def clear_efforts(self, joint: str) -> None:
+        """Clear every effort on a joint axis. Raises CommandError like `apply_effort`."""
+        with self._session.structure_lock:
+            self._clear_row(TimedEffort, self._session.axis_row(joint))
+
+    def add(self, forces: Sequence[TimedForce], whole: bool = False) -> List[int]:
+        """Queue wrenches and efforts by row; returns their new ids.
+
+        Args:
+            forces: their `force_id` is replaced.
+            whole: one whose start has passed begins with the next step and lasts as many steps as
+                it would have lasted.
+        """
+        with self._session.structure_lock:
+            numbered = [replace(force, force_id=self._session.new_id()) for force in forces]
+            now = self._session.call(AddTimedForces(tuple(numbered), whole)).step
+            self._forces = {key: force for key, force in self._forces.items() if force.stop > now}
+            self._forces.update({force.force_id: force.begun(now) if whole else force
+                                 for force in numbered})
+            return [force.force_id for force in numbered]
+
+    def remove(self, force_ids: Sequence[int]) -> None:
+        """Clear by id; unknown ids have run out."""
+        with self._session.structure_lock:
+            for force_id in force_ids:
+                self._forces.pop(force_id, None)
+            self._session.call(ClearTimedForces(tuple(force_ids)))
+
+    # -- for the other parts, which hold the structure lock ----------------------------------------
+
+    @property
+    def ids(self) -> Tuple[int, ...]:
+        """Ids of all that is queued or acts."""
+        return tuple(self._forces)
+
+    def pending(self, step: int) -> Tuple[TimedForce, ...]:
+        """What still acts, or will, after a step count."""
+        return tuple(force for force in self._forces.values() if force.stop > step)
+
+    def replace_all(self, forces: Sequence[TimedForce] = ()) -> None:
+        """Forget all, and keep these instead; the engine is told by the caller."""
+        self._forces = {force.force_id: force for force in forces}
+
+    def keep(self, forces: Sequence[TimedForce]) -> None:
+        """Keep these as well, which the engine has been given by the caller."""
+        self._forces.update({force.force_id: force for force in forces})
+
+    def forget_entity(self, entity: Entity) -> None:
+        """Drop what acts on a model that has left the engine."""
+        self._forces = {key: force for key, force in self._forces.items()
+                        if not (entity.has_link_row if isinstance(force, TimedWrench)
+                                else entity.has_joint_row)(force.row)}
+
+    def transferred(self, old: Entity, new: Entity) -> List[TimedForce]:
+        """What acts on a model, for the rows of the entity that replaces it."""
+        links = {old.first_link_row + n: new.first_link_row + new.link_names.index(name)
+                 for n, name in enumerate(old.link_names) if name in new.link_names}
+        axes = {old.first_joint_row + n: new.first_joint_row + new.joint_names.index(name)
+                for n, name in enumerate(old.joint_names) if name in new.joint_names}
+        found: List[TimedForce] = []
+        for force in self.pending(self._session.ring.step):
+            rows = links if isinstance(force, TimedWrench) else axes
+            if force.row in rows:
+                found.append(replace(force, row=rows[force.row]))
+        return found
+
+    def _clear_row(self, kind: type, row: int) -> None:
+        found = [force.force_id for force in self._forces.values()
+                 if isinstance(force, kind) and force.row == row]
+        if found:
+            self.remove(found)
+
+    def _span(self, start_ns: int, duration_ns: int) -> Tuple[int, int]:
+        _, clock = self._session.ring.clock()
+        start = first_step(clock, start_ns)
+        return start, FOREVER if duration_ns < 0 else start + steps_of(clock, duration_ns)
+
+
+def first_step(clock: Clock, sim_ns: int) -> int:
+    """The first step that begins at a sim time or later; 0 for times before step 0.
+
+    A step may begin a nanosecond early: sim times are rounded to whole ones.
+    """
+    ahead = (sim_ns - clock.epoch_ns - 1) * NANOSECOND_PS
+    return max(0, clock.epoch_step - (-ahead // clock.step_ps))
+
+
+def steps_of(clock: Clock, duration_ns: int) -> int:
+    """How many steps are nearest to a duration, at least one."""
+    return max(1, (duration_ns * NANOSECOND_PS + clock.step_ps // 2) // clock.step_ps)
