@@ -46,7 +46,7 @@ def main(words: List[str], program: str) -> int:
     from ..simulator.starting import start_world
 
     def tell(issue: Issue) -> None:
-        if options.verbose or issue.severity is not Severity.NOTE:
+        if options.verbose or issue.severity is not Severity.NOTE or issue.code == "meshes":
             say(issue)
 
     log = IssueLog()

@@ -96,12 +96,18 @@ class WorldCore(WorldViews):
         self._horizon = FOREVER if self._steps == FOREVER else step + self._steps
         self._call(SetClock(step, started))
         self._connections = Connections(self.world.joints)
+        self._prepare(self.world, self._world_meshes)
         for model in self.world.models:
             try:
                 self.spawn(model, meshes=self._world_meshes.get(model.name))
             except CommandError as fault:
                 self._log(error("model-refused", str(fault), file=self.world.file))
         self._connect()
+
+    def _prepare(self, world: World, meshes: Dict[str, MeshTable]) -> None:
+        """Divide the meshes of all models that need it, together."""
+        self._solids.prepare((flattened(model), meshes.get(model.name) or {})
+                             for model in world.models)
 
     def _connect(self) -> None:
         """Join the models that have just been loaded."""
