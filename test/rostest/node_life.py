@@ -19,6 +19,47 @@ from my_simulations.editor.state_log import LogReader
 WORLD = '<sdf version="1.5"><world name="default">{}</world></sdf>'
 
 
+CONCAVE = """<model name="concave"><link name="l"><collision name="c"><geometry>
+<mesh><uri>notch.obj</uri></mesh></geometry></collision></link></model>"""
+
+# An L of one piece: not convex.
+NOTCH = "".join(f"v {x} {y} {z}\n" for z in (0, 1) for x, y in
+                ((0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3))) + "".join(
+    f"f {a} {b} {c}\n" for n in range(2, 6) for a, b, c in
+    ((1, n + 1, n), (7, n + 6, n + 7))) + "".join(
+    f"f {n} {n % 6 + 1} {n % 6 + 7}\nf {n} {n % 6 + 7} {n + 6}\n" for n in range(1, 7))
+
+# In front of PyBullet, and itself only where meshes are divided.
+SLEEPING_VHACD = """import sys, time
+if sys.argv[0].endswith("decompose.py"):
+    def vhacd(*_, **__):
+        time.sleep(600)
+else:
+    sys.path.remove({!r})
+    del sys.modules["pybullet"]
+    import pybullet
+"""
+
+# The first to import a module interrupts its process group.
+INTERRUPTING = """import os, signal, sys
+class Finder:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        if name == {!r} and sys.argv[0].endswith(("gzserver", "gazebo")):
+            os.killpg(os.getpgid(0), signal.SIGINT)
+sys.meta_path.insert(0, Finder)
+"""
+
+
+def children_of(pid):
+    """Process ids of what a process has started."""
+    found = []
+    for thread in os.listdir(f"/proc/{pid}/task"):
+        with open(f"/proc/{pid}/task/{thread}/children", encoding="ascii") as file:
+            found += [int(word) for word in file.read().split()]
+    return found
+
+
 def is_alive(pid):
     """Whether a process runs (one that ended and was not waited for does not)."""
     try:
@@ -107,6 +148,38 @@ class NodeLife(unittest.TestCase):
             wait_for(lambda: gazebo.sim_time() > 0.0, "a step")
             wait_for(lambda: "no state log is recorded" in program.text, "the reason")
             self.assertEqual(program.text.count("Not a directory"), 1)
+
+    def test_an_interrupt_while_meshes_are_divided_ends_it_with_all_it_started(self):
+        fake = self.world(SLEEPING_VHACD.format(self.folder), "pybullet.py")
+        self.world(NOTCH, "notch.obj")
+        world = self.world(WORLD.format(CONCAVE))
+        paths = os.pathsep.join([os.path.dirname(fake), os.environ.get("PYTHONPATH", "")])
+        with Program([self.server, world, "__name:=second"], PYTHONPATH=paths,
+                     XDG_CACHE_HOME=self.folder) as program:
+            wait_for(lambda: "dividing mesh 1 of 1 (concave::l)" in program.text, "the work")
+            started = wait_for(lambda: len(children_of(program.process.pid)) == 2
+                               and children_of(program.process.pid), "engine and work")
+            program.interrupt()
+            self.assertEqual(program.ended(), 0, program.text)
+            self.assertNotIn("Traceback", program.text)
+            wait_for(lambda: not any(map(is_alive, started)), "the end of what it started")
+            self.assertFalse(self.is_registered("/second"))
+
+    def test_a_control_c_during_the_imports_prints_no_traceback(self):
+        for program in ("gzserver", "gazebo"):
+            for moment in ("my_simulations.cli", "rosgraph_msgs", "my_simulations.formats"):
+                with self.subTest(program=program, moment=moment):
+                    self.assert_ends_quietly(executable("gazebo_ros", program), moment)
+
+    def assert_ends_quietly(self, server, moment):
+        """The whole group is interrupted, as in a terminal, when a module is first imported."""
+        self.world(INTERRUPTING.format(moment), "sitecustomize.py")
+        paths = os.pathsep.join([self.folder, os.environ.get("PYTHONPATH", "")])
+        with Program([server, self.world(WORLD.format("")), "__name:=second"],
+                     start_new_session=True, PYTHONPATH=paths) as program:
+            self.assertIn(program.ended(), (0, -signal.SIGINT), program.text)
+            self.assertNotIn("KeyboardInterrupt", program.text)
+            self.assertNotIn("Traceback", program.text)
 
     def test_an_engine_does_not_outlive_a_killed_server(self):
         with Program([self.server, self.world(WORLD.format("")), "__name:=second"]) as program:

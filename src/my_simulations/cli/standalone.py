@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Callable, List, Optional
 from ..errors import CommandError, InputError, Issue, Severity
 from .browser import show
 from .faces import Faces
+from .signals import end_quietly
 
 if TYPE_CHECKING:
     from ..editor.recording import Recorder
@@ -27,11 +28,8 @@ def main(words: List[str], program: str) -> int:
     """
     from ..ros.options import parse
 
+    end_quietly()  # also while the world is read: nothing is lost by that
     options = parse(words[1:], program)
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda _number, _frame: ended.set())
-
     def say(line: object) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
@@ -62,6 +60,9 @@ def main(words: List[str], program: str) -> int:
             say(issue)
         engines.close()
         return FAILED
+    ended = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda _number, _frame: ended.set())
     faces = Faces()
     recorder = _record(faces, simulator, resolver, options.recording, say)
     try:

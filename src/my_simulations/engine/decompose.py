@@ -133,10 +133,22 @@ def _in_child(mesh: MeshData, progress: Progress, end: float,
 def _run(folder: str, progress: Progress, end: float, cpu_seconds: int) -> bool:
     """Run the child; False when it had to be killed because its time was over."""
     faults = os.path.join(folder, _FAULTS)
-    with open(faults, "wb") as stream, subprocess.Popen(
-            child_process.command("engine.decompose", folder, str(cpu_seconds)),
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
-            env=child_process.environment()) as child:
+    with open(faults, "wb") as stream:
+        with child_process.shielded():
+            started = subprocess.Popen(
+                child_process.command("engine.decompose", folder, str(cpu_seconds)),
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
+                env=child_process.environment())
+        in_time = _watched(started, progress, end)
+    if in_time and started.returncode not in (0, -signal.SIGXCPU):
+        with open(faults, "rb") as said:
+            _log.warning("dividing a mesh ended with code %s: %s", started.returncode,
+                         said.read()[-2000:].decode(errors="replace").strip())
+    return in_time
+
+
+def _watched(started: "subprocess.Popen[bytes]", progress: Progress, end: float) -> bool:
+    with started as child:
         assert child.stdout is not None
         try:
             in_time = _follow(child.stdout.fileno(), progress, end)
@@ -144,10 +156,6 @@ def _run(folder: str, progress: Progress, end: float, cpu_seconds: int) -> bool:
                 child.wait()
         finally:
             child.kill()
-    if in_time and child.returncode not in (0, -signal.SIGXCPU):
-        with open(faults, "rb") as said:
-            _log.warning("dividing a mesh ended with code %s: %s", child.returncode,
-                         said.read()[-2000:].decode(errors="replace").strip())
     return in_time
 
 

@@ -74,7 +74,7 @@ class ProcessEngine:
         """
         ours, theirs = socket.socketpair()
         descriptors = (theirs.fileno(), self._ring_fd, self._bell_in)
-        with self._lock:
+        with self._lock, child.shielded():
             self._child = subprocess.Popen(
                 child.command("engine", *map(str, descriptors)),
                 pass_fds=descriptors, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,

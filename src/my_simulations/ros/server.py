@@ -29,6 +29,9 @@ END_SECONDS = 3.0
 """Longest orderly end; a thread that is stuck in a network call does not keep the process."""
 
 UPKEEP_SECONDS = 1.0
+POLL_SECONDS = 0.05
+"""How soon a signal ends the wait for a world that is being loaded."""
+
 CLOCK_QUEUE = 1000
 """Messages a subscriber to `/clock` may be behind by: a second in real time."""
 
@@ -85,9 +88,15 @@ class WorldLoader:
             read=lambda: self._profile.mark("world read"))
         self._profile.mark("world loaded into the engine")
 
-    def wait(self) -> None:
-        """Wait for the end; a defect of the program is raised here."""
-        self._thread.join()
+    @property
+    def busy(self) -> bool:
+        """Whether it is still at work."""
+        return self._thread.is_alive()
+
+    def wait(self, stop: threading.Event) -> None:
+        """Wait for the end, or until `stop` is set; a defect of the program is raised here."""
+        while self.busy and not stop.is_set():
+            self._thread.join(POLL_SECONDS)
         if self.defect is not None:
             raise self.defect
 
@@ -137,7 +146,11 @@ class Server:
             if not self._may_register(loader):
                 return OK if self._ended.is_set() else FAILED
             self._init_node()
-            loader.wait()
+            # Already now: loading may take a while, and says what it is at.
+            self._open_log()
+            loader.wait(self._ended)
+            if self._ended.is_set():
+                return OK
             if loader.fault is not None:
                 return self._refuse(loader.fault)
             node = self._start_node(loader)
@@ -177,9 +190,9 @@ class Server:
         return True
 
     def _say_why_not(self, loader: WorldLoader) -> None:
+        loader.wait(self._ended)
         if self._ended.is_set():
             return
-        loader.wait()
         if loader.fault is not None:
             for issue in loader.fault.issues:
                 self._say(str(issue))
@@ -214,15 +227,18 @@ class Server:
         if not rospy.core.is_initialized():
             rospy.signal_shutdown("ended")
 
-    def _start_node(self, loader: WorldLoader) -> Any:
+    def _open_log(self) -> None:
         import rospy
 
         from .log import log_issue
-        from .node import Node
 
-        self._log.open(log_issue)
         for notice in self._options.notices:
             rospy.loginfo("%s", notice)
+        self._log.open(log_issue)
+
+    def _start_node(self, loader: WorldLoader) -> Any:
+        from .node import Node
+
         door = self._make_door(loader)
         node = Node(loader.simulator, loader.resolver, self._clock,
                     None if door is None else door.open)
@@ -289,6 +305,10 @@ class Server:
         rospy = sys.modules.get("rospy")
         if rospy is not None and rospy.core.is_initialized():
             rospy.signal_shutdown("the server ends")
+        if loader.busy:  # nobody waits for it; what it has started ends with this process
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(status)
         watchdog.cancel()
 
 
