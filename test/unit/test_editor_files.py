@@ -54,6 +54,33 @@ def test_no_file_is_replaced_without_asking(case):
     made.browse(save)
 
 
+LOSSY = """<sdf version="1.6"><world name="w">
+<include><uri>model://nowhere</uri></include>
+<model name="a"><static>true</static><link name="l"/></model></world></sdf>"""
+
+
+def test_a_file_of_which_a_part_was_not_loaded_is_replaced_only_when_asked_to(case):
+    made = case(box("a"))
+    there = made.worlds / "lossy.world"
+    there.write_text(LOSSY)
+
+    async def save(browser):
+        await browser.ask("open", path="lossy.world", discard=True)
+        with pytest.raises(Refused, match="not everything in the file could be loaded") as refused:
+            await browser.ask("save")
+        assert refused.value.code == "path-needed"
+        with pytest.raises(Refused, match="would be lost: .*nowhere") as refused:
+            await browser.ask("save", path="lossy.world")
+        assert refused.value.code == "exists" and there.read_text() == LOSSY
+        other = (await browser.ask("save", path="other"))["path"]
+        assert (await browser.ask("save"))["path"] == other
+        assert there.read_text() == LOSSY
+        await browser.ask("save", path="lossy.world", overwrite=True)
+        assert "nowhere" not in there.read_text()
+
+    made.browse(save)
+
+
 @pytest.mark.parametrize("path", ["../out.world", "/etc/x.world", "x.txt", "a\0.world",
                                   "link/x.world"])
 def test_nothing_is_written_elsewhere(case, path, tmp_path):

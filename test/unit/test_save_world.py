@@ -257,3 +257,15 @@ def test_an_unchanged_include_is_one_again(running, tmp_path):
     include = etree.parse(path).getroot().find("world/include")
     assert include.findtext("uri") == "model://box"
     assert include.findtext("pose") == "7 0 0 0 0 0"
+
+
+def test_a_world_file_is_not_replaced_by_what_could_be_loaded_of_it(running, tmp_path):
+    file = tmp_path / "w.world"
+    file.write_text("more than was loaded")
+    sim = running(world=World("lab", models=[box("a")], file=str(file), losses=["no model 'b'"]))
+    with pytest.raises(CommandError, match="no model 'b'; save under another name"):
+        save_world(sim, str(file), roots=[str(tmp_path)], overwrite=True)
+    assert file.read_text() == "more than was loaded"
+    save_world(sim, str(tmp_path / "other.world"), roots=[str(tmp_path)])
+    save_world(sim, str(file), roots=[str(tmp_path)], overwrite=True, despite_losses=True)
+    assert [model.name for model in load(str(file)).models] == ["a"]

@@ -42,20 +42,30 @@ class WorldFiles:
             path, overwrite = message.get("path") or "", bool(message.get("overwrite"))
             if not path:
                 if self.file not in self._ours:
-                    raise Refusal("path-needed", "the world was not saved yet; give it a name")
+                    raise Refusal("path-needed", "not everything in the file could be loaded; "
+                                  "give the world another name" if self._world.losses else
+                                  "the world was not saved yet; give it a name")
                 path, overwrite = self.file, True
             if not os.path.splitext(path)[1]:
                 path += EXTENSIONS[0]
             target = allowed_path(path, self._roots)
             if os.path.lexists(target) and not overwrite:
-                raise Refusal("exists", f"{target} exists already", "replace it, or choose"
-                              " another name")
+                raise Refusal("exists", f"{target} exists already" + self._would_lose(target),
+                              "replace it, or choose another name")
             inline = message.get("format") != "includes"
             self.file = save_world(self._world, target, roots=self._roots, inline=inline,
-                                   resolver=self._resolver, overwrite=overwrite)
+                                   resolver=self._resolver, overwrite=overwrite,
+                                   despite_losses=True)  # whoever says overwrite was asked
             self._ours.add(self.file)
             self._history.saved()
             return {"path": self.file}
+
+    def _would_lose(self, target: str) -> str:
+        losses = self._world.losses
+        if not losses or os.path.realpath(self._world.world.file) != target:
+            return ""
+        more = f" (and {len(losses) - 1} more)" if len(losses) > 1 else ""
+        return f", and what could not be loaded of it would be lost: {losses[0]}{more}"
 
     def open(self, message: Dict[str, Any]) -> Dict[str, Any]:
         """`open`: another world takes the place of the running one."""
@@ -64,7 +74,8 @@ class WorldFiles:
             path = self._readable(message["path"])
             self.load(path)
             self.file = path
-            self._ours.add(path)
+            if not self._world.losses:  # else Save asks before it replaces the file by less
+                self._ours.add(path)
             return {"file": path}
 
     def new(self, message: Dict[str, Any]) -> Dict[str, Any]:

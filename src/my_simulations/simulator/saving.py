@@ -66,7 +66,7 @@ def _model_state(entity: Entity, snapshot: Snapshot) -> ModelState:
 
 def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
                resolver: Optional[Resolver] = None, overwrite: bool = False,
-               inline: bool = True) -> str:
+               inline: bool = True, despite_losses: bool = False) -> str:
     """Write the running world to a file.
 
     Args:
@@ -77,6 +77,7 @@ def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
         overwrite: whether a file of that name may be replaced.
         inline: write models from includes in full; else those that nothing changed but for name,
             pose, static and more plugins are includes again.
+        despite_losses: whether a file may be replaced of which parts could not be loaded.
 
     Returns:
         The absolute path that was written.
@@ -86,10 +87,21 @@ def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
             is untouched.
     """
     target = allowed_path(path, roots)
+    if not despite_losses and overwrite:
+        _refuse_losses(simulator, target)
     world = present_world(simulator)
     included = None if inline or resolver is None else _Includes(resolver)
     write_whole(target, write_world(world, world.state, included), overwrite)
     return target
+
+
+def _refuse_losses(simulator: Simulator, target: str) -> None:
+    """Keep a file from being replaced by less than what it holds. Raises CommandError."""
+    losses, file = simulator.losses, simulator.world.file
+    if losses and file and os.path.realpath(file) == target:
+        more = f" (and {len(losses) - 1} more)" if len(losses) > 1 else ""
+        raise CommandError(f"not everything in {target} could be loaded, and saving over it would "
+                           f"lose that: {losses[0]}{more}; save under another name")
 
 
 class _Includes:

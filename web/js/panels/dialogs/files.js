@@ -189,12 +189,15 @@ export function saveAsDialog({store, request}) {
 }
 
 async function saveTo(request, path) {
+  let said = '';
   try {
     return (await request('save', {path, overwrite: false})).path;
   } catch (fault) {
-    if (!fault.issues?.some((issue) => issue.code === 'exists')) throw fault;
+    const exists = fault.issues?.find((issue) => issue.code === 'exists');
+    if (!exists) throw fault;
+    said = exists.message;
   }
-  const overwrite = await ask('Overwrite the file?', `${path} exists already.`, [
+  const overwrite = await ask('Overwrite the file?', `${said}.`, [
     {title: 'Cancel'},
     {title: 'Overwrite', value: true, primary: true},
   ]);
