@@ -65,6 +65,8 @@ class WorldCore(WorldViews):
         self._gravity = world.gravity
         self._paused = paused
         self._lockstep = False
+        self._filling = False
+        self.losses: List[str] = []
         self._steps = steps
         self._horizon = FOREVER
         self._solids = ConvexParts(log, lambda text: log(Issue(Severity.NOTE, "meshes", text)))
@@ -77,7 +79,7 @@ class WorldCore(WorldViews):
         Faults of single models go to the log; the rest is loaded. Raises CommandError when there
         is no engine.
         """
-        self._fill()
+        self._begin()
         self._supervisor.engine.on_event(self._hear)
         if self._runs:
             self._call(Run(self._horizon))
@@ -87,6 +89,15 @@ class WorldCore(WorldViews):
             self._log(error("state-diverged", event.message))
         elif event.kind == "log":
             self._log(warning("physics-approximate", event.message))
+
+    def _begin(self) -> None:
+        """Fill an empty engine with the world; time stands until it is whole."""
+        self.losses = list(self.world.losses)
+        self._filling = True
+        try:
+            self._fill()
+        finally:
+            self._filling = False
 
     def _fill(self) -> None:
         """Settings, clock and models of the world, into an empty engine."""
@@ -101,7 +112,9 @@ class WorldCore(WorldViews):
             try:
                 self.spawn(model, meshes=self._world_meshes.get(model.name))
             except CommandError as fault:
-                self._log(error("model-refused", str(fault), file=self.world.file))
+                left_out = f"model '{model.name}' was left out: {fault}"
+                self.losses.append(left_out)
+                self._log(error("model-refused", left_out, file=self.world.file))
         self._connect()
 
     def _prepare(self, world: World, meshes: Dict[str, MeshTable]) -> None:
@@ -129,7 +142,7 @@ class WorldCore(WorldViews):
     @property
     def _runs(self) -> bool:
         """Whether time goes on by itself."""
-        return not (self._paused or self._lockstep)
+        return not (self._paused or self._lockstep or self._filling)
 
     def close(self) -> None:
         """End the engine."""

@@ -32,6 +32,7 @@ from .frames import in_frame, usable
 from .initial import initial_commands
 from .loads import TimedLoads
 from .moments import Moment
+from .registry import Entity
 
 
 class Simulator(TimedLoads):
@@ -125,25 +126,25 @@ class Simulator(TimedLoads):
         """Sim time 0; everything stays where it is, and timed loads go on as long as they had."""
         with self._order:
             now = self._call(Pause()).step
+            # What is known here changes when the engine has done it: until then another engine,
+            # which takes over from one that dies, must be told what was before.
             pending = [replace(load, start=max(0, load.start - now),
                                stop=load.stop if load.stop == FOREVER else load.stop - now)
                        for load in self._loads.values() if load.stop > now]
-            self._loads = {load.load_id: load for load in pending}
             commands: List[Command] = [SetClock(0, 0), AddLoads(tuple(pending))]
             if self._runs:
                 commands.append(Run(self._horizon))
             self._call(Batch(tuple(commands)))
+            self._loads = {load.load_id: load for load in pending}
 
     def reset_world(self) -> None:
         """Every model back to where it was loaded, at rest; joint positions and time stay."""
         with self._order:
             entities = self._registry.entities()
-            for entity in entities:
-                entity.pose = entity.initial_pose
-            self._registry.revision += 1
             self._call(Batch(tuple(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names)))
+            self._placed_as_loaded(entities)
 
     def reset_simulation(self) -> None:
         """Everything as loaded, joints too, time 0, loads dropped; spawned models stay."""
@@ -153,14 +154,22 @@ class Simulator(TimedLoads):
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
                 SetClock(0, 0)]
             for entity in entities:
-                entity.pose = entity.initial_pose
                 commands += initial_commands(entity, self.world.initial.get(entity.model.name))
             commands += self._connections.commands(self._registry)
-            self._loads.clear()
             if self._held:
                 commands.append(self._holding())
-            self._registry.revision += 1
             self._call(Batch(tuple(commands)))
+            self._placed_as_loaded(entities)
+            dropped, self._loads = self._loads, {}
+            if dropped:  # an engine that has just taken over may have been told of them
+                self._call(ClearLoads(tuple(dropped)))
+
+    def _placed_as_loaded(self, entities: List[Entity]) -> None:
+        """Models without links are where this says; the engine knows nothing of them."""
+        with self._lock:
+            for entity in entities:
+                entity.pose = entity.initial_pose
+            self._registry.revision += 1
 
     def put_back(self, moment: Moment, clock: bool = True) -> None:
         """Poses, velocities, joints and, with `clock`, the time; what has come since stays.
@@ -190,9 +199,11 @@ class Simulator(TimedLoads):
                     self._free(entity)
             self._loads.clear()
             self._held = []
+            # Once more: an engine that took over just now was told of the old models.
+            self._call(Batch((Pause(), Clear())))
             self.world, self._world_meshes = world, meshes or {}
             self._starts = dict(world.initial)
             self._physics, self._gravity = world.physics, world.gravity
-            self._fill()
+            self._begin()
             if self._runs:
                 self._call(Run(self._horizon))

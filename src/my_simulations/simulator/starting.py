@@ -1,6 +1,7 @@
 """A world of some name: found, read, its meshes loaded, its simulator started."""
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Callable, Dict, List, Tuple
 
 from ..description.model import Model
@@ -8,7 +9,7 @@ from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.api import Engine
 from ..engine.commands import FOREVER
-from ..errors import InputError, Issue, error
+from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import NotFound, Resolver
 from .simulator import Simulator
 
@@ -75,7 +76,7 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0,
     world, issues = read_world(path, resolver, seed=seed, profile=profile)
     for issue in issues:
         log(issue)
-    world = apply_state(world)
+    world = replace(apply_state(world), losses=[str(issue) for issue in errors_of(issues)])
     meshes = _meshes(world.models, log)
     for issue in advised(world.models, meshes, path):
         log(issue)
