@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """How the programs start, refuse to start, and end."""
+import contextlib
 import os
 import signal
 import socket
@@ -251,6 +252,51 @@ class NodeLife(unittest.TestCase):
         with Program([self.server, missing], ROS_MASTER_URI=no_master()) as program:
             self.assertEqual(program.ended(), 1)
             self.assertIn(missing, program.text)
+
+    def test_a_new_master_is_told_everything_again(self):
+        uri = no_master()
+        start = ["rosmaster", "--core", "-p", uri.rpartition(":")[2]]
+        graph = rosgraph.Master("/node_life", master_uri=uri)
+
+        def mine():
+            """Topics and services of the server, and its parameters."""
+            state = [{name for name, nodes in kind if "/gazebo" in nodes}
+                     for kind in graph.getSystemState()]
+            return state, sorted(graph.getParam("/gazebo")["my_simulations"]), graph.getParam(
+                "/use_sim_time")
+
+        def is_whole():
+            with contextlib.suppress(OSError, rosgraph.MasterException):
+                return mine() == before
+
+        with Program(start) as first, Program(
+                [self.server, "-u", self.world(WORLD.format(""))], ROS_MASTER_URI=uri) as server:
+            wait_for(lambda: self.is_there(graph, "/gazebo/set_parameters"), "the server")
+            wait_for(lambda: self.has_param(graph, "/gazebo/time_step"), "its last parameter")
+            before = mine()
+            service = graph.lookupService("/gazebo/get_world_properties")
+            first.process.kill()
+            first.process.wait()
+            wait_for(lambda: "does not answer" in server.text, "a word about the loss")
+            with Program(start):
+                wait_for(is_whole, "everything on the new master")
+                wait_for(lambda: "has registered again" in server.text, "a word about it")
+                self.assertEqual(graph.lookupService("/gazebo/get_world_properties"), service)
+                wait_for(lambda: self.has_param(graph, "/gazebo/time_step"), "the settings")
+                server.interrupt()
+                self.assertEqual(server.ended(), 0, server.text)
+                wait_for(lambda: not self.is_there(graph, "/gazebo/pause_physics"), "its end")
+            self.assertEqual(server.text.count("does not answer"), 1)
+
+    @staticmethod
+    def is_there(graph, service):
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            return bool(graph.lookupService(service))
+
+    @staticmethod
+    def has_param(graph, name):
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            return graph.hasParam(name)
 
     def test_unknown_options_are_refused_with_the_usage(self):
         with Program([self.server, "--no-such-option"]) as program:

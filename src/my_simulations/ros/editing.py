@@ -69,6 +69,12 @@ class EditorDoor:
                 rospy.loginfo("the world editor is at %s", self._editor.url)
             return self._editor.url
 
+    def announce(self) -> None:
+        """Set the parameter with its address once more, if it runs."""
+        with self._lock:
+            if self._editor is not None:
+                rospy.set_param(URL, self._editor.url)
+
     def close(self) -> None:
         """End it."""
         with self._lock:

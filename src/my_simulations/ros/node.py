@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import time
-from typing import Any, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 import rospy
 
@@ -15,6 +15,7 @@ from ..simulator.simulator import Simulator
 from .editor import Open
 from .interface import Row, rows
 from .log import log_issue
+from .membership import Membership
 from .world import WorldServices
 
 ROSOUT_SECONDS = 1.0
@@ -25,7 +26,8 @@ class Node:
     """Owns the ROS side of a running simulator."""
 
     def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher,
-                 open_editor: Optional[Open] = None) -> None:
+                 open_editor: Optional[Open] = None, master_uri: str = "",
+                 announce_editor: Callable[[], None] = lambda: None) -> None:
         """Take over a simulator that does not run yet.
 
         Args:
@@ -33,6 +35,8 @@ class Node:
             resolver: finds what spawned models name.
             clock: the advertised `/clock`.
             open_editor: starts the world editor and returns its address.
+            master_uri: of the ROS master, whose restarts are looked after; "" for not at all.
+            announce_editor: sets the parameter with the editor's address, if there is one.
         """
         self._simulator = simulator
         self._clock = clock
@@ -46,6 +50,9 @@ class Node:
         self._network = _flag(self._parameters, "enable_ros_network", True)
         self._extensions = _flag(self._parameters, "extensions", True)
         self._engine_pid = 0
+        self._announce_editor = announce_editor
+        self._membership = Membership(master_uri, rospy.get_name(),
+                                      self._set_parameters) if master_uri else None
 
     def advertise(self) -> None:
         """Offer topics, services and parameters."""
@@ -62,10 +69,22 @@ class Node:
         take_side_by_side()
         if self._network:
             self._registered = register(self._rows(late=False), self._faces())
+        self._set_world_parameters()
+
+    def _set_world_parameters(self) -> None:
         rospy.set_param("~world_base_name", base_name(self._simulator.world.file))
         self._keep_engine_pid()
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
+
+    def _set_parameters(self) -> None:
+        """All that this node has set, for a master that knows nothing of it."""
+        self._engine_pid = 0
+        self._set_world_parameters()
+        rospy.set_param("~my_simulations/version", __version__)
+        self._announce_editor()
+        if self._reconfigure is not None:
+            self._reconfigure.forget_stored()
 
     def advertise_late(self) -> None:
         """Offer what the start does not wait for; call it once the world runs."""
@@ -116,11 +135,13 @@ class Node:
         }
 
     def keep_up(self) -> None:
-        """Keep the parameters true that follow the world; call it now and then.
+        """Keep the registration, and the parameters that follow the world; call it now and then.
 
         A master that is away is asked again the next time.
         """
         try:
+            if self._membership is not None and not self._membership.keep_up():
+                return
             self._keep_engine_pid()
             if self._reconfigure is not None:
                 self._reconfigure.keep_up()

@@ -241,7 +241,8 @@ class Server:
 
         door = self._make_door(loader)
         node = Node(loader.simulator, loader.resolver, self._clock,
-                    None if door is None else door.open)
+                    None if door is None else door.open, self._master,
+                    (lambda: None) if door is None else door.announce)
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
