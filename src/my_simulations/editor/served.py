@@ -1,7 +1,8 @@
 """Which files of this machine the page may have, and under which URL.
 
 Only pictures, meshes and materials, and only below a known root: the model and resource folders,
-the folders of ROS packages, the folder of the world. A link that leads out of its root is refused.
+the caches of Fuel models, the folders of ROS packages, the folder of the world. A link that leads
+out of its root is refused.
 """
 from __future__ import annotations
 
@@ -127,7 +128,8 @@ class ServedFiles:
         """The root that holds a real path: the longest that fits."""
         with self._lock:
             more = list(self._more)
-        folders = [*self._resolver.model_folders(), *self._resolver.resource_folders(), *more]
+        folders = [*self._resolver.model_folders(), *self._resolver.resource_folders(),
+                   *self._resolver.fuel_folders(), *more]
         fitting = [root for root in map(os.path.realpath, folders) if _is_below(real, root)]
         if fitting:
             return max(fitting, key=len)

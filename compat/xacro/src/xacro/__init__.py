@@ -52,8 +52,8 @@ def _as_in_noetic(module: Any) -> None:
         if text == "$(cwd)":
             return cwd(text)
         try:
-            from rospkg.common import ResourceNotFound
             from roslaunch.substitution_args import ArgException, resolve_args
+            from rospkg.common import ResourceNotFound
         except ImportError as fault:
             raise module.XacroException("substitution args not supported: ", exc=fault) from fault
         try:
