@@ -6,8 +6,9 @@ names a model database, and then only models that no place on this machine holds
 """
 from __future__ import annotations
 
+import difflib
 import os
-from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Protocol, Sequence, Tuple
 
 from .model_config import description_in
 from .own import PACKAGE, own_directory
@@ -123,6 +124,16 @@ class Resolver:
     def all_folders(self) -> List[str]:
         """Model and resource folders, whether or not they were needed yet, and ROS packages."""
         return [*self._all("models"), *self._all("media"), *self._packages()]
+
+    def models_like(self, name: str) -> List[str]:
+        """Names of models in the model folders, most like a name that was not found."""
+        found: Dict[str, None] = {}
+        for folder in self._all("models"):
+            try:
+                found.update((entry.name, None) for entry in os.scandir(folder) if entry.is_dir())
+            except OSError:
+                continue
+        return difflib.get_close_matches(name, list(found), 2, 0.7)
 
     def add_model_folder(self, folder: str) -> None:
         """Look for models in one more folder, after the others."""
