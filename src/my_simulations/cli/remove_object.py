@@ -70,7 +70,7 @@ def _remove_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
     simulator = client.Simulator(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
-    listing, groups, issues = client.read_list(parameters, "my_simulations", 0.0)
+    listing, groups, issues = client.read_list(parameters, "", 0.0)
     if listing is None and ALL in options.names:
         raise client.ToolError(client.no_list(parameters))
     names, unknown = chosen_models(options.names, simulator.model_names(),

@@ -12,10 +12,13 @@ from decimal import Decimal
 from typing import Any, Dict, List, Optional, Sequence
 
 from ..ros.deadline import NoAnswer, within
+from ..ros.launched import Launch
 
 OK, FAILED, USAGE = 0, 1, 2
 WAIT_SECONDS = 120.0
 MASTER_SECONDS = 10.0
+OURS = "my_simulations/version"
+"""Parameter below the node's name by which our server is told from Gazebo's."""
 
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
@@ -125,6 +128,7 @@ def _is_remapping(word: str) -> bool:
 
 
 def _spawn(options: argparse.Namespace, words: List[str]) -> None:
+    launch = Launch.of(words)
     text = None if options.param else _document(options)
     _reach_master(words)
     import rospy
@@ -137,7 +141,7 @@ def _spawn(options: argparse.Namespace, words: List[str]) -> None:
             _wait_for_model(options)
         if text is None:
             text = _parameter(options.param)
-        _call_spawn(options, text)
+        _call_spawn(options, text, launch)
         if options.joints:
             _set_joints(options)
         if options.unpause:
@@ -225,14 +229,29 @@ def _wait_for_model(options: argparse.Namespace) -> None:
     client.wait_until(is_there, f"model {options.wait!r}", options.timeout)
 
 
-def _call_spawn(options: argparse.Namespace, text: str) -> None:
+def _origin(options: argparse.Namespace) -> str:
+    """What messages call the description."""
+    if options.param:
+        return f"parameter {options.param}"
+    return "" if options.database or options.stdin else os.path.abspath(options.file)
+
+
+def _call_spawn(options: argparse.Namespace, text: str, launch: Launch) -> None:
     import rospy
     from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 
     from ..geometry import quat_from_rpy
+    from ..objects.document import FILE, LAUNCH, marked
+    from ..ros import client
+
+    kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
+    client.service(client.api_name(options.gazebo_namespace, kind), SpawnModel, options.timeout)
 
     if options.package_to_model:
         text = _package_to_model(text)
+    # What our own server is told besides; Gazebo would only wonder at it.
+    if rospy.get_param(client.api_name(options.gazebo_namespace, OURS), None) is not None:
+        text = marked(text, {FILE: _origin(options), LAUNCH: str(launch.pid or "")})
     namespace = options.robot_namespace
     request = SpawnModelRequest(
         model_name=options.model, model_xml=text,
@@ -242,7 +261,6 @@ def _call_spawn(options: argparse.Namespace, text: str) -> None:
     position.x, position.y, position.z = options.x, options.y, options.z
     (orientation.x, orientation.y, orientation.z,
      orientation.w) = quat_from_rpy(options.R, options.P, options.Y)
-    kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
     print(f"spawn_model: {_call(options, kind, SpawnModel, request)}", flush=True)
 
 
@@ -250,6 +268,7 @@ def _set_joints(options: argparse.Namespace) -> None:
     from gazebo_msgs.srv import SetModelConfiguration, SetModelConfigurationRequest
 
     positions = joint_positions(options)
+    _check_joints(options, list(positions))
     request = SetModelConfigurationRequest(
         model_name=options.model, urdf_param_name=options.param or "",
         joint_names=list(positions), joint_positions=list(positions.values()))
@@ -257,8 +276,33 @@ def _set_joints(options: argparse.Namespace) -> None:
     print(f"spawn_model: {said}", flush=True)
 
 
+def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
+    """Raises SpawnFailed for a joint that the model has not got; Gazebo passes over those."""
+    import difflib
+
+    from gazebo_msgs.srv import GetModelProperties, GetModelPropertiesRequest
+
+    answer = _answer(options, "get_model_properties", GetModelProperties,
+                     GetModelPropertiesRequest(model_name=options.model))
+    known = list(answer.joint_names)
+    for joint in wanted:
+        plain = joint[len(options.model) + 2:] if joint.startswith(options.model + "::") else joint
+        if "::" in plain or plain in known:
+            continue  # joints of nested models are not in Gazebo's list
+        near = difflib.get_close_matches(plain, known, 1)
+        hint = (f"did you mean {near[0]}?" if near else
+                f"it has {', '.join(known)}" if known else "it has none")
+        raise SpawnFailed(f"the model {options.model!r} is in the world, but has no joint "
+                          f"{joint!r}; {hint}")
+
+
 def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> str:
     """What a service of the server says, once it has succeeded."""
+    return str(getattr(_answer(options, name, kind, request), "status_message", ""))
+
+
+def _answer(options: argparse.Namespace, name: str, kind: Any, request: Any) -> Any:
+    """The answer of a service of the server that has succeeded; raises SpawnFailed."""
     from ..ros import client
 
     full = client.api_name(options.gazebo_namespace, name)
@@ -266,7 +310,7 @@ def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> st
     answer = within(options.timeout, f"service {full}", lambda: proxy(request))
     if not getattr(answer, "success", True):
         raise SpawnFailed(answer.status_message)
-    return str(getattr(answer, "status_message", ""))
+    return answer
 
 
 def _package_to_model(text: str) -> str:

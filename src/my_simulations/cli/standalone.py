@@ -62,6 +62,7 @@ def main(words: List[str], program: str) -> int:
             say(issue)
         engines.close()
         return FAILED
+    say(f"the world file is {simulator.world.file}")
     faces = Faces()
     recorder = _record(faces, simulator, resolver, options.recording, say)
     try:

@@ -102,9 +102,11 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
         parameters.delete(client.OBJECTS)
         parameters.delete(client.GROUPS)
         issues = [warning("no-object-list", f"the world '{name}' has no object list", file=file,
-                          hint="write one to spawn objects by name")]
+                          hint="write one to spawn objects by name, or give the package that has"
+                               " one: package:=PACKAGE (launch file) or --package PACKAGE")]
         file = ""
-    parameters.set(client.LIST_MARK, {"world": name, "file": file})
+    parameters.set(client.LIST_MARK, {"world": name, "file": file,
+                                      "package": options.package})
     client.show(issues)
     return client.FAILED if client.has_errors(issues) else client.OK
 

@@ -10,14 +10,15 @@ from typing import Callable, List, Match, Tuple
 
 from .xmlrepair import Repair
 
-_BRACKET = re.compile("‹(?=[/!?A-Za-z])|›")
+_OPENING = re.compile("‹[/!?A-Za-z][^‹›]*›")
+_BRACKET = re.compile("[‹›]")
 _COMMENT = re.compile("<!\\s*([–—]+|-(?!-))(.*?)(-->|[–—]>|->)", re.S)
 _QUOTED = re.compile("(=\\s*)[“”„‟″]([^“”„‟″<>\"]*)[“”„‟″]|(=\\s*)[‘’‚‛′]([^‘’‚‛′<>']*)[‘’‚‛′]")
 
 
 def is_suspicious(text: str) -> bool:
     """Whether a text that is well formed has angle brackets of a kind that is not read."""
-    return "‹" in text and _BRACKET.search(text) is not None
+    return "‹" in text and _OPENING.search(text) is not None
 
 
 def retyped(text: str) -> Tuple[str, List[Repair]]:
