@@ -187,10 +187,10 @@ def executable(package, name):
 class Program:
     """A program of ours, with its output; always ended."""
 
-    def __init__(self, words, **environment):
+    def __init__(self, words, folder=None, **environment):
         self.process = subprocess.Popen(
             words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-            text=True, env={**os.environ, **environment})
+            text=True, cwd=folder, env={**os.environ, **environment})
         self._text = []
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
