@@ -17,8 +17,9 @@ from ..geometry import Pose, Vec3, quat_from_rpy
 from ..objects.listing import ObjectList, parse_objects
 from ..objects.selection import parse_groups
 from ..objects.yaml_source import Source
-from ..ros import master
 from ..resources.own import PACKAGE
+from ..ros import master
+from ..ros.arguments import number
 from ..ros.deadline import NoAnswer, within
 
 OK, FAILED, USAGE = 0, 1, 2
@@ -49,7 +50,7 @@ def common_options(parser: argparse.ArgumentParser) -> None:
 
 def seconds(text: str) -> float:
     """A positive finite number of seconds, for argparse."""
-    value = float(text)
+    value = number(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
     return value

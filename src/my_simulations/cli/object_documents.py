@@ -13,6 +13,7 @@ from typing import Callable, Dict, Iterable, List, Optional, Tuple
 from ..errors import InputError, error
 from ..objects.document import read_document, root_tag
 from ..objects.listing import PlacedObject
+from ..objects.selection import closest
 from ..resources.own import PACKAGE, own_directory
 from ..resources.packages import PackageIndex
 
@@ -52,6 +53,11 @@ class Document:
     origin: str
 
 
+def package_names() -> List[str]:
+    """The ROS packages there are, as their folders are called."""
+    return sorted(os.path.basename(folder) for folder in PackageIndex().folders())
+
+
 def locate(placed: PlacedObject, find: FindPackage) -> Tuple[str, str]:
     """The path of the object's file, and of another one that its entry could mean.
 
@@ -66,11 +72,13 @@ def locate(placed: PlacedObject, find: FindPackage) -> Tuple[str, str]:
         return found[0], found[1] if len(found) > 1 else ""
     folder = find(placed.file.package)
     if folder is None:
+        near = closest(placed.file.package, package_names(), 1)
         raise InputError([error(
             "unknown-package",
             f"object '{placed.name}': there is no ROS package '{placed.file.package}'",
             xpath=f"{placed.param}/model",
-            hint="source the workspace that holds it, or correct the name")])
+            hint=(f"did you mean {near[0]}? Else " if near else "")
+            + "source the workspace that holds it, or correct the name")])
     raise InputError([error(
         "object-file-missing", f"object '{placed.name}': there is no file "
         + " and no ".join(_candidates(placed, find)), xpath=f"{placed.param}/model",

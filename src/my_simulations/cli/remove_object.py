@@ -8,6 +8,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from ..errors import Issue
 from ..objects.listing import ObjectList
 from ..objects.selection import ALL, select, unknown_name
+from ..ros.arguments import Parser
 from . import object_client as client
 from .progress import MANY, Progress
 
@@ -16,7 +17,7 @@ NAME = "remove_object.py"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Remove objects from the world. A name may be any model of the "
         "world; 'all' and groups mean the objects of the list that are there. While more than ten "
         "are removed, time stands still.",

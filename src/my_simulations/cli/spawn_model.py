@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import math
 import os
 import re
@@ -11,6 +12,7 @@ import time
 from decimal import Decimal
 from typing import Any, Dict, List, Optional, Sequence
 
+from ..ros.arguments import Parser, number
 from ..ros.deadline import NoAnswer, within
 from ..ros.launched import Launch
 
@@ -34,7 +36,7 @@ def plain_numbers(words: Sequence[str]) -> List[str]:
 
 def parser() -> argparse.ArgumentParser:
     """The options, spelt with one dash as Gazebo's."""
-    made = argparse.ArgumentParser(prog="spawn_model", description="Spawn a model in the world.")
+    made = Parser(prog="spawn_model", description="Spawn a model in the world.")
     kind = made.add_mutually_exclusive_group(required=True)
     kind.add_argument("-urdf", action="store_true", help="the description is URDF")
     kind.add_argument("-sdf", action="store_true", help="the description is SDF")
@@ -59,7 +61,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("-timeout", type=_seconds, default=WAIT_SECONDS, metavar="SECONDS",
                       help="wall-clock limit of every wait (default %(default)g)")
     for axis, unit in zip(("x", "y", "z", "R", "P", "Y"), ("m",) * 3 + ("rad",) * 3):
-        made.add_argument(f"-{axis}", type=float, default=0.0, metavar=unit.upper(),
+        made.add_argument(f"-{axis}", type=number, default=0.0, metavar=unit.upper(),
                           help=f"initial pose, {unit}")
     made.add_argument("-J", dest="joints", nargs=2, action="append", default=[],
                       metavar=("JOINT", "POSITION"),
@@ -72,7 +74,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _seconds(text: str) -> float:
-    value = float(text)
+    value = number(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
     return value
@@ -202,8 +204,10 @@ def _parameter(name: str) -> str:
     value = rospy.get_param(name, None)
     full = rospy.resolve_name(name)
     if value is None:
-        raise SpawnFailed(f'there is no parameter {full}; load it with <param name="{name}" '
-                          "textfile=.../> or command=...")
+        near = difflib.get_close_matches(full, rospy.get_param_names(), 1, 0.8)
+        meant = f"did you mean {near[0]}? Else " if near else ""
+        raise SpawnFailed(f'there is no parameter {full}; {meant}load it with <param '
+                          f'name="{name}" textfile=.../> or command=...')
     if not isinstance(value, str):
         raise SpawnFailed(f"parameter {full} is not text but {type(value).__name__}")
     if not value.strip():
@@ -268,18 +272,16 @@ def _set_joints(options: argparse.Namespace) -> None:
     from gazebo_msgs.srv import SetModelConfiguration, SetModelConfigurationRequest
 
     positions = joint_positions(options)
-    _check_joints(options, list(positions))
     request = SetModelConfigurationRequest(
         model_name=options.model, urdf_param_name=options.param or "",
         joint_names=list(positions), joint_positions=list(positions.values()))
     said = _call(options, "set_model_configuration", SetModelConfiguration, request)
     print(f"spawn_model: {said}", flush=True)
+    _check_joints(options, list(positions))
 
 
 def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
     """Raises SpawnFailed for a joint that the model has not got; Gazebo passes over those."""
-    import difflib
-
     from gazebo_msgs.srv import GetModelProperties, GetModelPropertiesRequest
 
     answer = _answer(options, "get_model_properties", GetModelProperties,

@@ -9,6 +9,7 @@ from ..errors import InputError
 from ..objects.document import FILE, LAUNCH, REPLACE, marked
 from ..objects.listing import PlacedObject
 from ..objects.selection import select
+from ..ros.arguments import Parser
 from ..ros.launched import Launch
 from . import object_client as client
 from .object_documents import Document, Documents, package_finder
@@ -19,7 +20,7 @@ NAME = "spawn_object.py"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Spawn objects of the list at /objects. An object that is already "
         "there is replaced at its listed place. While more than ten are spawned, time stands "
         "still.",

@@ -48,18 +48,11 @@ def read_include(element: Any, source: Source, static: bool = False,
     except NotFound as missing:
         source.report(
             Level.ERROR, "model-not-found", f"the included model {missing}", element,
-            hint=_model_meant(probe.uri, source) + "install it in ~/.gazebo/models or a folder of"
+            hint=source.resolver.meant(missing) + "install it in ~/.gazebo/models or a folder of"
                  " GAZEBO_MODEL_PATH, or name a model database in GAZEBO_MODEL_DATABASE_URI",
         )
         return None
     return _read_file(path, element, source, changes, read, probe.uri)
-
-
-def _model_meant(uri: str, source: Source) -> str:
-    scheme, _, rest = uri.partition("://")
-    near = source.resolver.models_like(rest.split("/")[0]) if scheme == "model" else []
-    meant = " or ".join(f"model://{name}" for name in near)
-    return f"did you mean {meant}? Else " if near else ""
 
 
 class _Include:

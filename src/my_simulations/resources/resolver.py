@@ -6,13 +6,13 @@ names a model database, and then only models that no place on this machine holds
 """
 from __future__ import annotations
 
-import difflib
 import os
-from typing import Callable, Dict, Iterator, List, Optional, Protocol, Sequence, Tuple
+from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
 from .model_config import description_in
 from .own import PACKAGE, own_directory
 from .packages import ExportedPaths, FindPackage, PackageIndex, package_name
+from .suggestions import suggestion
 
 DATABASE = "GAZEBO_MODEL_DATABASE_URI"
 
@@ -125,15 +125,10 @@ class Resolver:
         """Model and resource folders, whether or not they were needed yet, and ROS packages."""
         return [*self._all("models"), *self._all("media"), *self._packages()]
 
-    def models_like(self, name: str) -> List[str]:
-        """Names of models in the model folders, most like a name that was not found."""
-        found: Dict[str, None] = {}
-        for folder in self._all("models"):
-            try:
-                found.update((entry.name, None) for entry in os.scandir(folder) if entry.is_dir())
-            except OSError:
-                continue
-        return difflib.get_close_matches(name, list(found), 2, 0.7)
+    def meant(self, missing: NotFound) -> str:
+        """The beginning of a hint: a URI that is there and much like one that is not; or ""."""
+        found = suggestion(missing.uri, missing.tried, self._packages)
+        return f"did you mean {found}? Else " if found else ""
 
     def add_model_folder(self, folder: str) -> None:
         """Look for models in one more folder, after the others."""

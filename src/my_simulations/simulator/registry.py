@@ -29,6 +29,9 @@ from .order import Turn
 _FEW = 3
 """Names that a message suggests."""
 
+_MOST_LISTED = 8
+"""Names that a message lists where none is like the one that was asked for."""
+
 WORLD_FRAMES = ("", "world", "map", "/map")
 """The names of the world frame (Gazebo behaviour)."""
 
@@ -385,7 +388,11 @@ def _scoped_meant(name: str, owned: Mapping[str, Sequence[str]]) -> str:
     scopes = [model] if part else list(owned)
     plain = {one: f"{owner}::{one}" for owner in reversed(scopes) for one in owned[owner]}
     near = difflib.get_close_matches(part or name, plain, n=_FEW)
-    return f"; did you mean {' or '.join(plain[one] for one in near)}?" if near else ""
+    if near:
+        return f"; did you mean {' or '.join(plain[one] for one in near)}?"
+    there = list(plain.values())
+    more = ", ..." if len(there) > _MOST_LISTED else ""
+    return f"; there are {', '.join(there[:_MOST_LISTED])}{more}" if there else ""
 
 
 def _nobody(_text: str) -> None:
