@@ -71,10 +71,10 @@ def test_the_2012_format_finds_its_file_under_objects():
     listing = listing_of(VALID / "cob_2012.yaml")
     assert listing.faults == {}
     assert listing.objects["MY_OBJECT"].file == ObjectFile(
-        "my_simulations", "objects/MY_OBJECT.urdf", xacro=False, sdf=False)
+        "my_simulations", "objects/MY_OBJECT.urdf", xacro=False, sdf=False, named=False)
     assert listing.objects["MY_OBJECT"].position == (1.0, 2.5, 0.0)
     assert listing.objects["crate"].file == ObjectFile(
-        "my_simulations", "objects/crate.urdf.xacro", xacro=True, sdf=False)
+        "my_simulations", "objects/crate.urdf.xacro", xacro=True, sdf=False, named=False)
 
 
 def test_a_number_with_an_exponent_and_no_dot_is_a_number():

@@ -22,6 +22,7 @@ from ..formats.xmltext import content, parse
 from ..resources.downloads import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
+from ..ros.arguments import Parser
 from .object_documents import run_xacro
 
 NAME = "check_model"
@@ -32,7 +33,7 @@ Loaded = Union[World, Model, Light, Actor]
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Read worlds, models and robots as the simulator does, and say what"
         " is wrong with them. Needs no ROS master.",
         epilog="Exit code: 0 when there are no errors (warnings may be), 1 when there are, 2 for a"

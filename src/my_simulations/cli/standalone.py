@@ -60,6 +60,7 @@ def main(words: List[str], program: str) -> int:
             say(issue)
         engines.close()
         return FAILED
+    say(f"the world file is {simulator.world.file}")
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: ended.set())

@@ -5,6 +5,7 @@ The rules need no file: readers add file and line through `locate`, requests mad
 """
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Set, Union
 
@@ -233,6 +234,11 @@ def _not_positive(what: str, values: Sequence[float]) -> str:
     return f"the {what} must be above 0, found {shown}"
 
 
+def _meant(name: str, known: Set[str]) -> str:
+    near = difflib.get_close_matches(name, sorted(known), 1)
+    return f"did you mean {near[0]}?" if near else ""
+
+
 def joint_faults(joint: Joint, links: Set[str]) -> Iterator[Fault]:
     """Faults of one joint; `links` are the names it may connect, besides the world."""
     name = joint.name
@@ -241,7 +247,7 @@ def joint_faults(joint: Joint, links: Set[str]) -> Iterator[Fault]:
             yield Fault("joint-link-missing", f"joint {name!r} has no {role} link", joint)
         elif link not in links and (link != WORLD or role == "child"):
             yield Fault("joint-link-unknown", f"joint {name!r} names {link!r} as its {role}, which"
-                        " is not a link of the model", joint)
+                        " is not a link of the model", joint, hint=_meant(link, links))
     if joint.parent and joint.parent == joint.child:
         yield Fault("joint-link-repeated", f"joint {name!r} connects {joint.child!r} with itself",
                     joint)

@@ -48,8 +48,8 @@ def read_include(element: Any, source: Source, static: bool = False,
     except NotFound as missing:
         source.report(
             Level.ERROR, "model-not-found", f"the included model {missing}", element,
-            hint="install it in ~/.gazebo/models or a folder of GAZEBO_MODEL_PATH, or name a"
-                 " model database in GAZEBO_MODEL_DATABASE_URI",
+            hint=source.resolver.meant(missing) + "install it in ~/.gazebo/models or a folder of"
+                 " GAZEBO_MODEL_PATH, or name a model database in GAZEBO_MODEL_DATABASE_URI",
         )
         return None
     return _read_file(path, element, source, changes, read, probe.uri)

@@ -165,7 +165,8 @@ def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Sour
         source.report(
             Level.ERROR if collides else Level.WARNING, f"{kind}-not-found",
             f"the {kind} of this {owner} {missing}", element,
-            hint="check the path, GAZEBO_MODEL_PATH and ROS_PACKAGE_PATH",
+            hint=source.resolver.meant(missing) + "check the path, GAZEBO_MODEL_PATH and"
+                 " ROS_PACKAGE_PATH",
         )
         return not collides
     return True

@@ -28,7 +28,8 @@ def numbers(text: str, count: int) -> Tuple[float, ...]:
     parts = text.split()
     if len(parts) != count:
         plural = "number" if count == 1 else "numbers"
-        raise ValueError(f"expected {count} {plural}, found {_shown(text)}")
+        commas = ", parted by blanks, not by commas" if "," in text else ""
+        raise ValueError(f"expected {count} {plural}{commas}, found {_shown(text)}")
     return tuple([number(part) for part in parts])
 
 

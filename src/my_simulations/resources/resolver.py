@@ -14,6 +14,7 @@ from .fuel_uri import FuelUri, fuel_uri, is_web_address
 from .model_config import description_in
 from .own import PACKAGE, own_directory
 from .packages import ExportedPaths, FindPackage, PackageIndex, package_name
+from .suggestions import suggestion
 
 DATABASE = "GAZEBO_MODEL_DATABASE_URI"
 
@@ -152,6 +153,11 @@ class Resolver:
         """Model and resource folders, whether or not they were needed yet, and ROS packages."""
         return [*self._all("models"), *self._all("media"), *self._packages(),
                 *self.fuel_folders()]
+
+    def meant(self, missing: NotFound) -> str:
+        """The beginning of a hint: a URI that is there and much like one that is not; or ""."""
+        found = suggestion(missing.uri, missing.tried, self._packages)
+        return f"did you mean {found}? Else " if found else ""
 
     def add_model_folder(self, folder: str) -> None:
         """Look for models in one more folder, after the others."""

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
 from ..errors import CommandError, InputError, error
 from ..simulator.issue_log import IssueLog
 from . import master
+from .abandoned import Abandonment
 from .engines import EngineSupply
+from .launched import Launch
 from .lean import import_genpy
 from .options import ServerOptions
 from .profile import StartProfile
@@ -49,12 +51,12 @@ class WorldLoader:
     """
 
     def __init__(self, options: ServerOptions, engines: EngineSupply, log: IssueLog,
-                 profile: StartProfile, on_fault: Callable[[], None]) -> None:
+                 profile: StartProfile, on_fault: Callable[[], None], caller: str) -> None:
         self.simulator: Any = None
         self.resolver: Any = None
         self.fault: Optional[InputError] = None
         self.defect: Optional[Exception] = None
-        self._given = (options, engines, log)
+        self._given = (options, engines, log, caller)
         self._profile = profile
         self._on_fault = on_fault
         self._thread = threading.Thread(target=self._run, name="world loader", daemon=True)
@@ -74,7 +76,7 @@ class WorldLoader:
             self._on_fault()
 
     def _load(self) -> None:
-        options, engines, log = self._given
+        options, engines, log, caller = self._given
         from ..engine.commands import FOREVER
         from ..resources.downloads import DownloadNotes
         from ..resources.resolver import Resolver
@@ -84,7 +86,7 @@ class WorldLoader:
         self.resolver = Resolver.from_environment(DownloadNotes(log))
         self.simulator = start_world(
             options.world, self.resolver, engines, log, seed=options.seed or 0,
-            profile=options.profile, steps=options.iterations or FOREVER,
+            profile=options.profile, steps=options.iterations or FOREVER, caller=caller,
             read=lambda: self._profile.mark("world read"))
         self._profile.mark("world loaded into the engine")
 
@@ -126,6 +128,7 @@ class Server:
         self._door: "Optional[EditorDoor]" = None
         self._options, self._argv, self._say = options, list(argv), say
         self._engines, self._profile = engines, profile
+        self._launch = Launch.of(argv)
         self._ended = threading.Event()
         self._settled = threading.Event()
         self._clock: Any = None
@@ -140,7 +143,7 @@ class Server:
         import_genpy()
         self._profile.mark("messages imported")
         loader = WorldLoader(self._options, self._engines, self._log, self._profile,
-                             self._settled.set)
+                             self._settled.set, self._launch.folder)
         node: Any = None
         try:
             if not self._may_register(loader):
@@ -154,8 +157,15 @@ class Server:
             if loader.fault is not None:
                 return self._refuse(loader.fault)
             node = self._start_node(loader)
+            abandonment = Abandonment(self._master, self._name, self._launch,
+                                      node.seconds_alone())
             while not self._ended.wait(UPKEEP_SECONDS):
                 node.keep_up()
+                reason = abandonment.reason()
+                if reason:
+                    self._say(f"{reason}; the simulator ends (~master_timeout sets the time, 0 for "
+                              "never)")
+                    return FAILED
             return OK
         except OSError as fault:
             if not self._ended.is_set():
@@ -237,12 +247,15 @@ class Server:
         self._log.open(log_issue)
 
     def _start_node(self, loader: WorldLoader) -> Any:
+        import rospy
+
         from .node import Node
 
+        rospy.loginfo("the world file is %s", loader.simulator.world.file)
         door = self._make_door(loader)
         node = Node(loader.simulator, loader.resolver, self._clock,
                     None if door is None else door.open, self._master,
-                    (lambda: None) if door is None else door.announce)
+                    (lambda: None) if door is None else door.announce, self._launch)
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
@@ -277,7 +290,7 @@ class Server:
         from .editing import EditorDoor
 
         self._door = EditorDoor(self._start_editor, loader.simulator, loader.resolver,
-                                self._log.also)
+                                self._log.also, self._launch.folder)
         return self._door
 
     def _refuse(self, fault: InputError) -> int:

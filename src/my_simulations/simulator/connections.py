@@ -104,10 +104,14 @@ class Connections:
 
 @dataclass(frozen=True)
 class Departed:
-    """What a model that has gone finds again when it comes back: its place, and its joints."""
+    """What a model that has gone finds again when it comes back: its place, and its joints.
+
+    `launched`: see `Entity`.
+    """
 
     turn: Turn
     ties: Connections
+    launched: bool = False
 
 
 def _touches(joint: Joint, model: str) -> bool:

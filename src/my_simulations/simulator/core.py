@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace as replaced
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from ..description.flatten import flattened
 from ..description.model import Joint, Model
@@ -152,7 +152,8 @@ class WorldCore(WorldViews):
 
     def spawn(self, model: Model, pose: Optional[Pose] = None, frame: str = "",
               meshes: Optional[MeshTable] = None, replace: bool = False,
-              state: Optional[ModelState] = None, back: Optional[Departed] = None) -> None:
+              state: Optional[ModelState] = None, back: Optional[Departed] = None,
+              launched: bool = False) -> None:
         """Put a model into the world; returns when it is there.
 
         Args:
@@ -163,6 +164,7 @@ class WorldCore(WorldViews):
             replace: take the place of a model of that name, in one step.
             state: where its links and joints are, instead of at rest at `pose`.
             back: what `delete` answered: it comes back to its place, and is joined again.
+            launched: see `Entity`.
 
         Raises:
             CommandError: empty or taken name, unknown frame, or the engine refused it.
@@ -182,6 +184,7 @@ class WorldCore(WorldViews):
                 if anchor is not None:
                     at = compose(anchor.state(self._snapshot())[0], at)
                 entity = self._make(model, at, meshes, connections)
+                entity.launched = launched or (back is not None and back.launched)
             try:
                 self._call(Batch(tuple([
                     self._loading(entity, state),
@@ -208,11 +211,17 @@ class WorldCore(WorldViews):
             self._call(RemoveModel(entity.model_id))
             with self._lock:
                 departed = Departed(Turn.of(self._registry.names(), name),
-                                    self._connections.of(name))
+                                    self._connections.of(name), entity.launched)
                 self._registry.remove(name)
                 self._connections = self._connections.without(name)
                 self._free(entity)
                 return departed
+
+    def set_launched(self, names: Sequence[str]) -> None:
+        """Say which models the launch file spawned (see `Entity`); the others it did not."""
+        with self._lock:
+            for entity in self._registry.entities():
+                entity.launched = entity.model.name in names
 
     def _old(self, name: str, may_replace: bool) -> Optional[Entity]:
         old = self._registry.model(name) if name in self._registry else None

@@ -52,6 +52,7 @@ class ModelEdits(WorldCore):
             with self._lock:
                 entity = self._make(model, old.initial_pose, parts, self._connections)
             entity.pose, entity.articulated = old.pose, old.articulated
+            entity.launched = old.launched
             loads = self._loads_of(old, entity)
             commands: List[Command] = [replace(self._loading(entity), inherit=old.model_id),
                                        RemoveModel(old.model_id),

@@ -67,6 +67,11 @@ class WorldViews:
         with self._lock:
             return self._registry.model(name).model
 
+    def launched(self) -> List[str]:
+        """The models that the launch file of this simulator spawned (see `Entity`)."""
+        with self._lock:
+            return [entity.model.name for entity in self._registry.entities() if entity.launched]
+
     def link(self, name: str) -> Link:
         """The description of a link, by plain or scoped name. Raises UnknownEntity."""
         with self._lock:
