@@ -7,12 +7,12 @@ from ..description.model import WORLD, JointAxis, Model
 from ..description.validate import faults
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose
-from .inertia import completed
+from .inertia import usable
 from .sdf_model import Changes
 from .source import Level, Source
 from .tables import closest, fill
 from .urdf_gazebo import Extensions, moved
-from .urdf_joint import read_connection
+from .urdf_joint import read_connection, turned_to
 from .urdf_lump import lump, standing
 from .urdf_parts import read_body, read_origin, read_palette
 from .urdf_rename import Renamed, rename
@@ -144,6 +144,8 @@ class _RobotReader:
                 body.link.pose = poses[body.link.name]
                 self._finish(body)
                 if up is not None:
+                    if up.joint.axis is not None:
+                        turned_to(up.joint.axis, poses[body.link.name].orientation)
                     self._joint(up)
             elif body.into is not None:
                 self._hand_over(body)
@@ -195,12 +197,7 @@ class _RobotReader:
         self._model.links.append(link)
 
     def _complete_inertia(self, body: Body) -> None:
-        link = body.link
-        better = completed(link.inertial, link.collisions)
-        if better is not None:
-            link.inertial = better[0]
-            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}",
-                              body.element)
+        body.link.inertial = usable(body.link, self._source, body.element)
 
     def _named(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
         prefix = body.link.name if stem.startswith(LUMP) else ""
