@@ -288,3 +288,17 @@ def test_a_missing_include_leaves_out_itself_alone():
     model, issues = model_of(LINK + include("nowhere"), "1.7")
     assert [link.name for link in model.links] == ["l"] and model.models == []
     assert tolerated(issues) == ["model-not-found"] and errors(issues) == []
+
+
+def test_of_two_joints_with_one_child_the_last_by_name_counts():
+    robot, issues = robot_of(
+        "".join(map(robot_link, "abc")) + robot_joint("z", "a", "c", "continuous")
+        + robot_joint("y", "b", "c", "continuous") + robot_joint("x", "a", "b", "continuous"))
+    assert sorted((one.name, one.parent, one.child) for one in robot.joints) == [
+        ("x", "a", "b"), ("z", "a", "c")]
+    assert tolerated(issues) == ["link-two-parents"] and errors(issues) == []
+
+
+def test_a_robot_without_mass_is_an_empty_model():
+    robot, issues = robot_of('<link name="a"/>')
+    assert robot.links == [] and tolerated(issues) == ["link-missing"] and errors(issues) == []

@@ -23,9 +23,7 @@ MODEL_FAULTS = {
     "robot_joint_type_unknown.urdf": ("joint-type-unknown", 8),
     "robot_joint_without_limit.urdf": ("joint-limit-missing", 8),
     "robot_xacro.urdf": ("xacro-unexpanded", 7),
-    "robot_two_parents.urdf": ("link-two-parents", 6),
     "robot_ring.urdf": ("root-missing", 1),
-    "robot_massless.urdf": ("link-missing", 2),
     "robot_empty.urdf": ("link-missing", 1),
 }
 """Faults that make the model unusable, for Gazebo too: code of the first error, its line."""
@@ -68,6 +66,8 @@ TOLERATED = {
     "robot_box_size_negative.urdf": ("bad-shape", 5),
     "robot_collision_mesh_missing.urdf": ("mesh-not-found", 5),
     "robot_inertia_zero.urdf": ("inertia-not-positive", 2),
+    "robot_two_parents.urdf": ("link-two-parents", 6),
+    "robot_massless.urdf": ("link-missing", 2),
     "robot_joint_axis_zero.urdf": ("joint-axis-zero", 8),
 }
 """Faults with which Gazebo loads the model, and so do we: code of the warning, its line."""
