@@ -140,15 +140,16 @@ def inertial_faults(inertial: Inertial, link: str) -> Iterator[Fault]:
                     hint="give it a mass, or make the model static")
     if not is_positive_definite(inertial):
         yield Fault("inertia-not-positive", f"the inertia of link {link!r} is not positive"
-                    f" definite: {_tensor(inertial)}", inertial,
+                    f" definite: {tensor_text(inertial)}", inertial,
                     hint="a body's principal moments of inertia are all above 0")
     elif not _is_a_body(inertial):
         yield Fault("inertia-impossible", f"no body has the inertia of link {link!r}: one principal"
-                    f" moment is larger than the sum of the others: {_tensor(inertial)}", inertial,
-                    Severity.WARNING)
+                    f" moment is larger than the sum of the others: {tensor_text(inertial)}",
+                    inertial, Severity.WARNING)
 
 
-def _tensor(i: Inertial) -> str:
+def tensor_text(i: Inertial) -> str:
+    """The six numbers of the tensor, for a message."""
     return (f"ixx {i.ixx:g}, iyy {i.iyy:g}, izz {i.izz:g}, ixy {i.ixy:g}, ixz {i.ixz:g},"
             f" iyz {i.iyz:g}")
 

@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple
 
 from ..description.model import Link, Model
 from ..description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
-from ..errors import InputError, Issue, error
+from ..errors import InputError, Issue, Severity, error
 from .mesh_part import MeshFault, MeshPart
 from .mesh_size import odd_size
 from .solids import solid_mesh
@@ -55,11 +55,11 @@ def load_solid(solid: Solid) -> MeshData:
 
 
 def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
-    """What the collisions of a model need, by `mesh_key`, and an error for each that cannot be had.
+    """What the collisions of a model need, by `mesh_key`, and a warning for each that is not had.
 
     A collision whose mesh is not in the table cannot be simulated; `without_missing_meshes` leaves
-    such ones out. Nested models are included. A mesh whose size looks like a lost unit gets a
-    warning, `mesh-size-odd`.
+    such ones out, as Gazebo does. Nested models are included. A mesh whose size looks like a lost
+    unit gets a warning, `mesh-size-odd`.
     """
     table: MeshTable = {}
     issues: List[Issue] = []
@@ -74,7 +74,8 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
             if isinstance(mesh, Mesh):
                 found = odd_size(mesh, data, moves=not model.static)
         except InputError as fault:
-            found = fault.issues
+            found = [replace(issue, message=f"{issue.message}; it is left out", tolerated=True,
+                             severity=Severity.WARNING) for issue in fault.issues]
         where = f"collision {collision.name!r} of link {scope + link.name!r}"
         issues += [replace(issue, message=f"{where}: {issue.message}") for issue in found]
     return table, issues
