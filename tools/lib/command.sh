@@ -24,8 +24,8 @@ common_option() {
 
 common_help() {
   cat <<'TEXT'
-  --overlay          where the workspace has a package my_simulations of its own: use its launch,
-                     world and urdf files in place of ours of the same name
+  --overlay          where the workspace has a package my_simulations of its own: use its files,
+                     and ours where it has none of that name
   --use-companions   use this project's gazebo_ros also where a real one is installed
   -h, --help         show this help
 

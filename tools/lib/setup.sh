@@ -34,18 +34,9 @@ find_workspace() {
   OWN="$WORKSPACE/.my_simulations"
   LOGS="$OWN/log"
   VENV="$OWN/venv"
-  BUILD_WORKSPACE="$WORKSPACE"
   FOREIGN=$(foreign_package "$WORKSPACE/src")
-  if [ -n "$FOREIGN" ]; then
-    if [ "$OVERLAY" = 0 ] && [ ! -d "$OWN/overlay" ]; then
-      stop "$FOREIGN is there already, and two packages my_simulations cannot be in one workspace. \
-Nothing was changed." \
-        "To use its launch, world and urdf files in place of ours of the same name: \
-$COMMAND --overlay (that package stays untouched; the choice is remembered)." \
-        "To use another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
-    fi
-    BUILD_WORKSPACE="$OWN/overlay"
-  elif [ "$OVERLAY" = 1 ]; then
+  [ -z "$FOREIGN" ] || accept_foreign
+  if [ -z "$FOREIGN" ] && [ "$OVERLAY" = 1 ]; then
     stop "there is nothing to overlay: $WORKSPACE/src has no other package my_simulations." \
       "Leave out --overlay."
   fi
@@ -56,7 +47,29 @@ $COMMAND --overlay (that package stays untouched; the choice is remembered)." \
   mkdir -p -- "$OWN" || stop "$WORKSPACE cannot be written to." \
     "Name another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
   one_at_a_time
-  finish "$BUILD_WORKSPACE"
+  finish "$WORKSPACE"
+}
+
+# accept_foreign: stop where the workspace's own package my_simulations was not asked about, or cannot
+# come before ours.
+accept_foreign() {
+  local ours
+  if [ "$OVERLAY" = 0 ] && ! underlay_chosen; then
+    stop "$FOREIGN is there already, and two packages my_simulations cannot be in one workspace. \
+Nothing was changed." \
+      "To use it, its files before ours of the same name: \
+$COMMAND --overlay (that package stays untouched; the choice is remembered)." \
+      "To use another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
+  fi
+  ours=$(own_package "$WORKSPACE/src")
+  [ -z "$ours" ] || stop "$FOREIGN and this clone, $ours, are two packages my_simulations in one \
+workspace. Nothing was changed." "Move the clone out of the workspace: mv $ours ~/ and run it there."
+  [ "$(package_name "$FOREIGN")" = my_simulations ] ||
+    stop "$FOREIGN is no ROS package: its package.xml is missing or has another name. Nothing was \
+changed." "Make it one: cd $WORKSPACE/src && catkin_create_pkg my_simulations"
+  [ -z "$(find -L "$FOREIGN" -path '*/my_simulations/__init__.py' -print -quit)" ] ||
+    stop "$FOREIGN has a Python module my_simulations, which is the name of ours. Nothing was \
+changed." "Give the module another name."
 }
 
 # packages_of FILE: the names in a list with comments.
@@ -114,15 +127,15 @@ install_system_packages() {
 
 prepare_workspace() {
   begin "Linking packages"
-  mkdir -p -- "$BUILD_WORKSPACE/src"
-  if [ -n "$FOREIGN" ]; then
-    compose_overlay "$FOREIGN"
-  elif [ "$CLONE" != "$(realpath -m -- "$WORKSPACE/src/my_simulations")" ] &&
-       [ -z "$(own_package "$WORKSPACE/src")" ]; then
+  mkdir -p -- "$WORKSPACE/src"
+  link_underlay
+  rm -rf -- "${OWN:?}/overlay"  # of earlier versions
+  if [ -z "$FOREIGN" ] && [ "$CLONE" != "$(realpath -m -- "$WORKSPACE/src/my_simulations")" ] &&
+     [ -z "$(own_package "$WORKSPACE/src")" ]; then
     ln -sfn -- "$CLONE" "$WORKSPACE/src/my_simulations"
   fi
   link_companions
-  finish "my_simulations$COMPANIONS"
+  finish "my_simulations${FOREIGN:+ behind $FOREIGN}$COMPANIONS"
 }
 
 # prepare_python REQUIREMENTS: the virtual environment, with what the file lists.
@@ -151,7 +164,7 @@ prepare_python() {
 # finds it.
 prepare_page() {
   begin "Packages of the editor's page"
-  local place="$BUILD_WORKSPACE/.my_simulations" stamp
+  local place="$WORKSPACE/.my_simulations" stamp
   stamp=$(sha256sum <"$CLONE/web/package-lock.json")
   if [ "$(cat "$place/.page" 2>/dev/null || true)" = "$stamp" ]; then
     finish "all there"
@@ -169,13 +182,13 @@ prepare_page() {
 # build_inputs: a text that changes when a new catkin_make is due.
 build_inputs() {
   local folder
-  printf '%s\n' "$VENV" "$BUILD_WORKSPACE"
+  printf '%s\n' "$VENV" "$WORKSPACE"
   # The same from a shell that has sourced this workspace as from one that has not.
   tr ':' '\n' <<<"${CMAKE_PREFIX_PATH:-}" | sed '/^$/d' | grep -v -F -- "$WORKSPACE/" || true
   while IFS= read -r folder; do
     printf '%s\n' "$folder"
     cat "$folder/package.xml" "$folder/CMakeLists.txt" 2>/dev/null || true
-  done < <(package_folders "$BUILD_WORKSPACE/src")
+  done < <(package_folders "$WORKSPACE/src")
   cat "$CLONE"/cmake/* "$CLONE/setup.py"
   find "$CLONE/compat" -type f ! -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum
   find "$CLONE/scripts" "$CLONE/test/rostest" -type f ! -name '*.pyc' \
@@ -185,17 +198,14 @@ build_inputs() {
 
 build_workspace() {
   begin "Building the workspace"
-  local stamp stamped="$OWN/built" setup="$BUILD_WORKSPACE/devel/setup.bash"
-  # An overlay extends the workspace that its files come from.
-  [ -z "$FOREIGN" ] || [ ! -f "$WORKSPACE/devel/setup.bash" ] ||
-    source_setup "$WORKSPACE/devel/setup.bash"
+  local stamp stamped="$OWN/built" setup="$WORKSPACE/devel/setup.bash"
   stamp=$(build_inputs | sha256sum)
   if [ -f "$setup" ] && [ "$(cat "$stamped" 2>/dev/null || true)" = "$stamp" ]; then
     finish "up to date"
   else
     rm -f -- "$stamped"
     logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again." \
-      catkin_make -C "$BUILD_WORKSPACE" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
+      catkin_make -C "$WORKSPACE" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
     printf '%s' "$stamp" >"$stamped"
     finish
   fi

@@ -12,7 +12,7 @@ from typing import Callable, Dict, Iterable, List, Optional, Tuple
 from ..errors import InputError, error
 from ..objects.document import read_document, root_tag
 from ..objects.listing import PlacedObject
-from ..resources.own import PACKAGE, own_directory
+from ..resources.own import PACKAGE, file_in_package, own_directory
 from ..resources.packages import PackageIndex
 
 # An empty entry is the current folder, where a file xacro.py would hide the module.
@@ -45,7 +45,7 @@ def locate(placed: PlacedObject, find: FindPackage) -> str:
             f"object '{placed.name}': there is no ROS package '{placed.file.package}'",
             xpath=f"{placed.param}/model",
             hint="source the workspace that holds it, or correct the name")])
-    path = os.path.join(folder, *placed.file.path.split("/"))
+    path = file_in_package(folder, placed.file.package, placed.file.path)
     if not os.path.isfile(path):
         raise InputError([error(
             "object-file-missing", f"object '{placed.name}': there is no file {path}",

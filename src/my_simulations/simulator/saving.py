@@ -17,7 +17,7 @@ from ..engine.rows import axis_rows
 from ..errors import CommandError, InputError
 from ..formats.load import read_file
 from ..formats.sdf_write import write_world
-from ..resources.own import own_directory
+from ..resources.own import package_directories
 from ..resources.resolver import NotFound, Resolver
 from .registry import Entity
 from .safe_file import write_whole
@@ -119,9 +119,9 @@ def default_roots() -> List[str]:
     or `~/my_simulations/worlds` where that cannot be written to.
     """
     roots = [os.path.expanduser("~/my_simulations/worlds")]
-    own = own_directory()
+    own = package_directories()
     if own:
-        world = os.path.join(own, "world")
+        world = os.path.join(own[0], "world")
         roots.insert(0 if os.access(world, os.W_OK) else 1, world)
     entries = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
     roots += [entry for entry in entries if os.path.basename(entry.rstrip("/")) == "src"]
