@@ -5,6 +5,8 @@
 ROS_PREFIX=/opt/ros/noetic
 PYTHON=/usr/bin/python3
 WITH_TEST_TOOLS=0
+COMMON_PACKAGES=1
+PYTHON_NAME=0
 USE_COMPANIONS="${MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS:-0}"
 OVERLAY=0
 SET_UP_STEPS=6
@@ -26,6 +28,7 @@ set_up() {
   finish "$PYTHON_REMARK"
   prepare_page
   build_workspace
+  use_loopback
 }
 
 find_workspace() {
@@ -34,6 +37,8 @@ find_workspace() {
   OWN="$WORKSPACE/.my_simulations"
   LOGS="$OWN/log"
   VENV="$OWN/venv"
+  usable_path "$WORKSPACE" "The workspace's path" "MY_SIMULATIONS_WS=/another/ws $COMMAND"
+  usable_path "$CLONE" "This clone's path" "mv '$CLONE' /another/place"
   FOREIGN=$(foreign_package "$WORKSPACE/src")
   [ -z "$FOREIGN" ] || accept_foreign
   if [ -z "$FOREIGN" ] && [ "$OVERLAY" = 1 ]; then
@@ -48,6 +53,14 @@ find_workspace() {
     "Name another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
   one_at_a_time
   finish "$WORKSPACE"
+}
+
+# usable_path PATH WHAT ADVICE: stop for a path that catkin or the shells' path lists cannot have.
+usable_path() {
+  local bad='[[:space:]:;$`#&()<>|*?{}!"\\'"']"
+  [[ $1 =~ $bad ]] || return 0
+  stop "$2, $1, has ${BASH_REMATCH[0]/ /a blank} in it, which catkin cannot build in. Nothing was \
+changed." "Letters of any alphabet, digits and - _ . + , are fine: $3"
 }
 
 # accept_foreign: stop where the workspace's own package my_simulations was not asked about, or cannot
@@ -88,6 +101,18 @@ as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
 }
 
+# may_install: whether this user can install system packages at all.
+may_install() { [ "$(id -u)" = 0 ] || command -v sudo >/dev/null; }
+
+# apt_install NAME ADVICE...: the packages from ADVICE on; the output goes to logs of that NAME.
+apt_install() {
+  local name="$1" advice="$2"
+  shift 2
+  logged "apt-update$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
+  logged "apt-install$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get -q -y --no-install-recommends install "$@"
+}
+
 install_system_packages() {
   begin "System packages"
   local lists=("$CLONE/tools/apt-packages.txt") wanted missing
@@ -97,32 +122,66 @@ install_system_packages() {
     lists+=("$CLONE/tools/apt-packages-ros.txt")
   fi
   [ "$WITH_TEST_TOOLS" = 0 ] || lists+=("$CLONE/tools/apt-packages-test.txt")
+  [ "$PYTHON_NAME" = 0 ] || lists+=("$CLONE/tools/apt-packages-python.txt")
   # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
   command -v npm >/dev/null || lists+=("$CLONE/tools/apt-packages-page.txt")
   mapfile -t wanted < <(for list in "${lists[@]}"; do packages_of "$list"; done)
   mapfile -t missing < <(missing_packages "${wanted[@]}")
+  SYSTEM_REMARK="all there"
   if [ "${#missing[@]}" -gt 0 ]; then
-    if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
-      stop "${#missing[@]} system packages are missing, and there is neither root nor sudo." \
-        "As root: apt-get install --no-install-recommends ${missing[*]}"
-    fi
+    may_install || stop "${#missing[@]} system packages are missing, and there is neither root nor \
+sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
     say "installing ${#missing[@]}, a few minutes"
     # Asks for the password now, while the screen is free for it.
     [ "$(id -u)" = 0 ] || sudo true || stop "sudo did not let the system packages be installed." \
       "As root: apt-get install --no-install-recommends ${missing[*]}"
-    local advice="Is there a network, and room on the disk (df -h)? Then run $COMMAND again."
-    logged apt-update "$advice" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
-    logged apt-install "$advice" as_root env DEBIAN_FRONTEND=noninteractive \
-      apt-get -q -y --no-install-recommends install "${missing[@]}"
-    finish "${#missing[@]} installed"
-  else
-    finish "all there"
+    apt_install "" "Is there a network, and room on the disk (df -h)? Then run $COMMAND again." \
+      "${missing[@]}"
+    SYSTEM_REMARK="${#missing[@]} installed"
   fi
+  install_common_packages
+  finish "$SYSTEM_REMARK"
+  hint_at_python
   local name
   for name in message_generation trajectory_msgs std_srvs rostest; do
     rospack find "$name" >/dev/null 2>&1 || stop "the ROS package $name is not installed." \
       "Install it the way ROS was installed here, e.g. ros-noetic-${name//_/-}."
   done
+}
+
+# install_common_packages: what other packages of the workspace may ask for. Nothing of ours needs
+# it: what cannot be installed is said, stops nothing, and is not tried again while it is the same.
+install_common_packages() {
+  local wanted missing tried="$OWN/common-packages"
+  { [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; } || return 0
+  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-common.txt")
+  mapfile -t missing < <(missing_packages "${wanted[@]}")
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
+  if may_install; then
+    say "installing ${#missing[@]} that other packages commonly ask for"
+    if (apt_install -common "Nothing of ours needs them." "${missing[@]}"); then
+      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for other packages installed"
+      return 0
+    fi
+  fi
+  printf '%s' "${missing[*]}" >"$tried"
+  say "not installed, other packages of the workspace may want them: \
+apt-get install --no-install-recommends ${missing[*]}"
+}
+
+# hint_at_python: say how scripts that begin with "#!/usr/bin/env python" start, where there are
+# such scripts and no such program.
+hint_at_python() {
+  local file line count=0
+  ! command -v python >/dev/null || return 0
+  while IFS= read -r -d '' file; do
+    IFS= read -r line <"$file" 2>/dev/null || continue
+    [[ $line =~ ^'#!'[[:blank:]]*/usr/bin/(env[[:blank:]]+)?python[[:space:]]*$ ]] || continue
+    count=$((count + 1))
+  done < <(find -L "$WORKSPACE/src" -maxdepth 6 -type f -perm /111 -print0 2>/dev/null)
+  [ "$count" -eq 0 ] || say "$count programs of the workspace begin with '#!/usr/bin/env python', and \
+there is no python: '$COMMAND --python' installs Debian's python-is-python3."
 }
 
 prepare_workspace() {
@@ -204,12 +263,27 @@ build_workspace() {
     finish "up to date"
   else
     rm -f -- "$stamped"
-    logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again." \
+    logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again. \
+'Could not find a package configuration file' names a package that Debian may have: apt-cache search." \
       catkin_make -C "$WORKSPACE" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
     printf '%s' "$stamp" >"$stamped"
     finish
   fi
   source_setup "$setup"
+}
+
+# use_loopback: where the machine's own name leads nowhere, as in bare containers, ROS programs find
+# each other on the loopback address.
+use_loopback() {
+  local name
+  LOOPBACK=
+  [ -z "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || return 0
+  name=$(uname -n)
+  ! timeout 5 getent hosts "$name" >/dev/null || return 0
+  LOOPBACK="export ROS_IP=127.0.0.1; "
+  export ROS_IP=127.0.0.1
+  say "This machine's own name, $name, does not resolve; ROS_IP=127.0.0.1 is used: programs on this \
+machine find each other, others do not. Name it in /etc/hosts to change that."
 }
 
 # one_at_a_time: hold the workspace's lock while it is set up; `release` gives it back.
