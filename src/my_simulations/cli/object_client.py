@@ -172,6 +172,14 @@ class Simulator:
         answer = self._call("get_world_properties", "GetWorldProperties")
         return list(answer.model_names)
 
+    def ask(self, service: str, kind: str, **fields: Any) -> Any:
+        """The answer of a service of the node, of a class in gazebo_msgs or one of ours.
+
+        Raises:
+            ToolError: it is not offered or did not answer.
+        """
+        return self._call(service, kind, **fields)
+
     def spawn(self, name: str, xml: str, sdf: bool, position: Vec3, rpy: Vec3) -> str:
         """Puts a model into the world; the simulator's words.
 
@@ -256,7 +264,13 @@ def _service_class(kind: str) -> Any:
     except ImportError as fault:
         raise ToolError("the ROS package gazebo_msgs is not there; source the workspace's "
                         "devel/setup.bash first") from fault
-    return Empty if kind == "Empty" else getattr(srv, kind)
+    if kind == "Empty":
+        return Empty
+    if kind == "StepWorld":
+        from my_simulations_msgs.srv import StepWorld
+
+        return StepWorld
+    return getattr(srv, kind)
 
 
 def pose_message(pose: Pose) -> Any:

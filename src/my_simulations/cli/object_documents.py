@@ -14,7 +14,7 @@ from ..errors import InputError, error
 from ..objects.document import read_document, root_tag
 from ..objects.listing import PlacedObject
 from ..objects.selection import closest
-from ..resources.own import PACKAGE, own_directory
+from ..resources.own import PACKAGE, file_in_package, own_directory
 from ..resources.packages import PackageIndex
 
 # An empty entry is the current folder, where a file xacro.py would hide the module.
@@ -90,9 +90,10 @@ def _candidates(placed: PlacedObject, find: FindPackage) -> List[str]:
     """Where its file may be, best first; each file once, though several links may lead to it."""
     packages = [placed.file.package] + ([] if placed.file.named else [PACKAGE])
     paths: Dict[str, str] = {}
-    for folder in map(find, packages):
+    for package in packages:
+        folder = find(package)
         if folder is not None:
-            path = os.path.join(folder, *placed.file.path.split("/"))
+            path = file_in_package(folder, package, os.path.join(*placed.file.path.split("/")))
             paths.setdefault(os.path.realpath(path), path)
     return list(paths.values())
 

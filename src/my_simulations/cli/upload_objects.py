@@ -10,6 +10,7 @@ from ..errors import InputError, Issue, error, warning
 from ..objects.listing import parse_objects
 from ..objects.selection import closest, parse_groups
 from ..objects.yaml_source import read_yaml
+from ..resources.own import file_in_package
 from ..ros.arguments import Parser
 from . import object_client as client
 from .object_documents import package_finder, package_names
@@ -89,10 +90,10 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
                                f"{_meant(options.package, package_names())}; source the workspace "
                                "that holds it, or correct --package")
     parameters.delete(client.LIST_MARK)
-    file = os.path.join(folder, "config", name, LOCATIONS)
+    file = file_in_package(folder, options.package, os.path.join("config", name, LOCATIONS))
     if os.path.isfile(file):
         count, issues = _load(parameters, file, client.OBJECTS, options.package)
-        groups_file = os.path.join(folder, "config", name, GROUPS)
+        groups_file = os.path.join(os.path.dirname(file), GROUPS)
         groups, more = (_load(parameters, groups_file, client.GROUPS, options.package)
                         if os.path.isfile(groups_file) else (0, []))
         if not groups:

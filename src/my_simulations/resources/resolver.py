@@ -12,7 +12,7 @@ from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
 from .fuel_uri import FuelUri, fuel_uri, is_web_address
 from .model_config import description_in
-from .own import PACKAGE, own_directory
+from .own import PACKAGE, package_directories
 from .packages import ExportedPaths, FindPackage, PackageIndex, package_name
 from .suggestions import suggestion
 
@@ -83,6 +83,7 @@ class Resolver:
         missing: asked for models that are nowhere here, None for nobody.
         packages: the folders of all ROS packages.
         fuel: models of Fuel servers, None for none.
+        own: the folders of the package my_simulations, best first, where there are several.
     """
 
     def __init__(
@@ -94,6 +95,7 @@ class Resolver:
         missing: Optional[MissingModels] = None,
         packages: Callable[[], List[str]] = list,
         fuel: Optional[WebModels] = None,
+        own: Sequence[str] = (),
     ) -> None:
         self._model_paths = list(model_paths)
         self._resource_paths = list(resource_paths)
@@ -102,6 +104,7 @@ class Resolver:
         self._missing = missing
         self._packages = packages
         self._fuel = fuel
+        self._own = list(own)
         self._late: Optional[ExportedPaths] = None
 
     @classmethod
@@ -111,20 +114,20 @@ class Resolver:
         Buildings that were drawn are models, too, where there are any (Gazebo behaviour).
         `progress` hears of downloads (see `resources.database`).
         """
-        own = own_directory()
+        own = package_directories()
         models = [os.path.expanduser("~/.gazebo/models"), *_listed("GAZEBO_MODEL_PATH")]
         resources = _listed("GAZEBO_RESOURCE_PATH")
-        if own:
-            models.append(os.path.join(own, "models"))
+        for folder in own:
+            models.append(os.path.join(folder, "models"))
             # `worlds/empty.world` and `empty.world` both name the world in our `world/` folder.
-            resources += [os.path.join(own, "world"), own]
+            resources += [os.path.join(folder, "world"), folder]
         buildings = os.path.expanduser("~/building_editor_models")
         if os.path.isdir(buildings):
             models.append(buildings)
         packages = PackageIndex()
 
         def find(name: str) -> Optional[str]:
-            return own if name == PACKAGE and own else packages.find(name)
+            return own[0] if name == PACKAGE and own else packages.find(name)
 
         missing: Optional[MissingModels] = None
         if os.environ.get(DATABASE, "").strip():
@@ -134,8 +137,7 @@ class Resolver:
         from .fuel import FuelModels
 
         return cls(models, resources, find, packages.exported, missing,
-                   lambda: packages.folders() + ([own] if own else []),
-                   FuelModels.from_environment(progress))
+                   lambda: packages.folders() + own, FuelModels.from_environment(progress), own)
 
     def model_folders(self) -> List[str]:
         """Folders whose children are models, best first, as far as they were needed yet."""
@@ -275,6 +277,8 @@ class Resolver:
             raise NotFound(uri, reason="no name follows ://")
         folder = self._find_package(name)
         yield os.path.join(folder, inside) if folder else f"ROS package {name}"
+        for behind in self._own[1:] if name == PACKAGE else ():
+            yield os.path.join(behind, inside)
 
     def _for_path(self, path: str, base_dir: str) -> Iterator[str]:
         if os.path.isabs(path):

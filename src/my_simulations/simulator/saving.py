@@ -20,7 +20,7 @@ from ..errors import CommandError, InputError
 from ..formats.load import read_file
 from ..formats.sdf_write import write_world
 from ..geometry import STILL, compose, inverse
-from ..resources.own import own_directory
+from ..resources.own import package_directories
 from ..resources.resolver import NotFound, Resolver
 from ..resources.world_files import ENDINGS, folder_of_users, ships, users_folder
 from .registry import Entity
@@ -195,9 +195,9 @@ def default_roots(world_file: str = "", caller: str = "") -> List[str]:
         caller: folder in which the command was typed; "" for the working directory.
     """
     roots = [folder_of_users(world_file), users_folder()]
-    own = own_directory()
-    world = os.path.join(own, "world")
-    if own and os.access(world, os.W_OK):
+    own = package_directories()
+    world = os.path.join(own[0], "world") if own else ""
+    if world and os.access(world, os.W_OK):
         roots.append(world)
     entries = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
     roots += [entry for entry in entries if os.path.basename(entry.rstrip("/")) == "src"]
