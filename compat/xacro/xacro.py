@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Starts pip's xacro 1.13, with the Python that has it."""
-import importlib.util
+"""Starts xacro, with the Python of the workspace that has it."""
 import os
 import sys
 
@@ -10,16 +9,17 @@ sys.path[:] = [entry for entry in sys.path
 
 
 def main() -> int:
-    """Run xacro here, or in the workspace's Python where this one has none."""
-    if importlib.util.find_spec("xacro") is not None:
-        import xacro
-        return xacro.main()
+    """Run xacro here, or in the workspace's Python where this one is another."""
     python = os.environ.pop("MY_SIMULATIONS_PYTHON", "")
-    if python:
+    prefix = os.path.dirname(os.path.dirname(python))
+    if os.path.isfile(python) and os.path.realpath(prefix) != os.path.realpath(sys.prefix):
         os.execv(python, [python, os.path.abspath(__file__), *sys.argv[1:]])
-    sys.stderr.write("xacro: this Python has no module xacro; source the setup file of the "
-                     "workspace first (devel/setup.bash).\n")
-    return 2
+    try:
+        import xacro
+    except ImportError as fault:
+        sys.stderr.write(f"xacro: {fault}\n")
+        return 2
+    return xacro.main()
 
 
 if __name__ == "__main__":

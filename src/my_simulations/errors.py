@@ -7,7 +7,7 @@ exceptions and are never turned into issues.
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Iterable, List, Optional, Sequence
 
 
@@ -31,6 +31,8 @@ class Issue:
         line, column: 1-based; 0 where unknown.
         xpath: the element, e.g. `/sdf/world/model[2]/link[1]`.
         hint: what to do about it, or empty.
+        tolerated: the file breaks its format, and was read as Gazebo reads it: a fault for those
+            who want to be strict.
     """
 
     severity: Severity
@@ -41,6 +43,7 @@ class Issue:
     column: int = 0
     xpath: str = ""
     hint: str = ""
+    tolerated: bool = False
 
     @property
     def location(self) -> str:
@@ -74,6 +77,12 @@ def warning(code: str, message: str, **where: object) -> Issue:
 def errors_of(issues: Iterable[Issue]) -> List[Issue]:
     """Only those of severity ERROR, in order."""
     return [issue for issue in issues if issue.severity is Severity.ERROR]
+
+
+def strictly(issues: Iterable[Issue]) -> List[Issue]:
+    """The same issues, those that were tolerated as errors."""
+    return [replace(issue, severity=Severity.ERROR) if issue.tolerated else issue
+            for issue in issues]
 
 
 class InputError(Exception):

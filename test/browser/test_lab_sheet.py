@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import math
 import os
+from xml.etree import ElementTree
 
-from gazebo_msgs.srv import GetModelState, GetWorldProperties
+from gazebo_msgs.srv import GetModelState, GetWorldProperties, SpawnModel
 from pytest import approx
 from support import wait_for, yaw_of
 
@@ -138,6 +139,50 @@ def save_as(editor, node, name):
     wait_for(lambda: os.path.isfile(path), "the file")
     editor.until("!editor.store.history.dirty", "the end of what is unsaved")
     return path
+
+
+ROBOT = """<robot name="robo" my_simulations_launch="{launch}"><link name="base"><inertial>
+<mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>"""
+
+
+def test_a_robot_of_the_launch_file_is_saved_only_when_its_box_is_ticked(launch, browser):
+    node = launch("worlds/empty.world")
+    editor = browser.open(node.url)
+    # As spawn_model does that the launch file starts.
+    assert node.ask("spawn_urdf_model", SpawnModel, model_name="robo",
+                    model_xml=ROBOT.format(launch=node.process.pid)).success
+    wait_for(lambda: "robo" in editor.names(), "the robot in the page")
+    editor.place("Box", on_ground(-0.4, -1.6))
+    assert save_with(editor, node, launched=False) == ["ground_plane", "unit_box"]
+    assert save_with(editor, node, launched=True) == ["ground_plane", "robo", "unit_box"]
+    # What was chosen stays chosen.
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    wait_for(lambda: dialog.get_by_role("checkbox", name="Include robo").is_checked(), "the tick")
+    assert not dialog.get_by_role("checkbox", name="With state").is_checked()
+    assert editor.faults == []
+    editor.close()
+
+
+def save_with(editor, node, launched):
+    """The models in a file that Save As has written, in the folder where it begins."""
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    wait_for(lambda: dialog.get_by_label("Folder").text_content() == node.worlds, "the folder")
+    choice = dialog.get_by_role(
+        "checkbox", name="Include robo, which the launch file spawns at each start")
+    choice.wait_for(state="visible")
+    assert not choice.is_checked()
+    choice.set_checked(launched)
+    name = f"with_{launched}.world"
+    dialog.get_by_role("textbox", name="File name").fill(name)
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    path = os.path.join(node.worlds, name)
+    wait_for(lambda: os.path.isfile(path), "the file")
+    dialog.wait_for(state="detached")
+    world = ElementTree.parse(path).getroot().find("world")
+    return [model.get("name") for model in world.findall("model")]
 
 
 def test_the_middle_of_the_drawn_view_is_where_a_person_points(launch, browser):

@@ -103,7 +103,7 @@ def test_own_commands_stay_behind_real_ones(shell, tmp_path):
     assert path.count("/gazebo_ros_commands") == 1
 
 
-@pytest.mark.parametrize("command", ["gazebo", "gzserver", "gzclient", "spawn_model"])
+@pytest.mark.parametrize("command", ["gazebo", "gz", "gzserver", "gzclient", "spawn_model"])
 def test_every_command_is_found_by_its_name_alone(command):
     done = _run(command, "--help")
     assert done.returncode == 0, done.stderr

@@ -8,14 +8,15 @@ crash or hang without harm. Model and resource paths are taken from the folders 
 holds model folders is a model path, what holds a `media` folder a resource path, what holds
 packages a package path. Columns:
 
-  files    worlds, SDF and URDF files, and xacro files that make a robot
-  clean    no error (there may be warnings)
-  absent   every error is about a file that is nowhere below the folders
-  invalid  errors that Gazebo reports as well: see `INVALID`
+  files    worlds, SDF and URDF files, and xacro files that make a robot without being given more
+  clean    no error and nothing tolerated (there may be warnings)
+  odd      no error, but faults that Gazebo tolerates, and we do as it does
+  missing  what is wrong is that files are nowhere below the folders
+  faulty   errors that Gazebo reports as well, for which it refuses the document: see `FAULTY`
   ours     errors that are left
   crash    the process ended; `hang`: it took longer than `--seconds`
 
-The exit status is 0 where 99 % are clean, absent or invalid and none crashed or hung.
+The exit status is 0 where 99 % of each row are not ours and none crashed or hung.
 """
 from __future__ import annotations
 
@@ -32,15 +33,40 @@ sys.path.insert(0, HERE)
 from workers import Worker
 
 EXTENSIONS = (".world", ".sdf", ".urdf", ".xacro")
-COLUMNS = ("files", "clean", "absent", "invalid", "ours", "crash", "hang")
+COLUMNS = ("files", "clean", "odd", "missing", "faulty", "ours", "crash", "hang")
 
-INVALID = {
-    "include-uri-missing": "Gazebo: an include without a URI finds nothing",
-    "root-unknown": "Gazebo reads no documents of before SDF",
-    "joint-link-unknown": "Gazebo: the joint's link cannot be found",
+FAULTY = {
+    "include-uri-missing": "libsdformat: an include without a URI finds nothing",
+    "root-unknown": "libsdformat reads no documents of before SDF",
+    "bad-value": "libsdformat, urdfdom: not a value; the document is refused",
+    "name-empty": "libsdformat, urdfdom: a required name is missing",
+    "joint-type-missing": "libsdformat: a required attribute is missing",
+    "joint-link-missing": "libsdformat, urdfdom: a joint must have a parent and a child",
+    "geometry-missing": "libsdformat, urdfdom: a shape must have a geometry",
+    "geometry-unknown": "Gazebo: unknown collision geometry type",
+    "mass-not-positive": "Gazebo: setting the mass of a link to zero is an exception",
+    "attribute-missing": "urdfdom: a shape must have its sizes",
+    "mass-missing": "urdfdom: an inertial must have a mass",
+    "inertia-missing": "urdfdom: an inertial must have an inertia",
+    "joint-limit-missing": "urdfdom: a revolute or prismatic joint must have limits",
+    "joint-link-unknown": "urdfdom: a joint must connect links that are defined",
+    "joint-type-unknown": "urdfdom: a joint must have a known type",
+    "joint-cycle": "urdfdom: the links of a robot form a tree",
+    "name-repeated": "urdfdom: links and joints have names of their own",
+    "root-many": "urdfdom: two root links",
+    "root-missing": "urdfdom: no root link",
+    "link-missing": "Gazebo: no link with a mass; nothing comes of the robot",
+    "xml-truncated": "TinyXML, expat: the document ends too early",
+    "xml-empty": "TinyXML: the document is empty",
+    "xml-no-root": "TinyXML: no element",
+    "xacro-unexpanded": "urdfdom: the values are expressions",
+    "include-cycle": "libsdformat: a model that includes itself is read without end",
 }
+"""Codes of errors with the voice of who refuses the document in Gazebo 11."""
 _MISSING = ("model-not-found", "mesh-not-found", "image-not-found", "xacro-failed")
 _URI = re.compile(r"'([^']+)' was not found|resource not found: (\w+)")  # the latter: a package
+_NEEDS_MORE = re.compile(r"Undefined substitution argument|name '\w+' is not defined|unknown macro")
+"""What xacro says of a file that is given arguments by others, or is a part of another one."""
 
 
 def files_below(folder: str) -> Iterator[str]:
@@ -78,8 +104,12 @@ class Shelf:
 
     def __init__(self, folders: Sequence[str]) -> None:
         self._tails: Set[str] = set()
+        self._undescribed: Set[str] = set()
         for folder in folders:
             for at, inside, names in os.walk(folder):
+                if "model.config" in names and not any(n.endswith((".sdf", ".urdf"))
+                                                       for n in names):
+                    self._undescribed.add(os.path.basename(at))  # made by a build
                 parts = at.split(os.sep)
                 for name in (*names, *inside):
                     for count in range(min(4, len(parts)) + 1):
@@ -95,6 +125,8 @@ class Shelf:
         if scheme.startswith("http"):
             return False
         parts = [part for part in rest.split("/") if part not in ("", ".", "..")]
+        if scheme == "model" and parts and parts[0] in self._undescribed:
+            return False
         if len(parts) == 1 and os.path.splitext(parts[0])[1]:
             return False
         return "/".join(parts[-3:]) in self._tails
@@ -102,22 +134,32 @@ class Shelf:
 
 def verdict(issues: Sequence[Dict[str, Any]], shelf: Shelf) -> str:
     """The column of a file that was read."""
+    kinds = {_kind(issue, shelf) for issue in issues}
+    for kind in ("ours", "faulty", "missing", "odd"):
+        if kind in kinds:
+            return kind
+    return "clean"
+
+
+def is_part(path: str, issues: Sequence[Dict[str, Any]]) -> bool:
+    """True for xacro that defines macros only, is a part of a world, or must be given arguments."""
     faults = [issue for issue in issues if issue["severity"] == "error"]
-    if not faults:
+    return path.endswith(".xacro") and bool(faults) and all(
+        fault["code"] in ("link-missing", "root-unknown")
+        or (fault["code"] == "xacro-failed" and _NEEDS_MORE.search(fault["message"]))
+        for fault in faults)
+
+
+def _kind(issue: Dict[str, Any], shelf: Shelf) -> str:
+    is_error = issue["severity"] == "error"
+    if not (is_error or issue["tolerated"]):
         return "clean"
-    kinds = {_kind(fault, shelf) for fault in faults}
-    # A joint to a model that is absent fails for the same reason.
-    if "absent" in kinds and all(_kind(fault, shelf) == "absent"
-                                 or fault["code"] == "joint-link-unknown" for fault in faults):
-        return "absent"
-    return "ours" if "ours" in kinds else "invalid"
-
-
-def _kind(fault: Dict[str, Any], shelf: Shelf) -> str:
-    if fault["code"] in _MISSING:
-        found = _URI.search(fault["message"])
-        return "ours" if found is None or shelf.has(found[1] or found[2]) else "absent"
-    return "invalid" if fault["code"] in INVALID else "ours"
+    if issue["code"] in _MISSING:
+        found = _URI.search(issue["message"])
+        return "ours" if found is None or shelf.has(found[1] or found[2]) else "missing"
+    if is_error:
+        return "faulty" if issue["code"] in FAULTY else "ours"
+    return "odd"
 
 
 def main(argv: Sequence[str]) -> int:
@@ -125,6 +167,8 @@ def main(argv: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("folders", nargs="+", metavar="[NAME=]FOLDER")
     parser.add_argument("--seconds", type=float, default=60.0, help="more for a file is a hang")
+    parser.add_argument("--show", default="ours,crash,hang", metavar="COLUMN,…",
+                        help="files of which columns are told about (default: %(default)s)")
     parser.add_argument("--all", action="store_true", help="show warnings, too")
     options = parser.parse_args(argv)
     named: List[Tuple[str, str]] = []
@@ -144,12 +188,13 @@ def main(argv: Sequence[str]) -> int:
             answer = worker.read(path)
             slowest = max(slowest, (time.monotonic() - began, path))
             column = answer.get("end") or verdict(answer["issues"], shelf)
-            if answer.get("fragment"):
-                continue  # xacro that only defines macros
+            if is_part(path, answer.get("issues", ())):
+                continue
             row["files"] += 1
             row[column] += 1
             codes.update({(i["severity"], i["code"]) for i in answer.get("issues", ())})
-            _show(column, path, answer.get("issues", ()), options.all)
+            if column in options.show.split(",") or options.all:
+                _show(column, path, answer.get("issues", ()), options.all)
         rows.append((name, row))
     worker.close()
     return _table(rows, codes, slowest)
@@ -158,12 +203,20 @@ def main(argv: Sequence[str]) -> int:
 def _show(column: str, path: str, issues: Sequence[Dict[str, Any]], everything: bool) -> None:
     if column in ("crash", "hang"):
         print(f"{column:8}{path}")
+    told: Counter[str] = Counter()
     for issue in issues:
-        if everything or issue["severity"] == "error":
-            hint = INVALID.get(issue["code"], "") if issue["severity"] == "error" else ""
-            line = f":{issue['line']}" if issue["line"] else ""
-            print(f"{column:8}{issue['file'] or path}{line}: {issue['severity']}"
-                  f" [{issue['code']}] {issue['message']}" + (f" ({hint})" if hint else ""))
+        if not (everything or issue["severity"] == "error" or issue["tolerated"]):
+            continue
+        told[issue["code"]] += 1
+        if told[issue["code"]] > _MOST_OF_A_KIND:
+            continue
+        hint = FAULTY.get(issue["code"], "") if issue["severity"] == "error" else ""
+        line = f":{issue['line']}" if issue["line"] else ""
+        print(f"{column:8}{issue['file'] or path}{line}: {issue['severity']} [{issue['code']}]"
+              f" {issue['message'][:300]}" + (f" ({hint})" if hint else ""), flush=True)
+
+
+_MOST_OF_A_KIND = 3
 
 
 def _table(rows: Sequence[Tuple[str, Counter[str]]], codes: Counter[Tuple[str, str]],

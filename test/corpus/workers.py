@@ -26,7 +26,7 @@ class Worker:
         self._child: Optional["subprocess.Popen[bytes]"] = None
 
     def read(self, path: str) -> Dict[str, Any]:
-        """`issues` and `fragment` of a file, or `end`: "crash" or "hang"."""
+        """`issues` of a file, or `end`: "crash" or "hang"."""
         child = self._child or self._start()
         assert child.stdin is not None and child.stdout is not None
         child.stdin.write(json.dumps(path).encode() + b"\n")
@@ -59,7 +59,6 @@ class Worker:
 def _serve() -> None:
     """The child: a path a line comes in, what was found goes out."""
     from my_simulations.cli.check_model import check
-    from my_simulations.errors import errors_of
     from my_simulations.resources.resolver import Resolver
 
     answers = os.fdopen(os.dup(1), "w")
@@ -68,12 +67,10 @@ def _serve() -> None:
     for line in sys.stdin:
         path = json.loads(line)
         _, issues = check(path, resolver)
-        macros = path.endswith(".xacro") and {
-            issue.code for issue in errors_of(issues)} == {"link-missing"}
-        print(json.dumps({"fragment": macros, "issues": [
+        print(json.dumps({"issues": [
             {"severity": issue.severity.value, "code": issue.code, "message": issue.message,
-             "file": issue.file, "line": issue.line} for issue in issues]}),
-            file=answers, flush=True)
+             "file": issue.file, "line": issue.line, "tolerated": issue.tolerated}
+            for issue in issues]}), file=answers, flush=True)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ import pytest
 import trimesh
 
 from my_simulations.description.shapes import MeshData
-from my_simulations.engine.decompose import convex_parts
+from my_simulations.engine import decompose, decompose_many
+from my_simulations.engine.decompose import notices
 from my_simulations.engine.decompose_cache import (
     Decomposition,
     PartsCache,
@@ -67,18 +68,18 @@ def holds(part, point):
                            np.asarray(point) - solid.triangles[:, 0]) < 0).all())
 
 
-def divided(mesh, folder, **options):
-    issues, told = [], []
-    parts = convex_parts(mesh, cache_dir=str(folder), progress=told.append, issues=issues,
-                         **options)
-    return parts, [issue.code for issue in issues], told
+def divided(mesh, folder):
+    told = []
+    (made,) = decompose_many.divide_all([("m::l", mesh)], told.append, cache_dir=str(folder))
+    return made.parts, [issue.code for issue in notices(made)], told
 
 
 def test_a_convex_mesh_is_its_own_hull(tmp_path):
     parts, codes, told = divided(mesh_of(box((1, 2, 3))), tmp_path)
     assert [len(p.vertices) for p in parts] == [8] and codes == []
     assert bounds(parts) == (pytest.approx([-0.5, -1, -1.5]), pytest.approx([0.5, 1, 1.5]))
-    assert parts[0].triangles.dtype == np.int32 and len(told) == 2
+    assert parts[0].triangles.dtype == np.int32
+    assert told == [] and os.listdir(tmp_path) == []  # no process, nothing to wait for
 
 
 def test_triangles_without_area_and_corners_of_their_own_do_not_make_a_mesh_concave(tmp_path):
@@ -117,7 +118,7 @@ def test_a_concave_mesh_is_divided_and_its_notch_stays_free(tmp_path):
     assert volume(parts) == pytest.approx(4.0, rel=0.1)
     assert not any(holds(part, (1.5, 2.0, 0.5)) for part in parts)
     assert any(holds(part, (0.5, 2.0, 0.5)) for part in parts)
-    assert any("%" in words for words in told) and "parts found" in told[-1]
+    assert any("mesh 1 of 1 (m::l): " in words and "convex parts in" in words for words in told)
 
 
 def test_the_size_and_place_of_a_mesh_do_not_count(tmp_path):
@@ -127,6 +128,41 @@ def test_the_size_and_place_of_a_mesh_do_not_count(tmp_path):
     assert len(parts) > 1 and volume(parts) == pytest.approx(4e-9, rel=0.1)
     assert bounds(parts) == (pytest.approx([100, 0, 0], abs=1e-8),
                              pytest.approx([100.002, 0.003, 0.001], abs=1e-8))
+
+
+def test_a_box_whose_corners_lie_a_hair_apart_is_convex_and_one_without_a_lid_is_not():
+    soup = box()
+    apart = soup.triangles.reshape(-1, 3) + np.tile([[0.0], [1e-6], [-1e-6]], (12, 3))
+    torn = trimesh.Trimesh(apart, np.arange(36).reshape(-1, 3), process=False)
+    assert not torn.is_watertight and is_convex(torn)
+    open_box = trimesh.Trimesh(soup.vertices, soup.faces[soup.face_normals[:, 2] < 0.5])
+    assert not is_convex(open_box)
+
+
+def test_a_wall_inside_a_solid_does_not_make_it_concave():
+    walled = box()
+    corners = [(0.0, y, z) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
+    mesh = trimesh.Trimesh(np.concatenate([walled.vertices, corners]),
+                           np.concatenate([walled.faces, [(8, 9, 11), (8, 11, 10)]]),
+                           process=False)
+    assert not mesh.is_watertight and is_convex(mesh)
+
+
+@pytest.mark.parametrize("edge, expected", [(0.1, True), (0.3, False)])
+def test_a_notch_counts_by_its_share_of_the_volume(edge, expected):
+    """A square hole of `edge` m through a cube of 1 m takes 1 % or 9 % of it."""
+    outer = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+    points = [(x, y, z) for z in (-0.5, 0.5) for half in (1.0, edge) for x, y in
+              [(half * p[0], half * p[1]) for p in outer]]
+    faces = []
+    for i in range(4):
+        j = (i + 1) % 4
+        for a, b, c, d in ((i, j, j + 8, i + 8), (j + 4, i + 4, i + 12, j + 12),
+                           (i + 4, j + 4, j, i), (i + 8, j + 8, j + 12, i + 12)):
+            faces += [(a, b, c), (a, c, d)]
+    mesh = trimesh.Trimesh(points, faces, process=False)
+    assert mesh.is_watertight and mesh.volume == pytest.approx(1 - edge**2)
+    assert is_convex(mesh) is expected
 
 
 def test_an_open_vessel_stays_hollow(tmp_path):
@@ -159,11 +195,6 @@ def test_a_second_call_finds_the_parts_in_the_cache(tmp_path):
         assert np.array_equal(one.triangles, other.triangles)
 
 
-def test_a_warning_is_given_again_from_the_cache(tmp_path):
-    flat = MeshData(np.array([(0, 0, 0), (2, 0, 0), (0, 1, 0)], float), np.array([[0, 1, 2]]))
-    assert divided(flat, tmp_path)[1] == divided(flat, tmp_path)[1] == ["mesh-flat"]
-
-
 def entry(folder):
     (name,) = os.listdir(folder)
     return folder / name
@@ -173,12 +204,12 @@ def entry(folder):
     lambda content: b"", lambda content: b"no archive", lambda content: content[:len(content) // 2],
     lambda content: content[:200] + bytes(100) + content[300:]])
 def test_a_damaged_entry_of_the_cache_is_made_anew(tmp_path, damage):
-    divided(mesh_of(box()), tmp_path)
+    first, _, _ = divided(angle(), tmp_path)
     path = entry(tmp_path)
     path.write_bytes(damage(path.read_bytes()))
-    parts, _, told = divided(mesh_of(box()), tmp_path)
-    assert len(parts) == 1 and told != []
-    assert len(load(str(entry(tmp_path))).parts) == 1
+    parts, _, told = divided(angle(), tmp_path)
+    assert len(parts) == len(first) and told != []
+    assert len(load(str(entry(tmp_path))).parts) == len(first)
 
 
 @pytest.mark.parametrize("change", ["triangle", "vertex", "nothing"])
@@ -221,8 +252,8 @@ def test_what_an_interrupted_writer_left_is_removed_in_time(tmp_path):
 def test_a_cache_that_cannot_be_written_costs_the_caching_only(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_bytes(b"")
-    parts, codes, _ = divided(mesh_of(box()), blocked)
-    assert len(parts) == 1 and codes == []
+    parts, codes, _ = divided(angle(), blocked)
+    assert len(parts) > 1 and codes == []
 
 
 def test_the_key_tells_content_and_parameters_apart():
@@ -257,24 +288,56 @@ def test_a_crash_leaves_the_hull_and_a_warning(tmp_path, monkeypatch, body):
     with_vhacd(monkeypatch, tmp_path / "fake", body)
     parts, codes, told = divided(angle(), tmp_path / "cache")
     assert codes == ["mesh-not-decomposed"] and volume(parts) == pytest.approx(5.0)
-    assert "hull" in told[-1]
-    assert divided(angle(), tmp_path / "cache")[2] == []  # it would crash again
+    assert any("hull" in words for words in told)
+    parts, codes, told = divided(angle(), tmp_path / "cache")  # it would crash again
+    assert codes == ["mesh-not-decomposed"] and told == []
 
 
-def test_work_without_end_is_ended_and_not_kept(tmp_path, monkeypatch):
+def test_work_that_stands_still_is_ended_and_not_kept(tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "time.sleep(600)")
-    parts, codes, _ = divided(angle(), tmp_path / "cache", deadline=3.0)
-    assert len(parts) == 1 and codes == ["mesh-not-decomposed"]
+    made = decompose.divided(angle(), cache_dir=str(tmp_path / "cache"), deadline=3.0)
+    assert len(made.parts) == 1 and [one.code for one in notices(made)] == ["mesh-not-decomposed"]
     assert not (tmp_path / "cache").exists()
 
 
 def test_a_mesh_that_takes_too_much_processor_time_keeps_its_hull_at_once_the_next_time(
         tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "[None for _ in iter(int, 1)]")
-    for tries in (1, 0):
-        parts, codes, said = divided(angle(), tmp_path / "cache", cpu_seconds=2)
-        assert len(parts) == 1 and codes == ["mesh-not-decomposed"]
-        assert len([text for text in said if text.startswith("dividing a mesh")]) == tries
+    folder = str(tmp_path / "cache")
+    for made in (decompose.divided(angle(), cache_dir=folder, cpu_seconds=2),
+                 decompose.ready_parts(angle(), cache_dir=folder)):
+        assert len(made.parts) == 1
+        assert [one.code for one in notices(made)] == ["mesh-not-decomposed"]
+
+
+def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path, monkeypatch):
+    marks = tmp_path / "marks"
+    marks.mkdir()
+    # Each ends only when another one has begun: one at a time they would never end.
+    with_vhacd(monkeypatch, tmp_path / "fake",
+               f"open(os.path.join({str(marks)!r}, str(os.getpid())), 'w').close(); "
+               f"[time.sleep(0.01) for _ in iter(lambda: len(os.listdir({str(marks)!r})) > 1, 1)];"
+               " os.abort()")
+    monkeypatch.setattr(decompose_many, "WORD_EVERY_S", 0.2)
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    second = MeshData(angle().vertices * 2.0, angle().triangles)
+    told = []
+    meshes = [("a::l", angle()), ("b::l", mesh_of(box())), ("c::l", second), ("d::l", angle())]
+    made = decompose_many.divide_all(meshes, told.append, cache_dir=str(tmp_path / "cache"))
+    assert [volume(one.parts) for one in made] == pytest.approx([5.0, 1.0, 40.0, 5.0])
+    assert "2 meshes are divided" in told[0] and str(tmp_path / "cache") in told[0]
+    assert any(words.startswith("dividing mesh 1 of 2 (a::l), 20 triangles") for words in told)
+    assert any("0 of 2 meshes divided after" in words and "at work: mesh 1 of 2" in words
+               for words in told)
+    assert "ready after" in told[-1]
+
+
+def test_the_parts_are_the_same_whether_they_were_known_before_or_not(tmp_path):
+    cold, _, _ = divided(angle(), tmp_path / "a")
+    again, _, _ = divided(angle(), tmp_path / "b")
+    warm, _, _ = divided(angle(), tmp_path / "a")
+    for other in (again, warm):
+        assert [part.vertices.tolist() for part in other] == [p.vertices.tolist() for p in cold]
 
 
 def test_a_child_that_cannot_be_started_leaves_the_mesh_as_it_is(tmp_path, monkeypatch):

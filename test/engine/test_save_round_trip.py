@@ -56,8 +56,8 @@ def test_load_run_save_load_gives_the_same_poses_and_description(steps, started,
     assert not issues
     first = started(world)
     if steps:
-        first.clock.advance(steps)
-    path = save_world(first, "s.world", roots=[str(tmp_path)])
+        first.advance(steps)
+    path = save_world(first, "s.world", roots=[str(tmp_path)], state=True)
     read, issues = read_world(path, Resolver())
     assert not issues
     second = started(apply_state(read))
@@ -71,18 +71,22 @@ def test_load_run_save_load_gives_the_same_poses_and_description(steps, started,
                            second.states.link_state(name)[0], 1e-6) == []
     assert second.clock.sim_ns == first.clock.sim_ns
     for name in ("tumbling::l", "pair::b"):
-        assert (
-            differences(
-                first.states.link_state(name)[1].linear,
-                second.states.link_state(name)[1].linear,
-                1e-6,
-            )
-            == []
-        )
+        assert (differences(first.states.link_state(name)[1].linear,
+                            second.states.link_state(name)[1].linear, 1e-6) == [])
     # The description is the one that was loaded, but for where things are.
     assert differences(present_world(first).models, read.models, 1e-9) == []
     assert differences(first.joints.states("hinge")[0][0],
                        second.joints.states("hinge")[0][0], 1e-6) == []
+
+
+def test_a_world_saved_without_its_state_has_the_same_configuration_at_time_0(started, tmp_path):
+    first = started(read_world_text(WORLD, Resolver())[0])
+    first.advance(1500)
+    path = save_world(first, "s.world", roots=[str(tmp_path)])
+    second = started(apply_state(read_world(path, Resolver())[0]))
+    assert differences(first.states().link_poses, second.states().link_poses, 1e-6) == []
+    assert second.sim_ns() == 0
+    assert second.link_state("tumbling::l")[1].linear == (0.0, 0.0, 0.0)
 
 
 def test_saving_twice_gives_the_same_bytes(started, tmp_path):

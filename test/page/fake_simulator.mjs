@@ -400,6 +400,8 @@ export class FakeSimulator {
       files: [...this.files]
         .filter((file) => file.slice(0, file.lastIndexOf('/')) === path)
         .map((file) => ({name: file.split('/').pop(), path: file, size: 1200, modified: 0})),
+      launched: [],
+      chosen: {state: false, launched: false},
     };
   }
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """How the programs start, refuse to start, and end."""
+import contextlib
 import os
 import signal
 import socket
@@ -17,6 +18,47 @@ from support import Program, executable, wait_for
 from my_simulations.editor.state_log import LogReader
 
 WORLD = '<sdf version="1.5"><world name="default">{}</world></sdf>'
+
+
+CONCAVE = """<model name="concave"><link name="l"><collision name="c"><geometry>
+<mesh><uri>notch.obj</uri></mesh></geometry></collision></link></model>"""
+
+# An L of one piece: not convex.
+NOTCH = "".join(f"v {x} {y} {z}\n" for z in (0, 1) for x, y in
+                ((0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3))) + "".join(
+    f"f {a} {b} {c}\n" for n in range(2, 6) for a, b, c in
+    ((1, n + 1, n), (7, n + 6, n + 7))) + "".join(
+    f"f {n} {n % 6 + 1} {n % 6 + 7}\nf {n} {n % 6 + 7} {n + 6}\n" for n in range(1, 7))
+
+# In front of PyBullet, and itself only where meshes are divided.
+SLEEPING_VHACD = """import sys, time
+if sys.argv[0].endswith("decompose.py"):
+    def vhacd(*_, **__):
+        time.sleep(600)
+else:
+    sys.path.remove({!r})
+    del sys.modules["pybullet"]
+    import pybullet
+"""
+
+# The first to import a module interrupts its process group.
+INTERRUPTING = """import os, signal, sys
+class Finder:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        if name == {!r} and sys.argv[0].endswith(("gzserver", "gazebo")):
+            os.killpg(os.getpgid(0), signal.SIGINT)
+sys.meta_path.insert(0, Finder)
+"""
+
+
+def children_of(pid):
+    """Process ids of what a process has started."""
+    found = []
+    for thread in os.listdir(f"/proc/{pid}/task"):
+        with open(f"/proc/{pid}/task/{thread}/children", encoding="ascii") as file:
+            found += [int(word) for word in file.read().split()]
+    return found
 
 
 def is_alive(pid):
@@ -108,6 +150,38 @@ class NodeLife(unittest.TestCase):
             wait_for(lambda: "no state log is recorded" in program.text, "the reason")
             self.assertEqual(program.text.count("Not a directory"), 1)
 
+    def test_an_interrupt_while_meshes_are_divided_ends_it_with_all_it_started(self):
+        fake = self.world(SLEEPING_VHACD.format(self.folder), "pybullet.py")
+        self.world(NOTCH, "notch.obj")
+        world = self.world(WORLD.format(CONCAVE))
+        paths = os.pathsep.join([os.path.dirname(fake), os.environ.get("PYTHONPATH", "")])
+        with Program([self.server, world, "__name:=second"], PYTHONPATH=paths,
+                     XDG_CACHE_HOME=self.folder) as program:
+            wait_for(lambda: "dividing mesh 1 of 1 (concave::l)" in program.text, "the work")
+            started = wait_for(lambda: len(children_of(program.process.pid)) == 2
+                               and children_of(program.process.pid), "engine and work")
+            program.interrupt()
+            self.assertEqual(program.ended(), 0, program.text)
+            self.assertNotIn("Traceback", program.text)
+            wait_for(lambda: not any(map(is_alive, started)), "the end of what it started")
+            self.assertFalse(self.is_registered("/second"))
+
+    def test_a_control_c_during_the_imports_prints_no_traceback(self):
+        for program in ("gzserver", "gazebo"):
+            for moment in ("my_simulations.cli", "rosgraph_msgs", "my_simulations.formats"):
+                with self.subTest(program=program, moment=moment):
+                    self.assert_ends_quietly(executable("gazebo_ros", program), moment)
+
+    def assert_ends_quietly(self, server, moment):
+        """The whole group is interrupted, as in a terminal, when a module is first imported."""
+        self.world(INTERRUPTING.format(moment), "sitecustomize.py")
+        paths = os.pathsep.join([self.folder, os.environ.get("PYTHONPATH", "")])
+        with Program([server, self.world(WORLD.format("")), "__name:=second"],
+                     start_new_session=True, PYTHONPATH=paths) as program:
+            self.assertIn(program.ended(), (0, -signal.SIGINT), program.text)
+            self.assertNotIn("KeyboardInterrupt", program.text)
+            self.assertNotIn("Traceback", program.text)
+
     def test_an_engine_does_not_outlive_a_killed_server(self):
         with Program([self.server, self.world(WORLD.format("")), "__name:=second"]) as program:
             pid = wait_for(lambda: rospy.get_param("/second/my_simulations/engine_pid", 0),
@@ -178,6 +252,51 @@ class NodeLife(unittest.TestCase):
         with Program([self.server, missing], ROS_MASTER_URI=no_master()) as program:
             self.assertEqual(program.ended(), 1)
             self.assertIn(missing, program.text)
+
+    def test_a_new_master_is_told_everything_again(self):
+        uri = no_master()
+        start = ["rosmaster", "--core", "-p", uri.rpartition(":")[2]]
+        graph = rosgraph.Master("/node_life", master_uri=uri)
+
+        def mine():
+            """Topics and services of the server, and its parameters."""
+            state = [{name for name, nodes in kind if "/gazebo" in nodes}
+                     for kind in graph.getSystemState()]
+            return state, sorted(graph.getParam("/gazebo")["my_simulations"]), graph.getParam(
+                "/use_sim_time")
+
+        def is_whole():
+            with contextlib.suppress(OSError, rosgraph.MasterException):
+                return mine() == before
+
+        with Program(start) as first, Program(
+                [self.server, "-u", self.world(WORLD.format(""))], ROS_MASTER_URI=uri) as server:
+            wait_for(lambda: self.is_there(graph, "/gazebo/set_parameters"), "the server")
+            wait_for(lambda: self.has_param(graph, "/gazebo/time_step"), "its last parameter")
+            before = mine()
+            service = graph.lookupService("/gazebo/get_world_properties")
+            first.process.kill()
+            first.process.wait()
+            wait_for(lambda: "does not answer" in server.text, "a word about the loss")
+            with Program(start):
+                wait_for(is_whole, "everything on the new master")
+                wait_for(lambda: "has registered again" in server.text, "a word about it")
+                self.assertEqual(graph.lookupService("/gazebo/get_world_properties"), service)
+                wait_for(lambda: self.has_param(graph, "/gazebo/time_step"), "the settings")
+                server.interrupt()
+                self.assertEqual(server.ended(), 0, server.text)
+                wait_for(lambda: not self.is_there(graph, "/gazebo/pause_physics"), "its end")
+            self.assertEqual(server.text.count("does not answer"), 1)
+
+    @staticmethod
+    def is_there(graph, service):
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            return bool(graph.lookupService(service))
+
+    @staticmethod
+    def has_param(graph, name):
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            return graph.hasParam(name)
 
     def test_unknown_options_are_refused_with_the_usage(self):
         with Program([self.server, "--no-such-option"]) as program:

@@ -32,7 +32,7 @@ class Saving(unittest.TestCase):
         self.gazebo.pause_physics()
         self.addCleanup(self.gazebo.unpause_physics)
         there = self.gazebo.get_model_state("crate", "").pose.position
-        answer = self.save("w.world", False, True)
+        answer = self.save(path="w.world", overwrite=False, inline=True)
         self.assertTrue(answer.success, answer.status_message)
         self.assertEqual(answer.path, os.path.realpath(os.path.join(self.folder.name, "w.world")))
         world = ElementTree.parse(answer.path).getroot().find("world")
@@ -41,26 +41,32 @@ class Saving(unittest.TestCase):
         numbers = [float(n) for n in world.find("model[@name='crate']/pose").text.split()]
         for found, wanted in zip(numbers, (there.x, there.y, there.z)):
             self.assertAlmostEqual(found, wanted, 9)
-        self.assertIsNotNone(world.find("state/sim_time"))
+        self.assertIsNone(world.find("state"))
         first = open(answer.path, "rb").read()
-        again = self.save("again.world", False, True)
+        again = self.save(path="again.world", overwrite=False, inline=True)
         self.assertEqual(open(again.path, "rb").read(), first)
 
+    def test_with_state_sim_time_is_saved_too(self):
+        answer = self.save(path="s.world", inline=True, state=True)
+        self.assertTrue(answer.success, answer.status_message)
+        world = ElementTree.parse(answer.path).getroot().find("world")
+        self.assertNotEqual(world.findtext("state/sim_time"), "0 0")
+
     def test_a_file_is_not_replaced_unasked(self):
-        self.assertTrue(self.save("w.world", False, True).success)
-        refused = self.save("w.world", False, True)
+        self.assertTrue(self.save(path="w.world", overwrite=False, inline=True).success)
+        refused = self.save(path="w.world", overwrite=False, inline=True)
         self.assertFalse(refused.success)
         self.assertIn("exists already", refused.status_message)
-        self.assertTrue(self.save("w.world", True, True).success)
+        self.assertTrue(self.save(path="w.world", overwrite=True, inline=True).success)
 
     def test_other_places_are_refused(self):
         for path in ("/etc/w.world", "../w.world", "w.txt"):
-            refused = self.save(path, True, True)
+            refused = self.save(path=path, overwrite=True, inline=True)
             self.assertFalse(refused.success, path)
             self.assertTrue(refused.status_message.startswith("SaveWorld: "))
 
     def test_includes_stay_includes_when_asked(self):
-        answer = self.save("i.world", False, False)
+        answer = self.save(path="i.world", overwrite=False, inline=False)
         world = ElementTree.parse(answer.path).getroot().find("world")
         self.assertEqual([uri.text for uri in world.findall("include/uri")],
                          ["model://ground_plane"])

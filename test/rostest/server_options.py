@@ -63,8 +63,9 @@ class ServerOptions(unittest.TestCase):
     def test_the_names_of_joints_that_are_not_there_are_said(self):
         rospy.set_param("/arm", ARM)
         text = self.run_spawn_model("-urdf", "-param", "arm", "-model", "arm_2",
-                                    "-J", "no_such_joint", "1")
-        self.assertIn("no_such_joint", text)
+                                    "-J", "no_such_joint", "1", status=1)
+        self.assertIn("no joints that can be set: no_such_joint; those that can are hinge", text)
+        self.assertIn("has no joint 'no_such_joint'; it has hinge", text)
 
 
 if __name__ == "__main__":

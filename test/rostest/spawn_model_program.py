@@ -61,6 +61,27 @@ class SpawnModelProgram(unittest.TestCase):
         self.assertAlmostEqual(self.where("two").x, 5.0, 2)
         self.assertAlmostEqual(self.where("two").y, 1.0, 2)
 
+    def test_a_joint_that_the_model_has_not_got_is_a_failure_with_the_one_that_was_meant(self):
+        other = '<link name="tip"/><joint name="hinge" type="continuous"><parent link="body"/>' \
+                '<child link="tip"/><axis xyz="0 0 1"/></joint>'
+        rospy.set_param("/an_arm", box(extra=other.replace(
+            '<link name="tip"/>', box(link="tip").partition(">")[2].replace("</robot>", ""))))
+        self.run_it("-urdf", "-param", "an_arm", "-model", "one", "-J", "hinge", "0.5")
+        text = self.run_it("-urdf", "-param", "an_arm", "-model", "two", "-x", "3", "-J", "hnige",
+                           "0.5", status=1)
+        self.assertIn("has no joint 'hnige'; did you mean hinge?", text)
+        self.assertIn("two", self.gazebo.names())
+
+    def test_messages_name_the_model_and_its_file(self):
+        with open(self.file, "w", encoding="utf-8") as file:
+            file.write(box(extra="\n<jiont/>"))
+        heard = support.heard_on_rosout(f"model 'one', {self.file}:2")
+        self.run_it("-urdf", "-file", self.file, "-model", "one")
+        heard()
+        heard = support.heard_on_rosout("model 'two', model_xml:2")
+        self.gazebo.spawn("two", box(extra="\n<jiont/>"), where=pose(3.0))
+        heard()
+
     def test_unpause(self):
         self.gazebo.pause_physics()
         self.run_it("-urdf", "-param", "a_box", "-model", "one", "-unpause")

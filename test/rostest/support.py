@@ -187,10 +187,11 @@ def executable(package, name):
 class Program:
     """A program of ours, with its output; always ended."""
 
-    def __init__(self, words, **environment):
+    def __init__(self, words, folder=None, start_new_session=False, **environment):
         self.process = subprocess.Popen(
             words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-            text=True, env={**os.environ, **environment})
+            text=True, cwd=folder, env={**os.environ, **environment},
+            start_new_session=start_new_session)
         self._text = []
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

@@ -59,6 +59,11 @@ def warnings(issues):
     return codes(issues, Severity.WARNING)
 
 
+def tolerated(issues):
+    """Codes of what was read as Gazebo reads it."""
+    return [issue.code for issue in issues if issue.tolerated]
+
+
 def refusal(function, *arguments):
     """The `InputError` that a call raises."""
     try:

@@ -160,7 +160,7 @@ def test_a_file_that_is_not_there_and_a_folder_without_model_are_errors(tmp_path
 
 
 def test_json_counts_what_a_file_holds(capsys):
-    assert main(["check_model", "--json", str(ROOT / "world" / "test.world"),
+    assert main(["check_model", "--json", str(ROOT / "world" / "lab_course.world"),
                  str(ROOT / "models" / "sun"), str(Path(INVALID) / "not_xml.sdf")]) == 1
     world, sun, broken = (json.loads(line) for line in capsys.readouterr().out.splitlines())
     assert world["models"] == world["links"] == 6 and world["lights"] == 1

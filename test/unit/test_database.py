@@ -7,6 +7,7 @@ import hashlib
 import http.server
 import io
 import os
+import resource
 import socket
 import tarfile
 import threading
@@ -303,6 +304,22 @@ def test_a_size_that_is_not_told_is_limited_too(server, database):
     server.headers["lamp/model.tar.gz"] = {"Content-Length": None}
     with pytest.raises(NotProvided, match="more than 1000 bytes"):
         database(limits=Limits(archive_bytes=1000)).provide("lamp")
+
+
+def test_an_archive_that_is_all_headers_costs_this_process_nothing(server, database, tmp_path):
+    server.add("lamp")
+    stream = io.BytesIO()
+    with gzip.GzipFile(fileobj=stream, mode="wb", compresslevel=1) as packed:
+        packed.write(entry("lamp/x", 300 << 20, tarfile.XHDTYPE).tobuf(tarfile.USTAR_FORMAT))
+        for _ in range(300):
+            packed.write(bytes(1 << 20))
+    server.files["lamp/model.tar.gz"] = stream.getvalue()
+    assert len(stream.getvalue()) < 2 << 20
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(NotProvided, match="MB of memory"):
+        database().provide("lamp")
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 64 << 10
+    assert nothing_left(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "../x", "a/b", ".hidden", "a\0b", "a\n"])

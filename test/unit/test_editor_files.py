@@ -12,6 +12,7 @@ from editor_case import Browser, Refused, box, cases
 
 from my_simulations.editor.autosave import process_id
 from my_simulations.formats.load import read_world
+from my_simulations.resources.own import own_directory
 from my_simulations.resources.resolver import Resolver
 
 case = pytest.fixture(cases)
@@ -50,6 +51,33 @@ def test_no_file_is_replaced_without_asking(case):
         assert there.read_text() == "precious"
         await browser.ask("save", path="there.world", overwrite=True)
         assert "<world" in there.read_text()
+
+    made.browse(save)
+
+
+LOSSY = """<sdf version="1.6"><world name="w">
+<include><uri>model://nowhere</uri></include>
+<model name="a"><static>true</static><link name="l"/></model></world></sdf>"""
+
+
+def test_a_file_of_which_a_part_was_not_loaded_is_replaced_only_when_asked_to(case):
+    made = case(box("a"))
+    there = made.worlds / "lossy.world"
+    there.write_text(LOSSY)
+
+    async def save(browser):
+        await browser.ask("open", path="lossy.world", discard=True)
+        with pytest.raises(Refused, match="not everything in the file could be loaded") as refused:
+            await browser.ask("save")
+        assert refused.value.code == "path-needed"
+        with pytest.raises(Refused, match="would be lost: .*nowhere") as refused:
+            await browser.ask("save", path="lossy.world")
+        assert refused.value.code == "exists" and there.read_text() == LOSSY
+        other = (await browser.ask("save", path="other"))["path"]
+        assert (await browser.ask("save"))["path"] == other
+        assert there.read_text() == LOSSY
+        await browser.ask("save", path="lossy.world", overwrite=True)
+        assert "nowhere" not in there.read_text()
 
     made.browse(save)
 
@@ -101,6 +129,70 @@ def test_a_file_that_is_no_world_leaves_the_old_one(case):
     made.browse(run)
 
 
+def test_what_the_launch_file_spawned_is_saved_when_asked_for_and_then_by_every_save(case):
+    made = case(box("a"))
+    made.sim.models.spawn(box("robo", (2.0, 0.0, 0.5)), launched=True)
+
+    def saved():
+        world, _ = read_world(str(made.worlds / "w.world"), Resolver())
+        return [model.name for model in world.models], world.state is not None
+
+    async def save(browser):
+        found = await browser.ask("folders")
+        assert found["launched"] == ["robo"]
+        assert found["chosen"] == {"state": False, "launched": False}
+        reply = await browser.ask("save", path="w.world")
+        assert reply["left_out"] == ["robo"] and saved() == (["a"], False)
+        reply = await browser.ask("save", path="w.world", overwrite=True, launched=True,
+                                  state=True)
+        assert reply["left_out"] == [] and saved() == (["a", "robo"], True)
+        assert (await browser.ask("folders"))["chosen"] == {"state": True, "launched": True}
+        await browser.ask("save")
+        assert saved() == (["a", "robo"], True)
+
+    made.browse(save)
+
+
+def test_no_save_goes_into_a_file_that_ships(case):
+    world = os.path.join(own_directory(), "world")
+    shipped = os.path.join(world, "lab_course.world")
+    with open(shipped, "rb") as file:
+        before = file.read()
+    made = case(box("a"), save_roots=[world])
+
+    async def save(browser):
+        with pytest.raises(Refused, match="ships with my_simulations"):
+            await browser.ask("save", path="lab_course.world", overwrite=True)
+        await browser.ask("open", path="lab_course.world")
+        with pytest.raises(Refused) as refused:
+            await browser.ask("save")
+        assert refused.value.code == "path-needed"
+
+    made.browse(save)
+    with open(shipped, "rb") as file:
+        assert file.read() == before
+
+
+def test_a_file_dialog_starts_in_the_users_own_folder_then_beside_the_users_world(
+        case, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    mine = tmp_path / "course"
+    mine.mkdir()
+    made = case(box("a"), save_roots=None, caller=str(mine))
+
+    async def save(browser):
+        found = await browser.ask("folders")
+        assert found["path"] == str(tmp_path / "home/my_simulations/worlds")
+        assert (found["folders"], found["files"]) == ([], [])
+        assert str(mine) in found["roots"]
+        assert (await browser.ask("save", path="one"))["path"] == found["path"] + "/one.world"
+        await browser.ask("save", path=str(mine / "two.world"))
+        assert (await browser.ask("folders"))["path"] == str(mine)
+        assert (await browser.ask("save", path="three"))["path"] == str(mine / "three.world")
+
+    made.browse(save)
+
+
 def test_folders_and_worlds_are_listed_below_the_roots_only(case, tmp_path):
     made = case()
     (made.worlds / "inner").mkdir()
@@ -149,6 +241,7 @@ def of_a_dead_process(made):
 
 def test_unsaved_edits_of_a_server_that_was_killed_are_offered_and_restored(case):
     first = case(box("a"))
+    first.sim.models.spawn(box("robo", (3.0, 0.0, 0.5)), launched=True)
 
     async def edit(browser):
         await browser.edit("insert", shape="box", pose=[1, 1, 0.5, 0, 0, 0, 1])
@@ -165,6 +258,7 @@ def test_unsaved_edits_of_a_server_that_was_killed_are_offered_and_restored(case
         assert browser.last("autosave")["found"]
         await browser.ask("autosave", action="restore")
         assert second.sim.states.model_state("unit_box")[0].position == (1, 1, 0.5)
+        assert second.sim.models.launched() == ["robo"]  # the launch file's, as before
         await browser.until(lambda: browser.last("history")["dirty"])
         await browser.until(lambda: not browser.last("autosave")["found"])
         other = await Browser.open(browser.session, second.url)

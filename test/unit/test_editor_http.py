@@ -58,7 +58,7 @@ def test_the_protocol_comes_with_the_page(case):
 @pytest.mark.parametrize("headers", [
     {"Host": "evil.example"}, {"Host": "127.0.0.1.evil.example"}, {"Host": ""},
     {"Origin": "http://evil.example"}, {"Origin": "null"}, {"Origin": "http://127.0.0.1:1"},
-    {"Sec-Fetch-Site": "cross-site"}], ids=str)
+    {"Origin": "http://["}, {"Host": "["}, {"Sec-Fetch-Site": "cross-site"}], ids=str)
 def test_foreign_pages_and_names_are_refused(case, headers):
     made = case()
     assert request(made.url + "protocol.json", headers=headers)[0] == 403
@@ -115,10 +115,60 @@ def test_loopback_addresses_are_known():
     "/js/../../package.xml", "/js/..%2f..%2fpackage.xml", "/js/%2e%2e/%2e%2e/package.xml",
     "/css//etc/passwd", "/three/../../../package.xml", "/resource/x/../../etc/passwd",
     "/resource//etc/passwd", "/solid/../x.stl", "/thumb/../../x.png", "/export/..%2fx.world",
+    "/js/%00", "/js/x%00.js", "/three/%00", "/css/a%00b.css", "/resource/x/%00.png",
+    "/solid/%00.stl", "/thumb/%00.png", "/export/%00", "/%00",
     "/js/main.py", "/export/../../x.log", "/ws/x", "/nix"])
 def test_no_path_leads_out(case, path):
     made = case()
     assert raw(made.url, path) in (400, 403, 404)
+
+
+SANDBOX = "sandbox; default-src 'none'"
+
+
+@pytest.mark.parametrize("path", [
+    "protocol.json", "js/main.js", "css/nix.css", "nix", "resource/x/y.png", "solid/x.stl",
+    "thumb/x.png", "export/x.world"])
+def test_whatever_is_not_the_page_may_do_nothing_by_itself(case, path):
+    for headers in ({}, {"Origin": "http://evil.example"}):
+        _, found, _ = request(case().url + path, headers=headers)
+        assert found["Content-Security-Policy"].startswith(SANDBOX)
+        assert found["X-Content-Type-Options"] == "nosniff"
+
+
+def test_the_page_may_open_its_own_socket_only(case):
+    made = case()
+    host = made.url.split("/")[2]
+    policy = request(made.url)[1]["Content-Security-Policy"]
+    assert f"connect-src 'self' data: blob: ws://{host} wss://{host};" in policy
+
+
+def test_scripts_of_the_page_keep_their_type(case):
+    headers = request(case().url + "js/main.js")[1]
+    assert headers["Content-Type"].startswith("text/javascript")
+
+
+ACTIVE = "<svg xmlns='http://www.w3.org/2000/svg'><script>alert(document.domain)</script></svg>"
+
+
+@pytest.mark.parametrize("name, link", [("a.svg", ""), ("a.html", "a.png"), ("a.svg", "a.jpg"),
+                                        ("a.xml", "a.dae"), ("a.js", "a.stl")])
+def test_a_file_that_may_hold_a_script_is_not_served_by_any_name(case, tmp_path, name, link):
+    models = tmp_path / "models" / "m"
+    models.mkdir(parents=True)
+    (models / name).write_text(ACTIVE)
+    if link:
+        os.symlink(models / name, models / link)
+    (models / "good.stl").write_text("solid a\nendsolid a\n")
+    made = case(mesh_model(models / "good.stl"), resolver=Resolver([str(tmp_path / "models")]))
+
+    async def url(browser):
+        return browser.model("m")["links"][0]["visuals"][0]["geometry"]["url"]
+
+    good = made.browse(url)
+    base = made.url.rstrip("/") + good
+    assert request(base)[1]["Content-Type"] == "application/octet-stream"
+    assert request(base.replace("good.stl", link or name))[0] == 404
 
 
 def mesh_model(path, name="m"):

@@ -67,6 +67,29 @@ def test_models_are_listed_by_location_with_their_titles(case, tmp_path, monkeyp
     made.browse(look)
 
 
+def test_what_the_fuel_caches_hold_is_listed_and_inserted(case, tmp_path):
+    folder = tmp_path / "home/.ignition/fuel/fuel.gazebosim.org/acme/models/desk lamp"
+    model_folder(folder, "2", "Desk Lamp")
+    (folder / "2" / "thumbnails").mkdir()
+    (folder / "2" / "thumbnails" / "1.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    made = case(resolver=Resolver.from_environment())
+
+    async def look(browser):
+        found = location(await browser.ask("library"), "fuel")
+        assert found["title"] == "Fuel" and found["problem"] is None
+        [lamp] = found["models"]
+        assert lamp["uri"] == "https://fuel.gazebosim.org/1.0/acme/models/desk%20lamp"
+        assert (lamp["title"], lamp["description"]) == ("Desk Lamp", "A & B words")
+        assert lamp["thumb"].startswith("/resource/")
+        document = await browser.ask("library_get", uri=lamp["uri"])
+        assert document["model"]["name"] == "2"
+        await browser.edit("insert", uri=lamp["uri"])
+        with pytest.raises(Refused, match="no address of a model"):
+            await browser.ask("library_get", uri="https://fuel.gazebosim.org/x")
+
+    made.browse(look)
+
+
 def test_a_folder_can_be_added_and_is_known_the_next_time(case, tmp_path):
     model_folder(tmp_path / "mine", "thing")
     made = case(resolver=Resolver())

@@ -238,3 +238,24 @@ def test_a_building_gets_that_warning_only_where_its_exporter_writes_inches(tmp_
     path = tmp_path / "a.dae"
     path.write_text(big_collada(tool, unit))
     assert size_codes(path, static=True) == codes
+
+
+def unitless_collada(height):
+    with open(os.path.join(VALID, "inch_y_up.dae")) as stream:
+        text = stream.read()
+    return text.replace("0 2 0", f"0 {height} 0").replace('<unit name="u" meter="0.0254"/>', "")
+
+
+def test_a_collada_file_without_a_unit_gets_the_warning_when_it_is_longer_than_furniture(tmp_path):
+    path = tmp_path / "a.dae"
+    path.write_text(unitless_collada(20))
+    (issue,) = collision_meshes(model_with(Mesh("m", str(path))))[1]
+    assert issue.code == "mesh-size-odd"
+    assert "20 m long: its file names no <unit>" in issue.message
+    assert "0.508 m (inches)" in issue.hint
+    assert size_codes(path, static=True) == ["mesh-size-odd"]
+    assert size_codes(path, scale=(0.0254, 0.0254, 0.0254)) == []
+    path.write_text(unitless_collada(6))
+    assert size_codes(path) == ["mesh-size-odd"] and size_codes(path, static=True) == []
+    path.write_text(unitless_collada(2))
+    assert size_codes(path) == []

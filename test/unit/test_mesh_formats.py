@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 from reading import VALID
 
-from my_simulations.description.shapes import Mesh
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Collision, Mesh, mesh_key
 from my_simulations.errors import InputError
+from my_simulations.formats import meshes
+from my_simulations.formats.mesh_part import MeshPart
 from my_simulations.formats.meshes import load_mesh
 
 CORNERS = [(0.0, 0.0, 0.0), (0.0254, 0.0, 0.0), (0.0, 0.0508, 0.0)]
@@ -252,3 +255,37 @@ def test_readers_are_imported_with_the_first_mesh_only():
     done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True,
                           env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
     assert done.stdout.strip() == b""
+
+
+@pytest.mark.parametrize("index", ["2147483648", "4294967296", "99999999999999999999"])
+def test_an_index_beyond_all_vertices_is_a_fault_with_its_line(tmp_path, index):
+    text = collada(("<p>0 1 2</p>", f"<p>0 1 {index}</p>"))
+    fault = fault_of(written(tmp_path, "huge.dae", text))
+    assert fault.code == "mesh-unreadable" and fault.line == 9
+    assert f"there is no vertex {index}" in fault.message
+
+
+def test_a_part_that_names_no_vertex_of_its_own_is_a_fault_of_the_file(tmp_path, monkeypatch):
+    triangles = np.array([[0, 1, -2147483648]])
+    monkeypatch.setattr(meshes, "_parts", lambda path: [
+        MeshPart(("p",), np.zeros((3, 3)), triangles)])
+    fault = fault_of(written(tmp_path, "negative.dae", "<COLLADA/>"))
+    assert "a vertex that does not exist" in fault.message
+
+
+def test_whatever_a_reader_raises_is_a_fault_of_that_file_and_the_others_are_read(
+        tmp_path, monkeypatch):
+    def read(path):
+        raise IndexError(path) if "bad" in path else MemoryError
+
+    good = Mesh("inch_y_up.dae", os.path.join(VALID, "inch_y_up.dae"))
+    kept = meshes._parts
+    monkeypatch.setattr(meshes, "_parts", lambda path: kept(path) if path == good.path
+                        else read(path))
+    faulty = [written(tmp_path, name, "<COLLADA/>") for name in ("bad.dae", "large.dae")]
+    model = Model("m", links=[Link("l", collisions=[
+        Collision(str(n), mesh) for n, mesh in enumerate([faulty[0], good, faulty[1]])])])
+    table, issues = meshes.collision_meshes(model)
+    assert list(table) == [mesh_key(good)]
+    assert [(one.code, os.path.basename(one.file)) for one in issues] == [
+        ("mesh-unreadable", "bad.dae"), ("mesh-unreadable", "large.dae")]

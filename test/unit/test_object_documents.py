@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from my_simulations.errors import InputError
-from my_simulations.objects.document import marked_for_replacement, read_document, root_tag
+from my_simulations.objects.document import FILE, REPLACE, marked, read_document, root_tag
 
 TUTORIAL = Path(__file__).resolve().parents[1] / "data" / "tutorial"
 
@@ -17,8 +17,8 @@ TUTORIAL = Path(__file__).resolve().parents[1] / "data" / "tutorial"
     "<?xml version='1.0'?><!DOCTYPE robot [<!ENTITY a 'b'>]>\n",
     "  \n<?note <x/>?><!-- -->"])
 def test_the_mark_goes_to_the_root_element_whatever_comes_before(prologue):
-    marked = marked_for_replacement(prologue + "<robot name='a'><link name='b'/></robot>")
-    assert marked == prologue + ("<robot my_simulations_replace=\"true\" name='a'>"
+    text = marked(prologue + "<robot name='a'><link name='b'/></robot>", {REPLACE: "true"})
+    assert text == prologue + ("<robot my_simulations_replace=\"true\" name='a'>"
                                  "<link name='b'/></robot>")
 
 
@@ -27,14 +27,20 @@ def test_the_mark_goes_to_the_root_element_whatever_comes_before(prologue):
     ("<robot>", '<robot my_simulations_replace="true">'),
     ("", ""), ("no xml", "no xml"), ("<!-- never closed <robot>", "<!-- never closed <robot>")])
 def test_only_a_root_element_is_marked(text, expected):
-    assert marked_for_replacement(text) == expected
+    assert marked(text, {REPLACE: "true"}) == expected
 
 
 def test_a_marked_document_is_otherwise_the_same():
     text = "<sdf version='1.6'><model name='m'/></sdf>"
-    root = ElementTree.fromstring(marked_for_replacement(text))
+    root = ElementTree.fromstring(marked(text, {REPLACE: "true"}))
     assert root.attrib == {"version": "1.6", "my_simulations_replace": "true"}
     assert root[0].tag == "model"
+
+
+def test_a_mark_takes_any_path_and_empty_ones_are_left_out():
+    path = "/tmp/a & 'b' \"c\" <d>.urdf"
+    root = ElementTree.fromstring(marked("<robot/>", {FILE: path, REPLACE: ""}))
+    assert root.attrib == {FILE: path}
 
 
 def test_the_tutorials_template_is_read_as_printed():

@@ -53,7 +53,7 @@ def test_a_faulty_list_names_the_parameter_the_file_and_the_line(name):
 
 @pytest.mark.parametrize("name,code,line", [
     ("not_yaml", "list-not-yaml", 3), ("tab_indented", "list-not-yaml", 2),
-    ("not_utf8", "list-not-utf8", 0), ("no_such_file", "list-unreadable", 0)])
+    ("not_utf8", "list-not-utf8", 2), ("no_such_file", "list-unreadable", 0)])
 def test_an_unreadable_list_is_an_input_error_with_its_place(name, code, line):
     with pytest.raises(InputError) as caught:
         read_yaml(str(INVALID / f"{name}.yaml"), "/objects")
@@ -71,10 +71,10 @@ def test_the_2012_format_finds_its_file_under_objects():
     listing = listing_of(VALID / "cob_2012.yaml")
     assert listing.faults == {}
     assert listing.objects["MY_OBJECT"].file == ObjectFile(
-        "my_simulations", "objects/MY_OBJECT.urdf", xacro=False, sdf=False)
+        "my_simulations", "objects/MY_OBJECT.urdf", xacro=False, sdf=False, named=False)
     assert listing.objects["MY_OBJECT"].position == (1.0, 2.5, 0.0)
     assert listing.objects["crate"].file == ObjectFile(
-        "my_simulations", "objects/crate.urdf.xacro", xacro=True, sdf=False)
+        "my_simulations", "objects/crate.urdf.xacro", xacro=True, sdf=False, named=False)
 
 
 def test_a_number_with_an_exponent_and_no_dot_is_a_number():
@@ -141,12 +141,14 @@ def test_an_empty_file_is_an_empty_list(tmp_path, text):
     assert listing_of(path).issues() == []
 
 
-def test_a_list_that_contains_itself_ends_in_an_error(tmp_path):
+def test_a_list_that_contains_itself_is_refused_at_its_line(tmp_path):
     path = tmp_path / "cycle.yaml"
     path.write_text("box: &box\n  model: p/o.urdf\n  position: [0, 0, 0]\n"
                     "  orientation: [0, 0, 0]\n  children:\n    inner: *box\n")
-    listing = listing_of(path)
-    assert any(i.code == "children-too-deep" for i in listing.issues())
+    with pytest.raises(InputError) as caught:
+        listing_of(path)
+    [issue] = caught.value.issues
+    assert (issue.line, issue.xpath) == (6, "/objects/box/children/inner")
 
 
 def nested():

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import os
 
 import pytest
 
@@ -176,15 +177,42 @@ def test_an_objects_document_comes_from_its_package(tmp_path):
 
     objects = [placed(f"somewhere/{file}") for file in ("ball.urdf", "box.sdf", "odd.sdf")]
     with Documents(objects, find, 5.0) as documents:
-        assert documents.of(objects[0]) == ("<robot name='b'/>", False)
-        assert documents.of(objects[1]) == ("<sdf/>", True)
-        assert documents.of(objects[2])[1] is False
+        ball, box, odd = (documents.of(one) for one in objects)
+    assert (ball.xml, ball.sdf, ball.path) == ("<robot name='b'/>", False,
+                                               str(tmp_path / "ball.urdf"))
+    assert (box.xml, box.sdf, odd.sdf) == ("<sdf/>", True, False)
     with pytest.raises(InputError) as caught:
         locate(placed("somewhere/none.urdf"), find)
     assert caught.value.issues[0].code == "object-file-missing"
     with pytest.raises(InputError) as caught:
         locate(placed("nowhere/ball.urdf"), find)
     assert caught.value.issues[0].code == "unknown-package"
+
+
+def test_an_entry_without_a_package_is_of_its_lists_and_another_file_of_the_name_is_named(tmp_path):
+    files = {}
+    for package in ("theirs", "my_simulations"):
+        for name in (["A", "B"] if package == "my_simulations" else ["A"]):
+            files[package, name] = tmp_path / package / "objects" / f"{name}.urdf"
+            files[package, name].parent.mkdir(parents=True, exist_ok=True)
+            files[package, name].write_text("<robot/>")
+    tree = {name: {"model": name, "model_type": "urdf", "position": [0, 0, 0],
+                   "orientation": [0, 0, 0]} for name in ("A", "B", "C")}
+    listing = parse_objects(tree, Source("/objects"), "theirs")
+
+    def find(name):
+        return str(tmp_path / name)
+
+    assert locate(listing.objects["A"], find) == (
+        str(files["theirs", "A"]), str(files["my_simulations", "A"]))
+    assert locate(listing.objects["B"], find) == (str(files["my_simulations", "B"]), "")
+    with pytest.raises(InputError) as caught:
+        locate(listing.objects["C"], find)
+    assert "theirs/objects/C.urdf and no" in caught.value.issues[0].message
+    assert "--package" in caught.value.issues[0].hint
+    os.unlink(files["my_simulations", "A"])
+    os.symlink(files["theirs", "A"], files["my_simulations", "A"])
+    assert locate(listing.objects["A"], find) == (str(files["theirs", "A"]), "")
 
 
 def test_xacro_runs_and_its_faults_are_input_errors(tmp_path):

@@ -34,6 +34,16 @@ def test_empty_world_launch_has_gazebos_arguments_and_defaults_and_ours():
     assert found == {**ARGUMENTS, **OURS}
 
 
+def test_no_engine_is_named_to_the_server_unless_somebody_asks_for_one():
+    root = ET.parse(LAUNCH / "empty_world.launch.in").getroot()
+    (flag,) = (arg.get("value") for arg in root.findall("arg") if arg.get("name") == "physics_flag")
+    words = flag[len("$(eval "):-1]
+    assert eval(words, {"physics": ARGUMENTS["physics"]}) == ""
+    assert eval(words, {"physics": "dart"}) == "-e dart"
+    (node,) = (node for node in root.findall("node") if node.get("name") == "gazebo")
+    assert "$(arg physics_flag)" in node.get("args") and "-e " not in node.get("args")
+
+
 @pytest.mark.parametrize("path", sorted(LAUNCH.glob("*.launch*")), ids=lambda path: path.name)
 def test_world_launch_file_documents_and_offers_every_argument(path):
     arguments = _arguments(path)

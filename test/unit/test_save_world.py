@@ -22,6 +22,7 @@ from my_simulations.errors import CommandError, errors_of
 from my_simulations.formats.load import read_world
 from my_simulations.formats.state import apply_state
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
+from my_simulations.resources.own import own_directory
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import safe_file
 from my_simulations.simulator.saving import allowed_path, default_roots, present_world, save_world
@@ -78,14 +79,12 @@ def test_a_world_that_was_saved_loads_with_the_same_poses_and_description(runnin
     sim.states.set_model_state("crate", AWAY, Twist())
     sim.states.set_model_state("wall", Pose((0, 0, 5.0)), Twist())
     sim.clock.advance(10)
-    path = save_world(sim, "saved.world", roots=[str(tmp_path)])
+    path = save_world(sim, "saved.world", roots=[str(tmp_path)], state=True)
     world = apply_state(load(path))
     again = running(world=world)
     for name in sim.models.names():
-        assert (
-            differences(sim.states.model_state(name)[0], again.states.model_state(name)[0], 1e-6)
-            == []
-        )
+        assert (differences(sim.states.model_state(name)[0], again.states.model_state(name)[0],
+                            1e-6) == [])
     assert differences(present_world(sim).models, world.models, 1e-9) == []
     assert world.initial_ns == sim.clock.sim_ns == 10_000_000
 
@@ -101,11 +100,65 @@ def test_saving_twice_gives_the_same_bytes(running, tmp_path):
 def test_the_final_pose_stands_in_the_model_and_in_the_state(running, tmp_path):
     sim = running(box("crate"))
     sim.states.set_model_state("crate", Pose((3.0, 2.0, 1.0)), Twist())
-    root = etree.parse(save_world(sim, "s.sdf", roots=[str(tmp_path)])).getroot()
+    path = save_world(sim, "s.sdf", roots=[str(tmp_path)], state=True)
+    root = etree.parse(path).getroot()
     assert root.findtext("world/model/pose") == "3 2 1 0 0 0"
     assert root.findtext("world/state/model/pose") == "3 2 1 0 0 0"
     assert root.find("world/state").get("world_name") == "lab"
     assert root.findtext("world/state/light/pose") == "0 0 0 0 0 0"
+
+
+def test_a_saved_world_starts_at_time_0_and_at_rest(running, tmp_path):
+    sim = running(box("crate"), arm("arm"))
+    sim.states.set_model_state("crate", AWAY, Twist((1.0, 0.0, 0.0)))
+    sim.joints.set_positions({"hinge": 0.5})
+    sim.clock.advance(10)
+    path = save_world(sim, "s.sdf", roots=[str(tmp_path)])
+    again = running(world=apply_state(load(path)))
+    assert again.clock.sim_ns == 0 and again.clock.step == 0
+    assert again.states.model_state("crate")[1] == Twist()
+    # Only what its own <pose> does not tell stands in the state: a pose can be changed by hand.
+    state = etree.parse(path).getroot().find("world/state")
+    assert [model.get("name") for model in state.findall("model")] == ["arm"]
+    assert state.findtext("sim_time") == "0 0"
+    assert state.findtext("model/joint/angle") == "0.5"
+
+
+def test_a_world_whose_poses_tell_all_is_saved_without_a_state(running, tmp_path):
+    sim = running(box("crate"), arm("arm"))
+    sim.clock.advance(10)
+    path = save_world(sim, "s.sdf", roots=[str(tmp_path)])
+    assert etree.parse(path).getroot().find("world/state") is None
+
+
+def test_what_the_launch_file_spawned_is_saved_on_request_only(running, tmp_path):
+    sim = running(box("crate"))
+    sim.models.spawn(arm("robo"), launched=True)
+    sim.models.edit("robo", replace(sim.models.get("robo"), name="robo_2"))
+    sim.models.delete("crate")
+    back = sim.models.delete("robo_2")
+    sim.models.spawn(arm("robo_2"), deleted=back)
+    assert sim.models.launched() == ["robo_2"]
+    names = [[model.name for model in load(save_world(
+        sim, f"{launched}.sdf", roots=[str(tmp_path)], launched=launched)).models]
+        for launched in (False, True)]
+    assert names == [[], ["robo_2"]]
+
+
+def test_a_save_goes_beside_the_users_world_and_never_into_a_file_that_ships(
+        running, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    mine = tmp_path / "mine.world"
+    mine.write_text("<sdf/>")
+    shipped = os.path.join(own_directory(), "world", "lab_course.world")
+    assert default_roots(str(mine))[0] == str(tmp_path)
+    for world in (shipped, "", str(tmp_path / "gone.world")):
+        assert default_roots(world)[0] == str(tmp_path / "home/my_simulations/worlds")
+    assert str(tmp_path / "typed_here") in default_roots(caller=str(tmp_path / "typed_here"))
+    before = open(shipped, "rb").read()
+    with pytest.raises(CommandError, match="ships with my_simulations"):
+        save_world(running(box("a")), shipped, roots=default_roots(), overwrite=True)
+    assert open(shipped, "rb").read() == before
 
 
 def test_joint_positions_are_saved(running, tmp_path):
@@ -260,3 +313,15 @@ def test_an_unchanged_include_is_one_again(running, tmp_path):
     include = etree.parse(path).getroot().find("world/include")
     assert include.findtext("uri") == "model://box"
     assert include.findtext("pose") == "7 0 0 0 0 0"
+
+
+def test_a_world_file_is_not_replaced_by_what_could_be_loaded_of_it(running, tmp_path):
+    file = tmp_path / "w.world"
+    file.write_text("more than was loaded")
+    sim = running(world=World("lab", models=[box("a")], file=str(file), losses=["no model 'b'"]))
+    with pytest.raises(CommandError, match="no model 'b'; save under another name"):
+        save_world(sim, str(file), roots=[str(tmp_path)], overwrite=True)
+    assert file.read_text() == "more than was loaded"
+    save_world(sim, str(tmp_path / "other.world"), roots=[str(tmp_path)])
+    save_world(sim, str(file), roots=[str(tmp_path)], overwrite=True, despite_losses=True)
+    assert [model.name for model in load(str(file)).models] == ["a"]

@@ -182,3 +182,57 @@ def test_unknown_names_without_end_are_not_all_told():
     _, issues = read_world_text("<sdf version='1.6'><world name='w'>" + "".join(
         f"<x{i}/>" for i in range(3000)) + "</world></sdf>", Resolver())
     assert len(issues) < 1000 and issues[-1].code == "unknown-many"
+
+
+@pytest.mark.parametrize("text", [
+    '<sdf version="1.7"><!– a light –>{}</sdf>', '<sdf version="1.7"><!— a light —>{}</sdf>',
+    '<sdf version="1.7"><!- a light ->{}</sdf>', '<sdf version="1.7">‹!– a light –›{}</sdf>'])
+def test_a_comment_of_a_word_processor_is_a_comment_with_a_warning_that_says_how_to_write_it(text):
+    model, issues = read(text.format(MODEL))
+    assert [link.name for link in model.links] == ["l"]
+    assert "a comment begins with <!-- and ends with -->" in issues[-1].message
+    assert {issue.severity for issue in issues} == {Severity.WARNING}
+
+
+def test_elements_in_typographic_brackets_are_read_and_their_lines_kept():
+    text = '<sdf version="1.7">\n‹model name="m"›\n<link name="l"/>‹/model›\n<wrong/>\n</sdf>'
+    model, issues = read(text)
+    assert model.name == "m" and [link.name for link in model.links] == ["l"]
+    assert ("‹ and › stand here for < and >" in issues[0].message) and issues[0].line == 2
+
+
+def test_a_guillemet_in_a_text_is_none_of_our_business():
+    _, issues = read('<sdf version="1.7"><!-- ‹ 3 › -->' + MODEL + "</sdf>")
+    assert issues == []
+
+
+def test_typographic_quotes_are_quotes_with_a_warning():
+    model, issues = read('<sdf version=“1.7”><model name=”m”><link name=‘l’/></model></sdf>')
+    assert model.name == "m" and model.links[0].name == "l"
+    assert "the quotes of an attribute are typographic ones" in issues[0].message
+
+
+@pytest.mark.parametrize("text, meant", [
+    ("<sfd version='1.7'/>", "did you mean sdf?"), ("<robto/>", "did you mean robot?"),
+    ("<wrold/>", "did you mean world?"), ("<modle/>", "did you mean model?"),
+    ("<sdf version='1.7'>\n<wrold/></sdf>", "line 2 has <wrold>; did you mean world?"),
+    ("<sdf version='1.7'><modle/></sdf>", "line 1 has <modle>; did you mean model?")])
+def test_a_misspelt_root_is_answered_with_the_one_that_was_meant(text, meant):
+    with pytest.raises(InputError) as refused:
+        read(text)
+    assert meant in refused.value.issues[0].hint
+
+
+def test_a_misspelt_world_is_answered_with_the_name_that_was_meant():
+    with pytest.raises(InputError) as refused:
+        read_world_text("<sdf version='1.7'><wrold name='w'/></sdf>", Resolver())
+    assert "did you mean world?" in refused.value.issues[0].hint
+
+
+def test_an_included_model_of_a_misspelt_name_is_answered_with_one_that_is_there(tmp_path):
+    for name in ("sun", "ground_plane"):
+        (tmp_path / name).mkdir()
+    text = ("<sdf version='1.7'><world name='w'><include><uri>model://sunn</uri></include>"
+            "</world></sdf>")
+    _, issues = read_world_text(text, Resolver([str(tmp_path)]))
+    assert issues[0].hint.startswith("did you mean model://sun? Else install it")

@@ -25,7 +25,8 @@ def make_clone(folder):
         (folder / name).mkdir()
         (folder / name / "ours").write_text("ours")
         (folder / name / "both").write_text("ours")
-    for name in ("gazebo_msgs", "gazebo_ros", "my_simulations_msgs", "xacro"):
+    for name in ("gazebo_msgs", "gazebo_ros", "my_simulations_msgs",
+                 "my_simulations_underlay", "xacro"):
         make_package(folder / "compat" / name, name)
     make_package(folder, "my_simulations")
     return folder
@@ -87,8 +88,31 @@ def test_home_folder_never_becomes_a_workspace(tmp_path):
 
 def test_variable_overrides_the_workspace(tmp_path):
     clone = make_clone(tmp_path / "some_ws" / "src" / "my_simulations")
-    named = tmp_path / "named ws"
+    named = tmp_path / "named_ws"
     assert chosen(clone, tmp_path / "home", MY_SIMULATIONS_WS=str(named)) == named
+
+
+@pytest.mark.parametrize("name", ["a blank", "quo'te", 'quo"te', "a$b", "a;b", "a:b", "a\\b",
+                                  "a#b"])
+def test_workspace_that_catkin_cannot_build_in_is_refused_at_once(clone, tmp_path, name):
+    done = shell(clone, "find_workspace", tmp_path / "home", MY_SIMULATIONS_WS=str(tmp_path / name))
+    assert done.returncode == 1
+    assert "which catkin cannot build in" in done.stderr
+    assert not (tmp_path / name).exists()
+
+
+def test_clone_in_a_folder_with_a_blank_is_refused_at_once(tmp_path):
+    clone = make_clone(tmp_path / "my files" / "simulations")
+    done = shell(clone, "find_workspace", tmp_path / "home")
+    assert done.returncode == 1
+    assert "This clone's path" in done.stderr
+    assert not (tmp_path / "home" / "simulation_ws").exists()
+
+
+def test_workspace_with_umlauts_is_taken(clone, tmp_path):
+    named = tmp_path / "größer.v1-2_3"
+    done = shell(clone, "find_workspace", tmp_path / "home", MY_SIMULATIONS_WS=str(named))
+    assert done.returncode == 0, done.stderr
 
 
 def test_package_of_the_same_name_stops_the_set_up_and_nothing_changes(clone, tmp_path):
@@ -126,39 +150,99 @@ def test_packages_inside_a_package_are_not_the_workspaces(clone, tmp_path):
     assert done.stdout.split() == [str(source / "my_simulations")]
 
 
-OVERLAID = "OVERLAY=1\nfind_workspace\nprepare_workspace\necho done $BUILD_WORKSPACE"
+OVERLAID = "OVERLAY=1\nfind_workspace\nprepare_workspace"
 
 
-def test_overlay_shows_foreign_files_before_ours_and_touches_neither(clone, tmp_path):
+def users_package(home):
+    """A package my_simulations that a user made, in the workspace of `home`."""
+    return make_package(home / "simulation_ws" / "src" / "my_simulations", "my_simulations")
+
+
+def test_overlay_puts_ours_beside_the_users_package_and_touches_neither(clone, tmp_path):
     home = tmp_path / "home"
-    workspace = home / "simulation_ws"
-    foreign = make_package(workspace / "src" / "my_simulations", "my_simulations")
-    (foreign / "launch").mkdir()
-    (foreign / "launch" / "both").write_text("theirs")
-    (foreign / "launch" / "theirs").write_text("theirs")
+    foreign = users_package(home)
+    before = sorted(clone.rglob("*"))
     done = shell(clone, OVERLAID, home)
     assert done.returncode == 0, done.stderr
-    package = workspace / ".my_simulations" / "overlay" / "src" / "my_simulations"
-    shown = {path.name: path.read_text() for path in (package / "launch").iterdir()}
-    assert shown == {"ours": "ours", "both": "theirs", "theirs": "theirs"}
-    assert (package / "world" / "both").read_text() == "ours"
-    assert (package / "package.xml").resolve() == clone / "package.xml"
-    assert (clone / "launch" / "both").read_text() == "ours"
-    assert (foreign / "launch" / "both").read_text() == "theirs"
-    assert sorted(path.name for path in (workspace / "src").iterdir()) == ["my_simulations"]
+    source = home / "simulation_ws" / "src"
+    assert sorted(path.name for path in source.iterdir()) == [
+        "gazebo_msgs", "gazebo_ros", "my_simulations", "my_simulations_msgs",
+        "my_simulations_underlay", "xacro"]
+    assert (source / "my_simulations_underlay").resolve() == \
+        clone / "compat" / "my_simulations_underlay"
+    assert [path.name for path in foreign.iterdir()] == ["package.xml"]
+    assert sorted(path for path in clone.rglob("*") if path.name != "probe") == before
 
 
-def test_overlay_is_remembered_and_follows_removed_files(clone, tmp_path):
+def test_overlay_is_remembered(clone, tmp_path):
     home = tmp_path / "home"
-    foreign = make_package(home / "simulation_ws" / "src" / "my_simulations", "my_simulations")
-    (foreign / "urdf").mkdir()
-    (foreign / "urdf" / "both").write_text("theirs")
+    users_package(home)
     assert shell(clone, OVERLAID, home).returncode == 0
-    (foreign / "urdf" / "both").unlink()
     done = shell(clone, "find_workspace\nprepare_workspace", home)
     assert done.returncode == 0, done.stderr
-    package = home / "simulation_ws" / ".my_simulations" / "overlay" / "src" / "my_simulations"
-    assert (package / "urdf" / "both").read_text() == "ours"
+
+
+def test_overlay_of_an_earlier_version_goes_on_and_its_folder_goes(clone, tmp_path):
+    home = tmp_path / "home"
+    users_package(home)
+    old = home / "simulation_ws" / ".my_simulations" / "overlay"
+    old.mkdir(parents=True)
+    done = shell(clone, "find_workspace\nprepare_workspace", home)
+    assert done.returncode == 0, done.stderr
+    assert not old.exists()
+    assert (home / "simulation_ws" / "src" / "my_simulations_underlay").is_symlink()
+
+
+def test_overlay_ends_with_the_users_package(clone, tmp_path):
+    home = tmp_path / "home"
+    foreign = users_package(home)
+    assert shell(clone, OVERLAID, home).returncode == 0
+    devel = home / "simulation_ws" / "devel"
+    (devel / "bin").mkdir(parents=True)
+    (devel / "bin" / "roslaunch").touch()
+    shutil.rmtree(foreign)
+    done = shell(clone, "find_workspace\nprepare_workspace", home)
+    assert done.returncode == 0, done.stderr
+    source = home / "simulation_ws" / "src"
+    assert (source / "my_simulations").resolve() == clone
+    assert not (source / "my_simulations_underlay").is_symlink()
+    assert not (devel / "bin" / "roslaunch").exists()
+
+
+def test_what_an_earlier_build_left_of_ours_goes_when_the_users_package_comes(clone, tmp_path):
+    home = tmp_path / "home"
+    users_package(home)
+    left = home / "simulation_ws" / "devel" / "lib" / "my_simulations"
+    left.mkdir(parents=True)
+    assert shell(clone, OVERLAID, home).returncode == 0
+    assert not left.exists()
+
+
+def test_clone_in_the_same_workspace_as_the_users_package_is_refused(tmp_path):
+    home = tmp_path / "home"
+    clone = make_clone(home / "simulation_ws" / "src" / "the_clone")
+    users_package(home)
+    done = shell(clone, OVERLAID, home, MY_SIMULATIONS_WS=str(home / "simulation_ws"))
+    assert done.returncode == 1
+    assert f"mv {clone}" in done.stderr
+
+
+def test_folder_that_is_no_package_is_not_overlaid(clone, tmp_path):
+    home = tmp_path / "home"
+    (home / "simulation_ws" / "src" / "my_simulations" / "launch").mkdir(parents=True)
+    done = shell(clone, OVERLAID, home)
+    assert done.returncode == 1
+    assert "catkin_create_pkg my_simulations" in done.stderr
+
+
+def test_users_python_module_of_our_name_is_refused(clone, tmp_path):
+    home = tmp_path / "home"
+    module = users_package(home) / "src" / "my_simulations" / "__init__.py"
+    module.parent.mkdir(parents=True)
+    module.touch()
+    done = shell(clone, OVERLAID, home)
+    assert done.returncode == 1
+    assert "Python module my_simulations" in done.stderr
 
 
 def test_overlay_without_a_package_to_lay_over_is_refused(clone, tmp_path):
@@ -244,6 +328,97 @@ def test_missing_system_packages_without_root_are_named(clone, tmp_path):
     assert "cmake" not in advice
 
 
+def fake(home, name, text):
+    """A program `name` that a shell of `home` finds before the real one."""
+    program = home / "bin" / name
+    program.parent.mkdir(parents=True, exist_ok=True)
+    program.write_text(f"#!/bin/bash\n{text}\n")
+    program.chmod(0o755)
+
+
+PACKAGES = ("ROS_PREFIX=/nowhere; STEPS=9; WORKSPACE=$HOME/ws; OWN=$HOME/ws; LOGS=$HOME/logs\n"
+            "mkdir -p $OWN/src; rospack() { :; }\ninstall_system_packages\n")
+
+
+@pytest.fixture
+def all_but_common(tmp_path):
+    """A home of root's on a machine that has what we need, but nothing of what others may want."""
+    home = tmp_path / "home"
+    common = (REPOSITORY / "tools" / "apt-packages-common.txt").read_text()
+    names = "|".join(line for line in common.splitlines() if line and line[0] != "#")
+    fake(home, "id", "echo 0")
+    fake(home, "dpkg-query", "shift 2; for name; do case $name in " + names + ") ;; "
+         "*) echo installed $name ;; esac; done")
+    fake(home, "apt-get", "echo \"$@\" >>$HOME/calls; [ ! -e $HOME/offline ]")
+    return home
+
+
+def test_packages_that_others_ask_for_are_installed(clone, all_but_common):
+    done = shell(clone, PACKAGES, all_but_common)
+    assert done.returncode == 0, done.stderr
+    assert "for other packages installed" in done.stdout
+    update, install = (all_but_common / "calls").read_text().splitlines()
+    assert update == "-q update"
+    assert "librostest-dev" in install and "libroscpp-dev" in install
+    assert "catkin" not in install.split()
+
+
+def test_packages_that_others_ask_for_may_be_missing_and_are_asked_for_once(clone, all_but_common):
+    (all_but_common / "offline").touch()
+    for calls in (1, 1):
+        done = shell(clone, PACKAGES, all_but_common)
+        assert done.returncode == 0, done.stderr
+        assert len((all_but_common / "calls").read_text().splitlines()) == calls
+    assert "all there" in done.stdout
+
+
+def test_packages_that_others_ask_for_can_be_left_out(clone, all_but_common):
+    done = shell(clone, "common_option --no-common-packages\n" + PACKAGES, all_but_common)
+    assert done.returncode == 0, done.stderr
+    assert not (all_but_common / "calls").exists()
+
+
+PYTHON_SCRIPT = "#!/usr/bin/env python\nprint(1)\n"
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    (PYTHON_SCRIPT, True), ("#! /usr/bin/python\n", True), ("#!/usr/bin/env python3\n", False)])
+def test_scripts_of_python_without_a_number_are_told_of(clone, all_but_common, text, said):
+    script = all_but_common / "ws" / "src" / "robot" / "node.py"
+    script.parent.mkdir(parents=True)
+    script.write_text(text)
+    script.chmod(0o755)
+    hidden = ("command() { [ \"$2\" != python ] && builtin command \"$@\"; }\n"
+              "COMMON_PACKAGES=0\n")
+    done = shell(clone, hidden + PACKAGES, all_but_common)
+    assert done.returncode == 0, done.stderr
+    assert ("python-is-python3" in done.stdout) is said
+
+
+def test_python_is_installed_when_asked_for(clone, all_but_common):
+    fake(all_but_common, "dpkg-query", "shift 2; for name; do [ $name = python-is-python3 ] || "
+         "echo installed $name; done")
+    done = shell(clone, "common_option --python\n" + PACKAGES, all_but_common)
+    assert done.returncode == 0, done.stderr
+    assert "install python-is-python3" in (all_but_common / "calls").read_text()
+
+
+@pytest.mark.parametrize(("resolves", "variables", "address"), [
+    (False, {}, "127.0.0.1"), (True, {}, ""), (False, {"ROS_IP": "10.0.0.1"}, "10.0.0.1"),
+    (False, {"ROS_HOSTNAME": "robot"}, "")])
+def test_name_that_does_not_resolve_is_replaced_by_the_loopback_address(
+        clone, tmp_path, resolves, variables, address):
+    home = tmp_path / "home"
+    fake(home, "getent", "exit 0" if resolves else "exit 2")
+    fake(home, "uname", "echo lonely")
+    done = shell(clone, "use_loopback\necho \"[${ROS_IP:-}][$LOOPBACK]\"", home, **variables)
+    assert done.returncode == 0, done.stderr
+    said = "lonely, does not resolve" in done.stdout
+    assert said is (not resolves and not variables)
+    export = "export ROS_IP=127.0.0.1; " if said else ""
+    assert done.stdout.splitlines()[-1] == f"[{address}][{export}]"
+
+
 COUNTED = "LOGS=$HOME; LOG=$HOME/log; : >$LOG; STEPS=9; begin part\n{}\necho; echo $PASSED $FAILED"
 
 
@@ -276,7 +451,7 @@ def test_check_that_takes_too_long_is_ended_with_all_it_started(clone, tmp_path)
     assert "not done after 1 s" in (tmp_path / "home" / "slow.log").read_text()
 
 
-PAGE = ("LOGS=$HOME/logs; STEPS=2; BUILD_WORKSPACE=$HOME/ws\nprepare_page\n")
+PAGE = ("LOGS=$HOME/logs; STEPS=2; WORKSPACE=$HOME/ws\nprepare_page\n")
 
 
 @pytest.fixture

@@ -129,6 +129,20 @@ def test_an_unknown_name_is_answered_with_the_closest(case):
         sim.models.delete("cilinder")
 
 
+def test_an_unknown_link_or_joint_is_answered_with_the_scoped_name_that_was_meant(case):
+    sim = case(box("crate"), arm("robot")).sim
+    for name, meant in (("crate", "it is a model, its link is crate::link"),
+                        ("robot", "it is a model, its links are robot::"),
+                        ("crate::lnik", r"did you mean crate::link\?"),
+                        ("carte::link", r"did you mean crate::link\?"),
+                        ("lnik", r"did you mean crate::link\?")):
+        with pytest.raises(UnknownEntity, match=meant):
+            sim.states.link_state(name)
+    for name in ("hnige", "robot::hnige"):
+        with pytest.raises(UnknownEntity, match=r"did you mean robot::hinge\?"):
+            sim.joints.find(name)
+
+
 def test_links_are_found_by_scoped_and_by_plain_name(case):
     sim = case(box("a", ("x", "y")), box("b", ("y", "z"))).sim
     close(sim.states.link_state("b::y")[0], (0, 0, 0))

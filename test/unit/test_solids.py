@@ -1,6 +1,8 @@
 """Terrains, map images and polylines as meshes."""
 import math
 import random
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from PIL import Image, TiffImagePlugin
 
 from my_simulations.description.shapes import Heightmap, ImageMap, Polyline
 from my_simulations.errors import InputError
+from my_simulations.formats.images import elevations, grey_levels
 from my_simulations.formats.solids import solid_mesh
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
@@ -218,3 +221,51 @@ def test_an_elevation_model_without_any_height_is_refused(tmp_path):
     path = elevation_model(tmp_path, [[7, 7], [7, 7]], no_data=7)
     with pytest.raises(InputError, match="holds no height"):
         solid_mesh(Heightmap(path, path))
+
+
+@pytest.mark.parametrize("mode", ["L", "RGB", "I;16"])
+def test_an_image_is_thinned_as_a_whole_however_it_is_read(tmp_path, mode):
+    generator = np.random.default_rng(1)
+    depth = {"L": (1000, 901), "RGB": (1000, 901, 3), "I;16": (1000, 901)}[mode]
+    data = generator.integers(0, 65536 if mode == "I;16" else 256, depth,
+                           dtype=np.uint16 if mode == "I;16" else np.uint8)
+    path = tmp_path / "a.png"
+    Image.fromarray(data).save(path)
+    grey = data.max(axis=-1) if mode == "RGB" else data
+    for widest, step in ((101, 10), (300, 4), (2000, 1)):
+        assert np.array_equal(grey_levels(str(path), widest).values, grey[::step, ::step])
+    for step in (1, 7, 300, 2000):
+        assert np.array_equal(grey_levels(str(path), step=step).values, grey[::-step, ::step][::-1])
+
+
+def test_an_elevation_model_keeps_its_extremes_when_it_is_thinned(tmp_path):
+    heights = np.zeros((700, 900), dtype=np.float32)
+    heights[333, 7], heights[1, 1], heights[650, 3] = -5.0, 9.0, np.nan
+    path = tmp_path / "a.tif"
+    Image.fromarray(heights).save(path)
+    found = elevations(str(path), 101)
+    assert (found.lowest, found.highest, found.shape) == (-5.0, 9.0, (700, 900))
+    assert found.heights.shape == (78, 100) and np.isfinite(found.heights).all()
+
+
+MEMORY = """
+import resource, sys
+from my_simulations.description.shapes import Heightmap, ImageMap
+from my_simulations.formats.images import elevations, grey_levels
+from my_simulations.formats.solids import solid_mesh
+for kind in (Heightmap, ImageMap):
+    shape = kind()
+    shape.uri = shape.path = sys.argv[1]
+    solid_mesh(shape)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10)
+"""
+
+
+def test_a_small_file_of_many_pixels_costs_no_more_than_its_decoding(tmp_path):
+    path = tmp_path / "a.png"
+    Image.new("RGB", (8192, 8192)).save(path, compress_level=1)
+    assert path.stat().st_size < 2_000_000
+    done = subprocess.run([sys.executable, "-c", MEMORY, str(path)], capture_output=True,
+                          text=True, check=True)
+    # Pillow holds four bytes a pixel, which are 256 MB.
+    assert int(done.stdout) < 600, done.stdout

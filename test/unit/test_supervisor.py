@@ -6,11 +6,12 @@ import time
 
 import pytest
 
-from my_simulations.engine.commands import Advance, Command, Ping
+from my_simulations.engine.commands import Advance, Batch, Command, Ping, SetJoints
 from my_simulations.engine.inline import InlineEngine
 from my_simulations.engine.kinematic import KinematicBackend
 from my_simulations.errors import CommandError, NoAnswer
 from my_simulations.simulator.supervisor import Supervisor
+from my_simulations.simulator.watchdog import Watchdog
 
 
 class _Silent(InlineEngine):
@@ -72,5 +73,60 @@ def test_a_restore_without_an_answer_is_told_and_ends_no_thread(watch):
         assert finished.wait(10), told
         with pytest.raises(CommandError, match="could not be restored"):
             supervisor.call(Advance(1))
+    finally:
+        supervisor.close()
+
+
+class _SlowPings(KinematicBackend):
+    """Loads a model in 0.05 s."""
+
+    def apply(self, command):
+        time.sleep(0.05)
+        return super().apply(command)
+
+
+def test_a_long_row_of_commands_may_take_longer_than_one_of_them(watch):
+    supervisor = watch(lambda: InlineEngine(_SlowPings), 0.2)
+    supervisor.call(Batch(tuple(SetJoints(()) for _ in range(20))))
+
+
+class _Hanging(InlineEngine):
+    """Keeps what it was killed for."""
+
+    reasons = ()
+
+    def kill(self, reason=""):
+        self.reasons = (*self.reasons, reason)
+        super().kill(reason)
+
+
+class _Impatient(Watchdog):
+    """Takes the first engine to hang."""
+
+    def look(self, pid, sign):
+        return "a test's time" if self.fresh else ""
+
+    def begin(self):
+        self.fresh = not hasattr(self, "fresh")
+
+
+def test_an_engine_that_hangs_is_replaced_and_the_reason_is_told_not_the_signal():
+    told, engines, watchdog = [], [], _Impatient()
+    watchdog.begin()
+
+    def made():
+        engines.append(_Hanging(KinematicBackend))
+        return engines[-1]
+
+    supervisor = Supervisor(made, lambda submit, paused: None, told.append, watchdog=watchdog)
+    try:
+        deadline = time.monotonic() + 20
+        while len(told) < 2:
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        assert [issue.code for issue in told] == ["engine-stalled", "engine-died"]
+        assert all("no sign of life for a test's time" in issue.message for issue in told)
+        assert "hung" in told[1].message and "SIGKILL" not in told[1].message
+        assert supervisor.call(Advance(1)).step >= 0
     finally:
         supervisor.close()

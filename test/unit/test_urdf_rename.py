@@ -2,7 +2,7 @@
 import math
 
 import pytest
-from reading import URDF_INERTIAL, codes, errors, robot_joint, robot_link, robot_of
+from reading import URDF_INERTIAL, codes, errors, robot_joint, robot_link, robot_of, tolerated
 
 from my_simulations.description.model import Mimic
 
@@ -60,10 +60,19 @@ def test_a_joint_of_sdf_connects_what_stands_for_its_links():
     assert loop.pose.position == pytest.approx((1, 2, 3)) and loop.axis.xyz == (1, 0, 0)
 
 
-def test_a_joint_of_sdf_to_no_link_is_an_error():
-    _, issues = robot_of(ARM + '<gazebo><joint name="loop" type="fixed"><parent>rod</parent>'
+def test_a_joint_of_sdf_to_no_link_is_left_out():
+    model, issues = robot_of(ARM + '<gazebo><joint name="loop" type="fixed"><parent>rod</parent>'
                          "<child>hand</child></joint></gazebo>")
-    assert "joint-link-unknown" in errors(issues)
+    assert "joint-link-unknown" in tolerated(issues) and errors(issues) == []
+    assert "loop" not in [joint.name for joint in model.joints]
+
+
+def test_a_joint_of_sdf_may_name_links_with_the_robot_before_them():
+    loop = ('<gazebo><joint name="loop" type="fixed"><parent>r::base</parent>'
+            "<child>world</child></joint></gazebo>")
+    model, issues = robot_of(ARM + loop)
+    assert tolerated(issues) == [] and errors(issues) == []
+    assert [(one.parent, one.child) for one in model.joints] == [("world", "base")]
 
 
 def test_mimic_is_read_and_kept_with_its_numbers():

@@ -18,15 +18,22 @@ common_option() {
   case $1 in
     --overlay) OVERLAY=1 ;;
     --use-companions) USE_COMPANIONS=1 ;;
+    --no-common-packages) COMMON_PACKAGES=0 ;;
+    --python) PYTHON_NAME=1 ;;
     *) return 1 ;;
   esac
 }
 
 common_help() {
   cat <<'TEXT'
-  --overlay          where the workspace has a package my_simulations of its own: use its launch,
-                     world and urdf files in place of ours of the same name
+  --overlay          where the workspace has a package my_simulations of its own: use its files,
+                     and ours where it has none of that name
   --use-companions   use this project's gazebo_ros also where a real one is installed
+  --no-common-packages
+                     leave out the system packages that only other packages of the workspace may
+                     want: tools/apt-packages-common.txt
+  --python           install Debian's python-is-python3, for scripts that begin with
+                     '#!/usr/bin/env python'
   -h, --help         show this help
 
 Environment:

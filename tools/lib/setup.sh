@@ -5,6 +5,8 @@
 ROS_PREFIX=/opt/ros/noetic
 PYTHON=/usr/bin/python3
 WITH_TEST_TOOLS=0
+COMMON_PACKAGES=1
+PYTHON_NAME=0
 USE_COMPANIONS="${MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS:-0}"
 OVERLAY=0
 SET_UP_STEPS=6
@@ -26,6 +28,7 @@ set_up() {
   finish "$PYTHON_REMARK"
   prepare_page
   build_workspace
+  use_loopback
 }
 
 find_workspace() {
@@ -34,18 +37,11 @@ find_workspace() {
   OWN="$WORKSPACE/.my_simulations"
   LOGS="$OWN/log"
   VENV="$OWN/venv"
-  BUILD_WORKSPACE="$WORKSPACE"
+  usable_path "$WORKSPACE" "The workspace's path" "MY_SIMULATIONS_WS=/another/ws $COMMAND"
+  usable_path "$CLONE" "This clone's path" "mv '$CLONE' /another/place"
   FOREIGN=$(foreign_package "$WORKSPACE/src")
-  if [ -n "$FOREIGN" ]; then
-    if [ "$OVERLAY" = 0 ] && [ ! -d "$OWN/overlay" ]; then
-      stop "$FOREIGN is there already, and two packages my_simulations cannot be in one workspace. \
-Nothing was changed." \
-        "To use its launch, world and urdf files in place of ours of the same name: \
-$COMMAND --overlay (that package stays untouched; the choice is remembered)." \
-        "To use another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
-    fi
-    BUILD_WORKSPACE="$OWN/overlay"
-  elif [ "$OVERLAY" = 1 ]; then
+  [ -z "$FOREIGN" ] || accept_foreign
+  if [ -z "$FOREIGN" ] && [ "$OVERLAY" = 1 ]; then
     stop "there is nothing to overlay: $WORKSPACE/src has no other package my_simulations." \
       "Leave out --overlay."
   fi
@@ -56,7 +52,37 @@ $COMMAND --overlay (that package stays untouched; the choice is remembered)." \
   mkdir -p -- "$OWN" || stop "$WORKSPACE cannot be written to." \
     "Name another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
   one_at_a_time
-  finish "$BUILD_WORKSPACE"
+  finish "$WORKSPACE"
+}
+
+# usable_path PATH WHAT ADVICE: stop for a path that catkin or the shells' path lists cannot have.
+usable_path() {
+  local bad='[[:space:]:;$`#&()<>|*?{}!"\\'"']"
+  [[ $1 =~ $bad ]] || return 0
+  stop "$2, $1, has ${BASH_REMATCH[0]/ /a blank} in it, which catkin cannot build in. Nothing was \
+changed." "Letters of any alphabet, digits and - _ . + , are fine: $3"
+}
+
+# accept_foreign: stop where the workspace's own package my_simulations was not asked about, or cannot
+# come before ours.
+accept_foreign() {
+  local ours
+  if [ "$OVERLAY" = 0 ] && ! underlay_chosen; then
+    stop "$FOREIGN is there already, and two packages my_simulations cannot be in one workspace. \
+Nothing was changed." \
+      "To use it, its files before ours of the same name: \
+$COMMAND --overlay (that package stays untouched; the choice is remembered)." \
+      "To use another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
+  fi
+  ours=$(own_package "$WORKSPACE/src")
+  [ -z "$ours" ] || stop "$FOREIGN and this clone, $ours, are two packages my_simulations in one \
+workspace. Nothing was changed." "Move the clone out of the workspace: mv $ours ~/ and run it there."
+  [ "$(package_name "$FOREIGN")" = my_simulations ] ||
+    stop "$FOREIGN is no ROS package: its package.xml is missing or has another name. Nothing was \
+changed." "Make it one: cd $WORKSPACE/src && catkin_create_pkg my_simulations"
+  [ -z "$(find -L "$FOREIGN" -path '*/my_simulations/__init__.py' -print -quit)" ] ||
+    stop "$FOREIGN has a Python module my_simulations, which is the name of ours. Nothing was \
+changed." "Give the module another name."
 }
 
 # packages_of FILE: the names in a list with comments.
@@ -75,6 +101,18 @@ as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
 }
 
+# may_install: whether this user can install system packages at all.
+may_install() { [ "$(id -u)" = 0 ] || command -v sudo >/dev/null; }
+
+# apt_install NAME ADVICE...: the packages from ADVICE on; the output goes to logs of that NAME.
+apt_install() {
+  local name="$1" advice="$2"
+  shift 2
+  logged "apt-update$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
+  logged "apt-install$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get -q -y --no-install-recommends install "$@"
+}
+
 install_system_packages() {
   begin "System packages"
   local lists=("$CLONE/tools/apt-packages.txt") wanted missing
@@ -84,27 +122,26 @@ install_system_packages() {
     lists+=("$CLONE/tools/apt-packages-ros.txt")
   fi
   [ "$WITH_TEST_TOOLS" = 0 ] || lists+=("$CLONE/tools/apt-packages-test.txt")
+  [ "$PYTHON_NAME" = 0 ] || lists+=("$CLONE/tools/apt-packages-python.txt")
   # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
   command -v npm >/dev/null || lists+=("$CLONE/tools/apt-packages-page.txt")
   mapfile -t wanted < <(for list in "${lists[@]}"; do packages_of "$list"; done)
   mapfile -t missing < <(missing_packages "${wanted[@]}")
+  SYSTEM_REMARK="all there"
   if [ "${#missing[@]}" -gt 0 ]; then
-    if [ "$(id -u)" != 0 ] && ! command -v sudo >/dev/null; then
-      stop "${#missing[@]} system packages are missing, and there is neither root nor sudo." \
-        "As root: apt-get install --no-install-recommends ${missing[*]}"
-    fi
+    may_install || stop "${#missing[@]} system packages are missing, and there is neither root nor \
+sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
     say "installing ${#missing[@]}, a few minutes"
     # Asks for the password now, while the screen is free for it.
     [ "$(id -u)" = 0 ] || sudo true || stop "sudo did not let the system packages be installed." \
       "As root: apt-get install --no-install-recommends ${missing[*]}"
-    local advice="Is there a network, and room on the disk (df -h)? Then run $COMMAND again."
-    logged apt-update "$advice" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
-    logged apt-install "$advice" as_root env DEBIAN_FRONTEND=noninteractive \
-      apt-get -q -y --no-install-recommends install "${missing[@]}"
-    finish "${#missing[@]} installed"
-  else
-    finish "all there"
+    apt_install "" "Is there a network, and room on the disk (df -h)? Then run $COMMAND again." \
+      "${missing[@]}"
+    SYSTEM_REMARK="${#missing[@]} installed"
   fi
+  install_common_packages
+  finish "$SYSTEM_REMARK"
+  hint_at_python
   local name
   for name in message_generation trajectory_msgs std_srvs rostest; do
     rospack find "$name" >/dev/null 2>&1 || stop "the ROS package $name is not installed." \
@@ -112,17 +149,52 @@ install_system_packages() {
   done
 }
 
+# install_common_packages: what other packages of the workspace may ask for. Nothing of ours needs
+# it: what cannot be installed is said, stops nothing, and is not tried again while it is the same.
+install_common_packages() {
+  local wanted missing tried="$OWN/common-packages"
+  { [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; } || return 0
+  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-common.txt")
+  mapfile -t missing < <(missing_packages "${wanted[@]}")
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
+  if may_install; then
+    say "installing ${#missing[@]} that other packages commonly ask for"
+    if (apt_install -common "Nothing of ours needs them." "${missing[@]}"); then
+      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for other packages installed"
+      return 0
+    fi
+  fi
+  printf '%s' "${missing[*]}" >"$tried"
+  say "not installed, other packages of the workspace may want them: \
+apt-get install --no-install-recommends ${missing[*]}"
+}
+
+# hint_at_python: say how scripts that begin with "#!/usr/bin/env python" start, where there are
+# such scripts and no such program.
+hint_at_python() {
+  local file line count=0
+  ! command -v python >/dev/null || return 0
+  while IFS= read -r -d '' file; do
+    IFS= read -r line <"$file" 2>/dev/null || continue
+    [[ $line =~ ^'#!'[[:blank:]]*/usr/bin/(env[[:blank:]]+)?python[[:space:]]*$ ]] || continue
+    count=$((count + 1))
+  done < <(find -L "$WORKSPACE/src" -maxdepth 6 -type f -perm /111 -print0 2>/dev/null)
+  [ "$count" -eq 0 ] || say "$count programs of the workspace begin with '#!/usr/bin/env python', and \
+there is no python: '$COMMAND --python' installs Debian's python-is-python3."
+}
+
 prepare_workspace() {
   begin "Linking packages"
-  mkdir -p -- "$BUILD_WORKSPACE/src"
-  if [ -n "$FOREIGN" ]; then
-    compose_overlay "$FOREIGN"
-  elif [ "$CLONE" != "$(realpath -m -- "$WORKSPACE/src/my_simulations")" ] &&
-       [ -z "$(own_package "$WORKSPACE/src")" ]; then
+  mkdir -p -- "$WORKSPACE/src"
+  link_underlay
+  rm -rf -- "${OWN:?}/overlay"  # of earlier versions
+  if [ -z "$FOREIGN" ] && [ "$CLONE" != "$(realpath -m -- "$WORKSPACE/src/my_simulations")" ] &&
+     [ -z "$(own_package "$WORKSPACE/src")" ]; then
     ln -sfn -- "$CLONE" "$WORKSPACE/src/my_simulations"
   fi
   link_companions
-  finish "my_simulations$COMPANIONS"
+  finish "my_simulations${FOREIGN:+ behind $FOREIGN}$COMPANIONS"
 }
 
 # prepare_python REQUIREMENTS: the virtual environment, with what the file lists.
@@ -151,7 +223,7 @@ prepare_python() {
 # finds it.
 prepare_page() {
   begin "Packages of the editor's page"
-  local place="$BUILD_WORKSPACE/.my_simulations" stamp
+  local place="$WORKSPACE/.my_simulations" stamp
   stamp=$(sha256sum <"$CLONE/web/package-lock.json")
   if [ "$(cat "$place/.page" 2>/dev/null || true)" = "$stamp" ]; then
     finish "all there"
@@ -169,13 +241,13 @@ prepare_page() {
 # build_inputs: a text that changes when a new catkin_make is due.
 build_inputs() {
   local folder
-  printf '%s\n' "$VENV" "$BUILD_WORKSPACE"
+  printf '%s\n' "$VENV" "$WORKSPACE"
   # The same from a shell that has sourced this workspace as from one that has not.
   tr ':' '\n' <<<"${CMAKE_PREFIX_PATH:-}" | sed '/^$/d' | grep -v -F -- "$WORKSPACE/" || true
   while IFS= read -r folder; do
     printf '%s\n' "$folder"
     cat "$folder/package.xml" "$folder/CMakeLists.txt" 2>/dev/null || true
-  done < <(package_folders "$BUILD_WORKSPACE/src")
+  done < <(package_folders "$WORKSPACE/src")
   cat "$CLONE"/cmake/* "$CLONE/setup.py"
   find "$CLONE/compat" -type f ! -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum
   find "$CLONE/scripts" "$CLONE/test/rostest" -type f ! -name '*.pyc' \
@@ -185,21 +257,33 @@ build_inputs() {
 
 build_workspace() {
   begin "Building the workspace"
-  local stamp stamped="$OWN/built" setup="$BUILD_WORKSPACE/devel/setup.bash"
-  # An overlay extends the workspace that its files come from.
-  [ -z "$FOREIGN" ] || [ ! -f "$WORKSPACE/devel/setup.bash" ] ||
-    source_setup "$WORKSPACE/devel/setup.bash"
+  local stamp stamped="$OWN/built" setup="$WORKSPACE/devel/setup.bash"
   stamp=$(build_inputs | sha256sum)
   if [ -f "$setup" ] && [ "$(cat "$stamped" 2>/dev/null || true)" = "$stamp" ]; then
     finish "up to date"
   else
     rm -f -- "$stamped"
-    logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again." \
-      catkin_make -C "$BUILD_WORKSPACE" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
+    logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again. \
+'Could not find a package configuration file' names a package that Debian may have: apt-cache search." \
+      catkin_make -C "$WORKSPACE" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
     printf '%s' "$stamp" >"$stamped"
     finish
   fi
   source_setup "$setup"
+}
+
+# use_loopback: where the machine's own name leads nowhere, as in bare containers, ROS programs find
+# each other on the loopback address.
+use_loopback() {
+  local name
+  LOOPBACK=
+  [ -z "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || return 0
+  name=$(uname -n)
+  ! timeout 5 getent hosts "$name" >/dev/null || return 0
+  LOOPBACK="export ROS_IP=127.0.0.1; "
+  export ROS_IP=127.0.0.1
+  say "This machine's own name, $name, does not resolve; ROS_IP=127.0.0.1 is used: programs on this \
+machine find each other, others do not. Name it in /etc/hosts to change that."
 }
 
 # one_at_a_time: hold the workspace's lock while it is set up; `release` gives it back.

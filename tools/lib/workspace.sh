@@ -86,14 +86,15 @@ real_package() {
 
 # forget_build NAME: remove what an earlier build left of a companion that is linked no more.
 forget_build() {
-  local name="$1" devel="${BUILD_WORKSPACE:?}/devel"
+  local name="$1" devel="${WORKSPACE:?}/devel"
   # shellcheck disable=SC2115
-  rm -rf -- "$BUILD_WORKSPACE/build/$name" "$devel/share/$name" "$devel/lib/$name" \
+  rm -rf -- "$WORKSPACE/build/$name" "$devel/share/$name" "$devel/lib/$name" \
     "$devel/lib/pkgconfig/$name.pc" "$devel/include/$name" \
     "$devel/lib/python3/dist-packages/$name" \
     "$devel/etc/catkin/profile.d/50.my_simulations_$name.sh"
   [ "$name" != xacro ] || rm -f -- "$devel/bin/xacro" "$devel/bin/xacro.py"
   [ "$name" != gazebo_ros ] || rm -rf -- "$devel/lib/gazebo_ros_commands"
+  [ "$name" != my_simulations_underlay ] || rm -f -- "$devel/bin/roslaunch"
 }
 
 # link_companions: link each package of compat/ that rospack finds nowhere else.
@@ -102,11 +103,11 @@ link_companions() {
   COMPANIONS=
   for name in gazebo_msgs gazebo_ros my_simulations_msgs xacro; do
     target="$CLONE/compat/$name"
-    place="$BUILD_WORKSPACE/src/$name"
+    place="$WORKSPACE/src/$name"
     real=$(real_package "$name" "$WORKSPACE/src")
     if [ -n "$real" ] && [ "$name" = gazebo_ros ] && [ "$USE_COMPANIONS" = 1 ]; then
       case $real/ in
-        "$BUILD_WORKSPACE"/src/*)
+        "$WORKSPACE"/src/*)
           stop "gazebo_ros lies in this workspace, at $real: two packages of one name cannot." \
             "Take that folder out of the workspace, or leave out --use-companions." ;;
       esac
@@ -122,23 +123,21 @@ link_companions() {
   done
 }
 
-# compose_overlay FOREIGN: a package folder in the overlay workspace, made of links: this clone,
-# with the launch, world and urdf files of FOREIGN in place of ours of the same name.
-compose_overlay() {
-  local foreign="$1" package="$BUILD_WORKSPACE/src/my_simulations" entry name kind
-  mkdir -p -- "$package"
-  find "$package" -type l -delete
-  for entry in "$CLONE"/*; do
-    name=${entry##*/}
-    case $name in
-      launch | world | urdf | build | devel | install) ;;
-      *) link "$entry" "$package/$name" ;;
-    esac
-  done
-  for kind in launch world urdf; do
-    mkdir -p -- "$package/$kind"
-    cp -rs -- "$CLONE/$kind/." "$package/$kind/"
-    [ ! -d "$foreign/$kind" ] ||
-      cp -rs --remove-destination -- "$(realpath -- "$foreign/$kind")/." "$package/$kind/"
-  done
+# link_underlay: where the workspace has a package my_simulations of its own, ours comes into it as the
+# package my_simulations_underlay: what theirs lacks is found there. Elsewhere there is none.
+link_underlay() {
+  local target="$CLONE/compat/my_simulations_underlay" place="$WORKSPACE/src/my_simulations_underlay"
+  if [ -n "$FOREIGN" ]; then
+    [ -L "$place" ] || forget_build my_simulations
+    link "$target" "$place"
+  elif [ -L "$place" ]; then
+    rm -- "$place"
+    forget_build my_simulations_underlay
+    forget_build my_simulations
+  fi
+}
+
+# underlay_chosen: whether an earlier --overlay is to go on.
+underlay_chosen() {
+  [ -L "$WORKSPACE/src/my_simulations_underlay" ] || [ -d "$OWN/overlay" ]
 }

@@ -48,7 +48,7 @@ export function createActions({store, connection}) {
       // A world that was launched from a file is not written over without a word.
       if (outcome.issues.some(({code}) => code === 'path-needed')) return actions.saveAs();
       outcome.issues.forEach((issue) => store.addIssue(issue));
-      if (outcome.ok) note(`Saved ${outcome.value.path}`);
+      if (outcome.ok) note(`Saved ${outcome.value.path}${without(outcome.value.left_out)}`);
       return outcome;
     },
     saveAs: (path, options = {}) =>
@@ -272,6 +272,11 @@ export function createActions({store, connection}) {
 }
 
 const NOTHING = Object.freeze({ok: true, value: null, issues: []});
+
+/** What is said about models that a saved world does not hold. */
+function without(names = []) {
+  return names.length ? ` without ${names.join(', ')}, which the launch file spawns` : '';
+}
 
 /** Lets the browser store a file. */
 export function saveBlob(blob, name) {

@@ -13,7 +13,7 @@ from ..description.model import Link, Model
 from ..description.shapes import MeshTable
 from ..description.validate import Fault
 from ..description.world import Actor, Light, World
-from ..errors import InputError, Issue, Severity, error, errors_of
+from ..errors import InputError, Issue, Severity, error, errors_of, strictly
 from ..formats.advise import findings
 from ..formats.load import read_any
 from ..formats.meshes import collision_meshes
@@ -22,6 +22,7 @@ from ..formats.xmltext import content, parse
 from ..resources.downloads import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
+from ..ros.arguments import Parser
 from .object_documents import run_xacro
 
 NAME = "check_model"
@@ -32,13 +33,15 @@ Loaded = Union[World, Model, Light, Actor]
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Read worlds, models and robots as the simulator does, and say what"
         " is wrong with them. Needs no ROS master.",
         epilog="Exit code: 0 when there are no errors (warnings may be), 1 when there are, 2 for a"
         " wrong command line.")
     made.add_argument("files", nargs="+", metavar="FILE",
                       help=".world, .sdf, .urdf or .xacro, or the folder of a model")
+    made.add_argument("--strict", action="store_true", help="count what is read as Gazebo reads it,"
+                      " although the format forbids it, as errors")
     made.add_argument("--json", action="store_true", help="print one JSON object a file, a line"
                       " each, with counts and issues")
     return made
@@ -58,6 +61,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     failed = False
     for file in options.files:
         loaded, issues = check(file, resolver)
+        if options.strict:
+            issues = strictly(issues)
         failed = failed or bool(errors_of(issues))
         if options.json:
             print(json.dumps({"file": file, **counts(loaded),

@@ -5,8 +5,8 @@ import sys
 import threading
 from typing import List, Optional
 
-from ..ros import master
 from . import gzserver
+from .signals import end_quietly
 
 
 def main(argv: Optional[List[str]] = None) -> int:
@@ -16,6 +16,9 @@ def main(argv: Optional[List[str]] = None) -> int:
         As `gzserver`.
     """
     words = sys.argv if argv is None else argv
+    end_quietly()
+    from ..ros import master
+
     if master.fault_of(master.uri(words), "/gazebo"):
         from . import standalone
 
@@ -28,6 +31,7 @@ def _show(words: List[str]) -> None:
     """Show the editor's address as soon as the node has one."""
     import time
 
+    from ..ros import master
     from .browser import show
 
     name, uri = master.node_name(words, "gazebo"), master.uri(words)

@@ -5,6 +5,8 @@ import io
 import sys
 from typing import List, Optional
 
+from .signals import end_quietly
+
 
 def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool = False) -> int:
     """Run the server until a signal ends it.
@@ -18,6 +20,7 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
         0 after SIGINT or SIGTERM, 1 when the node could not start.
     """
     words = sys.argv if argv is None else argv
+    end_quietly()
     from ..ros.options import parse
     from ..ros.profile import StartProfile
 

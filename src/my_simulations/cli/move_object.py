@@ -11,6 +11,7 @@ from ..errors import InputError
 from ..geometry import Pose, quat_from_rpy
 from ..objects.route import Circle, Polygon, parse_numbers, parse_points
 from ..objects.selection import unknown_name
+from ..ros.arguments import Parser
 from . import object_client as client
 
 NAME = "move_object.py"
@@ -32,7 +33,7 @@ class Stopped(Exception):
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Move a model of the running world. Polygons and circles go round "
         "until Ctrl-C.",
         epilog="Exit code: 0 when all went well (also when ended by Ctrl-C on its way), 1 when "

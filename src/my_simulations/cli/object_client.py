@@ -17,7 +17,9 @@ from ..geometry import Pose, Vec3, quat_from_rpy
 from ..objects.listing import ObjectList, parse_objects
 from ..objects.selection import parse_groups
 from ..objects.yaml_source import Source
+from ..resources.own import PACKAGE
 from ..ros import master
+from ..ros.arguments import number
 from ..ros.deadline import NoAnswer, within
 
 OK, FAILED, USAGE = 0, 1, 2
@@ -29,7 +31,7 @@ LIST_SECONDS = 10.0
 OBJECTS = "/objects"
 GROUPS = "/object_groups"
 LIST_MARK = "/my_simulations/object_list"
-"""Written last by the upload: world and file of the list that is loaded."""
+"""Written last by the upload: world, file and package of the list that is loaded."""
 
 CALLER = "/my_simulations_object_tool"
 
@@ -48,7 +50,7 @@ def common_options(parser: argparse.ArgumentParser) -> None:
 
 def seconds(text: str) -> float:
     """A positive finite number of seconds, for argparse."""
-    value = float(text)
+    value = number(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
     return value
@@ -170,6 +172,14 @@ class Simulator:
         answer = self._call("get_world_properties", "GetWorldProperties")
         return list(answer.model_names)
 
+    def ask(self, service: str, kind: str, **fields: Any) -> Any:
+        """The answer of a service of the node, of a class in gazebo_msgs or one of ours.
+
+        Raises:
+            ToolError: it is not offered or did not answer.
+        """
+        return self._call(service, kind, **fields)
+
     def spawn(self, name: str, xml: str, sdf: bool, position: Vec3, rpy: Vec3) -> str:
         """Puts a model into the world; the simulator's words.
 
@@ -254,7 +264,13 @@ def _service_class(kind: str) -> Any:
     except ImportError as fault:
         raise ToolError("the ROS package gazebo_msgs is not there; source the workspace's "
                         "devel/setup.bash first") from fault
-    return Empty if kind == "Empty" else getattr(srv, kind)
+    if kind == "Empty":
+        return Empty
+    if kind == "StepWorld":
+        from my_simulations_msgs.srv import StepWorld
+
+        return StepWorld
+    return getattr(srv, kind)
 
 
 def pose_message(pose: Pose) -> Any:
@@ -271,7 +287,7 @@ def read_list(parameters: Parameters, package: str, wait: float
 
     Args:
         parameters: the parameter server.
-        package: where a 2012 entry's file is looked for.
+        package: where a 2012 entry's file is looked for; "" for where the list came from.
         wait: wall seconds to wait for a list that is not there yet.
 
     Returns:
@@ -285,17 +301,26 @@ def read_list(parameters: Parameters, package: str, wait: float
     if tree is None:
         # The mark is written after the list: look once more.
         tree = parameters.get(OBJECTS)
-    listing = None if tree is None else parse_objects(tree, Source(OBJECTS), package)
+    listing = None if tree is None else parse_objects(
+        tree, Source(OBJECTS), package or _package_of_list(parameters))
     groups, issues = parse_groups(parameters.get(GROUPS), Source(GROUPS))
     return listing, groups, issues
+
+
+def _package_of_list(parameters: Parameters) -> str:
+    mark = parameters.get(LIST_MARK)
+    found = mark.get("package") if isinstance(mark, Mapping) else None
+    return found if isinstance(found, str) and found else PACKAGE
 
 
 def no_list(parameters: Parameters) -> str:
     """Why there is no object list, and what to do."""
     mark = parameters.get(LIST_MARK)
     if isinstance(mark, Mapping) and mark.get("world"):
-        return (f"the world '{mark['world']}' has no object list; write "
-                f"config/{mark['world']}/object_locations.yaml and load it with "
-                "roslaunch my_simulations upload_param.launch")
+        return (f"the world '{mark['world']}' has no object list in the package "
+                f"'{mark.get('package') or PACKAGE}'; write "
+                f"config/{mark['world']}/object_locations.yaml there and load it with "
+                "roslaunch my_simulations upload_param.launch, or with package:=PACKAGE where it "
+                "lies in another one")
     return (f"no objects are loaded to {OBJECTS}; load them with "
             "roslaunch my_simulations upload_param.launch")

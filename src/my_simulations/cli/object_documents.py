@@ -7,12 +7,14 @@ import shutil
 import subprocess
 import sys
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 from ..errors import InputError, error
 from ..objects.document import read_document, root_tag
 from ..objects.listing import PlacedObject
-from ..resources.own import PACKAGE, own_directory
+from ..objects.selection import closest
+from ..resources.own import PACKAGE, file_in_package, own_directory
 from ..resources.packages import PackageIndex
 
 # An empty entry is the current folder, where a file xacro.py would hide the module.
@@ -32,25 +34,68 @@ def package_finder() -> FindPackage:
     return find
 
 
-def locate(placed: PlacedObject, find: FindPackage) -> str:
-    """The path of the object's file.
+@dataclass(frozen=True)
+class Document:
+    """An object's XML text.
+
+    Attributes:
+        xml: the text, after xacro where its file needs that.
+        sdf: whether it is SDF; URDF otherwise.
+        path: its file.
+        other: a file of that name in this package, which was not taken; "" for none.
+        origin: what messages call the text.
+    """
+
+    xml: str
+    sdf: bool
+    path: str
+    other: str
+    origin: str
+
+
+def package_names() -> List[str]:
+    """The ROS packages there are, as their folders are called."""
+    return sorted(os.path.basename(folder) for folder in PackageIndex().folders())
+
+
+def locate(placed: PlacedObject, find: FindPackage) -> Tuple[str, str]:
+    """The path of the object's file, and of another one that its entry could mean.
+
+    An entry that names no package is looked for in that of its list, then in this one; "" where
+    there is no second file.
 
     Raises:
         InputError: the package or the file does not exist.
     """
+    found = [path for path in _candidates(placed, find) if os.path.isfile(path)]
+    if found:
+        return found[0], found[1] if len(found) > 1 else ""
     folder = find(placed.file.package)
     if folder is None:
+        near = closest(placed.file.package, package_names(), 1)
         raise InputError([error(
             "unknown-package",
             f"object '{placed.name}': there is no ROS package '{placed.file.package}'",
             xpath=f"{placed.param}/model",
-            hint="source the workspace that holds it, or correct the name")])
-    path = os.path.join(folder, *placed.file.path.split("/"))
-    if not os.path.isfile(path):
-        raise InputError([error(
-            "object-file-missing", f"object '{placed.name}': there is no file {path}",
-            xpath=f"{placed.param}/model")])
-    return path
+            hint=(f"did you mean {near[0]}? Else " if near else "")
+            + "source the workspace that holds it, or correct the name")])
+    raise InputError([error(
+        "object-file-missing", f"object '{placed.name}': there is no file "
+        + " and no ".join(_candidates(placed, find)), xpath=f"{placed.param}/model",
+        hint="" if placed.file.named else "write the file, or name its package: "
+             "model: PACKAGE/objects/FILE, or --package PACKAGE")])
+
+
+def _candidates(placed: PlacedObject, find: FindPackage) -> List[str]:
+    """Where its file may be, best first; each file once, though several links may lead to it."""
+    packages = [placed.file.package] + ([] if placed.file.named else [PACKAGE])
+    paths: Dict[str, str] = {}
+    for package in packages:
+        folder = find(package)
+        if folder is not None:
+            path = file_in_package(folder, package, os.path.join(*placed.file.path.split("/")))
+            paths.setdefault(os.path.realpath(path), path)
+    return list(paths.values())
 
 
 class Documents:
@@ -74,7 +119,7 @@ class Documents:
         self._texts: Dict[str, Future[str]] = {}
         for placed in objects:
             try:
-                self._text(locate(placed, find), placed.file.xacro)
+                self._text(locate(placed, find)[0], placed.file.xacro)
             except InputError:
                 continue  # raised when its turn comes
 
@@ -86,20 +131,18 @@ class Documents:
             text.cancel()
         self._pool.shutdown()
 
-    def of(self, placed: PlacedObject) -> Tuple[str, bool]:
+    def of(self, placed: PlacedObject) -> Document:
         """The object's XML, through xacro where its file needs it.
-
-        Returns:
-            The text, and whether it is SDF (URDF otherwise).
 
         Raises:
             InputError: the file is missing, unreadable, empty, or xacro fails.
         """
-        text = self._text(locate(placed, self._find), placed.file.xacro).result()
+        path, other = locate(placed, self._find)
+        text = self._text(path, placed.file.xacro).result()
         root = root_tag(text)
-        if root in ("sdf", "robot"):
-            return text, root == "sdf"
-        return text, placed.file.sdf
+        sdf = root == "sdf" if root in ("sdf", "robot") else placed.file.sdf
+        origin = f"{path} (after xacro)" if placed.file.xacro else path
+        return Document(text, sdf, path, other, origin)
 
     def _text(self, path: str, xacro: bool) -> Future[str]:
         if path not in self._texts:

@@ -8,6 +8,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from ..errors import Issue
 from ..objects.listing import ObjectList
 from ..objects.selection import ALL, select, unknown_name
+from ..ros.arguments import Parser
 from . import object_client as client
 from .progress import MANY, Progress
 
@@ -16,7 +17,7 @@ NAME = "remove_object.py"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Remove objects from the world. A name may be any model of the "
         "world; 'all' and groups mean the objects of the list that are there. While more than ten "
         "are removed, time stands still.",
@@ -70,7 +71,7 @@ def _remove_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
     simulator = client.Simulator(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
-    listing, groups, issues = client.read_list(parameters, "my_simulations", 0.0)
+    listing, groups, issues = client.read_list(parameters, "", 0.0)
     if listing is None and ALL in options.names:
         raise client.ToolError(client.no_list(parameters))
     names, unknown = chosen_models(options.names, simulator.model_names(),

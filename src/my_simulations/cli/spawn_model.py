@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import math
 import os
 import re
@@ -11,11 +12,15 @@ import time
 from decimal import Decimal
 from typing import Any, Dict, List, Optional, Sequence
 
+from ..ros.arguments import Parser, number
 from ..ros.deadline import NoAnswer, within
+from ..ros.launched import Launch
 
 OK, FAILED, USAGE = 0, 1, 2
 WAIT_SECONDS = 120.0
 MASTER_SECONDS = 10.0
+OURS = "my_simulations/version"
+"""Parameter below the node's name by which our server is told from Gazebo's."""
 
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
@@ -31,7 +36,7 @@ def plain_numbers(words: Sequence[str]) -> List[str]:
 
 def parser() -> argparse.ArgumentParser:
     """The options, spelt with one dash as Gazebo's."""
-    made = argparse.ArgumentParser(prog="spawn_model", description="Spawn a model in the world.")
+    made = Parser(prog="spawn_model", description="Spawn a model in the world.")
     kind = made.add_mutually_exclusive_group(required=True)
     kind.add_argument("-urdf", action="store_true", help="the description is URDF")
     kind.add_argument("-sdf", action="store_true", help="the description is SDF")
@@ -56,7 +61,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("-timeout", type=_seconds, default=WAIT_SECONDS, metavar="SECONDS",
                       help="wall-clock limit of every wait (default %(default)g)")
     for axis, unit in zip(("x", "y", "z", "R", "P", "Y"), ("m",) * 3 + ("rad",) * 3):
-        made.add_argument(f"-{axis}", type=float, default=0.0, metavar=unit.upper(),
+        made.add_argument(f"-{axis}", type=number, default=0.0, metavar=unit.upper(),
                           help=f"initial pose, {unit}")
     made.add_argument("-J", dest="joints", nargs=2, action="append", default=[],
                       metavar=("JOINT", "POSITION"),
@@ -69,7 +74,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _seconds(text: str) -> float:
-    value = float(text)
+    value = number(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
     return value
@@ -125,6 +130,7 @@ def _is_remapping(word: str) -> bool:
 
 
 def _spawn(options: argparse.Namespace, words: List[str]) -> None:
+    launch = Launch.of(words)
     text = None if options.param else _document(options)
     _reach_master(words)
     import rospy
@@ -137,7 +143,7 @@ def _spawn(options: argparse.Namespace, words: List[str]) -> None:
             _wait_for_model(options)
         if text is None:
             text = _parameter(options.param)
-        _call_spawn(options, text)
+        _call_spawn(options, text, launch)
         if options.joints:
             _set_joints(options)
         if options.unpause:
@@ -198,8 +204,10 @@ def _parameter(name: str) -> str:
     value = rospy.get_param(name, None)
     full = rospy.resolve_name(name)
     if value is None:
-        raise SpawnFailed(f'there is no parameter {full}; load it with <param name="{name}" '
-                          "textfile=.../> or command=...")
+        near = difflib.get_close_matches(full, rospy.get_param_names(), 1, 0.8)
+        meant = f"did you mean {near[0]}? Else " if near else ""
+        raise SpawnFailed(f'there is no parameter {full}; {meant}load it with <param '
+                          f'name="{name}" textfile=.../> or command=...')
     if not isinstance(value, str):
         raise SpawnFailed(f"parameter {full} is not text but {type(value).__name__}")
     if not value.strip():
@@ -225,14 +233,29 @@ def _wait_for_model(options: argparse.Namespace) -> None:
     client.wait_until(is_there, f"model {options.wait!r}", options.timeout)
 
 
-def _call_spawn(options: argparse.Namespace, text: str) -> None:
+def _origin(options: argparse.Namespace) -> str:
+    """What messages call the description."""
+    if options.param:
+        return f"parameter {options.param}"
+    return "" if options.database or options.stdin else os.path.abspath(options.file)
+
+
+def _call_spawn(options: argparse.Namespace, text: str, launch: Launch) -> None:
     import rospy
     from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 
     from ..geometry import quat_from_rpy
+    from ..objects.document import FILE, LAUNCH, marked
+    from ..ros import client
+
+    kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
+    client.service(client.api_name(options.gazebo_namespace, kind), SpawnModel, options.timeout)
 
     if options.package_to_model:
         text = _package_to_model(text)
+    # What our own server is told besides; Gazebo would only wonder at it.
+    if rospy.get_param(client.api_name(options.gazebo_namespace, OURS), None) is not None:
+        text = marked(text, {FILE: _origin(options), LAUNCH: str(launch.pid or "")})
     namespace = options.robot_namespace
     request = SpawnModelRequest(
         model_name=options.model, model_xml=text,
@@ -242,7 +265,6 @@ def _call_spawn(options: argparse.Namespace, text: str) -> None:
     position.x, position.y, position.z = options.x, options.y, options.z
     (orientation.x, orientation.y, orientation.z,
      orientation.w) = quat_from_rpy(options.R, options.P, options.Y)
-    kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
     print(f"spawn_model: {_call(options, kind, SpawnModel, request)}", flush=True)
 
 
@@ -255,10 +277,34 @@ def _set_joints(options: argparse.Namespace) -> None:
         joint_names=list(positions), joint_positions=list(positions.values()))
     said = _call(options, "set_model_configuration", SetModelConfiguration, request)
     print(f"spawn_model: {said}", flush=True)
+    _check_joints(options, list(positions))
+
+
+def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
+    """Raises SpawnFailed for a joint that the model has not got; Gazebo passes over those."""
+    from gazebo_msgs.srv import GetModelProperties, GetModelPropertiesRequest
+
+    answer = _answer(options, "get_model_properties", GetModelProperties,
+                     GetModelPropertiesRequest(model_name=options.model))
+    known = list(answer.joint_names)
+    for joint in wanted:
+        plain = joint[len(options.model) + 2:] if joint.startswith(options.model + "::") else joint
+        if "::" in plain or plain in known:
+            continue  # joints of nested models are not in Gazebo's list
+        near = difflib.get_close_matches(plain, known, 1)
+        hint = (f"did you mean {near[0]}?" if near else
+                f"it has {', '.join(known)}" if known else "it has none")
+        raise SpawnFailed(f"the model {options.model!r} is in the world, but has no joint "
+                          f"{joint!r}; {hint}")
 
 
 def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> str:
     """What a service of the server says, once it has succeeded."""
+    return str(getattr(_answer(options, name, kind, request), "status_message", ""))
+
+
+def _answer(options: argparse.Namespace, name: str, kind: Any, request: Any) -> Any:
+    """The answer of a service of the server that has succeeded; raises SpawnFailed."""
     from ..ros import client
 
     full = client.api_name(options.gazebo_namespace, name)
@@ -266,7 +312,7 @@ def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> st
     answer = within(options.timeout, f"service {full}", lambda: proxy(request))
     if not getattr(answer, "success", True):
         raise SpawnFailed(answer.status_message)
-    return str(getattr(answer, "status_message", ""))
+    return answer
 
 
 def _package_to_model(text: str) -> str:

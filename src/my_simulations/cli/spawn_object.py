@@ -6,11 +6,13 @@ import contextlib
 from typing import List, Optional, Sequence, Set
 
 from ..errors import InputError
-from ..objects.document import marked_for_replacement
+from ..objects.document import FILE, LAUNCH, REPLACE, marked
 from ..objects.listing import PlacedObject
 from ..objects.selection import select
+from ..ros.arguments import Parser
+from ..ros.launched import Launch
 from . import object_client as client
-from .object_documents import Documents, package_finder
+from .object_documents import Document, Documents, package_finder
 from .progress import MANY, Progress
 
 NAME = "spawn_object.py"
@@ -18,7 +20,7 @@ NAME = "spawn_object.py"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Spawn objects of the list at /objects. An object that is already "
         "there is replaced at its listed place. While more than ten are spawned, time stands "
         "still.",
@@ -26,9 +28,10 @@ def parser() -> argparse.ArgumentParser:
         "line.")
     made.add_argument("names", nargs="+", metavar="NAME",
                       help="an object, a group of /object_groups, or 'all'")
-    made.add_argument("--package", default="my_simulations", metavar="PKG",
+    made.add_argument("--package", default="", metavar="PKG",
                       help="package whose folder 'objects' holds the files of entries with "
-                      "model_type (default %(default)s)")
+                      "model_type (default: the one the list was loaded from, then "
+                      "my_simulations)")
     client.common_options(made)
     return made
 
@@ -44,10 +47,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     """
     words, remappings = client.plain_words(argv)
     options = parser().parse_args(words)
-    return client.run(NAME, lambda: _spawn_all(options, remappings))
+    return client.run(NAME, lambda: _spawn_all(options, remappings, Launch.of(remappings)))
 
 
-def _spawn_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
+def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: Launch) -> int:
     parameters = client.Parameters(remappings)
     simulator = client.Simulator(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
@@ -67,11 +70,12 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     # world that grows heavy does not take the time that the spawning needs.
     many = len(selection.objects) > MANY
     with simulator.standing_still() if many else contextlib.nullcontext():
-        wrong = _spawn_each(selection.objects, simulator, options.timeout)
+        wrong = _spawn_each(selection.objects, simulator, options.timeout, launch)
     return client.FAILED if failed or wrong else client.OK
 
 
-def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeout: float) -> int:
+def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeout: float,
+                launch: Launch) -> int:
     """Spawns one after the other; how many failed."""
     there = set(simulator.model_names())
     progress = Progress(len(objects))
@@ -80,8 +84,8 @@ def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeou
         for placed in objects:
             progress.start(placed.name)
             try:
-                xml, sdf = documents.of(placed)
-                progress.done(_spawn_one(placed, xml, sdf, simulator, there))
+                document = documents.of(placed)
+                progress.done(_spawn_one(placed, document, simulator, there, launch))
             except InputError as fault:
                 wrong += 1
                 progress.failed("\n".join(map(str, fault.issues)))
@@ -92,14 +96,18 @@ def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeou
     return wrong
 
 
-def _spawn_one(placed: PlacedObject, xml: str, sdf: bool, simulator: client.Simulator,
-               there: Set[str]) -> str:
+def _spawn_one(placed: PlacedObject, document: Document, simulator: client.Simulator,
+               there: Set[str], launch: Launch) -> str:
     replaced = placed.name in there
-    if replaced and simulator.replaces:
-        xml = marked_for_replacement(xml)
+    xml = document.xml
+    if simulator.replaces:
+        xml = marked(xml, {REPLACE: "true" if replaced else "", FILE: document.origin,
+                           LAUNCH: str(launch.pid or "")})
     elif replaced:
         simulator.delete(placed.name)
-    simulator.spawn(placed.name, xml, sdf, placed.position, placed.rpy)
+    simulator.spawn(placed.name, xml, document.sdf, placed.position, placed.rpy)
     there.add(placed.name)
     x, y, z = placed.position
-    return f"{placed.name} {'replaced' if replaced else 'spawned'} at {x:g} {y:g} {z:g}"
+    also = f" (not {document.other})" if document.other else ""
+    return (f"{placed.name} {'replaced' if replaced else 'spawned'} at {x:g} {y:g} {z:g} from "
+            f"{document.path}{also}")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Callable, List, Optional
 from ..errors import CommandError, InputError, Issue, Severity
 from .browser import show
 from .faces import Faces
+from .signals import end_quietly
 
 if TYPE_CHECKING:
     from ..editor.recording import Recorder
@@ -27,11 +28,8 @@ def main(words: List[str], program: str) -> int:
     """
     from ..ros.options import parse
 
+    end_quietly()  # also while the world is read: nothing is lost by that
     options = parse(words[1:], program)
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda _number, _frame: ended.set())
-
     def say(line: object) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
@@ -46,7 +44,7 @@ def main(words: List[str], program: str) -> int:
     from ..simulator.starting import start_world
 
     def tell(issue: Issue) -> None:
-        if options.verbose or issue.severity is not Severity.NOTE:
+        if options.verbose or issue.severity is not Severity.NOTE or issue.code == "meshes":
             say(issue)
 
     log = IssueLog()
@@ -62,6 +60,10 @@ def main(words: List[str], program: str) -> int:
             say(issue)
         engines.close()
         return FAILED
+    say(f"the world file is {simulator.world.file}")
+    ended = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda _number, _frame: ended.set())
     faces = Faces()
     recorder = _record(faces, simulator, resolver, options.recording, say)
     try:

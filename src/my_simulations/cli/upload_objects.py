@@ -8,10 +8,12 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, error, warning
 from ..objects.listing import parse_objects
-from ..objects.selection import parse_groups
+from ..objects.selection import closest, parse_groups
 from ..objects.yaml_source import read_yaml
+from ..resources.own import file_in_package
+from ..ros.arguments import Parser
 from . import object_client as client
-from .object_documents import package_finder
+from .object_documents import package_finder, package_names
 
 NAME = "upload_objects.py"
 LOCATIONS = "object_locations.yaml"
@@ -20,7 +22,7 @@ GROUPS = "object_groups.yaml"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=NAME, description="Load config/WORLD_NAME/object_locations.yaml to /objects and "
         "object_groups.yaml to /object_groups; what was there before is dropped.",
         epilog="Exit code: 0 when all went well (a world without a list is a warning), 1 when "
@@ -84,13 +86,14 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     name = world_name(options.world) or _running_world(parameters, options, remappings)
     folder = package_finder()(options.package)
     if folder is None:
-        raise client.ToolError(f"there is no ROS package '{options.package}'; source the "
-                               "workspace that holds it, or correct --package")
+        raise client.ToolError(f"there is no ROS package '{options.package}'"
+                               f"{_meant(options.package, package_names())}; source the workspace "
+                               "that holds it, or correct --package")
     parameters.delete(client.LIST_MARK)
-    file = os.path.join(folder, "config", name, LOCATIONS)
+    file = file_in_package(folder, options.package, os.path.join("config", name, LOCATIONS))
     if os.path.isfile(file):
         count, issues = _load(parameters, file, client.OBJECTS, options.package)
-        groups_file = os.path.join(folder, "config", name, GROUPS)
+        groups_file = os.path.join(os.path.dirname(file), GROUPS)
         groups, more = (_load(parameters, groups_file, client.GROUPS, options.package)
                         if os.path.isfile(groups_file) else (0, []))
         if not groups:
@@ -101,12 +104,27 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     else:
         parameters.delete(client.OBJECTS)
         parameters.delete(client.GROUPS)
-        issues = [warning("no-object-list", f"the world '{name}' has no object list", file=file,
-                          hint="write one to spawn objects by name")]
+        issues = [warning("no-object-list", f"the world '{name}' has no object list"
+                          f"{_meant(name, _listed(os.path.join(folder, 'config')))}", file=file,
+                          hint="write one to spawn objects by name, or give the package that has"
+                               " one: package:=PACKAGE (launch file) or --package PACKAGE")]
         file = ""
-    parameters.set(client.LIST_MARK, {"world": name, "file": file})
+    parameters.set(client.LIST_MARK, {"world": name, "file": file,
+                                      "package": options.package})
     client.show(issues)
     return client.FAILED if client.has_errors(issues) else client.OK
+
+
+def _meant(name: str, known: Sequence[str]) -> str:
+    near = closest(name, known, 1)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+def _listed(folder: str) -> List[str]:
+    try:
+        return sorted(os.listdir(folder))
+    except OSError:
+        return []
 
 
 def _running_world(parameters: client.Parameters, options: argparse.Namespace,

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import List
 
-from ..geometry import Pose, compose
+from ..geometry import compose
 from .model import WORLD, Joint, Link, Model
 
 
@@ -23,13 +23,16 @@ def flattened(model: Model) -> Model:
     joints: List[Joint] = list(model.joints)
     for nested in model.models:
         inner = flattened(nested)
-        links += [_moved(link, nested.name, nested.pose) for link in inner.links]
+        links += [_moved(link, nested, model.static) for link in inner.links]
         joints += [_scoped(joint, nested.name) for joint in inner.joints]
     return replace(model, links=links, joints=joints, models=[], guide=model)
 
 
-def _moved(link: Link, scope: str, pose: Pose) -> Link:
-    return replace(link, name=f"{scope}::{link.name}", pose=compose(pose, link.pose))
+def _moved(link: Link, nested: Model, static: bool) -> Link:
+    """The link of a nested model; a static one in one that moves stands as kinematic links do."""
+    return replace(
+        link, name=f"{nested.name}::{link.name}", pose=compose(nested.pose, link.pose),
+        kinematic=link.kinematic or (nested.static and not static))
 
 
 def _scoped(joint: Joint, scope: str) -> Joint:

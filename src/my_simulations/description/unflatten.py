@@ -38,7 +38,9 @@ def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guid
         if scope:
             inner.setdefault(head, []).append(replace(link, name=rest))
         else:
-            own.append(replace(link, pose=_pose(link, known.get(link.name), above)))
+            before = known.get(link.name)
+            kinematic = before.kinematic if guide.static and before else link.kinematic
+            own.append(replace(link, pose=_pose(link, before, above), kinematic=kinematic))
     theirs: Dict[str, List[Joint]] = {}
     ours: List[Joint] = []
     for joint in joints:

@@ -5,6 +5,7 @@ The rules need no file: readers add file and line through `locate`, requests mad
 """
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Set, Union
 
@@ -139,15 +140,16 @@ def inertial_faults(inertial: Inertial, link: str) -> Iterator[Fault]:
                     hint="give it a mass, or make the model static")
     if not is_positive_definite(inertial):
         yield Fault("inertia-not-positive", f"the inertia of link {link!r} is not positive"
-                    f" definite: {_tensor(inertial)}", inertial,
+                    f" definite: {tensor_text(inertial)}", inertial,
                     hint="a body's principal moments of inertia are all above 0")
     elif not _is_a_body(inertial):
         yield Fault("inertia-impossible", f"no body has the inertia of link {link!r}: one principal"
-                    f" moment is larger than the sum of the others: {_tensor(inertial)}", inertial,
-                    Severity.WARNING)
+                    f" moment is larger than the sum of the others: {tensor_text(inertial)}",
+                    inertial, Severity.WARNING)
 
 
-def _tensor(i: Inertial) -> str:
+def tensor_text(i: Inertial) -> str:
+    """The six numbers of the tensor, for a message."""
     return (f"ixx {i.ixx:g}, iyy {i.iyy:g}, izz {i.izz:g}, ixy {i.ixy:g}, ixz {i.ixz:g},"
             f" iyz {i.iyz:g}")
 
@@ -233,6 +235,11 @@ def _not_positive(what: str, values: Sequence[float]) -> str:
     return f"the {what} must be above 0, found {shown}"
 
 
+def _meant(name: str, known: Set[str]) -> str:
+    near = difflib.get_close_matches(name, sorted(known), 1)
+    return f"did you mean {near[0]}?" if near else ""
+
+
 def joint_faults(joint: Joint, links: Set[str]) -> Iterator[Fault]:
     """Faults of one joint; `links` are the names it may connect, besides the world."""
     name = joint.name
@@ -241,7 +248,7 @@ def joint_faults(joint: Joint, links: Set[str]) -> Iterator[Fault]:
             yield Fault("joint-link-missing", f"joint {name!r} has no {role} link", joint)
         elif link not in links and (link != WORLD or role == "child"):
             yield Fault("joint-link-unknown", f"joint {name!r} names {link!r} as its {role}, which"
-                        " is not a link of the model", joint)
+                        " is not a link of the model", joint, hint=_meant(link, links))
     if joint.parent and joint.parent == joint.child:
         yield Fault("joint-link-repeated", f"joint {name!r} connects {joint.child!r} with itself",
                     joint)

@@ -262,7 +262,8 @@ class World:
     `extra` holds the XML of children kept but not simulated, those with a field of their own from
     `scene` to `roads` included: the fields show what that XML says. `joints` connect links of
     different models, by scoped names. `initial_ns` is the sim time it starts at, and `initial`
-    what its models start with, by name; both come from a saved state (`formats.state`).
+    what its models start with, by name; both come from a saved state (`formats.state`). `losses`
+    says what of the file could not be read and is therefore missing here.
     """
 
     name: str = "default"
@@ -286,3 +287,4 @@ class World:
     initial_ns: int = 0
     initial: Dict[str, InitialState] = field(default_factory=dict)
     seed: int = 0
+    losses: List[str] = field(default_factory=list)

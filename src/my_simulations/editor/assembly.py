@@ -50,8 +50,7 @@ class Assembly:
         self._options = options
         documents = Documents(resolver)
         self._history = History(simulator)
-        self._files = WorldFiles(simulator, resolver, self._history, options.save_roots,
-                                 self.tell_all)
+        self._files = WorldFiles(simulator, resolver, self._history, options, self.tell_all)
         self._autosave = Autosave(self._files, self._history,
                                   os.path.join(options.cache_dir, "autosave"), self.tell_all)
         web_folder = options.web or Pages.own_folder()
@@ -68,7 +67,7 @@ class Assembly:
         self.routes: Dict[str, Route] = {
             **self._requests.routes(), **self._models.routes(), **self._logs.routes(),
             **Watching(self.hub).routes(),
-            **BuildingRequests(self.hub, library, self._pool, options.save_roots).routes(),
+            **BuildingRequests(self.hub, library, self._pool, self._files).routes(),
         }
         sockets = Sockets(self.hub, self.routes, self._leave, options.check_outgoing)
         self.application = web.Application(middlewares=[guard.middleware],

@@ -11,7 +11,7 @@ import os
 import threading
 import time
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ..errors import CommandError, Issue, warning
 from ..simulator.history import History
@@ -21,13 +21,16 @@ from .worlds import WorldFiles
 
 @dataclass(frozen=True)
 class Entry:
-    """`file`: the world it belongs to, "" for a new one; `saved_at` s since 1970."""
+    """`file`: the world it belongs to, "" for a new one; `saved_at` s since 1970; `launched`: the
+    models of it that a launch file had spawned.
+    """
 
     about: str
     world: str
     file: str
     saved_at: float
     process: str
+    launched: Tuple[str, ...] = ()
 
 
 class Autosave:
@@ -85,8 +88,7 @@ class Autosave:
         found = self.found
         if found is None:
             raise CommandError("there are no unsaved changes of an earlier session")
-        self._files.load(found.world, dirty=True)
-        self._files.file = found.file
+        self._files.restore(found.world, found.file, list(found.launched))
         self.keep()
         self.discard()
         return found.file
@@ -100,7 +102,7 @@ class Autosave:
     def _write(self) -> None:
         write_whole(self._path(".world"), self._files.text(), overwrite=True)
         about = {"file": self._files.file, "time": time.time(), "process": self._process,
-                 "world": self._name + ".world"}
+                 "world": self._name + ".world", "launched": self._files.launched()}
         write_whole(self._path(".json"), json.dumps(about).encode(), overwrite=True)
 
     def _path(self, extension: str) -> str:
@@ -134,7 +136,7 @@ class Autosave:
             if not os.path.isfile(world):
                 return None
             return Entry(path, world, str(about["file"]), float(about["time"]),
-                         str(about["process"]))
+                         str(about["process"]), tuple(map(str, about.get("launched", ()))))
         except (OSError, ValueError, KeyError, TypeError):
             return None
 

@@ -2,29 +2,28 @@
 from __future__ import annotations
 
 from concurrent.futures import Executor
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List
 
 from ..building import requests as building
 from ..building.folder import default_folder
 from ..description.flatten import flattened
 from ..errors import Issue
-from ..simulator.saving import default_roots
 from .client import Client
 from .faults import issue_document
 from .hub import Hub
 from .library import Library
 from .sockets import Route
+from .worlds import WorldFiles
 
 
 class BuildingRequests:
     """`building_…`; a saved building is a model of the library at once."""
 
-    def __init__(self, hub: Hub, library: Library, pool: Executor,
-                 roots: Optional[List[str]]) -> None:
+    def __init__(self, hub: Hub, library: Library, pool: Executor, files: WorldFiles) -> None:
         self._hub = hub
         self._library = library
         self._pool = pool
-        self._roots = default_roots() if roots is None else roots
+        self._files = files
 
     def routes(self) -> Dict[str, Route]:
         """By type of request."""
@@ -43,7 +42,7 @@ class BuildingRequests:
 
     def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         done = building.building_save(message["plan"], message["name"],
-                                      message.get("options") or {}, self._roots)
+                                      message.get("options") or {}, self._files.roots())
         folder = done["path"].rpartition("/")[0]
         self._library.add(folder)
         return {**done, "issues": _told(done["issues"])}
@@ -56,7 +55,7 @@ class BuildingRequests:
         return building.building_list(self._places())
 
     def _places(self) -> List[str]:
-        return [*self._roots, default_folder(), *self._library.added]
+        return [*self._files.roots(), default_folder(), *self._library.added]
 
 
 def _told(issues: List[Issue]) -> List[Dict[str, Any]]:

@@ -17,6 +17,8 @@ _HEADERS = {
     "X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin", "X-Frame-Options": "DENY",
 }
+_POLICY = "Content-Security-Policy"
+_NOTHING = "sandbox; default-src 'none'; frame-ancestors 'none'"
 
 
 class Guard:
@@ -33,13 +35,23 @@ class Guard:
 
     @web.middleware
     async def middleware(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Refuse what is foreign; everything else gets careful headers."""
+        """Refuse what is foreign; every answer gets careful headers, refusals too.
+
+        Whatever is not the page may do nothing if a browser opens it by itself: it may come from a
+        model that somebody else made.
+        """
         problem = self._problem(request)
-        if problem:
-            raise web.HTTPForbidden(text=problem + "\n")
-        response = await handler(request)
+        try:
+            if problem:
+                raise web.HTTPForbidden(text=problem + "\n")
+            response = await handler(request)
+        except web.HTTPException as refusal:
+            refusal.headers.update(_HEADERS)
+            refusal.headers[_POLICY] = _NOTHING
+            raise
         if not response.prepared:
             response.headers.update(_HEADERS)
+            response.headers.setdefault(_POLICY, _NOTHING)
             if self.token and request.query.get("token"):
                 response.set_cookie(COOKIE, self.token, httponly=True, samesite="Strict")
         return response
@@ -49,7 +61,7 @@ class Guard:
         if host is None or (self._open and host not in self._hosts):
             return "this server is not known by that name"
         origin = request.headers.get("Origin")
-        if origin is not None and urlsplit(origin).netloc != request.headers.get("Host", ""):
+        if origin is not None and _netloc_of(origin) != request.headers.get("Host", ""):
             return "pages of other sites may not use this server"
         if request.headers.get("Sec-Fetch-Site", "none") == "cross-site" and (
                 request.path != "/"):
@@ -59,6 +71,13 @@ class Guard:
             if not hmac.compare_digest(shown.encode(), self.token.encode()):
                 return "the token is missing or wrong; use the whole address that was printed"
         return ""
+
+
+def _netloc_of(url: str) -> Optional[str]:
+    try:
+        return urlsplit(url).netloc
+    except ValueError:
+        return None
 
 
 def _host_of(url: str) -> Optional[str]:

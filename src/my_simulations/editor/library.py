@@ -1,4 +1,4 @@
-"""The model library: what lies in the model folders of this machine, and in the remote database."""
+"""The model library: models in folders and Fuel caches of this machine, and in the database."""
 from __future__ import annotations
 
 import hashlib
@@ -12,6 +12,8 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ..errors import CommandError
 from ..resources.database import ModelDatabase
+from ..resources.fuel import FuelModels
+from ..resources.fuel_uri import fuel_uri, is_web_address
 from ..resources.own import own_directory
 from ..resources.resolver import NotFound, NotProvided, Resolver
 from ..simulator.safe_file import write_whole
@@ -23,6 +25,7 @@ _DESCRIPTIONS = ("model.sdf", "model.urdf")
 _LARGEST_CONFIG = 1 << 16
 _FORBIDDEN = ("/proc", "/sys", "/dev", "/etc", "/boot")
 _REMOTE = "remote"
+_FUEL = "fuel"
 _LOOK = 2  # of the pictures that the page draws: a new number has them drawn anew
 
 Progress = Callable[[str, int, int], None]
@@ -58,6 +61,8 @@ class Library:
         self._database = ModelDatabase.from_environment(progress)
         if self._database is not None:
             self._database.give(_DOWNLOAD_S)
+        self._fuel = FuelModels.from_environment(progress)
+        self._fuel.give(_DOWNLOAD_S)
         self._remote: Optional[List[str]] = None
         self._remote_problem = "the list of the database is being fetched"
         for folder in self._added:
@@ -70,6 +75,7 @@ class Library:
         found = [{"id": place.known, "title": place.title, "kind": place.kind,
                   "path": place.path, "models": self._listed(place.path), "problem": None}
                  for place in self._places()]
+        found += self._fuel_locations()
         if self._database is not None:
             found.append(self._remote_location(self._database.uri))
         return found
@@ -78,7 +84,8 @@ class Library:
         """Something that differs when `locations` would; cheap."""
         with self._lock:
             remote = (self._remote is not None, self._remote_problem)
-        return remote, [(place.path, _entries(place.path)) for place in self._places()]
+        return (remote, [(place.path, _entries(place.path)) for place in self._places()],
+                [(model.folder, _changed(model.folder)) for model in self._fuel.models()])
 
     def fetch_list(self) -> None:
         """Ask the remote database, if there is one, for its list. Blocks."""
@@ -97,16 +104,29 @@ class Library:
             self._remote, self._remote_problem = names, problem
 
     def provide(self, uri: str) -> None:
-        """Download a model that the database has and this machine has not. Blocks.
+        """Download a model that the database or Fuel has and this machine has not. Blocks.
 
         Raises CommandError.
         """
+        if is_web_address(uri):
+            self._provide_fuel(uri)
+            return
         name = uri[len("model://"):].split("/")[0] if uri.startswith("model://") else ""
         if self._database is None or not name or self._is_here(name):
             return
         try:
             self._database.begin()
             self._database.provide(name)
+        except NotProvided as fault:
+            raise CommandError(str(fault)) from fault
+
+    def _provide_fuel(self, uri: str) -> None:
+        known = fuel_uri(uri)
+        if known is None:
+            raise CommandError(f"{uri!r} is no address of a model on a Fuel server")
+        try:
+            self._fuel.begin()
+            self._fuel.path(known)
         except NotProvided as fault:
             raise CommandError(str(fault)) from fault
 
@@ -178,17 +198,27 @@ class Library:
         models = [self._model(folder, name, changed) for name, changed in _entries(folder)]
         return sorted(models, key=lambda model: str(model["title"]).lower())
 
-    def _model(self, folder: str, name: str, changed: float) -> Dict[str, Any]:
-        path = os.path.join(folder, name)
+    def _fuel_locations(self) -> List[Dict[str, Any]]:
+        """The Fuel caches as one location, which is there where they hold a model."""
+        models = [self._model(model.folder, "", _changed(model.folder), model.uri)
+                  for model in self._fuel.models()]
+        if not models:
+            return []
+        return [{"id": _FUEL, "title": "Fuel", "kind": _FUEL, "path": self._fuel.caches[0],
+                 "models": sorted(models, key=lambda model: str(model["title"]).lower()),
+                 "problem": None}]
+
+    def _model(self, folder: str, name: str, changed: float, uri: str = "") -> Dict[str, Any]:
+        path = os.path.join(folder, name) if name else folder
         with self._lock:
             known = self._models.get((path, changed))
         if known is None:
-            known = self._described(path, name, changed)
+            known = self._described(path, name or uri.rpartition("/")[2], changed, uri)
             with self._lock:
                 self._models[(path, changed)] = known
         return known
 
-    def _described(self, path: str, name: str, changed: float) -> Dict[str, Any]:
+    def _described(self, path: str, name: str, changed: float, uri: str) -> Dict[str, Any]:
         text = ""
         for config in _CONFIGS:
             try:
@@ -198,15 +228,19 @@ class Library:
                 break
             except OSError:
                 continue
-        uri = f"model://{name}"
-        try:
-            if os.path.realpath(self._resolver.resolve(uri)) != os.path.realpath(path):
-                uri = "file://" + path  # another folder has a model of that name
-        except NotFound:
-            uri = "file://" + path
+        uri = uri or self._uri(path, name)
         return {"uri": uri, "name": name, "title": _element(text, "name") or name,
                 "description": _element(text, "description"),
                 "thumb": self._thumb(path, uri, changed)}
+
+    def _uri(self, path: str, name: str) -> str:
+        try:
+            if os.path.realpath(self._resolver.resolve(f"model://{name}")) == os.path.realpath(
+                    path):
+                return f"model://{name}"
+        except NotFound:
+            pass  # the path will do
+        return "file://" + path  # another folder may have a model of that name
 
     def _thumb(self, path: str, uri: str, changed: float) -> str:
         folder = os.path.join(path, "thumbnails")
@@ -244,13 +278,20 @@ def _entries(folder: str) -> List[Tuple[str, float]]:
     for name in names:
         if name.startswith("."):
             continue
-        for config in (*_CONFIGS, *_DESCRIPTIONS):
-            try:
-                found.append((name, os.stat(os.path.join(folder, name, config)).st_mtime))
-                break
-            except OSError:
-                continue
+        changed = _changed(os.path.join(folder, name))
+        if changed:
+            found.append((name, changed))
     return found
+
+
+def _changed(folder: str) -> float:
+    """When the config of a model changed; 0 where the folder holds no model."""
+    for config in (*_CONFIGS, *_DESCRIPTIONS):
+        try:
+            return os.stat(os.path.join(folder, config)).st_mtime
+        except OSError:
+            continue
+    return 0.0
 
 
 def _element(text: str, tag: str) -> str:

@@ -7,6 +7,7 @@ from typing import Any, Callable, Dict, Optional
 
 from ..description.flatten import flattened
 from ..errors import CommandError, Issue
+from ..resources.fuel_uri import is_web_address
 from ..resources.resolver import Resolver
 from .client import Client
 from .document import Documents
@@ -85,7 +86,7 @@ class LibraryRequests:
 
     def _get(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         uri = message["uri"]
-        if not uri.startswith(("model://", "file://")):
+        if not uri.startswith(("model://", "file://")) and not is_web_address(uri):
             raise CommandError(f"{uri!r} is no URI of a model")
         self._library.provide(uri)
         entity, issues = entity_of_uri(uri, self._resolver)

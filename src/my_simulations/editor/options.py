@@ -26,6 +26,8 @@ class EditorOptions:
         port: to listen at; 0 takes a free one, and so does `DEFAULT_PORT` when it is taken.
         token: what requests from elsewhere must show.
         save_roots: folders below which worlds are opened and saved; None for the usual ones.
+        caller: folder in which the simulator's command was typed, among the usual ones; "" for the
+            working directory.
         log: hears of issues that belong to no request.
         web: folder of the page; "" for the package's own.
         config_dir: keeps the folders a user added to the library.
@@ -39,6 +41,7 @@ class EditorOptions:
     port: int = DEFAULT_PORT
     token: str = ""
     save_roots: Optional[List[str]] = None
+    caller: str = ""
     log: Callable[[Issue], None] = _ignore
     web: str = ""
     config_dir: str = field(default_factory=lambda: _xdg("XDG_CONFIG_HOME", "~/.config"))

@@ -12,12 +12,13 @@ from aiohttp import hdrs, web
 from ..errors import CommandError, InputError
 from ..resources.own import own_directory
 from ..simulator.safe_file import write_whole
+from .content_types import BYTES, PAGE, page_type, resource_type
 from .document import Documents
 from .options import EditorOptions
 from .served import SERVED
 
-_PAGE = {".html", ".css", ".js", ".mjs", ".json", ".svg", ".png", ".woff2", ".ico"}
 _SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL | re.IGNORECASE)
+_HOST = re.compile(r"[\w.-]+(:\d+)?\Z|\[[0-9a-fA-F:.]+\](:\d+)?\Z")
 _THUMB = re.compile(r"[0-9a-f]{16,64}\Z")
 _THUMB_BYTES = 2 << 20
 _PNG = b"\x89PNG\r\n\x1a\n"
@@ -65,7 +66,7 @@ class Pages:
             web.put("/upload/{name}", self._put_upload), web.get("/export/{name}", self._download),
         ]
 
-    async def _index(self, _request: web.Request) -> web.StreamResponse:
+    async def _index(self, request: web.Request) -> web.StreamResponse:
         path = os.path.join(self.web, "index.html")
         try:
             with open(path, encoding="utf-8") as stream:
@@ -73,23 +74,23 @@ class Pages:
         except OSError:
             raise web.HTTPNotFound(text="the editor's page is not installed\n") from None
         response = web.Response(text=text, content_type="text/html")
-        response.headers["Content-Security-Policy"] = _policy(text)
+        response.headers["Content-Security-Policy"] = _policy(text, request.host)
         response.headers[hdrs.CACHE_CONTROL] = "no-cache"
         return response
 
     async def _protocol(self, _request: web.Request) -> web.StreamResponse:
-        return _file(os.path.join(self.web, "protocol.json"))
+        return _page_file(os.path.join(self.web, "protocol.json"))
 
     async def _part(self, request: web.Request) -> web.StreamResponse:
         folder = os.path.join(self.web, request.match_info["part"])
-        return _file(_inside(folder, request.match_info["inside"], _PAGE))
+        return _page_file(_inside(folder, request.match_info["inside"]))
 
     async def _three(self, request: web.Request) -> web.StreamResponse:
         if not self._modules:
             raise web.HTTPNotFound(text="three is not installed: run tools/run, or `npm ci` in "
                                         "the folder web\n")
         folder = os.path.join(self._modules, "three")
-        return _file(_inside(folder, request.match_info["inside"], _PAGE | {".wasm"}))
+        return _page_file(_inside(folder, request.match_info["inside"]))
 
     async def _resource(self, request: web.Request) -> web.StreamResponse:
         path = self._documents.served.path(request.match_info["root"],
@@ -147,7 +148,7 @@ class Pages:
                                                     request.match_info["name"])
         except CommandError as fault:
             raise web.HTTPNotFound(text=f"{fault}\n") from None
-        return web.Response(body=data, content_type="application/octet-stream", headers={
+        return web.Response(body=data, content_type=BYTES, headers={
             hdrs.CONTENT_DISPOSITION: f'attachment; filename="{name}"'})
 
 
@@ -162,30 +163,39 @@ def node_modules(page: str) -> str:
                  if place and os.path.isdir(os.path.join(place, "three"))), "")
 
 
-def _policy(html: str) -> str:
-    """What the page may load: our own files, and the scripts that stand in it."""
+def _policy(html: str, host: str) -> str:
+    """What the page may load: our own files, the scripts that stand in it, and our own socket."""
     hashes = "".join(
         " 'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
         for text in _SCRIPT.findall(html))
+    # 'self' means no web socket in older browsers. A host that is no plain name is not passed on.
+    own = f" ws://{host} wss://{host}" if _HOST.match(host) else ""
     return (f"default-src 'self'; script-src 'self'{hashes}; style-src 'self' 'unsafe-inline'; "
-            "img-src 'self' data: blob:; connect-src 'self' data: blob: ws: wss:; "
+            f"img-src 'self' data: blob:; connect-src 'self' data: blob:{own}; "
             "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; "
             "frame-ancestors 'none'; form-action 'none'")
 
 
-def _inside(folder: str, inside: str, kinds: "set[str]") -> Optional[str]:
-    """A file below a folder, of one of these kinds; None else."""
+def _inside(folder: str, inside: str) -> Optional[str]:
+    """A file of the page below a folder; None else."""
+    if "\0" in inside:
+        return None
     real = os.path.realpath(folder)
     path = os.path.realpath(os.path.join(real, inside))
-    if not path.startswith(real + os.sep) or os.path.splitext(path)[1].lower() not in kinds:
+    if not path.startswith(real + os.sep) or os.path.splitext(path)[1].lower() not in PAGE:
         return None
     return path
 
 
-def _file(path: Optional[str]) -> web.StreamResponse:
+def _page_file(path: Optional[str]) -> web.StreamResponse:
+    return _file(path, page_type(path or ""))
+
+
+def _file(path: Optional[str], kind: str = "") -> web.StreamResponse:
     if path is None or not os.path.isfile(path):
         raise web.HTTPNotFound
-    return web.FileResponse(path, headers={hdrs.CACHE_CONTROL: "no-cache"})
+    return web.FileResponse(path, headers={hdrs.CACHE_CONTROL: "no-cache",
+                                           hdrs.CONTENT_TYPE: kind or resource_type(path)})
 
 
 async def _body(request: web.Request, largest: int) -> bytes:

@@ -1,7 +1,8 @@
 """Which files of this machine the page may have, and under which URL.
 
 Only pictures, meshes and materials, and only below a known root: the model and resource folders,
-the folders of ROS packages, the folder of the world. A link that leads out of its root is refused.
+the caches of Fuel models, the folders of ROS packages, the folder of the world. A link that leads
+out of its root is refused.
 """
 from __future__ import annotations
 
@@ -13,11 +14,8 @@ from typing import Dict, List, Optional
 from urllib.parse import quote
 
 from ..resources.resolver import Resolver
+from .content_types import MESHES, PICTURES, extension
 
-MESHES = {".dae", ".stl", ".obj", ".glb", ".gltf", ".ply", ".off", ".stla", ".stlb", ".mtl",
-          ".bin", ".3ds", ".fbx"}
-PICTURES = {".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tga", ".webp", ".dds", ".tif", ".tiff",
-            ".svg", ".hdr"}
 SERVED = MESHES | PICTURES
 
 _BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials", "textures"),
@@ -42,9 +40,9 @@ class ServedFiles:
 
     def url(self, path: str) -> Optional[str]:
         """The URL of a file; None for one that must not be served."""
-        if not path or os.path.splitext(path)[1].lower() not in SERVED:
+        real = os.path.realpath(path) if path else ""
+        if extension(path) not in SERVED or extension(real) not in SERVED:
             return None
-        real = os.path.realpath(path)
         root = self._root_of(real)
         if root is None:
             return None
@@ -78,14 +76,14 @@ class ServedFiles:
         their textures (Gazebo behaviour).
         """
         root = self._roots.get(root_id)
-        extension = os.path.splitext(inside)[1].lower()
-        if root is None or "\0" in inside or extension not in SERVED:
+        kind = extension(inside)
+        if root is None or "\0" in inside or kind not in SERVED:
             return None
         wanted = os.path.normpath(os.path.join(root, inside))
         if not _is_below(wanted, root):
             return None
         found = self._existing(wanted)
-        if found is None and extension in PICTURES:
+        if found is None and kind in PICTURES:
             folder, name = os.path.split(wanted)
             places = [os.path.normpath(os.path.join(folder, beside, name)) for beside in _BESIDE]
             places += [os.path.join(media, "materials", "textures", name)
@@ -110,7 +108,10 @@ class ServedFiles:
         return None
 
     def _existing(self, path: str) -> Optional[str]:
-        """The real path of a file that may be served; its name in any letter case."""
+        """The real path of a file that may be served; its name in any letter case.
+
+        A link may have the name of a picture and lead to something else.
+        """
         real = os.path.realpath(path)
         if not os.path.isfile(real):
             folder, name = os.path.split(real)
@@ -121,13 +122,15 @@ class ServedFiles:
             if not same:
                 return None
             real = os.path.realpath(os.path.join(folder, same[0]))
-        return real if os.path.isfile(real) and self._root_of(real) is not None else None
+        served = extension(real) in SERVED and os.path.isfile(real)
+        return real if served and self._root_of(real) is not None else None
 
     def _root_of(self, real: str) -> Optional[str]:
         """The root that holds a real path: the longest that fits."""
         with self._lock:
             more = list(self._more)
-        folders = [*self._resolver.model_folders(), *self._resolver.resource_folders(), *more]
+        folders = [*self._resolver.model_folders(), *self._resolver.resource_folders(),
+                   *self._resolver.fuel_folders(), *more]
         fitting = [root for root in map(os.path.realpath, folders) if _is_below(real, root)]
         if fitting:
             return max(fitting, key=len)

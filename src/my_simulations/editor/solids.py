@@ -9,8 +9,7 @@ from typing import Dict
 
 from ..description.shapes import Mesh, Solid, mesh_key
 from ..errors import InputError
-from ..formats.meshes import load_mesh
-from ..formats.solids import solid_mesh
+from ..formats.meshes import load_solid
 
 _KEPT = 16
 
@@ -51,7 +50,7 @@ class Solids:
 def _binary_stl(solid: Solid) -> bytes:
     import numpy as np
 
-    data = load_mesh(solid) if isinstance(solid, Mesh) else solid_mesh(solid)
+    data = load_solid(solid)
     corners = np.asarray(data.vertices)[np.asarray(data.triangles)]
     if not len(corners):
         raise InputError([])

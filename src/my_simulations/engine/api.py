@@ -69,8 +69,8 @@ class Engine(Protocol):
     def restart(self) -> None:
         """After a death: start anew on the same ring, empty; call from a long-lived thread."""
 
-    def kill(self) -> None:
-        """End it at once, as a crash would."""
+    def kill(self, reason: str = "") -> None:
+        """End it at once, as a crash would; `reason` is what `on_death` is told then."""
 
     @property
     def pid(self) -> int:

@@ -1,7 +1,9 @@
 """Convex parts of a mesh, for bodies that move: PyBullet lets only convex shapes do that.
 
-The work is done by `python -m my_simulations.engine.decompose FOLDER CPU_SECONDS`, a process of its
-own: it takes seconds, and V-HACD may crash. The simulation goes on meanwhile.
+What is convex already is taken as its hull at once. The rest is divided by
+`python -m my_simulations.engine.decompose FOLDER CPU_SECONDS`, a process of its own: it takes
+seconds, and V-HACD may crash. Only processor time limits it, so that a mesh gives the same parts
+on a busy machine.
 """
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ import signal
 import subprocess
 import sys
 import time
-from typing import Any, Callable, Dict, List, Optional
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Sequence
 
 from ..description.shapes import MeshData
 from ..errors import Issue, warning
@@ -28,11 +31,13 @@ _log = logging.getLogger(__name__)
 _VHACD: Dict[str, Any] = {"concavity": 0.0025, "alpha": 0.04, "resolution": 100000,
                           "planeDownsampling": 8, "convexhullDownsampling": 8,
                           "maxNumVerticesPerCH": 64}
-_VERSION = 1  # to be raised when the same mesh gives other parts than before
+_VERSION = 2  # to be raised when the same mesh gives other parts than before
 _PARAMETERS = f"{_VERSION} {sorted(_VHACD.items())!r}"
 _THICKNESS_M = (0.001, 0.01)  # of a mesh without volume: a hundredth of its extent within these
 _INPUT, _RESULT, _FALLBACK, _FAULTS = "mesh.npz", "result.parts", "hull.parts", "faults"
-_CPU_S = 60           # V-HACD never ends on some meshes, thin rings for one: then the hull it is
+_CPU_S = 30           # V-HACD never ends on some meshes, thin rings for one: then the hull it is
+_DEADLINE_S = 900.0   # only for work that stands still: what a busy machine does must not count
+_MOST_AT_ONCE = 20000  # triangles that are looked at in this process; more would hold it up
 _PROGRESS = re.compile(rb"^ *(\d+)% \[", re.MULTILINE)
 
 _FLAT, _NOT_DIVIDED = "mesh-flat", "mesh-not-decomposed"
@@ -43,47 +48,69 @@ _NOTICES = {
                    "hull", "close its openings, or give simpler collision shapes"),
 }
 
-_AS_HULL = "not divided: the mesh collides as its hull"
-
-Progress = Callable[[str], None]
+Progress = Callable[[int], None]
 
 
-def _silent(_: str) -> None:
+def _silent(_: int) -> None:
     return None
 
 
-def convex_parts(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: Progress = _silent,
-                 issues: Optional[List[Issue]] = None, deadline: float = 120.0,
-                 cpu_seconds: int = _CPU_S) -> List[MeshData]:
-    """Convex parts that together have the shape of a mesh, each of about 64 corners at most.
+def ready_parts(mesh: MeshData, *, cache_dir: Optional[str] = None) -> Optional[Decomposition]:
+    """The convex parts that are to be had at once; None when the mesh must be divided first.
 
-    A convex mesh gives its hull; a flat one a thin solid; one that cannot be divided, in
-    `deadline` s or at all, its hull. The call blocks: seconds for a new mesh, milliseconds for one
-    in the cache.
+    At once are those in the cache, and those of meshes that are convex, flat, or made of separate
+    convex pieces.
+    """
+    found = _cache(cache_dir).get(content_key(mesh, _PARAMETERS))
+    if found is not None or len(mesh.triangles) > _MOST_AT_ONCE:
+        return found
+    return _frame(mesh.vertices).parts_at_once(mesh.triangles)
+
+
+def divided(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: Progress = _silent,
+            deadline: float = _DEADLINE_S, cpu_seconds: int = _CPU_S) -> Decomposition:
+    """The convex parts of a mesh by V-HACD, which are kept; blocks for seconds.
+
+    Together they have the shape of the mesh; each has about 64 corners at most. A mesh that cannot
+    be divided, in `cpu_seconds` or at all, gives its hull.
 
     Args:
         mesh: finite vertices, metres; with or without openings.
         cache_dir: where the parts are kept; None for the user's cache folder (XDG).
-        progress: told in words how far a long piece of work is.
-        issues: takes the warnings `mesh-flat` and `mesh-not-decomposed`, without a file.
-        deadline: seconds that the work may take.
+        progress: told how many per cent are done.
+        deadline: seconds after which work that stands still is given up.
         cpu_seconds: processor time that it may take; a mesh that needs more is never tried again.
     """
-    cache = PartsCache(default_folder() if cache_dir is None else cache_dir)
-    key = content_key(mesh, _PARAMETERS)
-    made = cache.get(key)
-    if made is None:
-        try:
-            made, whole = _in_child(mesh, progress, time.monotonic() + deadline, cpu_seconds)
-        except OSError as fault:  # no room for files or for one more process
-            _log.warning("dividing a mesh was not possible: %s", fault)
-            made, whole = Decomposition([mesh], _NOT_DIVIDED), False
-        if whole:  # what only took too long may be done another time
-            cache.put(key, made)
-    if made.notice and issues is not None:
-        message, hint = _NOTICES.get(made.notice, _NOTICES[_NOT_DIVIDED])
-        issues.append(warning(made.notice, message, hint=hint))
-    return made.parts
+    try:
+        made, whole = _in_child(mesh, progress, time.monotonic() + deadline, cpu_seconds)
+    except OSError as fault:  # no room for files or for one more process
+        _log.warning("dividing a mesh was not possible: %s", fault)
+        return undivided(mesh)
+    if whole:  # what only took too long may be done another time
+        _cache(cache_dir).put(content_key(mesh, _PARAMETERS), made)
+    return made
+
+
+def undivided(mesh: MeshData) -> Decomposition:
+    """A mesh whose hull must do."""
+    return Decomposition([mesh], _NOT_DIVIDED)
+
+
+def notices(made: Decomposition) -> List[Issue]:
+    """The warning that goes with a decomposition, if there is one; without a file."""
+    if not made.notice:
+        return []
+    message, hint = _NOTICES.get(made.notice, _NOTICES[_NOT_DIVIDED])
+    return [warning(made.notice, message, hint=hint)]
+
+
+def kept_in(cache_dir: Optional[str] = None) -> str:
+    """The folder in which parts are kept."""
+    return default_folder() if cache_dir is None else cache_dir
+
+
+def _cache(cache_dir: Optional[str]) -> PartsCache:
+    return PartsCache(kept_in(cache_dir))
 
 
 def _in_child(mesh: MeshData, progress: Progress, end: float,
@@ -91,33 +118,37 @@ def _in_child(mesh: MeshData, progress: Progress, end: float,
     """The work of a child process, and whether it came to its end in time."""
     import numpy as np
 
-    progress(f"dividing a mesh of {len(mesh.triangles)} triangles into convex parts")
-    started = time.monotonic()
     with Scratch() as scratch:
         folder = scratch.path
         np.savez(os.path.join(folder, _INPUT), vertices=mesh.vertices, triangles=mesh.triangles)
         in_time = _run(folder, progress, end, cpu_seconds)
         for name in (_RESULT, _FALLBACK):
             try:
-                made = load(os.path.join(folder, name))
+                return load(os.path.join(folder, name)), in_time
             except (OSError, ValueError) as fault:
                 _log.debug("no decomposition in %s: %s", name, fault)
-                continue
-            count, took = len(made.parts), time.monotonic() - started
-            progress(_AS_HULL if made.notice == _NOT_DIVIDED else
-                     f"{count} convex part{'s' if count > 1 else ''} found in {took:.1f} s")
-            return made, in_time
-    progress(_AS_HULL)
-    return Decomposition([mesh], _NOT_DIVIDED), False
+    return undivided(mesh), False
 
 
 def _run(folder: str, progress: Progress, end: float, cpu_seconds: int) -> bool:
     """Run the child; False when it had to be killed because its time was over."""
     faults = os.path.join(folder, _FAULTS)
-    with open(faults, "wb") as stream, subprocess.Popen(
-            child_process.command("engine.decompose", folder, str(cpu_seconds)),
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
-            env=child_process.environment()) as child:
+    with open(faults, "wb") as stream:
+        with child_process.shielded():
+            started = subprocess.Popen(
+                child_process.command("engine.decompose", folder, str(cpu_seconds)),
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
+                env=child_process.environment())
+        in_time = _watched(started, progress, end)
+    if in_time and started.returncode not in (0, -signal.SIGXCPU):
+        with open(faults, "rb") as said:
+            _log.warning("dividing a mesh ended with code %s: %s", started.returncode,
+                         said.read()[-2000:].decode(errors="replace").strip())
+    return in_time
+
+
+def _watched(started: "subprocess.Popen[bytes]", progress: Progress, end: float) -> bool:
+    with started as child:
         assert child.stdout is not None
         try:
             in_time = _follow(child.stdout.fileno(), progress, end)
@@ -125,10 +156,6 @@ def _run(folder: str, progress: Progress, end: float, cpu_seconds: int) -> bool:
                 child.wait()
         finally:
             child.kill()
-    if in_time and child.returncode not in (0, -signal.SIGXCPU):
-        with open(faults, "rb") as said:
-            _log.warning("dividing a mesh ended with code %s: %s", child.returncode,
-                         said.read()[-2000:].decode(errors="replace").strip())
     return in_time
 
 
@@ -147,7 +174,7 @@ def _follow(output: int, progress: Progress, end: float) -> bool:
         for found in _PROGRESS.findall(lines):
             if int(found) >= told + 10:
                 told = int(found)
-                progress(f"dividing into convex parts: {told} %")
+                progress(told)
 
 
 def main(argv: List[str]) -> int:
@@ -168,30 +195,54 @@ def main(argv: List[str]) -> int:
     return 0
 
 
+@dataclass(frozen=True)
+class _Frame:
+    """A mesh centred, its longest edge 1, and the way back."""
+
+    points: Any
+    centre: Any
+    size: float
+
+    def result(self, solids: Sequence[Any], notice: str = "") -> Decomposition:
+        """Solids in this frame as parts in the mesh's."""
+        return Decomposition([MeshData(solid.vertices * self.size + self.centre, solid.faces)
+                              for solid in solids], notice)
+
+    def parts_at_once(self, triangles: Any) -> Optional[Decomposition]:
+        """The parts of what need not be divided; None for other meshes."""
+        from . import decompose_hulls as hulls
+
+        if hulls.is_flat(self.points):
+            least, most = _THICKNESS_M
+            thickness = min(max(self.size / 100, least), most) / self.size
+            return self.result([hulls.thickened(self.points, thickness)], _FLAT)
+        mesh = hulls.cleaned(self.points, triangles)
+        if not len(mesh.faces):
+            return self.result([hulls.hull_of(self.points)], _NOT_DIVIDED)
+        if hulls.is_convex(mesh):
+            return self.result([hulls.hull_of(mesh.vertices)])
+        pieces = hulls.convex_pieces(mesh)
+        return self.result(pieces) if pieces else None
+
+
+def _frame(vertices: Any) -> _Frame:
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    centre, size = (low + high) / 2, max(float((high - low).max()), 1e-9)
+    return _Frame((vertices - centre) / size, centre, size)
+
+
 def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
     from . import decompose_hulls as hulls
 
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    centre, size = (low + high) / 2, max(float((high - low).max()), 1e-9)
-    points = (vertices - centre) / size
-
-    def result(solids: List[Any], notice: str = "") -> Decomposition:
-        return Decomposition([
-            MeshData(solid.vertices * size + centre, solid.faces) for solid in solids], notice)
-
-    if hulls.is_flat(points):
-        least, most = _THICKNESS_M
-        thickness = min(max(size / 100, least), most) / size
-        return result([hulls.thickened(points, thickness)], _FLAT)
-    hull = hulls.hull_of(points)
-    save(os.path.join(folder, _FALLBACK), result([hull], _NOT_DIVIDED))
-    mesh = hulls.cleaned(points, triangles)
-    if not len(mesh.faces):
-        return result([hull], _NOT_DIVIDED)
-    if hulls.is_convex(mesh):
-        return result([hull])
-    pieces = hulls.convex_pieces(mesh) or _divided(mesh, folder)
-    return result(pieces) if pieces else result([hull], _NOT_DIVIDED)
+    frame = _frame(vertices)
+    if len(triangles) > _MOST_AT_ONCE:  # else it is known to need dividing
+        made = frame.parts_at_once(triangles)
+        if made is not None:
+            return made
+    hull = hulls.hull_of(frame.points)
+    save(os.path.join(folder, _FALLBACK), frame.result([hull], _NOT_DIVIDED))
+    pieces = _divided(hulls.cleaned(frame.points, triangles), folder)
+    return frame.result(pieces) if pieces else frame.result([hull], _NOT_DIVIDED)
 
 
 def _divided(mesh: Any, folder: str) -> List[Any]:

@@ -6,7 +6,10 @@ from typing import Any, List, NamedTuple, Optional
 MOST_VERTICES = 64
 """Of one convex part; contacts cost time for each."""
 
-_SAME_VOLUME = 0.01  # a mesh that fills its hull up to this share is convex
+_SAME_VOLUME = 0.02  # a mesh that fills its hull up to this share is convex: V-HACD's own error
+_SAME_AREA = 0.02    # share of its hull's area that a mesh may leave open
+_ON_HULL = 1e-4      # distance from a hull's face for each metre of extent, to lie on it
+_MOST_PAIRS = 4e6    # of faces and hull planes that are compared
 _FLAT = 1e-4         # thickness for each metre of extent, below which a mesh has no volume
 _PROJECTIONS = 50    # onto one face of a hull after the other
 _SHORT = 0.03        # of the extent
@@ -123,11 +126,40 @@ def _principal(points: Any) -> Any:
 
 
 def is_convex(mesh: Any) -> bool:
-    """Whether a closed mesh fills its hull within 1 %; one with openings is never convex."""
-    if not mesh.is_watertight or is_flat(mesh.vertices):
+    """Whether a mesh is its own hull but for 2 % of its volume.
+
+    One with openings is convex when it covers every face of its hull, as a box does whose corners
+    lie a hair apart.
+    """
+    if is_flat(mesh.vertices):
         return False
-    volume = full_hull(mesh.vertices).volume
-    return abs(volume - abs(float(mesh.volume))) <= _SAME_VOLUME * volume
+    hull = full_hull(mesh.vertices)
+    if mesh.is_watertight:
+        return abs(hull.volume - abs(float(mesh.volume))) <= _SAME_VOLUME * hull.volume
+    return _covers(mesh, hull)
+
+
+def _covers(mesh: Any, hull: Hull) -> bool:
+    """Whether the triangles of a mesh that lie on a hull leave next to none of it open."""
+    import numpy as np
+
+    planes, face_of = np.unique(np.round(hull.planes, 6), axis=0, return_inverse=True)
+    if len(planes) * len(mesh.faces) > _MOST_PAIRS:
+        return False
+    hull_areas = np.bincount(face_of.reshape(-1), _areas(hull.vertices[hull.faces]), len(planes))
+    corners = mesh.vertices[mesh.faces]
+    reach = float(np.ptp(mesh.vertices, axis=0).max())
+    off = np.abs(corners @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+    covered = (off <= _ON_HULL * reach).T @ _areas(corners)
+    open_area = np.maximum(hull_areas - covered, 0.0).sum()
+    return bool(open_area <= _SAME_AREA * hull_areas.sum())
+
+
+def _areas(corners: Any) -> Any:
+    import numpy as np
+
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.linalg.norm(normals, axis=1) / 2.0
 
 
 def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
@@ -135,8 +167,6 @@ def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
     import numpy as np
     from trimesh.graph import connected_components
 
-    if not mesh.is_watertight:
-        return None
     groups = connected_components(mesh.face_adjacency, nodes=np.arange(len(mesh.faces)))
     if not 0 < len(groups) <= _MOST_PIECES:
         return None

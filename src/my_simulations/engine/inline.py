@@ -114,14 +114,15 @@ class InlineEngine:
         self.rung.clear()
         return rung
 
-    def kill(self) -> None:
+    def kill(self, reason: str = "") -> None:
         """Drop the backend as a crash would, with what has no answer yet."""
+        reason = reason or "the engine was killed"
         self._stop()
         with self._lock:
             waiting, self._waiting = self._waiting, {}
-        self._on_death("the engine was killed", [command for command, _ in waiting.values()])
+        self._on_death(reason, [command for command, _ in waiting.values()])
         for _, future in waiting.values():
-            future.set_exception(EngineGone("the engine was killed"))
+            future.set_exception(EngineGone(reason))
 
     def close(self) -> None:
         """End it."""

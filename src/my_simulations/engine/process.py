@@ -11,12 +11,12 @@ import subprocess
 import threading
 from collections import OrderedDict
 from concurrent.futures import Future
-from typing import Callable, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 from . import child
 from . import ring as ring_module
 from .api import EngineGone, Event, Reply
-from .commands import Command
+from .commands import Command, SetJoints, SetLinkState, SetModelState
 from .ring import RingReader
 from .scratch import sweep
 from .wire import Wire
@@ -41,6 +41,7 @@ class ProcessEngine:
         self._waiting: "OrderedDict[int, Tuple[Command, Future[Reply]]]" = OrderedDict()
         self._numbers = 0
         self._closing = False
+        self._verdict = ""
         self._event_listener: Callable[[Event], None] = _ignore_event
         self._death_listener: Callable[[str, List[Command]], None] = _ignore_death
         self._child: Optional[subprocess.Popen[bytes]] = None
@@ -74,7 +75,7 @@ class ProcessEngine:
         """
         ours, theirs = socket.socketpair()
         descriptors = (theirs.fileno(), self._ring_fd, self._bell_in)
-        with self._lock:
+        with self._lock, child.shielded():
             self._child = subprocess.Popen(
                 child.command("engine", *map(str, descriptors)),
                 pass_fds=descriptors, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -112,9 +113,10 @@ class ProcessEngine:
             return False
         return True
 
-    def kill(self) -> None:
-        """End the child at once, as a crash would."""
+    def kill(self, reason: str = "") -> None:
+        """End the child at once, as a crash would; `reason` is told instead of the signal."""
         if self._child is not None and self._child.poll() is None:
+            self._verdict = reason
             self._child.kill()
 
     def close(self) -> None:
@@ -158,10 +160,32 @@ class ProcessEngine:
                 self._wire = None
             waiting, self._waiting = self._waiting, OrderedDict()
             wire.sock.close()
+        shown = answer_shown(self._ring, waiting)
+        reason = self._verdict or _reason(process.returncode)
+        self._verdict = ""
         if not self._closing:
-            self._death_listener(_reason(process.returncode), [c for c, _ in waiting.values()])
+            self._death_listener(reason, [c for c, _ in waiting.values()])
+        for future, reply in shown:
+            future.set_result(reply)
         for _, future in waiting.values():
-            future.set_exception(EngineGone(_reason(process.returncode)))
+            future.set_exception(EngineGone(reason))
+
+
+def answer_shown(ring: RingReader, waiting: "Dict[int, Tuple[Command, Future[Reply]]]"
+                 ) -> "List[Tuple[Future[Reply], Reply]]":
+    """Take those out of `waiting` whose effect the last whole snapshot shows, with their replies.
+
+    An engine may die after it has carried a command out and before it has said so. The world is
+    put back as in that snapshot, so what changes only states did take effect, and must not be done
+    again. What changes more than states is not in a snapshot.
+    """
+    applied, found = ring.applied, []
+    for number in [n for n in waiting if n <= applied]:
+        command, future = waiting[number]
+        if isinstance(command, (SetModelState, SetLinkState, SetJoints)):
+            del waiting[number]
+            found.append((future, Reply(ring.step, ring.latest)))
+    return found
 
 
 def _reason(code: int) -> str:

@@ -37,11 +37,12 @@ _SLOT_WORDS = -(-(HEAD_WORDS + _LINK_WORDS + _JOINT_WORDS) * 8 // _PAGE) * _PAGE
 SIZE = _PAGE + (SLOTS + POSE_SLOTS) * _SLOT_WORDS * 8
 
 # Words of the control page. The first group is the engine's, the second the simulator's.
-STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER = range(6)
+STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER, PROGRESS = range(7)
 DEMAND_NS, BELL, POSE_DEMAND_NS = 8, 9, 10
 
 # Words of a slot's head.
-SEQ_BEGIN, SEQ_END, SLOT_STEP, EPOCH_STEP, EPOCH_NS, STEP_PS, USED_LINKS, USED_JOINTS = range(8)
+(SEQ_BEGIN, SEQ_END, SLOT_STEP, EPOCH_STEP, EPOCH_NS, STEP_PS, USED_LINKS, USED_JOINTS,
+ APPLIED) = range(9)
 
 STATUS_PAUSED, STATUS_RUNNING = 0, 1
 
@@ -150,13 +151,17 @@ class RingWriter:
         """The world is `step` steps old; the latest slot still holds unless a new one follows."""
         self.words[STEP] = step
 
-    def write(self, step: int, clock: Clock, links: Buffer, joints: Buffer) -> int:
+    def write(self, step: int, clock: Clock, links: Buffer, joints: Buffer,
+              applied: int = 0) -> int:
         """Write a snapshot and return its sequence.
 
-        `links` and `joints` are the used rows as raw doubles.
+        `links` and `joints` are the used rows as raw doubles; `applied` is the number up to which
+        the commands have been carried out.
         """
         sequence = self.words[LATEST] + 1
+        self.words[self.memory.slot(sequence) + APPLIED] = 0  # until the rest is whole
         self._fill(self.memory.slot(sequence), sequence, step, clock, links, joints)
+        self.words[self.memory.slot(sequence) + APPLIED] = applied
         self.words[LATEST] = sequence
         self.words[POSES_ARE_NEWER] = 0
         self.words[STEP] = step
@@ -198,6 +203,11 @@ class RingReader:
     def latest(self) -> int:
         """Sequence of the newest whole snapshot; 0 before the first."""
         return self.words[LATEST]
+
+    @property
+    def applied(self) -> int:
+        """Number up to which the newest snapshot shows the effect of commands; 0 for unknown."""
+        return self.words[self.memory.slot(self.words[LATEST]) + APPLIED]
 
     @property
     def changes(self) -> int:

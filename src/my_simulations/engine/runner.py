@@ -29,6 +29,7 @@ from .ring import (
     HEARTBEAT,
     LATEST,
     POSE_DEMAND_NS,
+    PROGRESS,
     STATUS,
     STATUS_PAUSED,
     STATUS_RUNNING,
@@ -76,6 +77,7 @@ class Runner:
         self._settings = PhysicsSettings()
         self._clock = Clock(0, 0, picoseconds(self._settings.step_size))
         self._step = 0
+        self._applied = 0
         self._running = False
         self._horizon = 0
         self._reported_horizon = -1
@@ -122,16 +124,21 @@ class Runner:
         if not commands:
             return False
         answers = []
+        refused = False
         for number, command in commands:
             try:
                 value = self._apply(number, command)
                 if not isinstance(command, Advance):
                     answers.append((number, value, ""))
+                    # What comes after a refusal is not vouched for: one number says it all.
+                    self._applied = self._applied if refused else number
             except Refused as refusal:
+                refused = True
                 answers.append((number, None, str(refusal)))
             except Broken:
                 raise
             except Exception as fault:  # a fault of the engine's own must not end the world
+                refused = True
                 traceback.print_exc()
                 answers.append((number, None, f"the physics engine failed: {fault!r}"))
         sequence = self._write(force=True)
@@ -141,6 +148,7 @@ class Runner:
         return True
 
     def _apply(self, number: int, command: Command) -> object:
+        self._words[PROGRESS] += 1
         if isinstance(command, Batch):
             return [self._apply(number, part) for part in command.commands]
         if isinstance(command, Run):
@@ -287,7 +295,7 @@ class Runner:
         if not (changed or force):
             return self._words[LATEST]
         links, joints = self._backend.tables()
-        sequence = self._writer.write(self._step, self._clock, links, joints)
+        sequence = self._writer.write(self._step, self._clock, links, joints, self._applied)
         if force and self._words[BELL]:
             self._channel.bell()
         return sequence

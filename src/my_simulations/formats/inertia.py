@@ -1,22 +1,40 @@
-"""An inertia for links whose file leaves some of it out, by zeros in its tensor.
+"""An inertia for links whose file gives none that a body can have.
 
-Gazebo loads such links. Care-O-bot's furniture has tensors of zeros, and files that care about one
-axis only give its moment and zeros for the others. What the author left open is taken from the
-shapes, or is as little as a body can have; ODE, which cannot invert such a tensor, goes on with
-1 kg m^2 about each axis, whatever the size of the body.
+Gazebo loads such links: ODE, which cannot invert the tensor, goes on with 1 kg m^2 about each axis
+(`dBodySetMass`), and so do we. Only what is merely left out, by zeros, is filled in better: from
+the shapes, or with as little as a body can have. Care-O-bot's furniture has tensors of zeros, and
+files that care about one axis only give its moment and zeros for the others.
 """
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import List, Optional, Tuple
+from typing import Any, List, Optional, Tuple
 
-from ..description.model import Inertial
+from ..description.model import Inertial, Link
 from ..description.shapes import Box, Collision, Cylinder, Geometry, Sphere
+from ..description.validate import is_positive_definite, tensor_text
+from .source import Source
 from .urdf_lump import merged
 
 _LEAST = 1e-3
 """The least moment, of the largest one: a rod a hundred times as long as it is wide."""
+
+
+def usable(link: Link, source: Source, element: Any) -> Inertial:
+    """The inertia of a link that can move, or one that can be simulated, with a warning."""
+    inertial = link.inertial
+    better = completed(inertial, link.collisions)
+    if better is not None:
+        source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}", element)
+        return better[0]
+    if is_positive_definite(inertial) or inertial.mass <= 0:
+        return inertial
+    source.tolerate("inertia-not-positive", f"the inertia of link {link.name!r} is not positive"
+                    " definite; 1 kg m^2 about each axis is used, as by ODE:"
+                    f" {tensor_text(inertial)}", element,
+                    "a body's principal moments of inertia are all above 0")
+    return replace(inertial, ixx=1.0, iyy=1.0, izz=1.0, ixy=0.0, ixz=0.0, iyz=0.0)
 
 
 def completed(inertial: Inertial,

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Tuple, Union
+from typing import Any, List, Sequence, Tuple, Union
 
 from ..description.model import Model
 from ..description.world import Actor, Light, World
@@ -15,6 +15,7 @@ from .sdf_scene import read_actor
 from .sdf_versions import upgrade
 from .sdf_world import read_world_element
 from .source import Level, Log, Source
+from .tables import closest
 from .xmltext import content, parse
 
 Text = Union[str, bytes]
@@ -51,10 +52,12 @@ def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, se
     """
     source, root = _open(text, resolver, file)
     if root.tag not in _SDF_ROOTS:
-        raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root)
+        raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root,
+                        _meant(root, ("sdf", "gazebo", "world")))
     element = root.find("world")
     if element is None:
-        raise _unusable(source, "world-missing", "the file holds no <world>", root)
+        raise _unusable(source, "world-missing", "the file holds no <world>", root,
+                        _child_meant(root, ("world",)))
     world = read_world_element(element, source, seed, profile)
     if len(root.findall("world")) > 1:
         source.warn("world-many", "the file holds several worlds; the first is used", root)
@@ -93,7 +96,9 @@ def read_entity(text: Text, resolver: Resolver,
     elif root.tag in _SDF_ROOTS:
         entity = _first_entity(root, source)
     else:
-        hint = "put it into <sdf version='1.7'>…</sdf>" if root.tag in ("model", "light") else ""
+        hint = ("put it into <sdf version='1.7'>…</sdf>"
+                if root.tag in ("model", "light", "world") else
+                _meant(root, ("sdf", "robot", "world", "model", "light")))
         raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
                         root, hint)
     return entity, source.log.issues
@@ -133,7 +138,22 @@ def _first_entity(root: Any, source: Source) -> Entity:
                 return found.model
             if isinstance(found, LightPlacement):
                 return found.light
-    raise _unusable(source, "model-missing", "the document holds no model and no light", root)
+    raise _unusable(source, "model-missing", "the document holds no world, no model and no light",
+                    root, _child_meant(root, ("world", "model", "light", "include", "actor")))
+
+
+def _meant(element: Any, known: Sequence[str]) -> str:
+    """A hint about an element whose name is unknown: the one it may be a misspelling of."""
+    return closest(element.tag.lower() if isinstance(element.tag, str) else "", list(known))
+
+
+def _child_meant(root: Any, known: Sequence[str]) -> str:
+    """The same for the children of the root, with the line of the first that looks like one."""
+    for child in root:
+        hint = _meant(child, known)
+        if hint:
+            return f"line {child.sourceline} has <{child.tag}>; {hint}"
+    return ""
 
 
 def _name_if_missing(element: Any, source: Source) -> Changes:

@@ -18,6 +18,7 @@ _PLACES = {"translate", "rotate", "scale", "matrix"}
 _NODE = _PLACES | {"node", "instance_geometry", "instance_node"}
 _PRIMITIVES = {"triangles", "trifans", "tristrips", "polylist", "polygons"}
 _NO_INDEX = re.compile(r"[^\s\d+]+")
+_LARGE_INDEX = re.compile(r"0*[1-9]\d{9,}")  # of a thousand million and more
 _NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
 
 
@@ -195,6 +196,10 @@ def _tidy_primitive(primitive: Any, positions: Dict[str, Any]) -> bool:
         bad = _NO_INDEX.search(element.text or "")
         if bad:
             raise MeshFault(f"<{_local(element)}>: {bad.group()!r} is not part of an index",
+                            element.sourceline)
+        large = _LARGE_INDEX.search(element.text or "")
+        if large:  # pycollada makes a negative one of it
+            raise MeshFault(f"<{_local(element)}>: there is no vertex {large.group()}",
                             element.sourceline)
     for entry in primitive.iterfind("{*}input"):
         entry.set("offset", entry.get("offset") or "0")

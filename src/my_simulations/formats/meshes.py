@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any, Callable, Iterator, List, Optional, Tuple
 
 from ..description.model import Link, Model
-from ..description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, mesh_key
-from ..errors import InputError, Issue, error
+from ..description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
+from ..errors import InputError, Issue, Severity, error
 from .mesh_part import MeshFault, MeshPart
 from .mesh_size import odd_size
 from .solids import solid_mesh
@@ -37,12 +37,29 @@ def load_mesh(mesh: Mesh) -> MeshData:
                    mesh.center)
 
 
+def load_solid(solid: Solid) -> MeshData:
+    """The triangles of a mesh, a terrain, a map image or a polygon.
+
+    Whatever its file holds, the fault is that file's: a reader's own exception is one, too.
+
+    Raises:
+        InputError: with one issue; see `load_mesh` and `solids.solid_mesh`.
+    """
+    try:
+        return load_mesh(solid) if isinstance(solid, Mesh) else solid_mesh(solid)
+    except InputError:
+        raise
+    except Exception as fault:
+        raise _fault("mesh-unreadable", "the shape cannot be read: "
+                     f"{type(fault).__name__}: {fault}", getattr(solid, "path", "")) from fault
+
+
 def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
-    """What the collisions of a model need, by `mesh_key`, and an error for each that cannot be had.
+    """What the collisions of a model need, by `mesh_key`, and a warning for each that is not had.
 
     A collision whose mesh is not in the table cannot be simulated; `without_missing_meshes` leaves
-    such ones out. Nested models are included. A mesh whose size looks like a lost unit gets a
-    warning, `mesh-size-odd`.
+    such ones out, as Gazebo does. Nested models are included. A mesh whose size looks like a lost
+    unit gets a warning, `mesh-size-odd`.
     """
     table: MeshTable = {}
     issues: List[Issue] = []
@@ -52,12 +69,13 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
             continue
         found: List[Issue] = []
         try:
-            data = load_mesh(mesh) if isinstance(mesh, Mesh) else solid_mesh(mesh)
+            data = load_solid(mesh)
             table[mesh_key(mesh)] = data
             if isinstance(mesh, Mesh):
                 found = odd_size(mesh, data, moves=not model.static)
         except InputError as fault:
-            found = fault.issues
+            found = [replace(issue, message=f"{issue.message}; it is left out", tolerated=True,
+                             severity=Severity.WARNING) for issue in fault.issues]
         where = f"collision {collision.name!r} of link {scope + link.name!r}"
         issues += [replace(issue, message=f"{where}: {issue.message}") for issue in found]
     return table, issues
@@ -149,7 +167,10 @@ def _to_data(parts: List[MeshPart], path: str, scale: Tuple[float, float, float]
 
     if not sum(len(part.triangles) for part in parts):
         raise _fault("mesh-empty", "the mesh has no faces", path)
-    vertices, triangles = _joined(parts)
+    try:
+        vertices, triangles = _joined(parts)
+    except MeshFault as fault:
+        raise _fault(fault.code, f"the mesh cannot be read: {fault}", path) from None
     if not np.isfinite(vertices).all():
         raise _fault("mesh-not-finite", "the mesh has vertices that are not finite numbers", path)
     if center:
@@ -170,6 +191,8 @@ def _joined(parts: List[MeshPart]) -> Tuple[Any, Any]:
     vertices, triangles, first = [], [], 0
     for part in parts:
         used, inverse = np.unique(part.triangles, return_inverse=True)
+        if len(used) and (used[0] < 0 or used[-1] >= len(part.vertices)):
+            raise MeshFault("a triangle names a vertex that does not exist")
         vertices.append(part.vertices[used])
         triangles.append(inverse.reshape(-1, 3) + first)
         first += len(used)

@@ -11,7 +11,7 @@ from ..geometry import IDENTITY, Pose, compose, inverse
 from .sdf_frames import FrameFault, FrameTree
 from .sdf_joint import Pending, place_axes, reverse_axes
 from .sdf_links import relative_to
-from .source import Level, Source
+from .source import Source
 
 
 class Between:
@@ -29,20 +29,20 @@ class Between:
         self._source = source
 
     def connect(self, one: Pending) -> bool:
-        """Complete the joint; False, with an error, where it cannot be used."""
+        """Complete the joint; False, with an issue, where it cannot be used."""
         joint = one.joint
         parent, child = self._link(joint.parent, one), self._link(joint.child, one)
         if parent is None or child is None:
-            self._source.report(Level.ERROR, "joint-link-unknown", f"joint {joint.name!r} connects"
-                                f" {joint.parent!r} with {joint.child!r}, which are not both in the"
-                                " world", one.element)
+            self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} connects"
+                                  f" {joint.parent!r} with {joint.child!r}, which are not both in"
+                                  " the world; it is left out", one.element)
             return False
         joint.parent, joint.child = parent, child
         try:
             self._place(one)
         except FrameFault as fault:
-            self._source.report(Level.ERROR, "frame-unknown", f"joint {joint.name!r}: {fault}",
-                                one.element)
+            self._source.tolerate("frame-unknown", f"joint {joint.name!r}: {fault}; it is left out",
+                                  one.element)
             return False
         return True
 

@@ -8,7 +8,9 @@ from typing import Any, Callable, List, Optional, Sequence, Union
 
 from ..description.world import Actor, Light
 from ..errors import InputError
+from ..geometry import IDENTITY
 from ..resources.resolver import NotFound
+from .sdf_flags import Said
 from .sdf_light import LightPlacement, read_light
 from .sdf_model import Changes, Placement, read_model, read_plugin, relative_to
 from .sdf_scene import read_actor
@@ -37,6 +39,8 @@ def read_include(element: Any, source: Source, static: bool = False,
         source.report(Level.ERROR, "include-uri-missing", "<include> has no <uri>; it is left out",
                       element)
         return None
+    if probe.pose is None and element.find("pose") is not None:
+        probe.pose = IDENTITY  # an empty one, too, replaces that of the model
     changes = Changes(
         probe.name or None, probe.pose, relative_to(found), probe.static,
         [read_plugin(plugin) for plugin in found.get("plugin", ())],
@@ -46,11 +50,14 @@ def read_include(element: Any, source: Source, static: bool = False,
     try:
         path = source.resolver.model_file(probe.uri, source.base_dir)
     except NotFound as missing:
-        source.report(
-            Level.ERROR, "model-not-found", f"the included model {missing}", element,
-            hint="install it in ~/.gazebo/models or a folder of GAZEBO_MODEL_PATH, or name a"
-                 " model database in GAZEBO_MODEL_DATABASE_URI",
-        )
+        hint = (source.resolver.meant(missing) + "install it in ~/.gazebo/models or a folder of"
+                " GAZEBO_MODEL_PATH, or name a model database in GAZEBO_MODEL_DATABASE_URI")
+        if outer:
+            source.tolerate("model-not-found", f"the included model {missing}; model {outer[-1]!r}"
+                            " goes without it", element, hint)
+        else:
+            source.report(Level.ERROR, "model-not-found", f"the included model {missing}", element,
+                          hint)
         return None
     return _read_file(path, element, source, changes, read, probe.uri)
 
@@ -86,7 +93,8 @@ def _read_file(path: str, element: Any, source: Source, changes: Changes,
 
         model = read_robot(root, inner, changes)
         model.uri = uri
-        return Placement(model, changes.relative_to)
+        said = Said(static=True if model.static else None)
+        return Placement(model, changes.relative_to, said=said)
     for child in root:
         if child.tag == "model":
             placement = read(child, inner, changes)

@@ -12,7 +12,7 @@ from .sdf_frames import FrameFault
 from .sdf_tables import AXIS, AXIS2, JOINT
 from .sdf_versions import WORLD_AXES
 from .source import Level, Source
-from .tables import Found, Table, Value, closest, fill, to_xml
+from .tables import REFUSED, Found, Table, Value, closest, fill, read_text, to_xml
 from .values import FLOAT, TEXT, VECTOR3
 
 
@@ -133,21 +133,43 @@ def _default_axes(joint: Joint, element: Any, source: Source) -> None:
         joint.axis2 = joint.axis2 or JointAxis((0.0, 1.0, 0.0))
     elif joint.type in _TWO_AXES and joint.axis is not None and joint.axis2 is None:
         joint.axis2 = JointAxis()
+    elif joint.axis is None and joint.type in ("revolute", "continuous", "prismatic", "screw",
+                                               "revolute2", "gearbox"):
+        source.tolerate("joint-axis-missing", f"joint {joint.name!r} of type {joint.type} has no"
+                        " axis; the x axis of its child link is used, as by ODE", element)
 
 
 def _type(element: Any, source: Source) -> str:
     name = element.get("name", "")
     joint_type: str = (element.get("type") or "").strip()
     if not joint_type:
-        source.report(Level.FATAL, "joint-type-missing", f"joint {name!r} has no type", element)
+        source.report(Level.ERROR, "joint-type-missing", f"joint {name!r} has no type; it is left"
+                      " out", element)
     elif joint_type == "piston":
         source.warn("joint-unsupported", f"joint {name!r}: the type piston is not moved", element,
                     "it was dropped from the format; use prismatic")
     elif joint_type not in JOINT_TYPES:
-        source.report(Level.FATAL, "joint-type-unknown",
-                      f"joint {name!r} has the unknown type {joint_type!r}", element,
-                      closest(joint_type, list(JOINT_TYPES)))
+        source.tolerate("joint-type-unknown", f"joint {name!r} has the unknown type"
+                        f" {joint_type!r}; it is left out", element,
+                        closest(joint_type, list(JOINT_TYPES)))
     return joint_type
+
+
+def is_whole(one: Pending, source: Source) -> bool:
+    """False for a joint that Gazebo does not make, either, for what it says itself."""
+    joint = one.joint
+    if joint.type not in (*JOINT_TYPES, "piston"):
+        return False  # `read_joint` has said so
+    missing = [role for role in ("parent", "child") if not getattr(joint, role)]
+    if missing:
+        source.report(Level.ERROR, "joint-link-missing", f"joint {joint.name!r} has no"
+                      f" {' and no '.join(missing)} link; it is left out", one.element)
+    elif joint.parent == joint.child:
+        source.tolerate("joint-link-repeated", f"joint {joint.name!r} connects {joint.child!r} with"
+                        " itself; it is left out", one.element)
+    else:
+        return True
+    return False
 
 
 def place_axes(
@@ -165,20 +187,23 @@ def place_axes(
     if joint.type == "fixed":
         joint.axis = joint.axis2 = None  # files often keep an axis there; it means nothing
         return
+    if joint.axis is None and joint.type != "ball":
+        joint.axis = JointAxis(rotate(conjugate(joint.pose.orientation), (1.0, 0.0, 0.0)))
+        joint.axis2 = JointAxis() if joint.type in _TWO_AXES else None
     for which, axis in (("axis", joint.axis), ("axis2", joint.axis2)):
         for xyz in found.get(f"{which}/xyz", ()) if axis is not None else ():
             vector = _vector(xyz, source)
-            if vector is None or norm(vector) < 1e-12:
-                source.report(Level.FATAL, "joint-axis-zero",
-                              f"the {which} of joint {joint.name!r} has no direction", xyz)
-                continue
             expressed_in = xyz.get("expressed_in") or ""
+            if norm(vector) < 1e-12:
+                source.tolerate("joint-axis-zero", f"the {which} of joint {joint.name!r} has no"
+                                " direction; the x axis of the world is used, as by ODE", xyz)
+                vector, expressed_in = (1.0, 0.0, 0.0), WORLD_AXES
             if expressed_in:
                 try:
                     vector = _in_joint(vector, expressed_in, joint, pose_of, model_turn)
                 except FrameFault as fault:
-                    source.report(Level.FATAL, "frame-unknown", f"joint {joint.name!r}: {fault}",
-                                  xyz)
+                    source.tolerate("frame-unknown", f"joint {joint.name!r}: {fault}; the {which}"
+                                    " is taken in the joint's own frame", xyz)
             assert axis is not None
             axis.xyz = _unit(vector)
 
@@ -189,15 +214,12 @@ def _unit(vector: Vec3) -> Vec3:
     return vector if abs(length - 1.0) < 1e-13 else scale(vector, 1.0 / length)
 
 
-def _vector(xyz: Any, source: Source) -> Optional[Vec3]:
+def _vector(xyz: Any, source: Source) -> Vec3:
     text = (xyz.text or "").strip()
     if not text:
         return (0.0, 0.0, 1.0)
-    try:
-        return VECTOR3.parse(text)
-    except ValueError as fault:
-        source.report(Level.FATAL, "bad-value", f"<xyz>: {fault}", xyz)
-        return None
+    vector = read_text(VECTOR3, text, "<xyz>", xyz, source, Level.FATAL)
+    return (0.0, 0.0, 1.0) if vector is REFUSED else vector
 
 
 def _in_joint(vector: Vec3, expressed_in: str, joint: Joint, pose_of: PoseOf,

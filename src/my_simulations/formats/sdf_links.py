@@ -1,11 +1,11 @@
 """SDF links: inertia, shapes, and the frames their poses are given in."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Set, Tuple
+from typing import Any, Container, Dict, List, Sequence, Set, Tuple
 
-from ..description.model import Inertial, Link
+from ..description.model import WORLD, Inertial, Link
 from ..description.shapes import Heightmap, ImageMap
-from .inertia import completed
+from .inertia import usable
 from .sdf_frames import FrameTree
 from .sdf_shapes import read_collision, read_visual
 from .sdf_tables import INERTIAL, LINK
@@ -25,6 +25,7 @@ class LinkReader:
 
     Attributes:
         elements: by id of what was made of them.
+        world: what the link that the file calls `world` is called, "" where there is none.
         given_in: (thing with a pose, frame it is given in, link it belongs to, "" for none).
     """
 
@@ -33,17 +34,43 @@ class LinkReader:
         self._frames = frames
         self.elements: Dict[int, Any] = {}
         self.given_in: List[Tuple[Any, str, str]] = []
+        self.world = ""
+        self._taken: Set[str] = set()
 
-    def read(self, element: Any, static: bool) -> Link:
+    def read_all(self, elements: Sequence[Any], static: bool) -> List[Link]:
+        """The links of the model, each under a name of its own."""
+        known = {element.get("name", "") for element in elements}
+        return [self.read(element, static, known) for element in elements]
+
+    def _name(self, element: Any, known: Set[str]) -> str:
+        """The link's name, another one where it is taken or means the world.
+
+        Gazebo keeps both of two links of one name, and joints find the first.
+        """
+        name: str = element.get("name", "")
+        if name == WORLD:
+            self.world = name = free_name(WORLD, known)
+            self._source.tolerate("name-reserved", f"a link is named 'world', which joints mean the"
+                                  f" world by; it is called {name!r}", element)
+        elif name and name in self._taken:
+            name = free_name(name, known)
+            self._source.tolerate("name-repeated", f"there are two links named"
+                                  f" {element.get('name')!r}; the second is called {name!r}",
+                                  element, "names are unique within a model")
+        known.add(name)
+        self._taken.add(name)
+        return name
+
+    def read(self, element: Any, static: bool, known: Set[str]) -> Link:
         """A link. Source: SDF spec 1.7, link."""
         source = self._source
-        link = Link(element.get("name", ""))
+        link = Link(self._name(element, known))
         self.elements[id(link)] = element
         found = fill(link, element, LINK, source, link.extra)
         self._frames.add(link.name, link.pose, relative_to(found), element, link.name)
         if relative_to(found):
             self.given_in.append((link, link.name, ""))
-        for child in found.get("inertial", ()):
+        for child in found.get("inertial", ())[:1]:
             link.inertial = Inertial()
             # A static model ignores its inertia, whatever it says (SDF spec, model/static).
             inside = fill(link.inertial, child, INERTIAL, source, link.extra,
@@ -70,12 +97,9 @@ class LinkReader:
         return link
 
     def _complete_inertia(self, link: Link) -> None:
-        better = completed(link.inertial, link.collisions)
-        if better is not None:
-            element = self.elements[id(better[0])] = self.elements[id(link.inertial)]
-            link.inertial = better[0]
-            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}",
-                              element)
+        element = self.elements[id(link.inertial)]
+        link.inertial = usable(link, self._source, element)
+        self.elements[id(link.inertial)] = element
 
     def _note_pose(self, thing: Any, found: Found, link: Link) -> None:
         frame = relative_to(found)
@@ -98,6 +122,14 @@ class LinkReader:
                 )
                 item.name = name
             used.add(name)
+
+
+def free_name(wanted: str, taken: Container[str]) -> str:
+    """`wanted_1`, or the first such name that is not taken."""
+    count = 1
+    while f"{wanted}_{count}" in taken:
+        count += 1
+    return f"{wanted}_{count}"
 
 
 def must_stand(link: Link) -> bool:

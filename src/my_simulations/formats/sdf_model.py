@@ -1,19 +1,21 @@
 """SDF models: links, joints, nested models, and the frames that place them."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import enum
+from dataclasses import dataclass, field, replace
 from typing import Any, List, Optional, Sequence, Set, Tuple
 
 from ..description.model import WORLD, Link, Model, PluginSpec
 from ..description.validate import faults, link_names
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose, inverse
+from .sdf_flags import Said, first_link, says, settle
 from .sdf_frames import FrameFault, FrameTree
-from .sdf_joint import Pending, place_axes, read_joint, reverse_axes
-from .sdf_links import LinkReader, must_stand, relative_to
+from .sdf_joint import Pending, is_whole, place_axes, read_joint, reverse_axes
+from .sdf_links import LinkReader, free_name, must_stand, relative_to
 from .sdf_tables import FRAME, MODEL
-from .source import Level, Source
-from .tables import Found, fill, to_xml
+from .source import Source
+from .tables import closest, fill, to_xml
 
 ROOT = "__model__"
 
@@ -39,12 +41,14 @@ class Placement:
         relative_to: the frame its pose is given in, "" for the parent's.
         frames: those inside it; None for one from a URDF file.
         pending: joints with a link that is not its own, for the outer model to look for.
+        said: what it says of itself as a whole, for a model that includes it.
     """
 
     model: Model
     relative_to: str = ""
     frames: Optional[FrameTree] = None
     pending: List[Pending] = field(default_factory=list)
+    said: Said = Said()
 
 
 def read_model(element: Any, source: Source, changes: Optional[Changes] = None,
@@ -65,6 +69,14 @@ def read_model(element: Any, source: Source, changes: Optional[Changes] = None,
 def read_plugin(element: Any) -> PluginSpec:
     """A `<plugin>`, kept whole."""
     return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element))
+
+
+class _End(enum.Enum):
+    """Where the links of a joint are: in this model, perhaps in one around it, or nowhere."""
+
+    HERE = 1
+    ELSEWHERE = 2
+    NOWHERE = 3
 
 
 class _ModelReader:
@@ -88,18 +100,18 @@ class _ModelReader:
         found = fill(model, element, MODEL, source, model.extra)
         placement = Placement(model, relative_to(found), self._frames)
         self._apply(changes, placement)
+        included = self._read_includes(found.get("include", ()), model, placement)
         static = model.static or self._outer_static
         model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
         model.plugins += changes.plugins
-        model.links = [self._links.read(child, static) for child in found.get("link", ())]
+        model.links = self._links.read_all(found.get("link", ()), static)
         self._stand_still(model, static)
         for child in found.get("frame", ()):
             self._frame(child)
-        waiting = self._nested(found, model, static)
-        joints = [Pending(*read_joint(child, source), child) for child in found.get("joint", ())]
-        for own in joints:
-            model.joints.append(own.joint)
-        model.joints += [one.joint for one in waiting]
+        waiting = self._nested(found.get("model", ()), included, model, static)
+        joints = self._read_joints(found.get("joint", ()))
+        model.canonical_link = model.canonical_link or first_link(
+            element, {child: inner.model for child, inner in included})
         self._frames.body = model.canonical_link or next(link_names(model), "")
         names = set(link_names(model))
         for one in (*joints, *waiting):
@@ -109,10 +121,9 @@ class _ModelReader:
                              one.scoped(relative_to(one.found)) or self._joint_base(one.joint),
                              one.element, self._joint_base(one.joint))
         self._place(model)
-        placement.pending = [one for one in (*joints, *waiting)
-                             if not self._place_joint(one, model, names)]
-        model.joints = [joint for joint in model.joints
-                        if all(joint is not one.joint for one in placement.pending)]
+        ends = [(one, self._place_joint(one, model, names)) for one in (*joints, *waiting)]
+        model.joints = [one.joint for one, end in ends if end is _End.HERE] + model.joints
+        placement.pending = [one for one, end in ends if end is _End.ELSEWHERE]
         self._put_by(element.get("placement_frame") or "", model)
         self._check(model)
         return placement
@@ -123,8 +134,6 @@ class _ModelReader:
             model.name = changes.name
         if changes.pose is not None:
             model.pose, placement.relative_to = changes.pose, changes.relative_to
-        if changes.static is not None:
-            model.static = changes.static
 
     def _stand_still(self, model: Model, static: bool) -> None:
         for link in model.links:
@@ -143,28 +152,57 @@ class _ModelReader:
         self._frames.add(probe.name, probe.pose, relative_to(found) or attached, element, attached)
         self._declared.append((probe.name, element))
 
-    def _nested(self, found: Found, model: Model, static: bool) -> List[Pending]:
-        """Models in this one; returns their joints that want links of this one."""
+    def _read_includes(self, elements: Sequence[Any], model: Model,
+                       placement: Placement) -> List[Tuple[Any, Placement]]:
+        """The models that are included in this one; settles what they say of the whole."""
         from .sdf_include import read_include
 
+        included: List[Tuple[Any, Placement]] = []
+        placement.said = says(model, self._element)
+        for child in elements:
+            static = model.static or self._outer_static
+            inner = read_include(child, self._source, static, (*self._outer, model.name))
+            if isinstance(inner, Placement):
+                included.append((child, inner))
+                placement.said = settle(model, self._element,
+                                        [(one, other.said) for one, other in included],
+                                        self._source)
+                self._obey(placement)
+        self._obey(placement)
+        return included
+
+    def _obey(self, placement: Placement) -> None:
+        """What an include says of this model counts before all that the model says."""
+        if self._changes.static is not None:
+            placement.model.static = self._changes.static
+            placement.said = replace(placement.said, static=self._changes.static)
+
+    def _nested(self, elements: Sequence[Any], included: Sequence[Tuple[Any, Placement]],
+                model: Model, static: bool) -> List[Pending]:
+        """Put models into this one; returns their joints that want links of this one."""
         path = (*self._outer, model.name)
         waiting: List[Pending] = []
-        for child in found.get("model", ()):
+        for child in elements:
             placement = read_model(child, self._source, static=static, outer=path, alone=False)
             waiting += self._adopt(placement, child, model)
-        for child in found.get("include", ()):
-            included = read_include(child, self._source, static=static, outer=path)
-            if not isinstance(included, Placement):
-                continue
+        for child, placement in included:
             if (child.get("merge") or "").strip().lower() in ("true", "1"):
-                self._merge(included, child, model)
+                self._merge(placement, child, model)
             else:
-                waiting += self._adopt(included, child, model)
+                placement.model.static = model.static  # as `sdf_flags` settled it
+                waiting += self._adopt(placement, child, model)
         return waiting
 
     def _adopt(self, placement: Placement, element: Any, model: Model) -> List[Pending]:
         inner = placement.model
         self._elements[id(inner)] = element
+        taken = {one.name for one in model.models}
+        if inner.name in taken:
+            free = free_name(inner.name, taken)
+            self._source.tolerate("name-repeated", f"there are two models named {inner.name!r} in"
+                                  f" {model.name!r}; the second is called {free!r}", element,
+                                  "names are unique within a model")
+            inner.name = free
         model.models.append(inner)
         body = inner.canonical_link or next(link_names(inner), "")
         self._frames.add(inner.name, inner.pose, placement.relative_to, element,
@@ -195,6 +233,26 @@ class _ModelReader:
         model.plugins += inner.plugins
         model.extra += [xml for xml in inner.extra if not xml.startswith("<frame")]
 
+    def _read_joints(self, elements: Sequence[Any]) -> List[Pending]:
+        """Those that Gazebo makes, too: of two with one name the first."""
+        joints: List[Pending] = []
+        taken: Set[str] = set()
+        for element in elements:
+            one = Pending(*read_joint(element, self._source), element)
+            joint = one.joint
+            if self._links.world:
+                for role in ("parent", "child"):
+                    if getattr(joint, role) == WORLD:
+                        setattr(joint, role, self._links.world)
+            if joint.name and joint.name in taken:
+                self._source.tolerate("name-repeated", f"there are two joints named {joint.name!r};"
+                                      " the second is left out", element,
+                                      "names are unique within a model")
+            elif is_whole(one, self._source):
+                taken.add(joint.name)
+                joints.append(one)
+        return joints
+
     def _joint_base(self, joint: Any) -> str:
         return joint.child if joint.child in self._frames and joint.child != WORLD else ROOT
 
@@ -223,33 +281,40 @@ class _ModelReader:
         for thing, frame, link in self._links.given_in:
             element = self._elements[id(thing)]
             pose = self._pose_of(frame, element)
+            if pose is None:
+                continue  # as it is written
             if link:
-                pose = compose(inverse(self._pose_of(link, element)), compose(pose, thing.pose))
+                base = self._pose_of(link, element) or IDENTITY
+                pose = compose(inverse(base), compose(pose, thing.pose))
             thing.pose = pose
         for name, element in self._declared:
             self._pose_of(name, element)
             self._body_of(name, element)
 
-    def _pose_of(self, frame: str, element: Any) -> Pose:
+    def _pose_of(self, frame: str, element: Any) -> Optional[Pose]:
+        """None, with an issue, for a frame without a pose: Gazebo takes what is written then."""
         try:
             return self._frames.pose(frame)
         except FrameFault as fault:
-            self._source.report(Level.FATAL, "frame-unknown", str(fault), element)
-            return IDENTITY
+            self._source.tolerate("frame-unknown", f"{fault}; the pose of this <{element.tag}> is"
+                                  " taken without it", element)
+            return None
 
     def _body_of(self, name: str, element: Any) -> str:
         try:
             return self._frames.body_of(name)
         except FrameFault as fault:
-            self._source.report(Level.FATAL, "frame-unknown", str(fault), element)
+            self._source.tolerate("frame-unknown", f"{fault}; this <{element.tag}> is attached to"
+                                  " the model", element)
             return name
 
-    def _place_joint(self, one: Pending, model: Model, names: Set[str]) -> bool:
-        """Bring a joint to its child link's frame; False where an outer model must be asked."""
+    def _place_joint(self, one: Pending, model: Model, names: Set[str]) -> "_End":
+        """Bring a joint to its child link's frame, where both its links are known."""
         joint, element = one.joint, one.element
-        at = self._pose_of(joint.name, element) if joint.child in self._frames or (
-            joint.child == WORLD) else IDENTITY
-        moved = bool(relative_to(one.found))
+        at: Optional[Pose] = IDENTITY
+        if joint.child in self._frames or joint.child == WORLD:
+            at = self._pose_of(joint.name, element)
+        moved = bool(relative_to(one.found)) and at is not None
         for role in ("parent", "child"):
             name = getattr(joint, role)
             if name not in names and name != WORLD and name in self._frames:
@@ -258,19 +323,27 @@ class _ModelReader:
         ends = (joint.parent, joint.child)
         strangers = [name for name in ends if name and name != WORLD and name not in names]
         if strangers:
-            # Who is alone reports it with the other faults of the model.
-            return self._alone or not (self._outer or any("::" in name for name in strangers))
+            if not self._alone and (self._outer or any("::" in name for name in strangers)):
+                return _End.ELSEWHERE
+            self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} names"
+                                  f" {' and '.join(map(repr, strangers))}, which the model does not"
+                                  " have; the joint is left out", element,
+                                  closest(strangers[0], sorted(names)))
+            return _End.NOWHERE
         if joint.child == WORLD and joint.parent in names:
             # The description knows the world as a parent only.
             joint.parent, joint.child = WORLD, joint.parent
-            joint.pose = compose(inverse(self._pose_of(joint.child, element)), at)
+            joint.pose = self._from(joint.child, at or IDENTITY, element)
             place_axes(joint, one.found, self._source, self._pose_in(one), model.pose.orientation)
             reverse_axes(joint)
         elif joint.child in names:
             if moved:
-                joint.pose = compose(inverse(self._pose_of(joint.child, element)), at)
+                joint.pose = self._from(joint.child, at or IDENTITY, element)
             place_axes(joint, one.found, self._source, self._pose_in(one), model.pose.orientation)
-        return True
+        return _End.HERE
+
+    def _from(self, frame: str, at: Pose, element: Any) -> Pose:
+        return compose(inverse(self._pose_of(frame, element) or IDENTITY), at)
 
     def _pose_in(self, one: Pending) -> Any:
         """Poses by the names used where the joint was written, and by full names."""
@@ -284,7 +357,8 @@ class _ModelReader:
         """The pose of the model is that of its placement frame. Source: SDF spec 1.8."""
         frame = self._changes.placement_frame or frame
         if frame:
-            model.pose = compose(model.pose, inverse(self._pose_of(frame, self._element)))
+            model.pose = compose(model.pose,
+                                 inverse(self._pose_of(frame, self._element) or IDENTITY))
 
     def _check(self, model: Model) -> None:
         """The faults of the finished model, at the places they come from."""

@@ -19,7 +19,7 @@ from ..description.validate import geometry_fault, has_zero_size
 from ..resources.resolver import NotFound
 from .sdf_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
 from .source import Level, Source
-from .tables import BAD, Found, closest, fill, to_xml
+from .tables import BAD, REFUSED, Found, closest, fill, read_text, to_xml
 from .values import VECTOR2
 
 
@@ -110,11 +110,10 @@ def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: Lev
     for shape in shapes:
         loop: List[Tuple[float, float]] = []
         for point in shape.iterfind("point") if shape.tag == "polyline" else ():
-            try:
-                loop.append(VECTOR2.parse(point.text or ""))
-            except ValueError as fault:
-                source.report(level, "bad-value", f"<point>: {fault}", point)
+            found = read_text(VECTOR2, point.text or "", "<point>", point, source, level)
+            if found is REFUSED:
                 return False
+            loop.append(found)
         if len(loop) > 1 and max(abs(loop[0][0] - loop[-1][0]), abs(loop[0][1] - loop[-1][1])
                                  ) < _CLOSED:
             loop.pop()
@@ -141,14 +140,31 @@ def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optio
     if isinstance(geometry, (Mesh, Heightmap, ImageMap)) and not find_mesh(
             geometry, shape, source, collides):
         return None
+    if isinstance(geometry, Mesh):
+        _thicken(geometry, shape, owner, source)
     problem = geometry_fault(geometry)
     if problem:
         # ODE never lets a geometry of size 0 touch anything: files use them as place-holders.
         mild = not collides or has_zero_size(geometry)
-        source.report(Level.WARNING if mild else Level.ERROR, "bad-shape",
-                      f"{problem}; this {owner} is left out", shape)
+        say = source.warn if mild else source.tolerate
+        say("bad-shape", f"{problem}; this {owner} is left out", shape)
         return None
     return geometry
+
+
+THINNEST_SCALE = 1e-3
+"""What a mesh without thickness keeps of it; Gazebo's triangles collide when they lie flat, too."""
+
+
+def _thicken(mesh: Mesh, shape: Any, owner: str, source: Source) -> None:
+    """A mesh scaled flat stays a thin one, on which things can lie; one scaled to a point goes."""
+    if 0.0 not in mesh.scale or not any(mesh.scale):
+        return
+    shown = " ".join(f"{value:g}" for value in mesh.scale)
+    x, y, z = (value or THINNEST_SCALE for value in mesh.scale)
+    mesh.scale = (x, y, z)
+    source.tolerate("scale-zero", f"the scale {shown} makes the mesh of this {owner} flat;"
+                    f" {THINNEST_SCALE:g} is used for 0", shape)
 
 
 def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Source,
@@ -162,10 +178,10 @@ def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Sour
     except NotFound as missing:
         owner = "collision" if collides else "visual"
         kind = "mesh" if isinstance(mesh, Mesh) else "image"
-        source.report(
-            Level.ERROR if collides else Level.WARNING, f"{kind}-not-found",
-            f"the {kind} of this {owner} {missing}", element,
-            hint="check the path, GAZEBO_MODEL_PATH and ROS_PACKAGE_PATH",
-        )
+        say = source.tolerate if collides else source.warn
+        without = "; this collision is left out" if collides else ""
+        say(f"{kind}-not-found", f"the {kind} of this {owner} {missing}{without}", element,
+            hint=source.resolver.meant(missing) + "check the path, GAZEBO_MODEL_PATH and"
+                 " ROS_PACKAGE_PATH")
         return not collides
     return True

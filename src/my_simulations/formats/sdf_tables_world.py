@@ -151,6 +151,9 @@ class TwistKind:
     def format(self, value: Twist) -> str:
         return f"{VECTOR3.format(value.linear)} {VECTOR3.format(value.angular)}"
 
+    def salvage(self, text: str) -> Twist:
+        raise ValueError("not a twist")
+
 
 class Nanoseconds:
     """`sec nsec`, or plain seconds, as whole nanoseconds."""
@@ -163,6 +166,9 @@ class Nanoseconds:
 
     def format(self, value: int) -> str:
         return f"{value // 10 ** 9} {value % 10 ** 9}"
+
+    def salvage(self, text: str) -> int:
+        return round(SECONDS.salvage(text) * 1e9)
 
 
 _NS: Any = Nanoseconds()

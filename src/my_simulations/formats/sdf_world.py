@@ -11,7 +11,7 @@ from ..geometry import is_finite
 from .sdf_between import Between
 from .sdf_frames import FrameFault, FrameTree
 from .sdf_include import read_include
-from .sdf_joint import Pending, read_joint
+from .sdf_joint import Pending, is_whole, read_joint
 from .sdf_light import LightPlacement, read_light
 from .sdf_model import (
     Placement,
@@ -24,7 +24,7 @@ from .sdf_population import read_population
 from .sdf_scene import read_surroundings
 from .sdf_state import read_state
 from .sdf_tables import FRAME, PHYSICS, WORLD
-from .source import Level, Source
+from .source import Source
 from .state import state_issues
 from .tables import Found, fill, to_xml
 from .values import BOOL
@@ -60,7 +60,7 @@ class _Entities:
         self._waiting: List[Any] = []  # (model or light, element)
         self._found = found
         self._inner: List[Tuple[Placement, Any]] = []
-        self._pending: List[Tuple[Pending, Model]] = []
+        self._pending: List[Pending] = []
 
     def read(self, element: Any) -> None:
         readers: Dict[str, Callable[[Any], Any]] = {
@@ -94,7 +94,7 @@ class _Entities:
                 self._world.models.append(model)
                 self._frames.add(model.name, model.pose, entity.relative_to, element)
                 self._inner.append((entity, element))
-                self._pending += [(one.moved_out(model.name), model) for one in entity.pending]
+                self._pending += [one.moved_out(model.name) for one in entity.pending]
                 if entity.relative_to:
                     self._waiting.append((model, element))
         elif isinstance(entity, LightPlacement):
@@ -136,13 +136,11 @@ class _Entities:
         between = Between(links, self._frames, self._source)
         for element in joints:
             one = Pending(*read_joint(element, self._source), element)
+            if is_whole(one, self._source) and between.connect(one):
+                self._world.joints.append(one.joint)
+        for one in self._pending:
             if between.connect(one):
                 self._world.joints.append(one.joint)
-        for one, model in self._pending:
-            if between.connect(one):
-                self._world.joints.append(one.joint)
-            elif model in self._world.models:
-                self._world.models.remove(model)
 
     def _place(self) -> None:
         for entity, element in self._waiting:
@@ -150,12 +148,8 @@ class _Entities:
             try:
                 entity.pose = self._frames.pose(name)
             except FrameFault as fault:
-                self._source.report(Level.ERROR, "frame-unknown", f"{entity.name!r} is left out:"
-                                    f" {fault}", element)
-                if isinstance(entity, Model):
-                    self._world.models.remove(entity)
-                else:
-                    self._world.lights.remove(entity)
+                self._source.tolerate("frame-unknown", f"{fault}; the pose of {entity.name!r} is"
+                                      " taken in the world", element)
 
 
 def _read_physics(elements: Sequence[Any], world: World, source: Source, profile: str) -> None:
@@ -205,5 +199,5 @@ def _check_physics(physics: Physics, element: Any, source: Source) -> None:
     elif physics.ode.iters < 1:
         positive, physics.ode.iters = "ode/solver/iters", usual.ode.iters
     if positive:
-        source.report(Level.ERROR, "physics-range", f"{positive} is out of range; the default is"
-                      " used", element)
+        source.tolerate("physics-range", f"{positive} is out of range; the default is used",
+                        element)

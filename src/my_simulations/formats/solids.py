@@ -67,15 +67,16 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
     """
     import numpy as np
 
-    model = elevations(path)
-    levels = grey_levels(path) if model is None else model.heights
-    if min(levels.shape) < 2:
-        raise _fault("solid-empty", "a terrain needs an image of at least 2 by 2 pixels", path)
+    model = elevations(path, _WIDEST)
     if model is not None:
         levels, size = _to_scale(model, size)
-    elif size[2] < 0:
-        levels = 1.0 - levels
-    levels = _refined(_thinned(levels), sampling)[::-1]
+    else:
+        grey = grey_levels(path, _WIDEST)
+        levels = grey.values / grey.white
+        levels = 1.0 - levels if size[2] < 0 else levels
+    if min(levels.shape) < 2:
+        raise _fault("solid-empty", "a terrain needs an image of at least 2 by 2 pixels", path)
+    levels = _refined(levels, sampling)[::-1]
     rows, columns = levels.shape
     x = np.linspace(-size[0] / 2, size[0] / 2, columns)
     y = np.linspace(-size[1] / 2, size[1] / 2, rows)
@@ -90,18 +91,13 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
 
 def _to_scale(model: Elevations, size: Vec3) -> Tuple[Any, Vec3]:
     """Heights as the collision has them, in metres, and the extent with a height of 1."""
-    low, high = float(model.heights.min()), float(model.heights.max())
+    low, high = model.lowest, model.highest
     if size == Heightmap().size:
-        x, y = model.extent or (float(model.heights.shape[1]), float(model.heights.shape[0]))
+        x, y = model.extent or (float(model.shape[1]), float(model.shape[0]))
         return model.heights, (x, y, 1.0)
     factor = abs(size[2]) / (high - low) if high > low else 1.0
     heights = low + (model.heights - low) * factor
     return (-heights if size[2] < 0 else heights), (size[0], size[1], 1.0)
-
-
-def _thinned(levels: Any) -> Any:
-    step = -(-(max(levels.shape) - 1) // (_WIDEST - 1))
-    return levels[::step, ::step] if step > 1 else levels
 
 
 def _refined(levels: Any, sampling: int) -> Any:
@@ -125,7 +121,8 @@ def _refined(levels: Any, sampling: int) -> Any:
 def _plan(path: str, changed: int, scale: float, threshold: int, height: float,
           granularity: int) -> MeshData:
     """Dark pixels as boxes on z = 0, centred on the origin, the image's top row at +y."""
-    dark = grey_levels(path)[::-granularity, ::granularity] * 255.0 < threshold
+    grey = grey_levels(path, step=granularity)
+    dark = grey.values[::-1] < threshold * (grey.white / 255.0)
     boxes = _rectangles(dark)
     if not boxes:
         raise _fault("solid-empty", f"no pixel of the map is darker than {threshold}", path)

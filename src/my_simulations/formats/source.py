@@ -99,6 +99,13 @@ class Source:
         """Note a fault that Gazebo, too, would only mention."""
         self.report(Level.WARNING, code, message, element, hint)
 
+    def tolerate(
+        self, code: str, message: str, element: Optional[Any] = None, hint: str = ""
+    ) -> None:
+        """Note a fault that was read as Gazebo reads it; the message says what was done instead."""
+        self.log.add(Issue(Severity.WARNING, code, message, hint=hint, tolerated=True,
+                           **self.where(element)))
+
     def tell_unused(self, element: Any) -> None:
         """Say, once for each kind, that elements of this kind are kept and do nothing here."""
         told_apart_by = _TOLD_APART_BY.get(element.tag)

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import enum
 import functools
+import math
 from dataclasses import dataclass, field, fields
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Set, Tuple, Union
 
 from .source import Level, Source
-from .values import UNSET, Kind
+from .values import LIMIT, UNSET, Kind
 
 
 class Use(enum.Enum):
@@ -99,6 +100,7 @@ class Table:
         level: what a value that cannot be read means, where the value itself does not say.
         known_attributes: names read elsewhere.
         use: what becomes of what does not say itself.
+        strict: values are refused unless whole, as URDF's are; SDF's are read as Gazebo does.
     """
 
     name: str
@@ -108,6 +110,7 @@ class Table:
     level: Level = Level.ERROR
     known_attributes: Tuple[str, ...] = ()
     use: Use = Use.SIMULATED
+    strict: bool = False
 
     def values(self) -> Iterator[Tuple[str, Value, Any]]:
         """(path, value, default) of every value; attributes as `@name`; for writers and tests."""
@@ -173,7 +176,7 @@ def fill(target: Any, element: Any, table: Table, source: Source, extra: List[st
 
 
 def set_value(target: Any, value: Value, text: str, element: Any, name: str, source: Source,
-              level: Level) -> bool:
+              level: Level, strict: bool = False) -> bool:
     """Set one field from text; an empty or unset text changes nothing.
 
     Args:
@@ -184,6 +187,7 @@ def set_value(target: Any, value: Value, text: str, element: Any, name: str, sou
         name: for the issue: the tag, or `@attribute`.
         source: where faults go.
         level: what a text that cannot be read means.
+        strict: whether a text that is not wholly a value cannot be read.
 
     Returns:
         False when the text could not be read; the field is as it was.
@@ -191,20 +195,57 @@ def set_value(target: Any, value: Value, text: str, element: Any, name: str, sou
     text = text.strip()
     if not text or text == UNSET:
         return True
-    try:
-        parsed = value.kind.parse(text)
-    except ValueError as fault:
-        shown = f"attribute {name[1:]} of <{element.tag}>" if name[0] == "@" else f"<{name}>"
-        hint = "the text is xacro; expand it with the xacro command first" if "${" in text else ""
-        source.report(level, "bad-value", f"{shown}: {fault}", element, hint)
-        return False
     if value.part:
         target = getattr(target, value.part)
+    shown = f"attribute {name[1:]} of <{element.tag}>" if name[0] == "@" else f"<{name}>"
+    parsed = read_text(value.kind, text, shown, element, source, level, strict)
+    if parsed is REFUSED:
+        return False
+    if parsed is DEFAULT:
+        return True
     if value.repeated:
         getattr(target, value.field).append(parsed)
     else:
         setattr(target, value.field, parsed)
     return True
+
+
+REFUSED, DEFAULT = object(), object()
+"""For a text that is no value, and for a value that cannot be used, so that its default is."""
+
+
+def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, level: Level,
+              strict: bool = False) -> Any:
+    """The value of a text, `REFUSED` or `DEFAULT`.
+
+    Args:
+        kind: how it is read.
+        text: the text.
+        shown: what the issue calls the element or attribute.
+        element: where it stands.
+        source: where faults go.
+        level: what a text that cannot be read means.
+        strict: whether a text that is not wholly a value cannot be read.
+    """
+    try:
+        return kind.parse(text)
+    except ValueError as refusal:
+        fault = refusal
+    hint = "the text is xacro; expand it with the xacro command first" if "${" in text else ""
+    try:
+        if strict or hint:
+            raise fault
+        value = kind.salvage(text)
+    except ValueError:
+        source.report(level, "bad-value", f"{shown}: {fault}", element, hint)
+        return REFUSED
+    endless = isinstance(value, float) and not math.isfinite(value)
+    if endless and (kind is not LIMIT or value != value):
+        source.tolerate("value-not-finite", f"{shown}: {fault}; its default is used", element)
+        return DEFAULT
+    source.tolerate("value-odd", f"{shown}: {fault}; read as {kind.format(value)!r}, as Gazebo"
+                    " reads it", element)
+    return value
 
 
 _MOST_UNKNOWN = 500
@@ -231,23 +272,38 @@ class _Filler:
                 self._set(target, known, text, element, f"@{name}")
             elif name not in more and ":" not in name and name[0] != "{":
                 self._unknown(f"attribute {name}", name, element, [*attributes, *more])
+        seen: Set[str] = set()
         for child in element:
             tag = child.tag
             entry = children.get(tag)
-            if entry.__class__ is Value:
+            if tag in seen:
+                self._repeated(child, element)
+            elif entry.__class__ is Value:
+                if not entry.repeated:  # type: ignore[union-attr]
+                    seen.add(tag)
                 self._set(target, entry, child.text or "", child, tag)  # type: ignore[arg-type]
                 if tag == "pose" and child.attrib:
                     self._found.setdefault("pose", []).append(child)
             elif entry.__class__ is Group:
                 assert isinstance(entry, Group)
+                seen.add(tag)
                 inner = getattr(target, entry.part) if entry.part else target
                 self.fill(inner, child, entry.children, entry.attributes, (), (*wrap, tag))
             elif entry is not None:
                 self._aside(child, entry, wrap)  # type: ignore[arg-type]
             elif isinstance(tag, str):
-                self._extra.append(to_xml(child, wrap))
-                if ":" not in tag and tag[0] != "{":
-                    self._unknown(f"element <{tag}>", tag, child, list(children))
+                self._stranger(child, children, wrap)
+
+    def _stranger(self, child: Any, known: Mapping[str, Entry], wrap: Tuple[str, ...]) -> None:
+        tag = child.tag
+        self._extra.append(to_xml(child, wrap))
+        if ":" not in tag and tag[0] != "{":
+            self._unknown(f"element <{tag}>", tag, child, list(known))
+
+    def _repeated(self, child: Any, parent: Any) -> None:
+        """Gazebo asks for the first element of a name, and keeps the others unread."""
+        self._source.tolerate("element-repeated", f"<{child.tag}> stands again in"
+                              f" <{parent.tag}>; the first one counts", child)
 
     def _aside(self, child: Any, entry: Union[Part, Kept], wrap: Tuple[str, ...]) -> None:
         """A child with a reader of its own, or one that is kept, or both."""
@@ -260,7 +316,8 @@ class _Filler:
 
     def _set(self, target: Any, value: Value, text: str, element: Any, name: str) -> None:
         level = self._level or value.level or self._table.level
-        if not set_value(target, value, text, element, name, self._source, level):
+        if not set_value(target, value, text, element, name, self._source, level,
+                         self._table.strict):
             self._found.setdefault(BAD, []).append(element)
 
     def _unknown(self, what: str, name: str, element: Any, known: List[str]) -> None:

@@ -7,12 +7,12 @@ from ..description.model import WORLD, JointAxis, Model
 from ..description.validate import faults
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose
-from .inertia import completed
+from .inertia import usable
 from .sdf_model import Changes
 from .source import Level, Source
 from .tables import closest, fill
 from .urdf_gazebo import Extensions, moved
-from .urdf_joint import read_connection
+from .urdf_joint import read_connection, turned_to
 from .urdf_lump import lump, standing
 from .urdf_parts import read_body, read_origin, read_palette
 from .urdf_rename import Renamed, rename
@@ -69,7 +69,7 @@ class _RobotReader:
             poses = self._build(root)
             rename(model, self._renamed)
             for child in extensions.joints:
-                joint = read_sdf_joint(child, source, self._bodies, poses)
+                joint = read_sdf_joint(child, source, self._bodies, poses, model.name)
                 if joint is not None:
                     self._elements[id(joint)] = child
                     model.joints.append(joint)
@@ -99,17 +99,29 @@ class _RobotReader:
             connection = read_connection(element, self._source, self._bodies)
             if connection is None:
                 continue
-            if connection.child.up is not None:
-                other = connection.child.up.joint.name
-                self._fatal("link-two-parents", f"link {connection.joint.child!r} is the child of"
-                            f" joint {other!r} and of joint {name!r}", element,
-                            "links and joints of a robot form a tree")
+            if not self._is_only_parent(connection):
                 continue
             self._connections.append(connection)
             connection.child.up = connection
             connection.parent.down.append(connection)
         for body in self._bodies.values():
             body.down.sort(key=lambda c: c.joint.name)
+
+    def _is_only_parent(self, connection: Connection) -> bool:
+        """Of two joints with one child the last by name counts, as for urdfdom."""
+        other = connection.child.up
+        if other is None:
+            return True
+        first, last = sorted((other, connection), key=lambda one: one.joint.name)
+        self._source.tolerate("link-two-parents", f"link {connection.joint.child!r} is the child of"
+                              f" joint {other.joint.name!r} and of joint {connection.joint.name!r};"
+                              f" {first.joint.name!r} is left out", connection.element,
+                              "links and joints of a robot form a tree")
+        if first is connection:
+            return False
+        self._connections.remove(other)
+        other.parent.down.remove(other)
+        return last is connection
 
     def _root(self) -> Optional[Body]:
         roots = [body for body in self._bodies.values() if body.up is None]
@@ -144,15 +156,18 @@ class _RobotReader:
                 body.link.pose = poses[body.link.name]
                 self._finish(body)
                 if up is not None:
+                    if up.joint.axis is not None:
+                        turned_to(up.joint.axis, poses[body.link.name].orientation)
                     self._joint(up)
             elif body.into is not None:
                 self._hand_over(body)
                 self._renamed.links[body.link.name] = body
         model.extra += frames
         if not model.links and root.link.name != WORLD:
-            self._fatal("link-missing", f"no link of the robot has a mass: its root"
-                        f" {root.link.name!r} is dropped with all below it", root.element,
-                        "give it an <inertial>, or make the model static")
+            self._source.tolerate("link-missing", f"no link of the robot has a mass: its root"
+                                  f" {root.link.name!r} is left out with all below it, and the"
+                                  " model is empty", root.element,
+                                  "give it an <inertial>, or make the model static")
         return poses
 
     def _dropped(self, root: Body) -> Dict[int, Body]:
@@ -195,12 +210,7 @@ class _RobotReader:
         self._model.links.append(link)
 
     def _complete_inertia(self, body: Body) -> None:
-        link = body.link
-        better = completed(link.inertial, link.collisions)
-        if better is not None:
-            link.inertial = better[0]
-            self._source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}",
-                              body.element)
+        body.link.inertial = usable(body.link, self._source, body.element)
 
     def _named(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
         prefix = body.link.name if stem.startswith(LUMP) else ""

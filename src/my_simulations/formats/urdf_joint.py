@@ -5,7 +5,7 @@ from typing import Any, Dict, Optional
 from xml.sax.saxutils import quoteattr
 
 from ..description.model import INFINITE, Joint, JointAxis, Mimic
-from ..geometry import norm, scale
+from ..geometry import Quat, conjugate, norm, rotate, scale
 from .source import Level, Source
 from .tables import Found, closest, fill
 from .urdf_parts import read_origin
@@ -69,10 +69,10 @@ def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[
         fill(given, child, AXIS, source, [])
     length = norm(given.xyz)
     if length < 1e-12:
-        source.report(Level.FATAL, "joint-axis-zero",
-                      f"the axis of joint {joint.name!r} has no direction", found["axis"][0])
-        return None
-    axis = JointAxis(scale(given.xyz, 1.0 / length))
+        source.tolerate("joint-axis-zero", f"the axis of joint {joint.name!r} has no direction; the"
+                        " x axis of the model is used, as by ODE", found["axis"][0])
+    # `turned_to` completes one without a direction, once it is known how the links stand.
+    axis = JointAxis(scale(given.xyz, 1.0 / length) if length >= 1e-12 else NOWHERE)
     limits = None
     for child in found.get("limit", ()):
         limits = Limits()
@@ -86,6 +86,20 @@ def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[
                       f" {joint.type} has no <limit>", element,
                       "a revolute joint without limits is of type continuous")
     return axis
+
+
+NOWHERE = (0.0, 0.0, 0.0)
+
+
+def turned_to(axis: JointAxis, link: Quat) -> None:
+    """Give an axis without a direction the x axis of the model, as ODE does.
+
+    Args:
+        axis: of a joint.
+        link: orientation of its child link in the model.
+    """
+    if axis.xyz == NOWHERE:
+        axis.xyz = rotate(conjugate(link), (1.0, 0.0, 0.0))
 
 
 def _limit(axis: JointAxis, limits: Limits, joint: Joint, element: Any, source: Source) -> None:

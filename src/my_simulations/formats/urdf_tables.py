@@ -82,17 +82,17 @@ class Paint:
 
 ORIGIN = Table("origin", Origin, attributes={
     "xyz": Value("xyz", VECTOR3), "rpy": Value("rpy", RPY),
-}, level=FATAL)
+}, level=FATAL, strict=True)
 
 ROBOT = Table("robot", Model, {
     "link": Part(), "joint": Part(), "material": Part(), "gazebo": Part(), "origin": Part(),
     **_ignored("transmission", "sensor", "verbose", "group_state", "ros2_control"),
-}, known_attributes=("name", "version", "static", "type"))
+}, known_attributes=("name", "version", "static", "type"), strict=True)
 
 LINK = Table("link", Link, {
     "inertial": Part(), "visual": Part(), "collision": Part(),
     **_ignored("sensor", "self_collision_checking", "verbose", "origin", "gravity"),
-}, known_attributes=("name", "type"))
+}, known_attributes=("name", "type"), strict=True)
 
 INERTIAL = Table("inertial", Inertial, {
     "origin": Part(),
@@ -100,54 +100,54 @@ INERTIAL = Table("inertial", Inertial, {
     "inertia": Group(attributes={
         name: Value(name, FLOAT) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     }),
-}, level=FATAL)
+}, level=FATAL, strict=True)
 
 COLLISION = Table("collision", Collision, {
     "origin": Part(), "geometry": Part(), **_ignored("verbose", "contact_coefficients"),
-}, known_attributes=("name", "group"))
+}, known_attributes=("name", "group"), strict=True)
 
 VISUAL = Table("visual", Visual, {
     "origin": Part(), "geometry": Part(), "material": Part(), **_ignored("verbose"),
-}, known_attributes=("name", "group"), use=Use.SHOWN)
+}, known_attributes=("name", "group"), use=Use.SHOWN, strict=True)
 
 GEOMETRIES: Mapping[str, Tuple[Table, Tuple[str, ...]]] = {
-    "box": (Table("box", Box, attributes={"size": Value("size", VECTOR3)}), ("size",)),
-    "sphere": (Table("sphere", Sphere, attributes={"radius": Value("radius", FLOAT)}),
+    "box": (Table("box", Box, attributes={"size": Value("size", VECTOR3)}, strict=True), ("size",)),
+    "sphere": (Table("sphere", Sphere, attributes={"radius": Value("radius", FLOAT)}, strict=True),
                ("radius",)),
     "cylinder": (Table("cylinder", Cylinder, attributes={
         "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
-    }), ("radius", "length")),
+    }, strict=True), ("radius", "length")),
     "capsule": (Table("capsule", Capsule, attributes={
         "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
-    }), ("radius", "length")),
+    }, strict=True), ("radius", "length")),
     "mesh": (Table("mesh", Mesh, attributes={
         "filename": Value("uri", TEXT), "scale": Value("scale", SCALE),
-    }), ("filename",)),
+    }, strict=True), ("filename",)),
 }
 """Tables of the shapes, and the attributes each must have."""
 
 MATERIAL = Table("material", Paint, {
     "color": Group(attributes={"rgba": Value("color", COLOR)}),
     "texture": Group(attributes={"filename": Value("texture", TEXT)}),
-}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=Use.SHOWN)
+}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=Use.SHOWN, strict=True)
 
 JOINT = Table("joint", Ends, {
     "origin": Part(), "axis": Part(), "limit": Part(), "dynamics": Part(), "mimic": Part(),
     "parent": Group(attributes={"link": Value("parent", TEXT)}),
     "child": Group(attributes={"link": Value("child", TEXT)}),
     **_ignored("safety_controller", "calibration"),
-}, known_attributes=("name", "type"))
-AXIS = Table("axis", Axis, attributes={"xyz": Value("xyz", VECTOR3)}, level=FATAL)
+}, known_attributes=("name", "type"), strict=True)
+AXIS = Table("axis", Axis, attributes={"xyz": Value("xyz", VECTOR3)}, level=FATAL, strict=True)
 LIMIT_TABLE = Table("limit", Limits, attributes={
     name: Value(name, LIMIT) for name in ("lower", "upper", "effort", "velocity")
-}, level=FATAL)
+}, level=FATAL, strict=True)
 MIMIC = Table("mimic", Mimic, attributes={
     "joint": Value("joint", TEXT), "multiplier": Value("multiplier", FLOAT),
     "offset": Value("offset", FLOAT),
-}, level=FATAL)
+}, level=FATAL, strict=True)
 DYNAMICS = Table("dynamics", JointAxis, attributes={
     "damping": Value("damping", FLOAT), "friction": Value("friction", FLOAT),
-}, level=FATAL)
+}, level=FATAL, strict=True)
 
 GAZEBO_MODEL = Table("gazebo", Model, {
     "static": Value("static", BOOL),

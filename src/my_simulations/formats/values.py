@@ -1,13 +1,15 @@
 """Kinds of values in SDF and URDF text: one class each, reading and writing together.
 
-`parse` raises ValueError with a phrase that says what was expected and what was found.
+`parse` raises ValueError with a phrase that says what was expected and what was found; `salvage`
+reads such a text as Gazebo does, and raises it where Gazebo, too, reads nothing.
 """
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol, Tuple
+from typing import Any, Optional, Protocol, Sequence, Tuple
 
 from ..geometry import Pose, Quat, Vec3, pose_from_xyzrpy, quat_from_rpy, rpy_from_quat
+from .gazebo_text import leading_integer, leading_number, stream_numbers
 
 UNSET = "__default__"
 """Text that stands for "not given" (Gazebo behaviour)."""
@@ -22,13 +24,17 @@ class Kind(Protocol):
     def format(self, value: Any) -> str:
         """Text that `parse` reads as the same value."""
 
+    def salvage(self, text: str) -> Any:
+        """What Gazebo makes of a text that `parse` refuses; ValueError where it refuses it too."""
+
 
 def numbers(text: str, count: int) -> Tuple[float, ...]:
     """Exactly `count` finite numbers, parted by any white space."""
     parts = text.split()
     if len(parts) != count:
         plural = "number" if count == 1 else "numbers"
-        raise ValueError(f"expected {count} {plural}, found {_shown(text)}")
+        commas = ", parted by blanks, not by commas" if "," in text else ""
+        raise ValueError(f"expected {count} {plural}{commas}, found {_shown(text)}")
     return tuple([number(part) for part in parts])
 
 
@@ -60,6 +66,16 @@ def _formatted(*values: float) -> str:
     return " ".join(repr(int(v)) if v == int(v) and abs(v) < 1e15 else repr(v) for v in values)
 
 
+def _whole(text: str, count: int) -> Tuple[float, ...]:
+    """All the numbers of a vector, or zeros: Gazebo's vectors are read whole or not at all."""
+    return _all_or_zeros(stream_numbers(text, count))
+
+
+def _all_or_zeros(found: Sequence[Optional[float]]) -> Tuple[float, ...]:
+    whole = tuple([value for value in found if value is not None])
+    return whole if len(whole) == len(found) else (0.0,) * len(found)
+
+
 class Bool:
     """`true`, `1`, `false`, `0`, any letter case; also `yes` and `no`, which URDF files use."""
 
@@ -73,6 +89,10 @@ class Bool:
 
     def format(self, value: bool) -> str:
         return "true" if value else "false"
+
+
+    def salvage(self, text: str) -> bool:
+        raise ValueError(f"expected true or false, found {_shown(text)}")
 
 
 class Negated(Bool):
@@ -95,14 +115,26 @@ class Float:
         return _formatted(value)
 
 
+    def salvage(self, text: str) -> float:
+        return leading_number(_SPELT_OUT.get(text.strip().lower(), text))
+
+
+_SPELT_OUT = {"true": "1", "false": "0"}
+
+
 class Friction(Float):
     """A friction coefficient; below 0 it stands for one without bound (Gazebo behaviour)."""
 
     _UNBOUNDED = 1e6
 
     def parse(self, text: str) -> float:
-        value = super().parse(text)
-        return value if value >= 0 else self._UNBOUNDED
+        return self._bounded(super().parse(text))
+
+    def salvage(self, text: str) -> float:
+        return self._bounded(super().salvage(text))
+
+    def _bounded(self, value: float) -> float:
+        return self._UNBOUNDED if value < 0 or value == math.inf else value
 
 
 class Limit:
@@ -116,6 +148,9 @@ class Limit:
 
     def format(self, value: float) -> str:
         return _formatted(value) if math.isfinite(value) else repr(value)
+
+    def salvage(self, text: str) -> float:
+        return FLOAT.salvage(text)
 
 
 class Int:
@@ -140,6 +175,9 @@ class Int:
     def format(self, value: int) -> str:
         return str(value)
 
+    def salvage(self, text: str) -> int:
+        return leading_integer(_SPELT_OUT.get(text.strip().lower(), text))
+
 
 class Text:
     """Words, without blanks around them."""
@@ -149,6 +187,9 @@ class Text:
 
     def format(self, value: str) -> str:
         return value
+
+    def salvage(self, text: str) -> str:
+        return self.parse(text)
 
 
 class Vector2:
@@ -160,6 +201,11 @@ class Vector2:
 
     def format(self, value: Tuple[float, float]) -> str:
         return _formatted(*value)
+
+
+    def salvage(self, text: str) -> Tuple[float, float]:
+        x, y = _whole(text, 2)
+        return (x, y)
 
 
 class PlaneSize(Vector2):
@@ -179,6 +225,11 @@ class Vector3:
 
     def format(self, value: Vec3) -> str:
         return _formatted(*value)
+
+
+    def salvage(self, text: str) -> Vec3:
+        x, y, z = _whole(text, 3)
+        return (x, y, z)
 
 
 class UniformScale(Vector3):
@@ -204,6 +255,11 @@ class Color:
         r, g, b, a = (self._share(number(part)) for part in (*parts, "1")[:4])
         return (r, g, b, a)
 
+    def salvage(self, text: str) -> Tuple[float, float, float, float]:
+        r, g, b, a = stream_numbers(text, 4)
+        return (self._share(r or 0.0), self._share(g or 0.0), self._share(b or 0.0),
+                1.0 if a is None else self._share(a))
+
     @staticmethod
     def _share(value: float) -> float:
         return min(value / 255.0, 1.0) if value > 1.0 else max(value, 0.0)
@@ -222,6 +278,10 @@ class Rpy:
     def format(self, value: Quat) -> str:
         return _formatted(*rpy_from_quat(value))
 
+    def salvage(self, text: str) -> Quat:
+        roll, pitch, yaw = _whole(text, 3)
+        return quat_from_rpy(roll, pitch, yaw)
+
 
 class PoseKind:
     """`x y z roll pitch yaw`: metres, and radians about fixed axes."""
@@ -233,6 +293,12 @@ class PoseKind:
     def format(self, value: Pose) -> str:
         return _formatted(*value.position, *rpy_from_quat(value.orientation))
 
+    def salvage(self, text: str) -> Pose:
+        """Position and rotation are each taken whole or not at all (libignition-math 6)."""
+        found = stream_numbers(text, 6)
+        position, angles = _all_or_zeros(found[:3]), _all_or_zeros(found[3:])
+        return pose_from_xyzrpy(*position, *angles)
+
 
 class Seconds:
     """`sec nsec`, or plain seconds."""
@@ -242,6 +308,10 @@ class Seconds:
         if len(parts) == 2:
             return number(parts[0]) + number(parts[1]) * 1e-9
         return numbers(text, 1)[0]
+
+    def salvage(self, text: str) -> float:
+        seconds, nanoseconds = stream_numbers(text, 2)
+        return (seconds or 0.0) + (nanoseconds or 0.0) * 1e-9
 
     def format(self, value: float) -> str:
         whole = math.floor(value)

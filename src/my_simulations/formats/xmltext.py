@@ -66,6 +66,8 @@ def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
         root = etree.fromstring(
             _declaration_first(data), _strict_parser("utf-8" if isinstance(text, str) else None)
         )
+        if b"\xe2\x80\xb9" in data:  # a single guillemet, in UTF-8
+            root = _retyped(data, root, file, log)
     except etree.XMLSyntaxError as fault:
         root = _recover(_decoded(data, isinstance(text, str), file, log), fault, file, log)
     if root is None:
@@ -151,17 +153,32 @@ def _decoded(data: bytes, was_text: bool, file: str, log: Log) -> str:
         return data.decode("latin-1")
 
 
+def _retyped(data: bytes, root: Any, file: str, log: Log) -> Any:
+    """The root of a well-formed document whose text may hold elements in typographic brackets."""
+    from lxml import etree
+
+    from .typography import is_suspicious
+
+    text = data.decode("utf-8", "replace")
+    if not is_suspicious(text):
+        return root
+    return _recover(text, etree.XMLSyntaxError("text in ‹›", 0, 1, 1), file, log)
+
+
 def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
     """A second attempt, over text with its tags balanced; raises InputError where cut off."""
     from lxml import etree
 
     from ..errors import warning
-    from .xmlrepair import balanced  # rarely needed, and start-up time counts
+    from .typography import retyped  # rarely needed, and start-up time counts
+    from .xmlrepair import balanced
 
     line, column = fault.position
     if "Excessive depth" in fault.msg:
         raise _fault("xml-too-deep", "elements are nested too deeply", file, line, column)
+    text, retypings = retyped(text)
     result = balanced(text)
+    result.repairs[:0] = retypings
     if result.hopeless:
         raise _fault("xml-malformed", f"not well formed: {result.hopeless}", file, line, column)
     if result.elements == 0:

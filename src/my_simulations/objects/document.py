@@ -6,11 +6,14 @@ recover more than a parser here could, and names line and column.
 from __future__ import annotations
 
 import re
+from typing import Mapping
+from xml.sax.saxutils import quoteattr
 
 from ..errors import InputError, error
 
-REPLACE_ATTRIBUTE = "my_simulations_replace"
-"""On the root element of a spawn request: replace the model of that name in one step."""
+REPLACE, FILE, LAUNCH = (f"my_simulations_{mark}" for mark in ("replace", "file", "launch"))
+"""On the root element of a spawn request: replace the model of that name in one step; where the
+document was read; process id of the roslaunch that sends it."""
 
 _DECLARATION = re.compile(rb"\A\s*<\?xml[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"'][^>]*\?>")
 _PROLOGUE = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:[^\[>]|\[[^\]]*\])*>", re.S)
@@ -52,8 +55,8 @@ def root_tag(xml: str) -> str:
     return found.group(0)[1:] if found else ""
 
 
-def marked_for_replacement(xml: str) -> str:
-    """The same document with `my_simulations_replace="true"` on its root element.
+def marked(xml: str, marks: Mapping[str, str]) -> str:
+    """The same document with more attributes on its root element; empty ones are left out.
 
     Text without a root element comes back unchanged; the simulator rejects it with a reason.
     """
@@ -61,7 +64,8 @@ def marked_for_replacement(xml: str) -> str:
     found = _START_TAG.match(xml, start)
     if not found:
         return xml
-    return f'{xml[:found.end()]} {REPLACE_ATTRIBUTE}="true"{xml[found.end():]}'
+    text = "".join(f" {name}={quoteattr(value)}" for name, value in marks.items() if value)
+    return f"{xml[:found.end()]}{text}{xml[found.end():]}"
 
 
 def _root_start(xml: str) -> int:

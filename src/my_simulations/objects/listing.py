@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import Issue, error, warning
@@ -32,12 +32,14 @@ class ObjectFile:
         path: path inside the package, with forward slashes.
         xacro: whether it goes through xacro first.
         sdf: whether the result is SDF; URDF otherwise.
+        named: whether the entry itself names the package.
     """
 
     package: str
     path: str
     xacro: bool
     sdf: bool
+    named: bool = True
 
 
 @dataclass(frozen=True)
@@ -205,8 +207,9 @@ class _Reader:
             kind = self._text(value, path, name, "model_type")
             if kind is None:
                 return None
-            return self._typed(self._package, f"objects/{model}.{kind}", kind,
-                               (*path, "model_type"), name)
+            found = self._typed(self._package, f"objects/{model}.{kind}", kind,
+                                (*path, "model_type"), name)
+            return None if found is None else replace(found, named=False)
         package, slash, inside = model.partition("/")
         if not slash or not package or not inside:
             self._fault(name, error(
@@ -248,7 +251,7 @@ class _Reader:
         numbers = [_number(item) for item in found]
         for item, number in zip(found, numbers):
             if number is None:
-                self._fault(name, self._bad(path, name, key, item, True, "finite numbers"))
+                self._fault(name, self._bad(path, name, key, item, True, "three finite numbers"))
                 return None
         x, y, z = (float(number) for number in numbers if number is not None)
         return (x, y, z)
@@ -258,8 +261,8 @@ class _Reader:
         where = self._source.where((*path, key))
         if not present:
             return error("missing-key", f"object '{name}' has no {key}", **where,
-                         hint=f"{key} is {wanted}")
-        return error("wrong-value", f"object '{name}': {key} is {wanted}, found {_kind(found)}",
+                         hint=f"{key} takes {wanted}")
+        return error("wrong-value", f"object '{name}': {key} takes {wanted}, found {_kind(found)}",
                      **where)
 
     def _fault(self, name: str, issue: Issue) -> None:

@@ -127,4 +127,4 @@ def _numbers(value: Any, count: int, what: str, text: str) -> List[float]:
 
 
 def _not(what: str, wanted: str, text: str) -> InputError:
-    return InputError([error("argument", f"{what} is {wanted}, found {text!r}")])
+    return InputError([error("argument", f"{what} takes {wanted}, found {text!r}")])

@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import yaml
 
 from ..errors import InputError, Issue, error, warning
+from .yaml_guard import LARGEST, GuardedLoader
 
 KeyPath = Tuple[str, ...]
 
@@ -50,30 +51,43 @@ def read_yaml(file: str, root: str) -> Tuple[Any, Source, List[Issue]]:
     Raises:
         InputError: the file cannot be read or is not YAML.
     """
-    try:
-        with open(file, encoding="utf-8") as stream:
-            text = stream.read()
-    except OSError as fault:
-        raise InputError([error("list-unreadable", f"cannot read the list: {fault.strerror}",
-                                file=file)]) from fault
-    except UnicodeDecodeError as fault:
-        raise InputError([error("list-not-utf8", f"the list is not UTF-8 text: {fault}",
-                                file=file, hint="save it as UTF-8")]) from fault
+    text = _text(file)
     lines: Dict[KeyPath, int] = {}
     issues: List[Issue] = []
-    loader = yaml.SafeLoader(text)
+    source = Source(root, file, lines)
+    loader: Optional[GuardedLoader] = None
     try:
+        loader = GuardedLoader(text)
         node = loader.get_single_node()
         if node is None:
             return None, Source(root, file), []
         # Lines are collected first: constructing flattens `<<` merges into the nodes.
-        _collect_lines(node, (), lines, issues, Source(root, file, lines))
+        _collect_lines(node, (), lines, issues, source)
         data = loader.construct_document(node)
     except yaml.YAMLError as fault:
-        raise InputError([_yaml_issue(fault, file)]) from fault
+        raise InputError([_yaml_issue(fault, text, source, loader)]) from fault
     finally:
-        loader.dispose()
-    return data, Source(root, file, lines), issues
+        if loader is not None:
+            loader.dispose()
+    return data, source, issues
+
+
+def _text(file: str) -> str:
+    try:
+        with open(file, "rb") as stream:
+            data = stream.read(LARGEST + 1)
+    except OSError as fault:
+        raise InputError([error("list-unreadable", f"cannot read the list: {fault.strerror}",
+                                file=file)]) from fault
+    if len(data) > LARGEST:
+        raise InputError([error("list-too-large", f"the list has more than {LARGEST} bytes",
+                                file=file)])
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as fault:
+        raise InputError([error("list-not-utf8", f"the list is not UTF-8 text: {fault}", file=file,
+                                line=data.count(b"\n", 0, fault.start) + 1,
+                                hint="save it as UTF-8")]) from fault
 
 
 def _collect_lines(node: yaml.Node, path: KeyPath, lines: Dict[KeyPath, int],
@@ -90,14 +104,28 @@ def _collect_lines(node: yaml.Node, path: KeyPath, lines: Dict[KeyPath, int],
                 file=source.file, line=key.start_mark.line + 1, xpath=source.param(below),
                 hint=f"the first is on line {lines[below]}"))
         lines[below] = key.start_mark.line + 1
-        # An alias may point back at its own parent: such a tree has no end.
-        if len(path) < 32:
-            _collect_lines(value, below, lines, issues, source)
+        _collect_lines(value, below, lines, issues, source)
 
 
-def _yaml_issue(fault: yaml.YAMLError, file: str) -> Issue:
-    mark = getattr(fault, "problem_mark", None) or getattr(fault, "context_mark", None)
-    problem = getattr(fault, "problem", None) or str(fault).splitlines()[0]
-    return error("list-not-yaml", f"not well-formed YAML: {problem}", file=file,
-                 line=mark.line + 1 if mark else 0, column=mark.column + 1 if mark else 0,
+def _yaml_issue(fault: yaml.YAMLError, text: str, source: Source,
+                loader: Optional[GuardedLoader]) -> Issue:
+    line, column = _place(fault, text)
+    problem = (getattr(fault, "problem", None) or getattr(fault, "reason", None)
+               or str(fault).splitlines()[0])
+    # The key that begins last before the fault is the one whose value it is in.
+    above = [path for path, begins in source.lines.items() if begins <= line]
+    key = max(above, key=lambda path: (source.lines[path], len(path)), default=())
+    if not above and loader is not None:
+        key = tuple(loader.keys)
+    return error("list-not-yaml", f"not well-formed YAML: {problem}", file=source.file, line=line,
+                 column=column, xpath=source.param(key),
                  hint="check indentation (blanks, no tabs), brackets and colons")
+
+
+def _place(fault: yaml.YAMLError, text: str) -> Tuple[int, int]:
+    """Line and column, from 1; 0 where it is not known."""
+    if isinstance(fault, yaml.reader.ReaderError):  # of a character that YAML does not allow
+        before = text[:fault.position]
+        return before.count("\n") + 1, len(before) - before.rfind("\n")
+    mark = getattr(fault, "problem_mark", None) or getattr(fault, "context_mark", None)
+    return (mark.line + 1, mark.column + 1) if mark else (0, 0)

@@ -9,24 +9,21 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
-import tempfile
-import time
-from typing import Callable, Dict, List, Optional, Set
+from typing import List, Optional, Set
 from urllib.parse import quote
 
-from .database_archive import ArchiveFault, unpack
+from .database_archive import install, unpack
 from .database_http import HttpFault, Limits, fetch
+from .download_time import WORLD_SECONDS, DownloadTime
 from .resolver import DATABASE, NotProvided, Progress
 
-WORLD_SECONDS = 10.0
 LISTS = ("database.config", "manifest.xml")
 
 _NAME = re.compile(r"[A-Za-z0-9_][\w .+()-]*\Z")
 _MOST_DEPENDENCIES = 100
 
 
-class ModelDatabase:
+class ModelDatabase(DownloadTime):
     """Downloads models that are missing.
 
     Args:
@@ -39,14 +36,10 @@ class ModelDatabase:
 
     def __init__(self, uri: str, folder: str, progress: Optional[Progress] = None,
                  seconds: float = WORLD_SECONDS, limits: Optional[Limits] = None) -> None:
+        super().__init__(progress, seconds, limits)
         self.uri = uri.strip().rstrip("/")
         self._folder = folder
-        self._progress = progress
-        self._seconds = seconds
-        self._limits = limits or Limits()
-        self._deadline: Optional[float] = None
         self._listed: Optional[Set[str]] = None
-        self._failed: Dict[str, str] = {}
 
     @classmethod
     def from_environment(cls, progress: Optional[Progress] = None) -> Optional["ModelDatabase"]:
@@ -58,13 +51,8 @@ class ModelDatabase:
 
     def begin(self) -> None:
         """A new world: the deadline starts anew, and what failed may be tried again."""
-        self._deadline = None
+        super().begin()
         self._listed = None
-        self._failed.clear()
-
-    def give(self, seconds: float) -> None:
-        """Let downloads take so long from the next `begin` on."""
-        self._seconds = seconds
 
     def names(self) -> Set[str]:
         """What the database lists. Raises NotProvided."""
@@ -101,35 +89,22 @@ class ModelDatabase:
         path = os.path.join(self._folder, name)
         if os.path.isdir(path):
             return path
-        if name in self._failed:
-            raise NotProvided(self._failed[name])
-        try:
-            self._download(name, path)
-        except (HttpFault, ArchiveFault, OSError) as fault:
-            text = f"{self.uri}: {getattr(fault, 'strerror', None) or fault}"
-            self._failed[name] = text
-            raise NotProvided(text) from fault
+        self.once(name, self.uri, lambda: self._download(name, path))
         return path
 
     def _download(self, name: str, path: str) -> None:
         if name not in self._names():
             raise HttpFault(f"the database has no model {name!r}")
-        os.makedirs(self._folder, exist_ok=True)
-        work = tempfile.mkdtemp(prefix=f".{name}-", dir=self._folder)
-        try:
+
+        def make(work: str) -> str:
             archive = os.path.join(work, "model.tar.gz")
             with open(archive, "wb") as stream:
-                fetch(f"{self.uri}/{quote(name)}/model.tar.gz", stream, self._limits.archive_bytes,
-                      self._until(), self._report(name))
-            unpacked = unpack(archive, os.path.join(work, "unpacked"), name, self._limits,
-                              self._until())
-            try:
-                os.rename(unpacked, path)
-            except OSError:
-                if not os.path.isdir(path):  # else another process was faster
-                    raise
-        finally:
-            shutil.rmtree(work, ignore_errors=True)
+                fetch(f"{self.uri}/{quote(name)}/model.tar.gz", stream, self.limits.archive_bytes,
+                      self.until(), self.report(name))
+            return unpack("tar", archive, os.path.join(work, "unpacked"), name, self.limits,
+                          self.until())
+
+        install(path, make)
 
     def _names(self) -> Set[str]:
         """What the database lists; asked once."""
@@ -140,7 +115,7 @@ class ModelDatabase:
             for config in LISTS:
                 stream = BytesIO()
                 try:
-                    fetch(f"{self.uri}/{config}", stream, self._limits.list_bytes, self._until())
+                    fetch(f"{self.uri}/{config}", stream, self.limits.list_bytes, self.until())
                 except HttpFault as failure:
                     if not failure.missing:
                         raise
@@ -151,17 +126,6 @@ class ModelDatabase:
             if self._listed is None:
                 raise fault or HttpFault("it has no list of models")
         return self._listed
-
-    def _until(self) -> float:
-        if self._deadline is None:
-            self._deadline = time.monotonic() + self._seconds
-        return self._deadline
-
-    def _report(self, name: str) -> Optional[Callable[[int, int], None]]:
-        progress = self._progress
-        if progress is None:
-            return None
-        return lambda done, expected: progress(name, done, expected)
 
 
 def _uris(text: bytes) -> Set[str]:

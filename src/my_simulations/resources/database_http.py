@@ -10,6 +10,7 @@ import time
 import urllib.error
 import urllib.request
 from dataclasses import dataclass
+from email.message import Message
 from typing import IO, Any, Callable, Optional
 
 _CHUNK = 1 << 16
@@ -36,7 +37,7 @@ class HttpFault(Exception):
 
 
 def fetch(url: str, into: IO[bytes], largest: int, until: float,
-          progress: Optional[Callable[[int, int], None]] = None) -> None:
+          progress: Optional[Callable[[int, int], None]] = None) -> "Message[str, str]":
     """Download a file; what fails on the way is tried up to four times (Gazebo behaviour).
 
     Args:
@@ -45,6 +46,9 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
         largest: bytes.
         until: `time.monotonic()` at which to give up.
         progress: hears bytes so far, and those expected, 0 where not known.
+
+    Returns:
+        The headers of the answer.
 
     Raises:
         HttpFault: not had; what it would have been is not in `into` as a whole.
@@ -55,8 +59,7 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
         into.seek(0)
         into.truncate()
         try:
-            _once(url, into, largest, until, progress)
-            return
+            return _once(url, into, largest, until, progress)
         except urllib.error.HTTPError as fault:
             missing = fault.code in (404, 410)
             if missing or fault.code < 500 or not left:
@@ -66,6 +69,7 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
             if not left or isinstance(getattr(fault, "reason", None), ConnectionRefusedError):
                 reason = getattr(fault, "reason", None) or fault
                 raise HttpFault(f"{url} cannot be had: {reason}") from None
+    raise AssertionError("the last try returns or raises")
 
 
 class _Damaged(Exception):
@@ -73,7 +77,7 @@ class _Damaged(Exception):
 
 
 def _once(url: str, into: IO[bytes], largest: int, until: float,
-          progress: Optional[Callable[[int, int], None]]) -> None:
+          progress: Optional[Callable[[int, int], None]]) -> "Message[str, str]":
     request = urllib.request.Request(url, headers={"Accept-Encoding": "identity"})
     with urllib.request.urlopen(request, timeout=_left(url, until)) as answer:
         expected = _length(answer.headers.get("Content-Length"))
@@ -94,6 +98,7 @@ def _once(url: str, into: IO[bytes], largest: int, until: float,
             if progress is not None:
                 progress(done, expected)
         _check(answer.headers, expected, done, sums)
+        return answer.headers
 
 
 def _check(headers: Any, expected: int, done: int, sums: Any) -> None:

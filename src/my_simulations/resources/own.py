@@ -5,6 +5,8 @@ import os
 from typing import List
 
 PACKAGE = "my_simulations"
+UNDERLAY = "MY_SIMULATIONS_UNDERLAY"
+"""Variable of a workspace that has a package of our name of its own: a prefix with ours in it."""
 
 
 def own_directory() -> str:
@@ -21,9 +23,39 @@ def own_directory() -> str:
     prefixes = above + os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep)
     for prefix in prefixes:
         share = os.path.join(prefix, "share", PACKAGE)
-        if prefix and os.path.isfile(os.path.join(share, "package.xml")):
+        # A user's package of this name has a package.xml too, but not our models.
+        if prefix and os.path.isdir(os.path.join(share, "models", "ground_plane")):
             return share
     return source_root if has_models else ""
+
+
+def package_directories() -> List[str]:
+    """The folders in which `package://my_simulations/...` is looked for, best first.
+
+    Ours alone, unless the workspace has a package of this name of its own (`tools/run --overlay`):
+    that one comes first then. ROS is asked in such a workspace only; it costs start-up time.
+    """
+    own = own_directory()
+    folders = [own] if own else []
+    if os.environ.get(UNDERLAY):
+        from .packages import PackageIndex
+
+        users = PackageIndex().find(PACKAGE)
+        if users and os.path.realpath(users) != os.path.realpath(own):
+            folders.insert(0, users)
+    return folders
+
+
+def file_in_package(folder: str, package: str, inside: str) -> str:
+    """The path of `inside` below the folder of a package.
+
+    Where a user's package has our name and no such file, the path below ours if there is one.
+    """
+    path = os.path.join(folder, inside)
+    if package == PACKAGE and not os.path.exists(path):
+        own = os.path.join(own_directory(), inside)
+        return own if os.path.exists(own) else path
+    return path
 
 
 def _parents(path: str) -> List[str]:

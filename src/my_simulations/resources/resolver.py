@@ -1,17 +1,20 @@
-"""From `model://`, `package://`, `file://` and plain paths to a file on this machine.
+"""From `model://`, `package://`, `file://`, addresses of Fuel and plain paths to a file.
 
 The order of search is Gazebo's. Look-up is lazy: an answer found in the first places never makes
-the package path be crawled. Nothing is fetched from a network unless GAZEBO_MODEL_DATABASE_URI
-names a model database, and then only models that no place on this machine holds.
+the package path be crawled. Nothing is fetched from a network but models that no place on this
+machine holds: of the database that GAZEBO_MODEL_DATABASE_URI names, if it does, and of a Fuel
+server where a file names one by its address.
 """
 from __future__ import annotations
 
 import os
 from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
+from .fuel_uri import FuelUri, fuel_uri, is_web_address
 from .model_config import description_in
-from .own import PACKAGE, own_directory
+from .own import PACKAGE, package_directories
 from .packages import ExportedPaths, FindPackage, PackageIndex, package_name
+from .suggestions import suggestion
 
 DATABASE = "GAZEBO_MODEL_DATABASE_URI"
 
@@ -53,6 +56,22 @@ class MissingModels(Protocol):
         """The folder of a model; raises NotProvided."""
 
 
+class WebModels(Protocol):
+    """Models of Fuel servers, from caches or the network (see `resources.fuel`)."""
+
+    def begin(self) -> None:
+        """A new document is being read."""
+
+    def path(self, uri: FuelUri) -> str:
+        """The folder of a model or a file of it; raises NotProvided."""
+
+    def beside(self, base_dir: str, rest: str) -> List[str]:
+        """Where `model://` and `rest` may lie for a file that lies in a cache."""
+
+    def folders(self) -> List[str]:
+        """The caches."""
+
+
 class Resolver:
     """Finds files by URI.
 
@@ -63,6 +82,8 @@ class Resolver:
         exported: more of both lists, asked for once, when the first ones hold no answer.
         missing: asked for models that are nowhere here, None for nobody.
         packages: the folders of all ROS packages.
+        fuel: models of Fuel servers, None for none.
+        own: the folders of the package my_simulations, best first, where there are several.
     """
 
     def __init__(
@@ -73,6 +94,8 @@ class Resolver:
         exported: Callable[[], ExportedPaths] = ExportedPaths,
         missing: Optional[MissingModels] = None,
         packages: Callable[[], List[str]] = list,
+        fuel: Optional[WebModels] = None,
+        own: Sequence[str] = (),
     ) -> None:
         self._model_paths = list(model_paths)
         self._resource_paths = list(resource_paths)
@@ -80,6 +103,8 @@ class Resolver:
         self._exported = exported
         self._missing = missing
         self._packages = packages
+        self._fuel = fuel
+        self._own = list(own)
         self._late: Optional[ExportedPaths] = None
 
     @classmethod
@@ -89,28 +114,30 @@ class Resolver:
         Buildings that were drawn are models, too, where there are any (Gazebo behaviour).
         `progress` hears of downloads (see `resources.database`).
         """
-        own = own_directory()
+        own = package_directories()
         models = [os.path.expanduser("~/.gazebo/models"), *_listed("GAZEBO_MODEL_PATH")]
         resources = _listed("GAZEBO_RESOURCE_PATH")
-        if own:
-            models.append(os.path.join(own, "models"))
+        for folder in own:
+            models.append(os.path.join(folder, "models"))
             # `worlds/empty.world` and `empty.world` both name the world in our `world/` folder.
-            resources += [os.path.join(own, "world"), own]
+            resources += [os.path.join(folder, "world"), folder]
         buildings = os.path.expanduser("~/building_editor_models")
         if os.path.isdir(buildings):
             models.append(buildings)
         packages = PackageIndex()
 
         def find(name: str) -> Optional[str]:
-            return own if name == PACKAGE and own else packages.find(name)
+            return own[0] if name == PACKAGE and own else packages.find(name)
 
         missing: Optional[MissingModels] = None
         if os.environ.get(DATABASE, "").strip():
             from .database import ModelDatabase
 
             missing = ModelDatabase.from_environment(progress)
+        from .fuel import FuelModels
+
         return cls(models, resources, find, packages.exported, missing,
-                   lambda: packages.folders() + ([own] if own else []))
+                   lambda: packages.folders() + own, FuelModels.from_environment(progress), own)
 
     def model_folders(self) -> List[str]:
         """Folders whose children are models, best first, as far as they were needed yet."""
@@ -120,9 +147,19 @@ class Resolver:
         """Folders that relative paths start from, as far as they were needed yet."""
         return self._resource_paths + (self._late.media if self._late else [])
 
+    def fuel_folders(self) -> List[str]:
+        """The caches of Fuel models that are there."""
+        return self._fuel.folders() if self._fuel is not None else []
+
     def all_folders(self) -> List[str]:
         """Model and resource folders, whether or not they were needed yet, and ROS packages."""
-        return [*self._all("models"), *self._all("media"), *self._packages()]
+        return [*self._all("models"), *self._all("media"), *self._packages(),
+                *self.fuel_folders()]
+
+    def meant(self, missing: NotFound) -> str:
+        """The beginning of a hint: a URI that is there and much like one that is not; or ""."""
+        found = suggestion(missing.uri, missing.tried, self._packages)
+        return f"did you mean {found}? Else " if found else ""
 
     def add_model_folder(self, folder: str) -> None:
         """Look for models in one more folder, after the others."""
@@ -137,14 +174,15 @@ class Resolver:
 
     def begin(self) -> None:
         """A new document is being read: what could not be downloaded may be tried again."""
-        if self._missing is not None:
-            self._missing.begin()
+        for source in (self._missing, self._fuel):
+            if source is not None:
+                source.begin()
 
     def resolve(self, uri: str, base_dir: str = "") -> str:
         """The absolute path of what `uri` names, a file or a folder.
 
         Args:
-            uri: `model://`, `package://`, `file://`, or a path.
+            uri: `model://`, `package://`, `file://`, an address of Fuel, or a path.
             base_dir: folder of the file that holds the URI, "" for none.
 
         Raises:
@@ -153,6 +191,8 @@ class Resolver:
         uri = uri.strip()
         if not uri or uri == "__default__":
             raise NotFound(uri, reason="the URI is empty")
+        if is_web_address(uri):
+            return self._from_fuel(uri)
         tried: List[str] = []
         for candidate in self._candidates(uri, base_dir):
             if os.path.exists(candidate):
@@ -160,6 +200,17 @@ class Resolver:
             if candidate not in tried:
                 tried.append(candidate)
         return self._provided(uri, tried)
+
+    def _from_fuel(self, uri: str) -> str:
+        known = fuel_uri(uri)
+        if known is None or self._fuel is None:
+            raise NotFound(uri, reason="of web addresses only those of models on a Fuel server are"
+                           " read, https://HOST/1.0/OWNER/models/NAME, or model://, package://,"
+                           " file:// and paths")
+        try:
+            return os.path.abspath(self._fuel.path(known))
+        except NotProvided as fault:
+            raise NotFound(uri, reason=str(fault)) from None
 
     def _provided(self, uri: str, tried: List[str]) -> str:
         """The path from the source of missing models, else NotFound."""
@@ -204,6 +255,8 @@ class Resolver:
                 yield from self._for_path(unquote(rest), base_dir)
         elif scheme == "model":
             rest = rest.lstrip("/")  # `model:///name` is found, too (Gazebo behaviour)
+            if self._fuel is not None:
+                yield from self._fuel.beside(base_dir, rest)
             yield from self._for_model(rest)
             yield from self._for_package(uri, rest)
         elif scheme == "package":
@@ -224,6 +277,8 @@ class Resolver:
             raise NotFound(uri, reason="no name follows ://")
         folder = self._find_package(name)
         yield os.path.join(folder, inside) if folder else f"ROS package {name}"
+        for behind in self._own[1:] if name == PACKAGE else ():
+            yield os.path.join(behind, inside)
 
     def _for_path(self, path: str, base_dir: str) -> Iterator[str]:
         if os.path.isabs(path):

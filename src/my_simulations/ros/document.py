@@ -11,8 +11,17 @@ from xml.parsers import expat
 from ..description.model import Link, Model, PluginSpec
 from ..errors import CommandError
 
-REPLACE_ATTRIBUTE = "my_simulations_replace"
+MARK = "my_simulations_"
+"""What the names of our own attributes of the root element begin with."""
+
+REPLACE_ATTRIBUTE = MARK + "replace"
 """Root attribute that asks for a model of the same name to be replaced in one step."""
+
+FILE_ATTRIBUTE = MARK + "file"
+"""Root attribute: where a tool read the document, for messages."""
+
+LAUNCH_ATTRIBUTE = MARK + "launch"
+"""Root attribute: process id of the roslaunch that started the tool."""
 
 NAMESPACE_ELEMENT = "robotNamespace"
 
@@ -42,6 +51,11 @@ def root_of(text: str) -> Tuple[str, Dict[str, str]]:
 def asks_to_replace(attributes: Dict[str, str]) -> bool:
     """True when the root element's attributes ask for a replacement."""
     return attributes.get(REPLACE_ATTRIBUTE, "").strip().lower() in ("true", "1", "yes")
+
+
+def launched_by(attributes: Dict[str, str], launcher: int) -> bool:
+    """True when the root element's attributes name this roslaunch (0: none) as the sender's."""
+    return launcher != 0 and attributes.get(LAUNCH_ATTRIBUTE, "") == str(launcher)
 
 
 def checked_name(name: str) -> str:

@@ -38,13 +38,15 @@ class EditorDoor:
         start: starts it.
         simulator, resolver: what it shows.
         listen: given a function that wants all issues, those of the start included.
+        caller: folder in which the command was typed.
     """
 
     def __init__(self, start: StartEditor, simulator: Simulator, resolver: Resolver,
-                 listen: Callable[[Callable[[Issue], None]], None]) -> None:
+                 listen: Callable[[Callable[[Issue], None]], None], caller: str = "") -> None:
         self._start = start
         self._world = (simulator, resolver)
         self._listen = listen
+        self._caller = caller
         self._lock = threading.Lock()
         self._editor: Optional[RunningEditor] = None
         if rospy.has_param(URL):  # of a node that was killed
@@ -63,11 +65,18 @@ class EditorDoor:
         """The address of the editor, which runs then. Raises CommandError."""
         with self._lock:
             if self._editor is None:
-                self._editor = self._start(*self._world, {**_settings(), "log": log_issue})
+                self._editor = self._start(*self._world, {
+                    **_settings(), "log": log_issue, "caller": self._caller})
                 self._listen(self._editor.tell)
                 rospy.set_param(URL, self._editor.url)
                 rospy.loginfo("the world editor is at %s", self._editor.url)
             return self._editor.url
+
+    def announce(self) -> None:
+        """Set the parameter with its address once more, if it runs."""
+        with self._lock:
+            if self._editor is not None:
+                rospy.set_param(URL, self._editor.url)
 
     def close(self) -> None:
         """End it."""

@@ -100,8 +100,11 @@ class JointServices:
             wanted[scope + plain] = max(axis.lower, min(axis.upper, position))
         if wanted:
             self._simulator.joints.set_positions(wanted)
-        return "success" + (f"; left out, no joints that can be set: {', '.join(left)}"
-                            if left else "")
+        if not left:
+            return "success"
+        settable = [name for name, joint in joints.items() if joint.type in CONFIGURABLE]
+        return ("success; skipped unknown or non-settable joints: "
+                f"{', '.join(left)}; settable are {', '.join(settable) or 'none'}")
 
 
 def _axes(joint: Joint) -> List[JointAxis]:

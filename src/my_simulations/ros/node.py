@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import time
-from typing import Any, Dict, List, Optional
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional
 
 import rospy
 
@@ -12,10 +12,16 @@ from ..errors import CommandError, InputError
 from ..geometry import Pose, is_finite
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
+from . import abandoned
 from .editor import Open
 from .interface import Row, rows
+from .launched import Launch
 from .log import log_issue
+from .membership import Membership
 from .world import WorldServices
+
+if TYPE_CHECKING:
+    from .models import ModelServices
 
 ROSOUT_SECONDS = 1.0
 """How long a node that is about to end waits for /rosout to hear why."""
@@ -25,7 +31,9 @@ class Node:
     """Owns the ROS side of a running simulator."""
 
     def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher,
-                 open_editor: Optional[Open] = None) -> None:
+                 open_editor: Optional[Open] = None, master_uri: str = "",
+                 announce_editor: Callable[[], None] = lambda: None,
+                 launch: Optional[Launch] = None) -> None:
         """Take over a simulator that does not run yet.
 
         Args:
@@ -33,11 +41,15 @@ class Node:
             resolver: finds what spawned models name.
             clock: the advertised `/clock`.
             open_editor: starts the world editor and returns its address.
+            master_uri: of the ROS master, whose restarts are looked after; "" for not at all.
+            announce_editor: sets the parameter with the editor's address, if there is one.
+            launch: how this process was started.
         """
         self._simulator = simulator
         self._clock = clock
         self._resolver = resolver
         self._open_editor = open_editor
+        self._launch = launch or Launch.of(())
         self._registered: List[Any] = []
         self._publishers: Optional[Any] = None
         self._metrics: Optional[Any] = None
@@ -46,6 +58,9 @@ class Node:
         self._network = _flag(self._parameters, "enable_ros_network", True)
         self._extensions = _flag(self._parameters, "extensions", True)
         self._engine_pid = 0
+        self._announce_editor = announce_editor
+        self._membership = Membership(master_uri, rospy.get_name(),
+                                      self._set_parameters) if master_uri else None
 
     def advertise(self) -> None:
         """Offer topics, services and parameters."""
@@ -60,16 +75,29 @@ class Node:
             clock_hz=_number(self._parameters, "pub_clock_frequency", 0.0),
             states_hz=_number(self._parameters, "model_states_rate", 0.0))
         take_side_by_side()
+        # Tools ask for it to know whose services they call: before there are any.
+        rospy.set_param("~my_simulations/version", __version__)
         if self._network:
             self._registered = register(self._rows(late=False), self._faces())
+        self._set_world_parameters()
+
+    def _set_world_parameters(self) -> None:
         rospy.set_param("~world_base_name", base_name(self._simulator.world.file))
         self._keep_engine_pid()
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
 
+    def _set_parameters(self) -> None:
+        """All that this node has set, for a master that knows nothing of it."""
+        self._engine_pid = 0
+        self._set_world_parameters()
+        rospy.set_param("~my_simulations/version", __version__)
+        self._announce_editor()
+        if self._reconfigure is not None:
+            self._reconfigure.forget_stored()
+
     def advertise_late(self) -> None:
         """Offer what the start does not wait for; call it once the world runs."""
-        rospy.set_param("~my_simulations/version", __version__)
         if not self._network:
             return
         from .registration import register
@@ -92,16 +120,20 @@ class Node:
         from .lights import LightServices
         from .links import LinkServices
         from .loads import LoadServices
-        from .models import ModelServices
         from .states import StateServices
 
         simulator = self._simulator
         return {
             "joints": JointServices(simulator), "lights": LightServices(simulator),
             "links": LinkServices(simulator), "loads": LoadServices(simulator),
-            "models": ModelServices(simulator, self._resolver, log_issue),
+            "models": self._models(),
             "states": StateServices(simulator), "world": WorldServices(simulator),
         }
+
+    def _models(self) -> ModelServices:
+        from .models import ModelServices
+
+        return ModelServices(self._simulator, self._resolver, log_issue, self._launch.pid)
 
     def _late_faces(self) -> Dict[str, Any]:
         from .editor import EditorService
@@ -111,16 +143,27 @@ class Node:
         simulator = self._simulator
         return {
             "editor": EditorService(self._open_editor), "reconfigure": _reconfigure(simulator),
-            "saving": SaveService(simulator, self._resolver),
+            "saving": SaveService(simulator, self._resolver, self._launch.folder),
             "stepping": SteppingService(simulator), "world": WorldServices(simulator),
         }
 
+    def seconds_alone(self) -> float:
+        """How long the master or the launch may be gone before the node ends; 0 for ever."""
+        found = _number(self._parameters, "master_timeout", abandoned.SECONDS)
+        if found < 0.0:
+            rospy.logerr("parameter ~master_timeout must not be negative, it is %g; %g is used",
+                         found, abandoned.SECONDS)
+            return abandoned.SECONDS
+        return found
+
     def keep_up(self) -> None:
-        """Keep the parameters true that follow the world; call it now and then.
+        """Keep the registration, and the parameters that follow the world; call it now and then.
 
         A master that is away is asked again the next time.
         """
         try:
+            if self._membership is not None and not self._membership.keep_up():
+                return
             self._keep_engine_pid()
             if self._reconfigure is not None:
                 self._reconfigure.keep_up()
@@ -154,12 +197,9 @@ class Node:
                          '<param name="robot_description" textfile="..."/> before the node starts',
                          rospy.resolve_name("robot_description"))
             return
-        from .models import ModelServices
-
-        models = ModelServices(self._simulator, self._resolver, log_issue)
         try:
-            said = models.spawn_text(text, None, Pose((where[0], where[1], where[2])),
-                                     file="robot_description")
+            said = self._models().spawn_text(text, None, Pose((where[0], where[1], where[2])),
+                                             file="robot_description", launched=True)
             rospy.loginfo("robot_description: %s", said)
         except (CommandError, InputError) as fault:
             rospy.logerr("robot_description was not spawned: %s; correct it and spawn it with "

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import List, Optional, Sequence
 
+from .arguments import Parser, number
+
 DEFAULT_WORLD = "worlds/empty.world"
 """What gzserver loads when it is given no world."""
 
@@ -70,7 +72,7 @@ def is_remapping(word: str) -> bool:
 
 def parser(program: str = "gzserver") -> argparse.ArgumentParser:
     """The argument parser; an unknown option ends the program with the usage and status 2."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog=program, allow_abbrev=False,
         description="Run a simulated world as the ROS node /gazebo.",
         epilog="ROS remappings (name:=value, _param:=value, __name:=name) are accepted anywhere.")
@@ -117,24 +119,27 @@ def _add_recording(made: argparse.ArgumentParser) -> None:
 
 
 def _count(text: str) -> int:
-    value = int(text)
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
     if value < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not a number of steps")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of steps")
     return value
 
 
 def _period(text: str) -> float:
-    value = float(text)
+    value = number(text)
     if not isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds")
     return value
 
 
 def _seed(text: str) -> int:
     # Gazebo reads it as a floating-point number.
-    value = float(text)
+    value = number(text)
     if not value.is_integer():
-        raise argparse.ArgumentTypeError(f"{text} is not a whole number")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
     return int(value)
 
 

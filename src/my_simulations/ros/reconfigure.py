@@ -77,6 +77,11 @@ class Reconfigure:
                     rospy.set_param(f"~{name}", value)
             self._stored = values
 
+    def forget_stored(self) -> None:
+        """A new parameter server knows nothing: `keep_up` stores everything again."""
+        with self._lock:
+            self._stored = None
+
     def _tell(self) -> None:
         with self._lock:
             values = present(self._simulator)

@@ -16,7 +16,9 @@ ROOTS = "~save_roots"
 class SaveService:
     """save_world."""
 
-    def __init__(self, simulator: Simulator, resolver: Resolver) -> None:
+    def __init__(self, simulator: Simulator, resolver: Resolver, caller: str = "") -> None:
+        """`caller`: folder in which the command was typed; worlds may be saved there."""
+        self._caller = caller
         self._simulator = simulator
         self._resolver = resolver
 
@@ -26,10 +28,16 @@ class SaveService:
         from ..simulator.saving import default_roots, save_world
 
         roots = _roots()
+        if roots is None:
+            roots = default_roots(self._simulator.world.file, self._caller)
+        left_out = [] if request.launched else self._simulator.models.launched()
         response.path = save_world(
-            self._simulator, request.path, roots=default_roots() if roots is None else roots,
-            resolver=self._resolver, overwrite=request.overwrite, inline=request.inline)
-        return f"saved to {response.path}"
+            self._simulator, request.path, roots=roots, resolver=self._resolver,
+            overwrite=request.overwrite, inline=request.inline, state=request.state,
+            launched=request.launched)
+        without = (f" without {', '.join(left_out)}, which the launch file spawns"
+                   if left_out else "")
+        return f"saved to {response.path}{without}"
 
 
 def _roots() -> Optional[List[str]]:

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
 from ..errors import CommandError, InputError, error
 from ..simulator.issue_log import IssueLog
 from . import master
+from .abandoned import Abandonment
 from .engines import EngineSupply
+from .launched import Launch
 from .lean import import_genpy
 from .options import ServerOptions
 from .profile import StartProfile
@@ -29,6 +31,9 @@ END_SECONDS = 3.0
 """Longest orderly end; a thread that is stuck in a network call does not keep the process."""
 
 UPKEEP_SECONDS = 1.0
+POLL_SECONDS = 0.05
+"""How soon a signal ends the wait for a world that is being loaded."""
+
 CLOCK_QUEUE = 1000
 """Messages a subscriber to `/clock` may be behind by: a second in real time."""
 
@@ -46,12 +51,12 @@ class WorldLoader:
     """
 
     def __init__(self, options: ServerOptions, engines: EngineSupply, log: IssueLog,
-                 profile: StartProfile, on_fault: Callable[[], None]) -> None:
+                 profile: StartProfile, on_fault: Callable[[], None], caller: str) -> None:
         self.simulator: Any = None
         self.resolver: Any = None
         self.fault: Optional[InputError] = None
         self.defect: Optional[Exception] = None
-        self._given = (options, engines, log)
+        self._given = (options, engines, log, caller)
         self._profile = profile
         self._on_fault = on_fault
         self._thread = threading.Thread(target=self._run, name="world loader", daemon=True)
@@ -71,7 +76,7 @@ class WorldLoader:
             self._on_fault()
 
     def _load(self) -> None:
-        options, engines, log = self._given
+        options, engines, log, caller = self._given
         from ..engine.commands import FOREVER
         from ..resources.downloads import DownloadNotes
         from ..resources.resolver import Resolver
@@ -81,13 +86,19 @@ class WorldLoader:
         self.resolver = Resolver.from_environment(DownloadNotes(log))
         self.simulator = start_world(
             options.world, self.resolver, engines, log, seed=options.seed or 0,
-            profile=options.profile, steps=options.iterations or FOREVER,
+            profile=options.profile, steps=options.iterations or FOREVER, caller=caller,
             read=lambda: self._profile.mark("world read"))
         self._profile.mark("world loaded into the engine")
 
-    def wait(self) -> None:
-        """Wait for the end; a defect of the program is raised here."""
-        self._thread.join()
+    @property
+    def busy(self) -> bool:
+        """Whether it is still at work."""
+        return self._thread.is_alive()
+
+    def wait(self, stop: threading.Event) -> None:
+        """Wait for the end, or until `stop` is set; a defect of the program is raised here."""
+        while self.busy and not stop.is_set():
+            self._thread.join(POLL_SECONDS)
         if self.defect is not None:
             raise self.defect
 
@@ -117,6 +128,7 @@ class Server:
         self._door: "Optional[EditorDoor]" = None
         self._options, self._argv, self._say = options, list(argv), say
         self._engines, self._profile = engines, profile
+        self._launch = Launch.of(argv)
         self._ended = threading.Event()
         self._settled = threading.Event()
         self._clock: Any = None
@@ -131,18 +143,29 @@ class Server:
         import_genpy()
         self._profile.mark("messages imported")
         loader = WorldLoader(self._options, self._engines, self._log, self._profile,
-                             self._settled.set)
+                             self._settled.set, self._launch.folder)
         node: Any = None
         try:
             if not self._may_register(loader):
                 return OK if self._ended.is_set() else FAILED
             self._init_node()
-            loader.wait()
+            # Already now: loading may take a while, and says what it is at.
+            self._open_log()
+            loader.wait(self._ended)
+            if self._ended.is_set():
+                return OK
             if loader.fault is not None:
                 return self._refuse(loader.fault)
             node = self._start_node(loader)
+            abandonment = Abandonment(self._master, self._name, self._launch,
+                                      node.seconds_alone())
             while not self._ended.wait(UPKEEP_SECONDS):
                 node.keep_up()
+                reason = abandonment.reason()
+                if reason:
+                    self._say(f"{reason}; the simulator ends (~master_timeout sets the time, 0 for "
+                              "never)")
+                    return FAILED
             return OK
         except OSError as fault:
             if not self._ended.is_set():
@@ -177,9 +200,9 @@ class Server:
         return True
 
     def _say_why_not(self, loader: WorldLoader) -> None:
+        loader.wait(self._ended)
         if self._ended.is_set():
             return
-        loader.wait()
         if loader.fault is not None:
             for issue in loader.fault.issues:
                 self._say(str(issue))
@@ -214,18 +237,25 @@ class Server:
         if not rospy.core.is_initialized():
             rospy.signal_shutdown("ended")
 
-    def _start_node(self, loader: WorldLoader) -> Any:
+    def _open_log(self) -> None:
         import rospy
 
         from .log import log_issue
-        from .node import Node
 
-        self._log.open(log_issue)
         for notice in self._options.notices:
             rospy.loginfo("%s", notice)
+        self._log.open(log_issue)
+
+    def _start_node(self, loader: WorldLoader) -> Any:
+        import rospy
+
+        from .node import Node
+
+        rospy.loginfo("the world file is %s", loader.simulator.world.file)
         door = self._make_door(loader)
         node = Node(loader.simulator, loader.resolver, self._clock,
-                    None if door is None else door.open)
+                    None if door is None else door.open, self._master,
+                    (lambda: None) if door is None else door.announce, self._launch)
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
@@ -260,7 +290,7 @@ class Server:
         from .editing import EditorDoor
 
         self._door = EditorDoor(self._start_editor, loader.simulator, loader.resolver,
-                                self._log.also)
+                                self._log.also, self._launch.folder)
         return self._door
 
     def _refuse(self, fault: InputError) -> int:
@@ -289,6 +319,10 @@ class Server:
         rospy = sys.modules.get("rospy")
         if rospy is not None and rospy.core.is_initialized():
             rospy.signal_shutdown("the server ends")
+        if loader.busy:  # nobody waits for it; what it has started ends with this process
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(status)
         watchdog.cancel()
 
 

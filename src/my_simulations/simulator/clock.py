@@ -1,7 +1,8 @@
 """Sim time: pausing, stepping, and how far the engine may run by itself."""
 from __future__ import annotations
 
-from typing import List, Tuple
+import contextlib
+from typing import Iterator, List, Tuple
 
 from ..engine.commands import FOREVER, Advance, Command, Pause, Run, SetClock
 from ..engine.ring import Clock
@@ -21,6 +22,7 @@ class SimClock:
         self._session = session
         self._paused = paused
         self._manual_stepping = False
+        self._loading = False
         self._steps = steps
         self._horizon = FOREVER
 
@@ -90,7 +92,17 @@ class SimClock:
 
     def resume_commands(self) -> List[Command]:
         """`Run`, if time goes on by itself, else nothing."""
-        return [] if self._paused or self._manual_stepping else [Run(self._horizon)]
+        stands = self._paused or self._manual_stepping or self._loading
+        return [] if stands else [Run(self._horizon)]
+
+    @contextlib.contextmanager
+    def stopped_while_loading(self) -> Iterator[None]:
+        """Keep time from going on, a new engine's too, until a world is loaded as a whole."""
+        self._loading = True
+        try:
+            yield
+        finally:
+            self._loading = False
 
     def pause_after_recovery(self) -> None:
         """Stay paused when the engine is restored: it keeps crashing while time runs."""

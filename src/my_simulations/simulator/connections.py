@@ -104,10 +104,14 @@ class Connections:
 
 @dataclass(frozen=True)
 class Departed:
-    """What a deleted model needs to come back: its place in the order, its joints to others."""
+    """What a deleted model needs to come back: its place in the order, its joints to others.
+
+    `launched`: see `Entity`.
+    """
 
     slot: Turn
     joints: Connections
+    launched: bool = False
 
 
 def _touches(joint: Joint, model: str) -> bool:

@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 from dataclasses import replace as replaced
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.flatten import flattened
 from ..description.model import Inertial, Joint, Link, Model
 from ..description.shapes import MeshTable
+from ..description.world import World
 from ..engine.commands import (
     AddTimedForces,
     Batch,
@@ -42,6 +43,7 @@ class Models:
         self._convex_meshes = convex_meshes
         self._between = Connections()
         self._pinned: List[str] = []
+        self._losses: List[str] = []
         self._saved_starts = dict(session.world.initial)
 
     # -- reading -----------------------------------------------------------------------------------
@@ -83,11 +85,27 @@ class Models:
         """Joints between models that hold now; their ends are scoped link names, or `world`."""
         return self._between.joints
 
+    def launched(self) -> List[str]:
+        """The models that the launch file of this simulator spawned (see `Entity`)."""
+        return [entity.model.name for entity in self._session.entities() if entity.launched]
+
+    def set_launched(self, names: Sequence[str]) -> None:
+        """Say which models the launch file spawned; the others it did not."""
+        with self._session.registry_lock:
+            for entity in self._session.registry.entities():
+                entity.launched = entity.model.name in names
+
+    @property
+    def losses(self) -> List[str]:
+        """What of the world's file could not be loaded, one sentence each."""
+        return self._losses
+
     # -- spawning and deleting ---------------------------------------------------------------------
 
     def spawn(self, model: Model, pose: Optional[Pose] = None, frame: str = "",
               meshes: Optional[MeshTable] = None, replace: bool = False,
-              state: Optional[ModelState] = None, deleted: Optional[Departed] = None) -> None:
+              state: Optional[ModelState] = None, deleted: Optional[Departed] = None,
+              launched: bool = False) -> None:
         """Put a model into the world; returns when it is there.
 
         Args:
@@ -99,6 +117,7 @@ class Models:
             state: where its links and joints are, instead of at rest at `pose`.
             deleted: what `delete` returned: the model gets its place in the order and its joints
                 to other models again.
+            launched: see `Entity`.
 
         Raises:
             CommandError: empty or taken name, unknown frame, or the engine refused it.
@@ -115,6 +134,7 @@ class Models:
                 old = self._replaceable(model.name, replace)
                 entity = session.new_entity(model, self._world_pose(model, pose, frame), meshes,
                                             between.slides(model.name))
+                entity.launched = launched or (deleted is not None and deleted.launched)
             try:
                 session.call(Batch((
                     load_command(entity, state),
@@ -143,7 +163,8 @@ class Models:
                 entity = session.registry.model(name)
             session.call(RemoveModel(entity.model_id))
             with session.registry_lock:
-                deleted = Departed(Turn.of(session.registry.names(), name), self._between.of(name))
+                deleted = Departed(Turn.of(session.registry.names(), name), self._between.of(name),
+                                   entity.launched)
                 session.registry.remove(name)
                 self._between = self._between.without(name)
                 self._forget(entity)
@@ -201,6 +222,7 @@ class Models:
                 entity = session.new_entity(model, old.initial_pose, parts,
                                             self._between.slides(model.name))
             entity.pose, entity.articulated = old.pose, old.articulated
+            entity.launched = old.launched
             forces = self._wrenches.transferred(old, entity)
             try:
                 session.call(Batch((
@@ -263,12 +285,16 @@ class Models:
         """
         session = self._session
         self._saved_starts = dict(session.world.initial)
+        self._losses = list(session.world.losses)
         self._between = Connections(session.world.joints)
+        self.divide_meshes(session.world, meshes)
         for model in session.world.models:
             try:
                 self.spawn(model, meshes=meshes.get(model.name))
             except CommandError as fault:
-                session.log(error("model-refused", str(fault), file=session.world.file))
+                left_out = f"model '{model.name}' was left out: {fault}"
+                self._losses.append(left_out)
+                session.log(error("model-refused", left_out, file=session.world.file))
         self._between, issues = self._between.located(session.registry)
         for issue in issues:
             session.log(replaced(issue, file=session.world.file))
@@ -278,6 +304,11 @@ class Models:
             except CommandError as fault:
                 session.log(error("joint-refused", str(fault), file=session.world.file))
         self._between = self._between.present(session.registry)
+
+    def divide_meshes(self, world: World, meshes: Dict[str, MeshTable]) -> None:
+        """Divide the meshes of all models of a world into convex parts where they need it."""
+        self._convex_meshes.prepare((flattened(model), meshes.get(model.name) or {})
+                                    for model in world.models)
 
     def forget_all(self) -> None:
         """Drop every entity from the registry, after the engine was cleared."""

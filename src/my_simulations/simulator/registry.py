@@ -3,7 +3,18 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field
-from typing import Callable, Dict, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import (
+    Callable,
+    Dict,
+    Iterable,
+    Iterator,
+    List,
+    Mapping,
+    Optional,
+    Sequence,
+    Set,
+    Tuple,
+)
 
 from ..description.model import Joint, Model
 from ..description.shapes import MeshTable
@@ -14,6 +25,12 @@ from ..engine.rows import AXES, axis_rows, row_name
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
 from .order import Turn
+
+_FEW = 3
+"""Names that a message suggests."""
+
+_MOST_LISTED = 8
+"""Names that a message lists where none is like the one that was asked for."""
 
 WORLD_FRAMES = ("", "world", "map", "/map")
 """The names of the world frame (Gazebo behaviour)."""
@@ -39,6 +56,7 @@ class Entity:
         meshes: what its collisions need, kept for a restart of the engine.
         pose: world pose of a model without links; others are where their canonical link is.
         articulated: built so that a sliding joint can connect it with another model.
+        launched: the launch file that started the simulator spawned it, and will do so again.
     """
 
     model_id: int
@@ -49,6 +67,7 @@ class Entity:
     meshes: MeshTable = field(default_factory=dict)
     pose: Pose = IDENTITY
     articulated: bool = False
+    launched: bool = False
 
     def __post_init__(self) -> None:
         self.pose = self.initial_pose
@@ -238,7 +257,7 @@ class Registry:
         """
         found = self._scoped_link(name) or self._plain_link(name)
         if found is None:
-            raise UnknownEntity(f"there is no link '{name}'" + self._nearest(name))
+            raise UnknownEntity(f"there is no link '{name}'" + self._nearest_link(name))
         return found
 
     def joint_row(self, name: str) -> int:
@@ -248,7 +267,7 @@ class Registry:
             if row is not None:
                 self._joint_taken(name, entity)
                 return row
-        raise UnknownEntity(f"there is no movable joint '{name}'")
+        raise UnknownEntity(f"there is no movable joint '{name}'" + self._nearest_joint(name))
 
     def joint(self, name: str) -> Tuple[Entity, Joint, int]:
         """Model, joint and axis number of a joint by plain or scoped name, fixed ones too.
@@ -258,7 +277,7 @@ class Registry:
         for entity, joint, number in self._joints_named(name):
             self._joint_taken(name, entity)
             return entity, joint, number
-        raise UnknownEntity(f"there is no joint '{name}'")
+        raise UnknownEntity(f"there is no joint '{name}'" + self._nearest_joint(name))
 
     def _joints_named(self, name: str) -> Iterator[Tuple[Entity, Joint, int]]:
         for entity in self._entities.values():
@@ -342,5 +361,40 @@ class Registry:
         return None
 
     def _nearest(self, name: str) -> str:
-        near = difflib.get_close_matches(name, self._entities, n=3)
-        return f"; did you mean {' or '.join(near)}?" if near else ""
+        return _meant(name, self._entities)
+
+    def _nearest_link(self, name: str) -> str:
+        """The links of a model of that name, else the scoped names most like it."""
+        of_model = self._entities.get(name)
+        if of_model is not None:
+            named = [f"{name}::{link}" for link in of_model.link_names]
+            return (f"; it is a model, its {'link is' if len(named) == 1 else 'links are'} "
+                    + ", ".join(named[:_FEW]) + (", ..." if len(named) > _FEW else "")
+                    if named else "; it is a model without links")
+        return _scoped_meant(name, {entity.model.name: entity.link_names
+                                    for entity in self._entities.values()})
+
+    def _nearest_joint(self, name: str) -> str:
+        return _scoped_meant(name, {
+            entity.model.name: [joint.name for joint in entity.model.joints]
+            for entity in self._entities.values()})
+
+
+def _meant(name: str, known: Iterable[str]) -> str:
+    near = difflib.get_close_matches(name, list(known), n=_FEW)
+    return f"; did you mean {' or '.join(near)}?" if near else ""
+
+
+def _scoped_meant(name: str, owned: Mapping[str, Sequence[str]]) -> str:
+    """The names `model::part` that a wrong one may have meant, with or without its model's."""
+    model, _, part = name.partition("::")
+    if part and model not in owned:
+        return _meant(name, [f"{owner}::{one}" for owner, names in owned.items() for one in names])
+    scopes = [model] if part else list(owned)
+    plain = {one: f"{owner}::{one}" for owner in reversed(scopes) for one in owned[owner]}
+    near = difflib.get_close_matches(part or name, plain, n=_FEW)
+    if near:
+        return f"; did you mean {' or '.join(plain[one] for one in near)}?"
+    there = list(plain.values())
+    more = ", ..." if len(there) > _MOST_LISTED else ""
+    return f"; there are {', '.join(there[:_MOST_LISTED])}{more}" if there else ""

@@ -8,6 +8,7 @@ from ..engine.commands import (
     FOREVER,
     AddTimedForces,
     Batch,
+    ClearTimedForces,
     Command,
     Pause,
     Restart,
@@ -18,6 +19,7 @@ from ..geometry import STILL
 from .clock import SimClock
 from .initial import initial_commands
 from .models import Models
+from .registry import Entity
 from .session import Session
 from .wrenches import Wrenches
 
@@ -36,24 +38,24 @@ class Resets:
         """Set sim time to 0. Models stay; timed wrenches last as long as they would have."""
         with self._session.structure_lock:
             now = self._session.call(Pause()).step
+            # What is known here changes after the engine did it: until then, an engine that takes
+            # over from one that died must be told what was before.
             pending = [replace(force, start=max(0, force.start - now),
                                stop=force.stop if force.stop == FOREVER else force.stop - now)
                        for force in self._wrenches.pending(now)]
-            self._wrenches.replace_all(pending)
             self._session.call(Batch((SetClock(0, 0), AddTimedForces(tuple(pending)),
                                       *self._clock.resume_commands())))
+            self._wrenches.replace_all(pending)
 
     def reset_world(self) -> None:
         """Move every model to where it was loaded, at rest; joint positions and time stay."""
         session = self._session
         with session.structure_lock:
             entities = session.registry.entities()
-            for entity in entities:
-                entity.pose = entity.initial_pose
-            session.registry.revision += 1
             session.call(Batch(tuple(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names)))
+            self._move_linkless_models(entities)
 
     def reset_simulation(self) -> None:
         """Start again: models and joints as loaded, time 0, no timed wrenches; spawned models stay.
@@ -67,9 +69,18 @@ class Resets:
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
                 SetClock(0, 0)]
             for entity in entities:
-                entity.pose = entity.initial_pose
                 commands += initial_commands(entity, session.world.initial.get(entity.model.name))
             commands += self._models.commands_after_loading()
-            self._wrenches.replace_all()
-            session.registry.revision += 1
             session.call(Batch(tuple(commands)))
+            self._move_linkless_models(entities)
+            dropped = self._wrenches.ids
+            self._wrenches.replace_all()
+            if dropped:  # an engine that has just taken over may have been told of them
+                session.call(ClearTimedForces(dropped))
+
+    def _move_linkless_models(self, entities: List[Entity]) -> None:
+        """Models without links, which the engine does not know, go to where they were loaded."""
+        with self._session.registry_lock:
+            for entity in entities:
+                entity.pose = entity.initial_pose
+            self._session.registry.revision += 1

@@ -1,7 +1,8 @@
 """A running world as a file: the description with the present poses, and a `<state>`.
 
-The final poses stand in the models themselves, so that every reader finds them, and once more in
-the `<state>` together with sim time, velocities and joint positions.
+The final poses stand in the models themselves, so that every reader finds them. A `<state>` tells
+what they cannot: where the links of an articulated model are and, on request, sim time and
+velocities of everything.
 """
 from __future__ import annotations
 
@@ -9,7 +10,8 @@ import os
 from dataclasses import replace
 from typing import Dict, List, Optional, Sequence
 
-from ..description.model import Model
+from ..description.compare import differences
+from ..description.model import Joint, Model
 from ..description.unflatten import unflattened
 from ..description.world import LightState, LinkState, ModelState, SavedState, World
 from ..engine.ring import Snapshot
@@ -17,31 +19,52 @@ from ..engine.rows import axis_rows
 from ..errors import CommandError, InputError
 from ..formats.load import read_file
 from ..formats.sdf_write import write_world
-from ..resources.own import own_directory
+from ..geometry import STILL, compose, inverse
+from ..resources.own import package_directories
 from ..resources.resolver import NotFound, Resolver
+from ..resources.world_files import ENDINGS, folder_of_users, ships, users_folder
 from .registry import Entity
 from .safe_file import write_whole
 from .simulator import Simulator
 
-EXTENSIONS = (".world", ".sdf")
+EXTENSIONS = ENDINGS
+
+_DISPLACED = 1e-6
+"""By how much what has not been moved may be off: m, rad, parts of a quaternion."""
 
 
-def present_world(simulator: Simulator) -> World:
+def present_world(simulator: Simulator, *, state: bool = True, launched: bool = True) -> World:
     """The description of what is in the world now, with `state` set.
 
     Models stand in load order, at the poses of one snapshot; physics and gravity are as last set.
+
+    Args:
+        simulator: what is described.
+        state: the `<state>` holds sim time, velocities and every model; else it is about time 0,
+            and holds the models whose joints or links are elsewhere than in their description.
+        launched: with the models that the launch file spawned.
     """
     entities, snapshot = simulator.states.fresh()
+    if not launched:
+        entities = [entity for entity in entities if not entity.launched]
     world = simulator.world
     models = [replace(unflattened(entity.model), pose=entity.state(snapshot)[0])
               for entity in entities]
+    saved = (_state if state else _configuration)(world, entities, snapshot)
     return replace(
         world, models=models, lights=simulator.lights.all(),
-        joints=simulator.models.inter_model_joints, physics=simulator.physics.settings,
-        gravity=simulator.physics.gravity,
-        state=_state(world, entities, snapshot), initial={}, initial_ns=0,
+        joints=_joints_of(simulator, entities), physics=simulator.physics.settings,
+        gravity=simulator.physics.gravity, state=saved, initial={}, initial_ns=0,
         extra=[xml for xml in world.extra if not xml.lstrip().startswith("<state")],
     )
+
+
+def _joints_of(simulator: Simulator, entities: Sequence[Entity]) -> List[Joint]:
+    """The joints between these models, or between one of them and the world."""
+    there = {entity.model.name for entity in entities}
+    return [joint for joint in simulator.models.inter_model_joints
+            if all("::" not in end or end.split("::")[0] in there
+                   for end in (joint.parent, joint.child))]
 
 
 def _state(world: World, entities: Sequence[Entity], snapshot: Snapshot) -> SavedState:
@@ -50,6 +73,31 @@ def _state(world: World, entities: Sequence[Entity], snapshot: Snapshot) -> Save
         models=[_model_state(entity, snapshot) for entity in entities],
         lights=[LightState(light.name, light.pose) for light in world.lights],
     )
+
+
+def _configuration(world: World, entities: Sequence[Entity],
+                   snapshot: Snapshot) -> Optional[SavedState]:
+    """What the poses of the models do not tell, at rest at time 0; None where they tell all.
+
+    A model that the `<state>` does not name is where its own <pose> says, which a person may
+    change in the file by hand.
+    """
+    models = [_at_rest(_model_state(entity, snapshot)) for entity in entities
+              if not entity.model.static and _is_displaced(entity, snapshot)]
+    return SavedState(world.name, 0, models=models) if models else None
+
+
+def _at_rest(state: ModelState) -> ModelState:
+    return replace(state, links=[replace(link, twist=STILL) for link in state.links])
+
+
+def _is_displaced(entity: Entity, snapshot: Snapshot) -> bool:
+    """Whether a joint or a link is elsewhere in its model than the description says."""
+    model_from_world = inverse(entity.state(snapshot)[0])
+    saved = entity.saved(snapshot)
+    return any(abs(position) > _DISPLACED for position, _rate in saved.joints) or any(
+        bool(differences(compose(model_from_world, now.pose), link.pose, _DISPLACED))
+        for link, now in zip(entity.model.links, saved.links))
 
 
 def _model_state(entity: Entity, snapshot: Snapshot) -> ModelState:
@@ -66,7 +114,8 @@ def _model_state(entity: Entity, snapshot: Snapshot) -> ModelState:
 
 def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
                resolver: Optional[Resolver] = None, overwrite: bool = False,
-               inline: bool = True) -> str:
+               inline: bool = True, state: bool = False, launched: bool = False,
+               despite_losses: bool = False) -> str:
     """Write the running world to a file.
 
     Args:
@@ -77,19 +126,34 @@ def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
         overwrite: whether a file of that name may be replaced.
         inline: write models from includes in full; else those that nothing changed but for name,
             pose, static and more plugins are includes again.
+        state: with sim time and velocities; see `present_world`.
+        launched: with the models that the launch file spawned.
+        despite_losses: whether a file may be replaced of which parts could not be loaded.
 
     Returns:
         The absolute path that was written.
 
     Raises:
-        CommandError: the path is not allowed, or the file cannot be written; a file that was there
-            is untouched.
+        CommandError: the path is not allowed, the file ships with this package, or it cannot be
+            written; a file that was there is untouched.
     """
     target = allowed_path(path, roots)
-    world = present_world(simulator)
+    refuse_shipped(target)
+    if not despite_losses and overwrite:
+        _refuse_losses(simulator, target)
+    world = present_world(simulator, state=state, launched=launched)
     included = None if inline or resolver is None else _Includes(resolver)
     write_whole(target, write_world(world, world.state, included), overwrite)
     return target
+
+
+def _refuse_losses(simulator: Simulator, target: str) -> None:
+    """Keep a file from being replaced by less than what it holds. Raises CommandError."""
+    losses, file = simulator.models.losses, simulator.world.file
+    if losses and file and os.path.realpath(file) == target:
+        more = f" (and {len(losses) - 1} more)" if len(losses) > 1 else ""
+        raise CommandError(f"not everything in {target} could be loaded, and saving over it would "
+                           f"lose that: {losses[0]}{more}; save under another name")
 
 
 class _Includes:
@@ -112,23 +176,33 @@ class _Includes:
         return found if isinstance(found, Model) else None
 
 
-def default_roots() -> List[str]:
-    """Where worlds may be saved: ours, workspaces' sources, the home folder's, and here.
+def refuse_shipped(target: str) -> None:
+    """Raise CommandError for a file that came with this package."""
+    if ships(target):
+        raise CommandError(f"{target} ships with my_simulations and is not written over; choose "
+                           "another name or folder")
 
-    The first one is where relative paths start: the package's `world` folder, as on the lab sheet,
-    or `~/my_simulations/worlds` where that cannot be written to.
+
+def default_roots(world_file: str = "", caller: str = "") -> List[str]:
+    """Where worlds may be saved.
+
+    The first one is where relative paths start: the folder of the running world's file, if that is
+    the user's own, else `~/my_simulations/worlds`. The others are the package's `world` folder,
+    workspaces' sources, and the folder in which the command was typed.
+
+    Args:
+        world_file: of the running world; "" for none.
+        caller: folder in which the command was typed; "" for the working directory.
     """
-    roots = [os.path.expanduser("~/my_simulations/worlds")]
-    own = own_directory()
-    if own:
-        world = os.path.join(own, "world")
-        roots.insert(0 if os.access(world, os.W_OK) else 1, world)
+    roots = [folder_of_users(world_file), users_folder()]
+    own = package_directories()
+    world = os.path.join(own[0], "world") if own else ""
+    if world and os.access(world, os.W_OK):
+        roots.append(world)
     entries = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
     roots += [entry for entry in entries if os.path.basename(entry.rstrip("/")) == "src"]
-    here = os.getcwd()
-    if here != os.sep:
-        roots.append(here)
-    return roots
+    roots.append(caller or os.getcwd())
+    return list(dict.fromkeys(root for root in roots if root and root != os.sep))
 
 
 def allowed_path(path: str, roots: Sequence[str]) -> str:

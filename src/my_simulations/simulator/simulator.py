@@ -110,10 +110,13 @@ class Simulator:
         no engine.
         """
         session = self._session
+        self.models.divide_meshes(world, meshes or {})  # meanwhile the old one goes on
         with session.structure_lock:
             session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids))))
             self.models.forget_all()
             self.wrenches.replace_all()
+            # Once more: an engine that took over just now was told of the old models.
+            session.call(Batch((Pause(), Clear())))
             session.world, self._world_meshes = world, meshes or {}
             self.physics.adopt_world()
             self._fill()
@@ -121,11 +124,12 @@ class Simulator:
                 session.call(command)
 
     def _fill(self) -> None:
-        """Settings, clock and models of the world, into an empty engine."""
-        self._session.call(self.physics.command())
-        self._session.call(self.clock.start_command(
-            self.world.initial_ns, self.physics.settings.max_step_size))
-        self.models.load_all(self._world_meshes)
+        """Load settings, clock and models of the world into an empty engine."""
+        with self.clock.stopped_while_loading():
+            self._session.call(self.physics.command())
+            self._session.call(self.clock.start_command(
+                self.world.initial_ns, self.physics.settings.max_step_size))
+            self.models.load_all(self._world_meshes)
 
     def _on_event(self, event: Event) -> None:
         if event.kind == "diverged":

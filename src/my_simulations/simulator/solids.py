@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Callable, Dict, List
+from typing import Callable, Dict, Iterable, Iterator, Tuple
 
 from ..description.model import Model
 from ..description.shapes import SOLIDS, MeshData, MeshTable, mesh_key
 from ..errors import Issue
+
+_MOST_KEPT = 1000
 
 
 class ConvexParts:
@@ -22,30 +24,42 @@ class ConvexParts:
 
         Blocks while a mesh is divided for the first time.
         """
-        if not meshes or model.static:
-            return meshes
+        self.prepare([(model, meshes)])
         found = dict(meshes)
-        for link in model.links:
-            for collision in [] if link.kinematic else link.collisions:
-                if isinstance(collision.geometry, SOLIDS):
-                    key = mesh_key(collision.geometry)
-                    if key in found and found[key].parts is None:
-                        found[key] = self._parts(found[key], f"{model.name}::{link.name}")
+        for key, mesh, _ in _moving(model, meshes):
+            found[key] = self._divided[id(mesh.vertices)]
         return found
 
-    def _parts(self, mesh: MeshData, whose: str) -> MeshData:
-        known = self._divided.get(id(mesh.vertices))
-        if known is not None and known.vertices is mesh.vertices:
-            return known
-        from ..engine.decompose import convex_parts
+    def prepare(self, models: Iterable[Tuple[Model, MeshTable]]) -> None:
+        """Divide what several flattened models need, all at once; blocks until it is done."""
+        wanted: Dict[int, Tuple[str, MeshData]] = {}
+        for model, meshes in models:
+            for _, mesh, whose in _moving(model, meshes):
+                known = self._divided.get(id(mesh.vertices))
+                if known is None or known.vertices is not mesh.vertices:
+                    wanted.setdefault(id(mesh.vertices), (whose, mesh))
+        if not wanted:
+            return
+        from ..engine.decompose import notices
+        from ..engine.decompose_many import divide_all
 
-        issues: List[Issue] = []
-        parts = convex_parts(mesh, issues=issues,
-                             progress=lambda text: self._progress(f"{whose}: {text}"))
-        for issue in issues:
-            self._log(replace(issue, message=f"{whose}: {issue.message}"))
-        divided = replace(mesh, parts=parts)
-        if len(self._divided) > 200:
+        named = list(wanted.values())
+        made = divide_all(named, self._progress)
+        if len(self._divided) > _MOST_KEPT:
             self._divided.clear()
-        self._divided[id(mesh.vertices)] = divided
-        return divided
+        for (whose, mesh), parts in zip(named, made):
+            for issue in notices(parts):
+                self._log(replace(issue, message=f"{whose}: {issue.message}"))
+            self._divided[id(mesh.vertices)] = replace(mesh, parts=parts.parts)
+
+
+def _moving(model: Model, meshes: MeshTable) -> Iterator[Tuple[str, MeshData, str]]:
+    """Key, mesh and owner's name of the meshes of moving links that have no parts yet."""
+    if not meshes or model.static:
+        return
+    for link in model.links:
+        for collision in [] if link.kinematic else link.collisions:
+            if isinstance(collision.geometry, SOLIDS):
+                key = mesh_key(collision.geometry)
+                if key in meshes and meshes[key].parts is None:
+                    yield key, meshes[key], f"{model.name}::{link.name}"

@@ -128,9 +128,14 @@ export function withEnding(name) {
  * @param {string} options.nameless  said where no name was given
  * @param {Object<string, any>} options.field  attributes of the field
  * @param {(path: string) => Promise<string|false>} options.run  as a button's, for the chosen path
+ * @param {Node[]} [options.more]  below the list
+ * @param {(listing: any) => void} [options.onListing]  hears of the first folder's listing
  * @returns {Promise<string|undefined>} what `run` answered, undefined when cancelled
  */
-async function filesDialog(request, {title, button, nameless, field, run}) {
+async function filesDialog(
+  request,
+  {title, button, nameless, field, run, more = [], onListing = () => {}},
+) {
   const name = h('input', {
     type: 'text',
     spellcheck: 'false',
@@ -161,44 +166,86 @@ async function filesDialog(request, {title, button, nameless, field, run}) {
   const dialog = new Dialog({
     title,
     name: 'files',
-    content: [labelled('File name', name), folders.element],
+    content: [labelled('File name', name), folders.element, ...more],
     buttons: [{title: 'Cancel'}, {title: button, primary: true, run: chosen}],
   });
   const closed = dialog.open();
   // Typing replaces the name and leaves the ending.
   name.setSelectionRange(0, name.value.replace(ENDINGS, '').length);
   await folders.go();
+  if (folders.listing) onListing(folders.listing);
   return closed;
 }
 
 /**
- * Asks for a name and saves; asks again before it overwrites.
+ * Asks for a name and what belongs into the file, and saves; asks again before it overwrites.
  *
  * @param {import('../panels.js').Page} page
  * @returns {Promise<string|undefined>} the path, undefined when cancelled
  */
 export function saveAsDialog({store, request}) {
   const file = baseName(store.history?.file || store.document?.file);
+  const choices = new SaveChoices();
   return filesDialog(request, {
     title: 'Save World As',
     button: 'Save',
     nameless: 'Give the file a name.',
     field: {value: file || 'untitled.world'},
-    run: (path) => saveTo(request, withEnding(path)),
+    more: [choices.element],
+    onListing: (listing) => choices.show(listing),
+    run: (path) => saveTo(request, {path: withEnding(path), ...choices.values()}),
   });
 }
 
-async function saveTo(request, path) {
-  try {
-    return (await request('save', {path, overwrite: false})).path;
-  } catch (fault) {
-    if (!fault.issues?.some((issue) => issue.code === 'exists')) throw fault;
+/** What a saved world holds besides its models: what the launch file spawned, and its state. */
+class SaveChoices {
+  constructor() {
+    this.note = h('span', {});
+    this.launched = h('input', {type: 'checkbox'});
+    this.state = h('input', {type: 'checkbox'});
+    this.spawned = h('label', {hidden: true}, this.launched, this.note);
+    this.element = h(
+      'div',
+      {class: 'save-choices'},
+      this.spawned,
+      h(
+        'label',
+        {},
+        this.state,
+        'With state: sim time and velocities, instead of a start at time 0',
+      ),
+    );
   }
-  const overwrite = await ask('Overwrite the file?', `${path} exists already.`, [
+
+  /** What the server knows, and what was chosen the last time. */
+  show({launched = [], chosen = {}}) {
+    this.spawned.hidden = launched.length === 0;
+    this.note.textContent =
+      `Include ${launched.join(', ')}, which the launch file spawns at each start`;
+    this.launched.checked = Boolean(chosen.launched);
+    this.state.checked = Boolean(chosen.state);
+  }
+
+  values() {
+    return {launched: this.launched.checked, state: this.state.checked};
+  }
+}
+
+async function saveTo(request, wanted) {
+  const {path} = wanted;
+  let said = '';
+  try {
+    return (await request('save', {...wanted, overwrite: false})).path;
+  } catch (fault) {
+    const exists = fault.issues?.find((issue) => issue.code === 'exists');
+    if (!exists) throw fault;
+    said = exists.message;
+  }
+  const overwrite = await ask('Overwrite the file?', `${said}.`, [
     {title: 'Cancel'},
     {title: 'Overwrite', value: true, primary: true},
   ]);
-  return overwrite ? (await request('save', {path, overwrite: true})).path : false;
+  return overwrite ? (await request('save', {...wanted, overwrite: true})).path : false;
 }
 
 function baseName(path) {

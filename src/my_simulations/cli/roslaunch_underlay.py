@@ -1,0 +1,53 @@
+"""roslaunch, for a workspace that has a package my_simulations of its own.
+
+roslaunch resolves `$(find my_simulations)/FILE` by looking for that file in every catkin prefix:
+the workspace's file is found first and ours, in the last prefix, where there is none. Two cases are
+left, and are added here: a file followed by a quote, `command="cat '$(find my_simulations)/FILE'"`,
+and `roslaunch my_simulations FILE`, which looks in one package folder alone.
+"""
+from __future__ import annotations
+
+import os
+import re
+import sys
+from typing import Any, Callable, List, Tuple
+
+from ..resources.own import PACKAGE, own_directory
+
+_PATH = re.compile(r"[^ '\"]*")
+
+
+def separate_first_path(value: str) -> Tuple[str, str]:
+    """What follows `$(find PKG)`, up to a blank or a quote, and the rest."""
+    found = _PATH.match(value)
+    end = found.end() if found else 0
+    return value[:end], value[end:]
+
+
+def with_own_files(find: Callable[..., List[str]]) -> Callable[..., List[str]]:
+    """`roslib.packages.find_resource`, which then finds our launch files behind the user's."""
+
+    def find_resource(package: str, name: str, *more: Any, **options: Any) -> List[str]:
+        found = find(package, name, *more, **options)
+        if found or package != PACKAGE:
+            return found
+        ours = os.path.join(own_directory(), "launch", name)
+        if os.path.dirname(name) or not os.path.isfile(ours):
+            return []
+        print(f"the workspace's package {PACKAGE} has no {name}; this is {ours}", file=sys.stderr,
+              flush=True)
+        return [ours]
+
+    return find_resource
+
+
+def main() -> int:
+    """Runs roslaunch with the words of the command line; returns its exit status."""
+    import roslaunch
+    import roslib.packages
+    from roslaunch import substitution_args
+
+    if hasattr(substitution_args, "_separate_first_path"):
+        substitution_args._separate_first_path = separate_first_path
+    roslib.packages.find_resource = with_own_files(roslib.packages.find_resource)
+    return int(roslaunch.main() or 0)

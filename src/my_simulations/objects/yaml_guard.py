@@ -1,0 +1,88 @@
+"""A YAML loader for files that anybody may have written: plain values, bounded in every way."""
+from __future__ import annotations
+
+import re
+from typing import Any, Dict, List
+
+import yaml
+
+DEEPEST = 64
+MOST_VALUES = 100_000
+"""Of a document, aliases counted as often as they are used."""
+LARGEST = 8 << 20
+"""Bytes of a file."""
+
+# What XML cannot hold: names and paths of a list end up in descriptions of models.
+_BAD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+class GuardedLoader(yaml.SafeLoader):
+    """Raises yaml.MarkedYAMLError, with the place, for whatever it does not take.
+
+    Dates stay texts: nothing in a list is one, and a name or path may look like one.
+
+    Attributes:
+        keys: of the mappings that were being read when a fault was raised; empty when the document
+            had been read as a whole.
+    """
+
+    yaml_implicit_resolvers = {
+        first: [(tag, pattern) for tag, pattern in resolvers
+                if tag != "tag:yaml.org,2002:timestamp"]
+        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()}
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.keys: List[str] = []
+        self._depth = 0
+        self._values: Dict[int, int] = {}
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """The next node, refused where it is too deep, too large, or holds itself."""
+        is_value = isinstance(parent, yaml.MappingNode) and isinstance(index, yaml.ScalarNode)
+        if is_value:
+            self.keys.append(str(index.value))
+        node = self._composed(parent, index)
+        if is_value:
+            self.keys.pop()
+        return node
+
+    def _composed(self, parent: Any, index: Any) -> Any:
+        start = self.peek_event().start_mark
+        self._depth += 1
+        if self._depth > DEEPEST:
+            raise _fault(f"this is nested deeper than {DEEPEST} levels", start)
+        is_alias = self.check_event(yaml.AliasEvent)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        if is_alias:
+            if id(node) not in self._values:
+                raise _fault("this alias is part of what it stands for", start)
+            return node
+        count = 1 + sum(self._values[id(child)] for child in _children(node))
+        if count > MOST_VALUES:
+            raise _fault(f"with its aliases this is more than {MOST_VALUES} values", start)
+        self._values[id(node)] = count
+        return node
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        """A node's value; what Python cannot make of it is a fault of the file."""
+        if isinstance(node, yaml.ScalarNode) and _BAD.search(node.value):
+            raise _fault("this text holds a control character or half a surrogate pair",
+                         node.start_mark)
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, ArithmeticError, LookupError, TypeError,
+                AttributeError) as fault:
+            kind = node.tag.rpartition(":")[2]
+            raise _fault(f"this is no {kind}: {fault}", node.start_mark) from None
+
+
+def _children(node: Any) -> Any:
+    if isinstance(node, yaml.MappingNode):
+        return [child for pair in node.value for child in pair]
+    return node.value if isinstance(node, yaml.SequenceNode) else ()
+
+
+def _fault(problem: str, mark: Any) -> yaml.MarkedYAMLError:
+    return yaml.MarkedYAMLError(problem=problem, problem_mark=mark)

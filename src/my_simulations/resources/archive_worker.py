@@ -1,0 +1,175 @@
+"""Unpacks one archive in a process of its own; the file is run, not imported (`-I -S`).
+
+An archive may make whoever reads it use any amount of memory and time before a single byte comes
+out (headers of tar, the directory of zip). So it is read here, under limits that the kernel keeps,
+and the process that wants the files only waits.
+"""
+import json
+import os
+import resource
+import stat
+import sys
+import tarfile
+import zipfile
+import zlib
+from typing import IO, Any, Iterator, List, Optional, Tuple
+
+MEMORY = 256 << 20
+_CHUNK = 1 << 16
+
+Entry = Tuple[str, str, int, Any]
+"""Name, kind (`file`, `folder`, `other`), size by the header, and what opens it."""
+
+
+class Refused(Exception):
+    """The archive is broken, too large, or reaches out of its folder."""
+
+
+class _Count:
+    """What has come out so far, against what may."""
+
+    def __init__(self, files: int, size: int) -> None:
+        self._most_files, self._most_bytes = files, size
+        self._files, self._told, self._size = 0, 0, 0
+
+    def entry(self, size: int) -> None:
+        self._files, self._told = self._files + 1, self._told + size
+        self._check()
+
+    def chunk(self, size: int) -> None:
+        self._size += size
+        self._check()
+
+    def _check(self) -> None:
+        if self._files > self._most_files or max(self._told, self._size) > self._most_bytes:
+            raise Refused(f"the archive holds more than {self._most_files} files or"
+                          f" {self._most_bytes} bytes")
+
+
+def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: int) -> None:
+    """Make the folders and plain files of an archive below `folder`.
+
+    Args:
+        kind: `tar` (gzipped) or `zip`.
+        archive: path of the file.
+        folder: where to; it is there and empty.
+        name: the only folder that the archive may hold at its top; "" for any.
+        files: at most so many entries.
+        size: at most so many bytes in all.
+
+    Raises:
+        Refused: nothing of it is to be used.
+    """
+    count = _Count(files, size)
+    if kind == "zip":
+        with zipfile.ZipFile(archive) as packed:
+            for entry in _of_zip(packed):
+                _one(entry, folder, name, count)
+        return
+    with tarfile.open(archive, "r:gz") as tar:
+        for entry in _of_tar(tar):
+            _one(entry, folder, name, count)
+    _read_to_end(archive, size + (files + 2) * 1024 + (1 << 20))
+
+
+def _of_tar(packed: tarfile.TarFile) -> Iterator[Entry]:
+    for member in packed:
+        kind = "folder" if member.isdir() else "file" if member.isreg() else "other"
+        yield member.name, kind, member.size, lambda m=member: packed.extractfile(m)
+        # tarfile remembers every member, headers and all.
+        packed.members = []  # type: ignore[attr-defined]
+
+
+def _of_zip(packed: zipfile.ZipFile) -> Iterator[Entry]:
+    for member in packed.infolist():
+        form = stat.S_IFMT(member.external_attr >> 16)
+        kind = ("folder" if member.is_dir() else
+                "file" if form in (0, stat.S_IFREG) and not member.flag_bits & 1 else "other")
+        yield member.orig_filename, kind, member.file_size, lambda m=member: packed.open(m)
+
+
+def _one(entry: Entry, folder: str, name: str, count: _Count) -> None:
+    path, kind, size, opened = entry
+    count.entry(size)
+    target = _safe_path(path, kind, folder, name)
+    if target is not None:
+        _write(opened(), path, target, count)
+
+
+def _safe_path(path: str, kind: str, folder: str, name: str) -> Optional[str]:
+    """Where a file goes; None for a folder, which is made at once."""
+    parts = [part for part in path.split("/") if part not in ("", ".")]
+    if path.startswith("/") or ".." in parts or "\0" in path or "\\" in path:
+        raise Refused(f"the archive reaches out of its folder: {path!r}")
+    if name and parts and parts[0] != name:
+        raise Refused(f"the archive holds {parts[0]!r} besides {name!r}")
+    target = os.path.join(folder, *parts)
+    if kind == "folder":
+        os.makedirs(target, exist_ok=True)
+        return None
+    if kind != "file" or len(parts) < (2 if name else 1):
+        raise Refused(f"{path!r} is neither a file nor a folder")
+    return target
+
+
+def _write(stream: Optional[IO[bytes]], path: str, target: str, count: _Count) -> None:
+    if stream is None:
+        raise Refused(f"{path!r} has no content")
+    os.makedirs(os.path.dirname(target), exist_ok=True)
+    with stream, open(target, "wb") as out:
+        while True:
+            chunk = stream.read(_CHUNK)
+            if not chunk:
+                return
+            count.chunk(len(chunk))
+            out.write(chunk)
+
+
+def _read_to_end(archive: str, largest: int) -> None:
+    """gzip's checksum stands at the very end, which tar need not reach."""
+    import gzip
+
+    size = 0
+    with gzip.open(archive, "rb") as stream:
+        while True:
+            chunk = stream.read(_CHUNK)
+            if not chunk:
+                return
+            size += len(chunk)
+            if size > largest:
+                raise Refused("the archive goes on after its end")
+
+
+def _limit(memory: int, seconds: int, size: int) -> None:
+    for what, most in ((resource.RLIMIT_AS, memory), (resource.RLIMIT_CPU, seconds),
+                       (resource.RLIMIT_FSIZE, size), (resource.RLIMIT_CORE, 0)):
+        _, hard = resource.getrlimit(what)
+        if hard != resource.RLIM_INFINITY:
+            most = min(most, hard)
+        resource.setrlimit(what, (most, hard))
+
+
+def main(argv: List[str]) -> int:
+    """Unpack as the JSON object of the only argument says; a fault is printed, with status 1."""
+    task = json.loads(argv[1])
+    _limit(MEMORY, int(task.pop("seconds")) + 1, int(task["size"]) + _CHUNK)
+    try:
+        unpack(**task)
+    except Refused as fault:
+        said = str(fault)
+    except MemoryError:
+        said = f"the archive needs more than {MEMORY >> 20} MB of memory to be read"
+    except (tarfile.TarError, zipfile.BadZipFile, zlib.error, EOFError, ValueError, RecursionError,
+            NotImplementedError, RuntimeError, KeyError, IndexError) as fault:
+        said = f"the archive is broken: {fault}"
+    except OSError as fault:
+        # gzip says so of a wrong checksum; a full disk has a number.
+        said = fault.strerror or f"the archive is broken: {fault}"
+    else:
+        return 0
+    sys.stdout.write(said)
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))

@@ -1,0 +1,36 @@
+"""Command lines whose mistakes are answered with what was probably meant."""
+from __future__ import annotations
+
+import argparse
+import difflib
+from typing import List, NoReturn
+
+_UNKNOWN = "unrecognized arguments: "
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that suggests options and choices much like an unknown one."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with the usage, what is wrong, and what may have been meant; status 2."""
+        super().error(message + self._meant(message))
+
+    def _meant(self, message: str) -> str:
+        if not message.startswith(_UNKNOWN):
+            return ""
+        known: List[str] = [option for action in self._actions
+                            if action.help is not argparse.SUPPRESS
+                            for option in action.option_strings]
+        near = [difflib.get_close_matches(word.split("=")[0], known, 1)
+                for word in message[len(_UNKNOWN):].split() if word.startswith("-")]
+        found = [options[0] for options in near if options]
+        return f"; did you mean {' and '.join(found)}?" if found else ""
+
+
+def number(text: str) -> float:
+    """A number, for argparse; it may be infinite or NaN."""
+    try:
+        return float(text)
+    except ValueError:
+        comma = "; write a point, not a comma" if "," in text else ""
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number{comma}") from None

@@ -1,0 +1,72 @@
+"""How this process was started: by roslaunch or rostest, or by hand, and from which folder."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Sequence
+
+_LAUNCHERS = ("roslaunch", "rostest")
+_FEW = 4
+"""Programs between roslaunch and its node (`launch-prefix`) that are looked through."""
+
+
+@dataclass(frozen=True)
+class Launch:
+    """Who started this process.
+
+    Attributes:
+        pid: process id of the roslaunch or rostest; 0 for a start by hand.
+        parent: process id of the parent; another one adopts us when that is killed.
+        folder: absolute path of the folder in which the command was typed. roslaunch starts nodes
+            in ROS_HOME, so it is the working directory of roslaunch itself; where that cannot be
+            read, that of the variable PWD, which roslaunch hands on.
+    """
+
+    pid: int
+    parent: int
+    folder: str
+
+    @classmethod
+    def of(cls, argv: Sequence[str]) -> "Launch":
+        """From a node's whole command line; ask early, while the parent lives."""
+        parent = os.getppid()
+        # Only roslaunch tells nodes where to log.
+        if not any(word.startswith("__log:=") for word in argv):
+            return cls(0, parent, os.getcwd())
+        pid = _launcher(parent)
+        return cls(pid, parent, _folder(pid))
+
+    @property
+    def alive(self) -> bool:
+        """False once the roslaunch that started us has gone without having ended us."""
+        return self.pid == 0 or os.getppid() == self.parent
+
+
+def _launcher(parent: int) -> int:
+    """The nearest ancestor that is roslaunch or rostest; the parent where there is none."""
+    pid = parent
+    for _ in range(_FEW):
+        words = _read(pid, "cmdline").split("\0")[:4]
+        if any(os.path.basename(word) in _LAUNCHERS for word in words):
+            return pid
+        fields = _read(pid, "stat").rpartition(")")[2].split()
+        if len(fields) < 2 or int(fields[1]) <= 1:
+            break
+        pid = int(fields[1])
+    return parent
+
+
+def _read(pid: int, name: str) -> str:
+    try:
+        with open(f"/proc/{pid}/{name}", encoding="utf-8", errors="replace") as file:
+            return file.read()
+    except OSError:
+        return ""  # it has gone, or is another user's
+
+
+def _folder(pid: int) -> str:
+    try:
+        folder = os.readlink(f"/proc/{pid}/cwd")
+    except OSError:
+        folder = os.environ.get("PWD", "")
+    return folder if os.path.isdir(folder) else os.getcwd()

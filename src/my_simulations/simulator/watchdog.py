@@ -1,0 +1,81 @@
+"""Whether an engine that shows no sign of life hangs, or only gets no processor time."""
+from __future__ import annotations
+
+import os
+import time
+from typing import Callable, Optional, Tuple
+
+PERIOD_S = 2.0
+"""Longest time between two looks; a longer one means that this process stood still, too."""
+
+_STALL_S = 30.0     # of processor time without a sign of life, or asleep
+_START_S = 90.0     # the same until the first sign of life: the imports show none
+_WALL_S = 900.0     # whatever the processor time says
+_WAITS = "RD"       # states of a process that would go on if it could (proc(5))
+
+Probe = Callable[[int], Optional[Tuple[float, str]]]
+
+
+def process_time(pid: int) -> Optional[Tuple[float, str]]:
+    """Processor time in s and state of a process (proc(5), stat); None where there is none."""
+    try:
+        with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as stat:
+            fields = stat.read().rpartition(")")[2].split()
+    except OSError:
+        return None
+    ticks = int(fields[11]) + int(fields[12])
+    return ticks / os.sysconf("SC_CLK_TCK"), fields[0]
+
+
+class Watchdog:
+    """Looks at an engine now and then.
+
+    Time counts against an engine only while it computes or sleeps: one that waits for a processor
+    on a busy machine, or is stopped together with the whole node, does not hang.
+    """
+
+    def __init__(self, probe: Probe = process_time,
+                 clock: Callable[[], float] = time.monotonic) -> None:
+        self._probe = probe
+        self._clock = clock
+        self._sign: object = None
+        self._starting = True
+        self._looked = clock()
+        self._cpu = self._used = self._asleep = self._wall = 0.0
+
+    def begin(self) -> None:
+        """A new engine: it starts, and may take longer for that."""
+        self._starting = True
+        self._forget(0.0)
+        self._looked = self._clock()
+
+    def look(self, pid: int, sign: object) -> str:
+        """Why the engine is taken to hang; "" while it is not.
+
+        Args:
+            pid: of its process; 0 where there is none, then wall time counts.
+            sign: whatever changes as long as it lives.
+        """
+        now = self._clock()
+        passed, self._looked = min(now - self._looked, 2.0 * PERIOD_S), now
+        cpu, state = self._probe(pid) or (self._cpu, "S")
+        if sign != self._sign:
+            self._starting = self._starting and self._sign is None
+            self._sign = sign
+            self._forget(cpu)
+            return ""
+        self._wall += passed
+        if cpu == self._cpu and state not in _WAITS:
+            self._asleep += passed
+        self._used += max(0.0, cpu - self._cpu)
+        self._cpu = cpu
+        limit = _START_S if self._starting else _STALL_S
+        if self._used > limit:
+            return f"{limit:.0f} s of processor time"
+        if self._asleep > limit:
+            return f"{limit:.0f} s, in which it did nothing"
+        return f"{_WALL_S:.0f} s" if self._wall > _WALL_S else ""
+
+    def _forget(self, cpu: float) -> None:
+        self._cpu = cpu
+        self._used = self._asleep = self._wall = 0.0

@@ -1,0 +1,86 @@
+"""Typical typos, and what the messages about them suggest."""
+from __future__ import annotations
+
+import pytest
+from reading import sdf
+
+from my_simulations.cli import check_model, spawn_model
+from my_simulations.errors import InputError
+from my_simulations.formats.load import read_entity
+from my_simulations.resources.resolver import Resolver
+from my_simulations.resources.suggestions import suggestion
+from my_simulations.ros.options import parse
+
+
+def nothing():
+    return []
+
+
+@pytest.mark.parametrize("uri, meant", [
+    ("model:/sun", "model://sun"), ("Model://sun", "model://sun"), ("model:sun", "model://sun"),
+    ("PACKAGE://a/b.dae", "package://a/b.dae"), ("http://a/b", ""), ("model://sun", "")])
+def test_a_misspelt_scheme_is_put_right(uri, meant):
+    assert suggestion(uri, [], nothing) == meant
+
+
+def test_the_first_part_of_a_path_that_does_not_exist_is_compared_with_what_does(tmp_path):
+    folder = tmp_path / "house" / "meshes"
+    folder.mkdir(parents=True)
+    (folder / "roof.dae").write_text("")
+    for uri, tried, meant in (
+            ("model://hous/meshes/roof.dae", "hous/meshes/roof.dae",
+             "model://house/meshes/roof.dae"),
+            ("model://house/mehses/roof.dae", "house/mehses/roof.dae",
+             "model://house/meshes/roof.dae"),
+            ("model://house/meshes/rof.dae", "house/meshes/rof.dae",
+             "model://house/meshes/roof.dae"),
+            ("model://house/meshes/zzz.dae", "house/meshes/zzz.dae", "")):
+        assert suggestion(uri, [str(tmp_path / tried)], nothing) == meant
+
+
+def test_an_unknown_package_is_compared_with_the_known_ones():
+    found = suggestion("package://my_simulatons/a.dae", ["ROS package my_simulatons"],
+                       lambda: ["/ws/src/other", "/ws/src/my_simulations"])
+    assert found == "package://my_simulations/a.dae"
+
+
+def test_a_mesh_that_is_not_there_is_answered_with_one_that_is(tmp_path):
+    (tmp_path / "part.stl").write_text("")
+    text = sdf('<model name="m"><link name="l"><visual name="v"><geometry><mesh><uri>'
+               f"{tmp_path}/prat.stl</uri></mesh></geometry></visual></link></model>")
+    _, issues = read_entity(text, Resolver())
+    assert issues[0].hint.startswith(f"did you mean {tmp_path}/part.stl? Else check the path")
+
+
+def test_a_joint_at_a_misspelt_link_is_answered_with_the_link():
+    text = sdf('<model name="m"><link name="base"/><link name="tip"/><joint name="j" type="fixed">'
+               "<parent>bsae</parent><child>tip</child></joint></model>")
+    _, issues = read_entity(text, Resolver())
+    assert issues[0].hint == "did you mean base?"
+
+
+def test_numbers_that_are_parted_by_commas_are_told_how_to_be():
+    text = ('<robot name="r"><link name="l"><collision><geometry><box size="1,1,1"/></geometry>'
+            "</collision></link></robot>")
+    try:
+        _, issues = read_entity(text, Resolver())
+    except InputError as refused:
+        issues = refused.issues
+    assert any("parted by blanks, not by commas" in issue.message for issue in issues)
+
+
+@pytest.mark.parametrize("run, meant", [
+    (lambda: parse(["--puase"]), "did you mean --pause?"),
+    (lambda: parse(["--seed", "x"]), "'x' is not a number"),
+    (lambda: parse(["--iters", "many"]), "'many' is not a number of steps"),
+    (lambda: parse(["--record_period", "1,5"]), "write a point, not a comma"),
+    (lambda: check_model.main(["check_model", "--jsn", "a"]), "did you mean --json?"),
+    (lambda: spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-x", "1,5"]),
+     "'1,5' is not a number; write a point, not a comma"),
+    (lambda: spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-timeut",
+                               "5"]), "did you mean -timeout?")])
+def test_a_wrong_word_of_a_command_line_is_answered_with_the_right_one(run, meant, capsys):
+    with pytest.raises(SystemExit) as ended:
+        run()
+    assert ended.value.code == 2
+    assert meant in capsys.readouterr().err
