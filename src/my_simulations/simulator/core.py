@@ -117,10 +117,10 @@ class WorldCore(WorldViews):
                 self._log(error("model-refused", left_out, file=self.world.file))
         self._connect()
 
-    def _prepare(self, world: World, meshes: Dict[str, MeshTable]) -> None:
+    def _prepare(self, world: World, meshes: Dict[str, MeshTable], gently: bool = False) -> None:
         """Divide the meshes of all models that need it, together."""
-        self._solids.prepare((flattened(model), meshes.get(model.name) or {})
-                             for model in world.models)
+        self._solids.prepare([(flattened(model), meshes.get(model.name) or {})
+                              for model in world.models], gently)
 
     def _connect(self) -> None:
         """Join the models that have just been loaded."""

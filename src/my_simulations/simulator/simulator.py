@@ -190,7 +190,7 @@ class Simulator(TimedLoads):
         Faults of single models go to the log; the rest is loaded. Raises CommandError when there
         is no engine.
         """
-        self._prepare(world, meshes or {})  # meanwhile the old one goes on
+        self._prepare(world, meshes or {}, gently=True)  # meanwhile the old one goes on
         with self._order:
             self._call(Batch((Pause(), Clear(), ClearLoads(tuple(self._loads)))))
             with self._lock:
