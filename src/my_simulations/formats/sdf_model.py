@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, List, Optional, Sequence, Set, Tuple
 
 from ..description.model import WORLD, Link, Model, PluginSpec
-from ..description.validate import faults, link_names
+from ..description.validate import link_names, own_faults, place_faults
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose, inverse
 from .sdf_frames import FrameFault, FrameTree
@@ -16,6 +16,8 @@ from .source import Level, Source
 from .tables import Found, fill, to_xml
 
 ROOT = "__model__"
+DEEPEST = 50
+"""Models inside models; what the files of Gazebo and of robots have is 2 or 3."""
 
 
 @dataclass
@@ -149,6 +151,11 @@ class _ModelReader:
 
         path = (*self._outer, model.name)
         waiting: List[Pending] = []
+        if len(path) >= DEEPEST:
+            for child in (*found.get("model", ()), *found.get("include", ())):
+                self._source.report(Level.ERROR, "models-too-deep", f"models are nested deeper"
+                                    f" than {DEEPEST} levels; this one is left out", child)
+            return waiting
         for child in found.get("model", ()):
             placement = read_model(child, self._source, static=static, outer=path, alone=False)
             waiting += self._adopt(placement, child, model)
@@ -288,7 +295,9 @@ class _ModelReader:
 
     def _check(self, model: Model) -> None:
         """The faults of the finished model, at the places they come from."""
-        for fault in faults(model, self._outer_static):
+        found = [*own_faults(model, self._outer_static),
+                 *(fault for nested in model.models for fault in place_faults(nested))]
+        for fault in found:
             element = self._elements.get(id(fault.subject))
             if element is None:
                 continue  # inside a nested model, which has said so itself
