@@ -1,5 +1,7 @@
 """Mesh files as exporters write them: what is not shape, and what the libraries pass over."""
+import json
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -10,8 +12,8 @@ from reading import VALID
 
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, mesh_key
-from my_simulations.errors import InputError, errors_of
-from my_simulations.formats import meshes
+from my_simulations.errors import InputError
+from my_simulations.formats import mesh_part, meshes
 from my_simulations.formats.mesh_part import MeshPart
 from my_simulations.formats.meshes import load_mesh
 
@@ -245,6 +247,41 @@ def test_a_damaged_file_of_another_format_is_refused(tmp_path, kind):
     assert issue.code in ("mesh-unreadable", "mesh-empty")
 
 
+def gltf(**changes):
+    """A file of one triangle, whose corners are zeros that need no data; `changes` of the tree."""
+    tree = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}]}
+    return json.dumps({**tree, **changes})
+
+
+def bomb_of_nodes(depth):
+    return [{"children": [n + 1, n + 1]} for n in range(depth)] + [{"mesh": 0}]
+
+
+@pytest.mark.parametrize("changes, words", [
+    ({"accessors": [{"componentType": 5126, "count": 2_000_000_000, "type": "VEC3"}]}, "triangles"),
+    ({"accessors": [{"componentType": 5126, "count": "3", "type": "VEC3"}]}, "count"),
+    ({"nodes": bomb_of_nodes(40)}, "two parents"), ({"nodes": 5}, "nodes are no list"),
+    ({"buffers": [{"uri": "/dev/zero", "byteLength": 9}]}, "no plain file"),
+    ({"buffers": [{"uri": "pipe", "byteLength": 9}]}, "no plain file"),
+    ({"images": [{"uri": "../%2e/pipe"}]}, ""),
+], ids=lambda value: str(value)[:30])
+def test_a_gltf_file_that_asks_for_too_much_is_refused_before_it_is_read(tmp_path, changes, words):
+    os.mkfifo(tmp_path / "pipe")
+    issue = fault_of(written(tmp_path, "a.gltf", gltf(**changes)))
+    assert issue.code in ("mesh-unreadable", "mesh-empty") and words in issue.message
+
+
+def test_what_uses_one_piece_many_times_is_bounded(tmp_path, monkeypatch):
+    monkeypatch.setattr(mesh_part, "MOST_TRIANGLES", 3)
+    with open(os.path.join(VALID, "inch_y_up.dae")) as stream:
+        node = re.search(r"<instance_geometry[^>]*/>", stream.read()).group(0)
+    assert len(load_mesh(written(tmp_path, "a.dae", collada((node, node * 3)))).triangles) == 3
+    issue = fault_of(written(tmp_path, "b.dae", collada((node, node * 4))))
+    assert issue.code == "mesh-unreadable" and "more than 3 triangles" in issue.message
+
+
 def test_archives_are_no_meshes(tmp_path):
     assert fault_of(written(tmp_path, "a.zip", b"PK")).code == "mesh-unreadable"
 
@@ -287,5 +324,5 @@ def test_whatever_a_reader_raises_is_a_fault_of_that_file_and_the_others_are_rea
         Collision(str(n), mesh) for n, mesh in enumerate([faulty[0], good, faulty[1]])])])
     table, issues = meshes.collision_meshes(model)
     assert list(table) == [mesh_key(good)]
-    assert [(one.code, os.path.basename(one.file)) for one in errors_of(issues)] == [
+    assert [(one.code, os.path.basename(one.file)) for one in issues] == [
         ("mesh-unreadable", "bad.dae"), ("mesh-unreadable", "large.dae")]
