@@ -25,7 +25,7 @@ def package(tmp_path):
     (folder / "package.xml").write_text(
         "<package format='2'><name>arm</name><version>0.0.1</version><description>arm"
         "</description><maintainer email='a@b.invalid'>a</maintainer><license>none</license>"
-        "</package>")
+        "<buildtool_depend>catkin</buildtool_depend><depend>xacro</depend></package>")
     return folder
 
 
@@ -157,3 +157,38 @@ def test_scripts_import_xacro_and_get_the_same(package, python):
 def test_import_says_what_to_do_where_no_xacro_is_installed():
     done = _run(sys.executable, "-S", "-c", "import xacro", MY_SIMULATIONS_PYTHON="")
     assert "devel/setup.bash" in done.stderr
+
+
+CMAKE = """cmake_minimum_required(VERSION 3.0.2)
+project(arm)
+find_package(catkin REQUIRED COMPONENTS xacro)
+catkin_package()
+xacro_add_files(robots/arm.urdf.xacro REMAP side:=left INSTALL DESTINATION robots)
+xacro_add_xacro_file(robots/arm.urdf.xacro other.urdf REMAP side:=right)
+add_custom_target(other ALL DEPENDS ${XACRO_OUTPUT_FILE})
+"""
+
+
+def test_packages_expand_xacro_files_at_build_time(package, tmp_path):
+    (package / "CMakeLists.txt").write_text(CMAKE)
+    (package / "robots").mkdir()
+    (package / "robots" / "arm.urdf.xacro").write_text(
+        f'<robot name="r" {XMLNS}><xacro:arg name="side" default=""/>'
+        '<xacro:include filename="inside.xacro"/><link name="$(arg side)"/></robot>')
+    inside = package / "robots" / "inside.xacro"
+    build, installed = tmp_path / "build", tmp_path / "install"
+
+    def made(name):
+        inside.write_text(f'<robot {XMLNS}><link name="{name}"/></robot>')
+        for words in (["cmake", "-S", str(package), "-B", str(build),
+                       f"-DCMAKE_INSTALL_PREFIX={installed}",
+                       f"-DPYTHON_EXECUTABLE={sys.executable}"], ["cmake", "--build", str(build)],
+                      ["cmake", "--install", str(build)]):
+            done = _run(*words)
+            assert done.returncode == 0, done.stdout + done.stderr
+        return [[link.get("name") for link in etree.parse(str(path)).getroot()] for path in (
+            build / "devel/share/arm/robots/arm.urdf", installed / "share/arm/robots/arm.urdf",
+            build / "other.urdf")]
+
+    assert made("first") == [["first", "left"]] * 2 + [["first", "right"]]
+    assert made("second") == [["second", "left"]] * 2 + [["second", "right"]]

@@ -56,12 +56,16 @@ class Words:
 
 
 def places(simulator: Simulator) -> Places:
-    """Where the links of every model that may move are."""
+    """Where the links are of every model that may move and could lie on something.
+
+    What has no collision shape falls in Gazebo, too.
+    """
     entities, snapshot = simulator.states.latest()
     return {entity.model.name: {
         link: snapshot.link(entity.first_link_row + n)[0].position
         for n, link in enumerate(entity.link_names)}
-        for entity in entities if not entity.model.static}
+        for entity in entities
+        if not entity.model.static and any(link.collisions for link in entity.model.links)}
 
 
 def run(path: str, began: float, seconds: float) -> Dict[str, Any]:

@@ -205,6 +205,14 @@ def test_a_floor_plan_is_kept_beside_the_plan(form, ending, kind):
     assert save(load_building(path)[0], overwrite=True)["path"] == path
 
 
+def test_a_small_picture_of_too_many_pixels_is_refused(monkeypatch):
+    monkeypatch.setattr(folders, "MOST_PIXELS", 7)
+    plan = two_rooms()
+    plan.levels[0].image = FloorImage("scan.png", 100.0, data_url(picture()))
+    with pytest.raises(InputError, match="pixels"):
+        save(plan)
+
+
 @pytest.mark.parametrize("data", [
     data_url(b"MZ this is no picture"), data_url(picture()[:60]), data_url(picture("GIF")),
     "data:image/svg+xml;base64,PHN2Zy8+", "data:image/png;base64,%%%", "http://host/a.png"])

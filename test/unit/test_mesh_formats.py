@@ -1,5 +1,7 @@
 """Mesh files as exporters write them: what is not shape, and what the libraries pass over."""
+import json
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -11,7 +13,7 @@ from reading import VALID
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, mesh_key
 from my_simulations.errors import InputError
-from my_simulations.formats import meshes
+from my_simulations.formats import mesh_part, meshes
 from my_simulations.formats.mesh_part import MeshPart
 from my_simulations.formats.meshes import load_mesh
 
@@ -243,6 +245,41 @@ def test_nodes_of_gltf_are_placed_and_its_buffers_found_beside_it(tmp_path):
 def test_a_damaged_file_of_another_format_is_refused(tmp_path, kind):
     issue = fault_of(written(tmp_path, "a." + kind, b"\x00 nothing of the kind"))
     assert issue.code in ("mesh-unreadable", "mesh-empty")
+
+
+def gltf(**changes):
+    """A file of one triangle, whose corners are zeros that need no data; `changes` of the tree."""
+    tree = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}]}
+    return json.dumps({**tree, **changes})
+
+
+def bomb_of_nodes(depth):
+    return [{"children": [n + 1, n + 1]} for n in range(depth)] + [{"mesh": 0}]
+
+
+@pytest.mark.parametrize("changes, words", [
+    ({"accessors": [{"componentType": 5126, "count": 2_000_000_000, "type": "VEC3"}]}, "triangles"),
+    ({"accessors": [{"componentType": 5126, "count": "3", "type": "VEC3"}]}, "count"),
+    ({"nodes": bomb_of_nodes(40)}, "two parents"), ({"nodes": 5}, "nodes are no list"),
+    ({"buffers": [{"uri": "/dev/zero", "byteLength": 9}]}, "no plain file"),
+    ({"buffers": [{"uri": "pipe", "byteLength": 9}]}, "no plain file"),
+    ({"images": [{"uri": "../%2e/pipe"}]}, ""),
+], ids=lambda value: str(value)[:30])
+def test_a_gltf_file_that_asks_for_too_much_is_refused_before_it_is_read(tmp_path, changes, words):
+    os.mkfifo(tmp_path / "pipe")
+    issue = fault_of(written(tmp_path, "a.gltf", gltf(**changes)))
+    assert issue.code in ("mesh-unreadable", "mesh-empty") and words in issue.message
+
+
+def test_what_uses_one_piece_many_times_is_bounded(tmp_path, monkeypatch):
+    monkeypatch.setattr(mesh_part, "MOST_TRIANGLES", 3)
+    with open(os.path.join(VALID, "inch_y_up.dae")) as stream:
+        node = re.search(r"<instance_geometry[^>]*/>", stream.read()).group(0)
+    assert len(load_mesh(written(tmp_path, "a.dae", collada((node, node * 3)))).triangles) == 3
+    issue = fault_of(written(tmp_path, "b.dae", collada((node, node * 4))))
+    assert issue.code == "mesh-unreadable" and "more than 3 triangles" in issue.message
 
 
 def test_archives_are_no_meshes(tmp_path):

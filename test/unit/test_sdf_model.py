@@ -22,8 +22,10 @@ from my_simulations.description.shapes import (
     Sphere,
     Surface,
 )
-from my_simulations.errors import Severity
-from my_simulations.formats.load import read_entity
+from my_simulations.errors import Severity, errors_of
+from my_simulations.formats import sdf_model
+from my_simulations.formats.load import read_entity, read_world_text
+from my_simulations.formats.sdf_model import DEEPEST
 from my_simulations.geometry import quat_from_rpy
 from my_simulations.resources.resolver import Resolver
 
@@ -385,3 +387,31 @@ def test_the_numbers_of_a_random_model_survive_reading(seed):
     assert axis.xyz == (0.0, 0.0, -1.0)
     assert math.isclose(sum(c * c for c in link.pose.orientation), 1.0)
     assert isinstance(link, Link)
+
+
+def nested_models(count):
+    text = "".join(f'<model name="m{n}"><link name="l"/>' for n in range(count))
+    return sdf(f'<world name="w">\n{text}{"</model>" * count}'
+               '<model name="after"><link name="l"/></model></world>')
+
+
+@pytest.mark.parametrize("count, kept", [(DEEPEST, DEEPEST), (DEEPEST + 1, DEEPEST),
+                                         (220, DEEPEST)])
+def test_models_inside_models_are_read_up_to_a_depth(count, kept):
+    world, issues = read_world_text(nested_models(count), Resolver())
+    assert [model.name for model in world.models] == ["m0", "after"]
+    assert len(flattened(world.models[0]).links) == kept
+    assert [issue.code for issue in errors_of(issues)] == ["models-too-deep"] * (count > kept)
+    assert all(issue.line == 2 for issue in errors_of(issues))
+
+
+def test_a_fault_of_a_nested_model_is_told_once_however_deep_it_lies(monkeypatch):
+    text = nested_models(20).replace('<link name="l"/></model>', '<link name="l"><inertial><mass>-1'
+                                     '</mass></inertial></link></model>', 1)
+    asked = []
+    original = sdf_model.own_faults
+    monkeypatch.setattr(sdf_model, "own_faults",
+                        lambda model, static: asked.append(model) or original(model, static))
+    _, issues = read_world_text(text, Resolver())
+    assert len(errors_of(issues)) == 1
+    assert len(asked) == 21  # each model once: 200 models would be 20 000 else

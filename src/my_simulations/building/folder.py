@@ -13,6 +13,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from ..description.model import Model
 from ..errors import CommandError, InputError, Issue, Severity, error
+from ..formats.images import MOST_PIXELS
 from ..formats.load import read_file
 from ..formats.sdf_write import write_entity
 from ..resources.model_config import description_in
@@ -193,6 +194,8 @@ def image_kind(content: bytes, name: str) -> str:
     else:
         try:
             with Image.open(io.BytesIO(content)) as image:
+                if image.width * image.height > MOST_PIXELS:
+                    raise ValueError(f"it has {image.width} x {image.height} pixels")
                 image.load()
                 if image.format in _ENDINGS:
                     return str(image.format)

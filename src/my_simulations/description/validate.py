@@ -63,10 +63,15 @@ def validate(model: Model, locate: Optional[Locate] = None) -> List[Issue]:
 def faults(model: Model, static: bool = False) -> Iterator[Fault]:
     """Every fault of the model and of those nested in it; `static` when an outer model is."""
     static = static or model.static
-    if not model.name:
-        yield Fault("name-empty", "the model has no name", model)
-    if not pose_is_finite(model.pose):
-        yield Fault("pose-not-finite", f"the pose of model {model.name!r} is not finite", model)
+    yield from own_faults(model, static)
+    for nested in model.models:
+        yield from faults(nested, static)
+
+
+def own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
+    """Faults of the model without those of what is nested in it."""
+    static = static or model.static
+    yield from place_faults(model)
     yield from _repeated("link", model.links)
     yield from _repeated("joint", model.joints)
     yield from _repeated("model", model.models)
@@ -78,17 +83,24 @@ def faults(model: Model, static: bool = False) -> Iterator[Fault]:
     if model.canonical_link and model.canonical_link not in known:
         yield Fault("link-unknown", f"canonical_link names {model.canonical_link!r}, which is not"
                     " a link of the model", model, Severity.WARNING)
-    for nested in model.models:
-        yield from faults(nested, static)
+
+
+def place_faults(model: Model) -> Iterator[Fault]:
+    """Faults of name and pose, which the outer model has a part in."""
+    if not model.name:
+        yield Fault("name-empty", "the model has no name", model)
+    if not pose_is_finite(model.pose):
+        yield Fault("pose-not-finite", f"the pose of model {model.name!r} is not finite", model)
 
 
 def link_names(model: Model) -> Iterator[str]:
     """Names of all links as seen from the model: `link`, `nested::link`."""
-    for link in model.links:
-        yield link.name
-    for nested in model.models:
-        for name in link_names(nested):
-            yield f"{nested.name}::{name}"
+    waiting = [("", model)]
+    while waiting:
+        scope, one = waiting.pop()
+        for link in one.links:
+            yield scope + link.name
+        waiting += [(f"{scope}{nested.name}::", nested) for nested in reversed(one.models)]
 
 
 def _repeated(kind: str, items: Sequence[Any]) -> Iterator[Fault]:

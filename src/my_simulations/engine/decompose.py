@@ -1,7 +1,7 @@
 """Convex parts of a mesh, for bodies that move: PyBullet lets only convex shapes do that.
 
 What is convex already is taken as its hull at once. The rest is divided by
-`python -m my_simulations.engine.decompose FOLDER CPU_SECONDS`, a process of its own: it takes
+`python -m my_simulations.engine.decompose FOLDER CPU_SECONDS NICE`, a process of its own: it takes
 seconds, and V-HACD may crash. Only processor time limits it, so that a mesh gives the same parts
 on a busy machine.
 """
@@ -37,6 +37,7 @@ _THICKNESS_M = (0.001, 0.01)  # of a mesh without volume: a hundredth of its ext
 _INPUT, _RESULT, _FALLBACK, _FAULTS = "mesh.npz", "result.parts", "hull.parts", "faults"
 _CPU_S = 30           # V-HACD never ends on some meshes, thin rings for one: then the hull it is
 _DEADLINE_S = 900.0   # only for work that stands still: what a busy machine does must not count
+_NICE = 5
 _MOST_AT_ONCE = 20000  # triangles that are looked at in this process; more would hold it up
 _PROGRESS = re.compile(rb"^ *(\d+)% \[", re.MULTILINE)
 
@@ -68,7 +69,8 @@ def ready_parts(mesh: MeshData, *, cache_dir: Optional[str] = None) -> Optional[
 
 
 def divided(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: Progress = _silent,
-            deadline: float = _DEADLINE_S, cpu_seconds: int = _CPU_S) -> Decomposition:
+            deadline: float = _DEADLINE_S, cpu_seconds: int = _CPU_S,
+            gently: bool = False) -> Decomposition:
     """The convex parts of a mesh by V-HACD, which are kept; blocks for seconds.
 
     Together they have the shape of the mesh; each has about 64 corners at most. A mesh that cannot
@@ -80,9 +82,11 @@ def divided(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: Progre
         progress: told how many per cent are done.
         deadline: seconds after which work that stands still is given up.
         cpu_seconds: processor time that it may take; a mesh that needs more is never tried again.
+        gently: let physics that runs meanwhile come first.
     """
+    limits = (str(cpu_seconds), str(_NICE if gently else 0))
     try:
-        made, whole = _in_child(mesh, progress, time.monotonic() + deadline, cpu_seconds)
+        made, whole = _in_child(mesh, progress, time.monotonic() + deadline, limits)
     except OSError as fault:  # no room for files or for one more process
         _log.warning("dividing a mesh was not possible: %s", fault)
         return undivided(mesh)
@@ -114,14 +118,14 @@ def _cache(cache_dir: Optional[str]) -> PartsCache:
 
 
 def _in_child(mesh: MeshData, progress: Progress, end: float,
-              cpu_seconds: int) -> "tuple[Decomposition, bool]":
+              limits: Sequence[str]) -> "tuple[Decomposition, bool]":
     """The work of a child process, and whether it came to its end in time."""
     import numpy as np
 
     with Scratch() as scratch:
         folder = scratch.path
         np.savez(os.path.join(folder, _INPUT), vertices=mesh.vertices, triangles=mesh.triangles)
-        in_time = _run(folder, progress, end, cpu_seconds)
+        in_time = _run(folder, progress, end, limits)
         for name in (_RESULT, _FALLBACK):
             try:
                 return load(os.path.join(folder, name)), in_time
@@ -130,13 +134,13 @@ def _in_child(mesh: MeshData, progress: Progress, end: float,
     return undivided(mesh), False
 
 
-def _run(folder: str, progress: Progress, end: float, cpu_seconds: int) -> bool:
+def _run(folder: str, progress: Progress, end: float, limits: Sequence[str]) -> bool:
     """Run the child; False when it had to be killed because its time was over."""
     faults = os.path.join(folder, _FAULTS)
     with open(faults, "wb") as stream:
         with child_process.shielded():
             started = subprocess.Popen(
-                child_process.command("engine.decompose", folder, str(cpu_seconds)),
+                child_process.command("engine.decompose", folder, *limits),
                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
                 env=child_process.environment())
         in_time = _watched(started, progress, end)
@@ -183,9 +187,8 @@ def main(argv: List[str]) -> int:
 
     child_process.die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
-    os.nice(5)  # the physics that runs meanwhile comes first
-    folder = argv[1]
-    limit = int(argv[2])
+    folder, limit = argv[1], int(argv[2])
+    os.nice(int(argv[3]))
     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
     with np.load(os.path.join(folder, _INPUT), allow_pickle=False) as held:
         made = _decomposed(held["vertices"], held["triangles"], folder)

@@ -21,7 +21,7 @@ Named = Tuple[str, MeshData]
 
 
 def divide_all(meshes: Sequence[Named], progress: Progress, *,
-               cache_dir: Optional[str] = None) -> List[Decomposition]:
+               cache_dir: Optional[str] = None, gently: bool = False) -> List[Decomposition]:
     """The convex parts of each mesh, in order.
 
     Blocks until all are there: a world begins with the same shapes whether they were known before
@@ -33,6 +33,7 @@ def divide_all(meshes: Sequence[Named], progress: Progress, *,
         meshes: name for the messages, and mesh.
         progress: called from this thread.
         cache_dir: where parts are kept; None for the user's cache folder (XDG).
+        gently: let physics that runs meanwhile come first.
     """
     found: Dict[int, Decomposition] = {}
     hard: Dict[str, List[int]] = {}  # the same mesh in two files is divided once
@@ -43,7 +44,7 @@ def divide_all(meshes: Sequence[Named], progress: Progress, *,
         else:
             found[n] = ready
     if hard:
-        work = _Work([meshes[same[0]] for same in hard.values()], progress, cache_dir)
+        work = _Work([meshes[same[0]] for same in hard.values()], progress, cache_dir, gently)
         for same, made in zip(hard.values(), work.done()):
             found.update((n, made) for n in same)
     return [found[n] for n in range(len(meshes))]
@@ -53,10 +54,11 @@ class _Work:
     """Meshes that are being divided."""
 
     def __init__(self, meshes: Sequence[Named], progress: Progress,
-                 cache_dir: Optional[str]) -> None:
+                 cache_dir: Optional[str], gently: bool) -> None:
         self._meshes = meshes
         self._progress = progress
         self._cache_dir = cache_dir
+        self._gently = gently
         self._began = time.monotonic()
         self._waiting: "queue.Queue[int]" = queue.Queue()
         self._told: "queue.Queue[Tuple[int, Optional[Decomposition]]]" = queue.Queue()
@@ -88,7 +90,7 @@ class _Work:
             self._told.put((n, None))
             made = undivided(self._meshes[n][1])
             try:
-                made = divided(self._meshes[n][1], cache_dir=self._cache_dir,
+                made = divided(self._meshes[n][1], cache_dir=self._cache_dir, gently=self._gently,
                                progress=functools.partial(self._percent.__setitem__, n))
             finally:  # whoever waits must not wait for ever, whatever is raised
                 self._told.put((n, made))

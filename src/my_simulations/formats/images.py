@@ -8,7 +8,8 @@ from typing import Any, Iterator, Optional, Tuple
 
 from ..errors import InputError, error
 
-_MOST_PIXELS = 64 << 20
+MOST_PIXELS = 64 << 20
+"""Pillow holds up to four bytes a pixel."""
 _BAND = 256
 _EARTH_M = 6371000.0
 # TIFF tags of GeoTIFF and GDAL.
@@ -151,7 +152,7 @@ def _opened(path: str) -> Iterator[Any]:
 
     try:
         with Image.open(path) as image:
-            if image.width * image.height > _MOST_PIXELS:
+            if image.width * image.height > MOST_PIXELS:
                 raise _fault(path, f"it has {image.width} x {image.height} pixels")
             yield image
     except UnidentifiedImageError:

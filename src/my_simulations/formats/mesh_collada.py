@@ -10,7 +10,7 @@ import math
 from typing import Any, Iterator, List, Tuple
 
 from .mesh_collada_tidy import tidied
-from .mesh_part import MeshFault, MeshPart
+from .mesh_part import MeshFault, MeshPart, bounded
 
 _MOST_INSTANCES = 100000
 _DEEPEST = 100
@@ -29,13 +29,9 @@ def read_collada(data: bytes) -> List[MeshPart]:
     try:
         document = _loaded(etree.tostring(root))
         unit = _unit(document, root)
-        parts: List[MeshPart] = []
         with np.errstate(all="ignore"):  # what is not finite is reported later
-            for names, geometry in _instances(document):
-                part = _part(names, geometry, unit)
-                if part is not None:
-                    parts.append(part)
-        return parts
+            made = (_part(names, geometry, unit) for names, geometry in _instances(document))
+            return bounded(part for part in made if part is not None)
     except RecursionError:
         raise MeshFault("its nodes are nested without end") from None
     except (LookupError, TypeError, ValueError, OverflowError, AttributeError) as fault:

@@ -2,7 +2,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Tuple
+from typing import Any, Iterator, List, Tuple
+
+MOST_TRIANGLES = 10_000_000
+"""Of a file, what it uses several times counted as often."""
 
 
 class MeshFault(Exception):
@@ -32,3 +35,19 @@ class MeshPart:
     names: Tuple[str, ...]
     vertices: Any
     triangles: Any
+
+
+def bounded(parts: Iterator[MeshPart]) -> List[MeshPart]:
+    """The parts of a file, which may be small itself and use one piece a million times.
+
+    Raises:
+        MeshFault: they have more than `MOST_TRIANGLES`.
+    """
+    found: List[MeshPart] = []
+    count = 0
+    for part in parts:
+        found.append(part)
+        count += max(len(part.triangles), len(part.vertices) // 3)
+        if count > MOST_TRIANGLES:
+            raise MeshFault(f"it has more than {MOST_TRIANGLES} triangles")
+    return found

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import io
 import os
-from typing import Any, Dict, List, Set, Tuple
+from typing import Any, Dict, Iterator, List, Set, Tuple
 
-from .mesh_part import MeshFault, MeshPart
+from .mesh_gltf import check_gltf
+from .mesh_part import MeshFault, MeshPart, bounded
 
 _HEADER = 84
 _RECORD = 50
@@ -76,6 +77,8 @@ def read_other(data: bytes, path: str) -> List[MeshPart]:
     from trimesh.resolvers import FilePathResolver
 
     kind = os.path.splitext(path)[1].lower().lstrip(".")
+    if kind in ("gltf", "glb"):
+        check_gltf(data, path)
     return _read(data, kind, resolver=FilePathResolver(path))
 
 
@@ -88,14 +91,13 @@ def _read(data: bytes, kind: str, **options: Any) -> List[MeshPart]:
         raise MeshFault(f"reading .{kind} needs a library that is not there: {fault}") from None
     except Exception as fault:  # each format of trimesh fails in its own way
         raise MeshFault(str(fault) or type(fault).__name__) from None
-    return _scene_parts(scene)
+    return bounded(_scene_parts(scene))
 
 
-def _scene_parts(scene: Any) -> List[MeshPart]:
+def _scene_parts(scene: Any) -> Iterator[MeshPart]:
     import numpy as np
     import trimesh
 
-    parts: List[MeshPart] = []
     unit = _METRES.get(scene.units or "", 1.0)
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
@@ -108,8 +110,7 @@ def _scene_parts(scene: Any) -> List[MeshPart]:
             raise MeshFault("a face names a vertex that does not exist")
         if np.linalg.det(matrix[:3, :3]) < 0:
             triangles = triangles[:, ::-1]  # a mirrored piece is inside out
-        parts.append(MeshPart(tuple(dict.fromkeys((name, node))), vertices, triangles))
-    return parts
+        yield MeshPart(tuple(dict.fromkeys((name, node))), vertices, triangles)
 
 
 def _welded(part: MeshPart) -> MeshPart:

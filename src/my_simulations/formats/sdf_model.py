@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, List, Optional, Sequence, Set, Tuple
 
 from ..description.model import WORLD, Link, Model, PluginSpec
-from ..description.validate import faults, link_names
+from ..description.validate import link_names, own_faults, place_faults
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, compose, inverse
 from .sdf_flags import Said, first_link, says, settle
@@ -14,10 +14,12 @@ from .sdf_frames import FrameFault, FrameTree
 from .sdf_joint import Pending, is_whole, place_axes, read_joint, reverse_axes
 from .sdf_links import LinkReader, free_name, must_stand, relative_to
 from .sdf_tables import FRAME, MODEL
-from .source import Source
+from .source import Level, Source
 from .tables import closest, fill, to_xml
 
 ROOT = "__model__"
+DEEPEST = 50
+"""Models inside models; what the files of Gazebo and of robots have is 2 or 3."""
 
 
 @dataclass
@@ -100,7 +102,8 @@ class _ModelReader:
         found = fill(model, element, MODEL, source, model.extra)
         placement = Placement(model, relative_to(found), self._frames)
         self._apply(changes, placement)
-        included = self._read_includes(found.get("include", ()), model, placement)
+        included = self._read_includes(self._within_depth(found.get("include", ()), model), model,
+                                       placement)
         static = model.static or self._outer_static
         model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
         model.plugins += changes.plugins
@@ -108,7 +111,8 @@ class _ModelReader:
         self._stand_still(model, static)
         for child in found.get("frame", ()):
             self._frame(child)
-        waiting = self._nested(found.get("model", ()), included, model, static)
+        nested = self._within_depth(found.get("model", ()), model)
+        waiting = self._nested(nested, included, model, static)
         joints = self._read_joints(found.get("joint", ()))
         model.canonical_link = model.canonical_link or first_link(
             element, {child: inner.model for child, inner in included})
@@ -151,6 +155,15 @@ class _ModelReader:
         # The frame of reference is what it is attached to, where the pose does not say.
         self._frames.add(probe.name, probe.pose, relative_to(found) or attached, element, attached)
         self._declared.append((probe.name, element))
+
+    def _within_depth(self, elements: Sequence[Any], model: Model) -> Sequence[Any]:
+        """The models in this one, or none where it is `DEEPEST` levels down already."""
+        if len((*self._outer, model.name)) < DEEPEST:
+            return elements
+        for child in elements:
+            self._source.report(Level.ERROR, "models-too-deep", "models are nested deeper than"
+                                f" {DEEPEST} levels; this one is left out", child)
+        return ()
 
     def _read_includes(self, elements: Sequence[Any], model: Model,
                        placement: Placement) -> List[Tuple[Any, Placement]]:
@@ -362,7 +375,9 @@ class _ModelReader:
 
     def _check(self, model: Model) -> None:
         """The faults of the finished model, at the places they come from."""
-        for fault in faults(model, self._outer_static):
+        found = [*own_faults(model, self._outer_static),
+                 *(fault for nested in model.models for fault in place_faults(nested))]
+        for fault in found:
             element = self._elements.get(id(fault.subject))
             if element is None:
                 continue  # inside a nested model, which has said so itself

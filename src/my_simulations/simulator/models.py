@@ -305,10 +305,14 @@ class Models:
                 session.log(error("joint-refused", str(fault), file=session.world.file))
         self._between = self._between.present(session.registry)
 
-    def divide_meshes(self, world: World, meshes: Dict[str, MeshTable]) -> None:
-        """Divide the meshes of all models of a world into convex parts where they need it."""
-        self._convex_meshes.prepare((flattened(model), meshes.get(model.name) or {})
-                                    for model in world.models)
+    def divide_meshes(self, world: World, meshes: Dict[str, MeshTable],
+                      gently: bool = False) -> None:
+        """Divide the meshes of all models of a world into convex parts where they need it.
+
+        With `gently`, at a low priority: another world runs meanwhile.
+        """
+        self._convex_meshes.prepare([(flattened(model), meshes.get(model.name) or {})
+                                     for model in world.models], gently)
 
     def forget_all(self) -> None:
         """Drop every entity from the registry, after the engine was cleared."""

@@ -110,7 +110,7 @@ class Simulator:
         no engine.
         """
         session = self._session
-        self.models.divide_meshes(world, meshes or {})  # meanwhile the old one goes on
+        self.models.divide_meshes(world, meshes or {}, gently=True)  # meanwhile the old one goes on
         with session.structure_lock:
             session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids))))
             self.models.forget_all()

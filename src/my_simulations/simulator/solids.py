@@ -24,14 +24,17 @@ class ConvexParts:
 
         Blocks while a mesh is divided for the first time.
         """
-        self.prepare([(model, meshes)])
+        self.prepare([(model, meshes)], gently=True)
         found = dict(meshes)
         for key, mesh, _ in _moving(model, meshes):
             found[key] = self._divided[id(mesh.vertices)]
         return found
 
-    def prepare(self, models: Iterable[Tuple[Model, MeshTable]]) -> None:
-        """Divide what several flattened models need, all at once; blocks until it is done."""
+    def prepare(self, models: Iterable[Tuple[Model, MeshTable]], gently: bool = False) -> None:
+        """Divide what several flattened models need, all at once; blocks until it is done.
+
+        With `gently`, a world that runs meanwhile comes first.
+        """
         wanted: Dict[int, Tuple[str, MeshData]] = {}
         for model, meshes in models:
             for _, mesh, whose in _moving(model, meshes):
@@ -44,7 +47,7 @@ class ConvexParts:
         from ..engine.decompose_many import divide_all
 
         named = list(wanted.values())
-        made = divide_all(named, self._progress)
+        made = divide_all(named, self._progress, gently=gently)
         if len(self._divided) > _MOST_KEPT:
             self._divided.clear()
         for (whose, mesh), parts in zip(named, made):
