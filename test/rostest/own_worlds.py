@@ -1,31 +1,24 @@
 #!/usr/bin/env python3
 """A student's own worlds: found where the command is typed, saved beside, launched again."""
 import os
-import signal
-import socket
 import sys
 import tempfile
 import unittest
-from unittest import mock
 from xml.etree import ElementTree
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import rosgraph
 import rospy
 import support
 from gazebo_msgs.srv import DeleteModel, GetModelState, GetWorldProperties, SpawnModel
 from my_simulations_msgs.srv import SaveWorld
-from support import Program, executable, wait_for
-
-from my_simulations.ros import master
+from support import Launched, Program, executable, wait_for
 
 STUDENTS = ('<sdf version="1.5"><world name="default">'
             '<include><uri>model://ground_plane</uri></include>'
             '<include><uri>model://crate</uri><name>students</name></include></world></sdf>')
 SPAWNERS = """<launch>
   <param name="robot_description" textfile="{robot}"/>
-  <param name="gazebo/master_timeout" value="1"/>
   <include file="$(find gazebo_ros)/launch/empty_world.launch">
     <arg name="gui" value="false"/><arg name="paused" value="true"/>
     <arg name="world_name" value="{world}"/>
@@ -34,55 +27,6 @@ SPAWNERS = """<launch>
         args="-urdf -param robot_description -model my_robot -z 0.1"/>
 </launch>
 """
-
-
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
-
-
-def is_alive(pid):
-    try:
-        with open(f"/proc/{pid}/stat", encoding="utf-8") as stat:
-            return stat.read().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-class Launched:
-    """A roslaunch on a master of its own; use it in a `with`."""
-
-    def __init__(self, folder, home, *words):
-        port = free_port()
-        self.uri = f"http://127.0.0.1:{port}"
-        self.program = Program(["roslaunch", "-p", str(port), *words], folder=folder,
-                               ROS_MASTER_URI=self.uri, HOME=home,
-                               ROS_HOME=os.path.join(home, ".ros"))
-
-    def ask(self, service, kind, **fields):
-        # rospy asks the master of the environment at each call.
-        with mock.patch.dict(os.environ, ROS_MASTER_URI=self.uri):
-            rospy.wait_for_service(f"/gazebo/{service}", support.SECONDS)
-            return rospy.ServiceProxy(f"/gazebo/{service}", kind)(**fields)
-
-    def names(self):
-        return list(self.ask("get_world_properties", GetWorldProperties).model_names)
-
-    def says(self, text):
-        wait_for(lambda: text in self.program.text or self.program.process.poll() is not None,
-                 f"the words {text!r} in {self.program.text}")
-        assert text in self.program.text, self.program.text
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        # Killed without this, roslaunch would leave its nodes behind.
-        if self.program.process.poll() is None:
-            self.program.interrupt()
-            self.program.ended(60)
-        self.program.__exit__(None, None, None)
 
 
 class OwnWorlds(unittest.TestCase):
@@ -195,40 +139,6 @@ class OwnWorlds(unittest.TestCase):
         world = ElementTree.parse(saved.path).getroot().find("world")
         self.assertEqual([model.get("name") for model in world.findall("model")],
                          ["ground_plane", "by_hand"])
-
-    def test_the_simulator_ends_some_time_after_its_roslaunch_was_killed(self):
-        with Launched(self.typed, self.home, self.spawners("worlds/empty.world")) as launched:
-            launched.names()
-            node = master.living_node(launched.uri, "/gazebo")[1]
-            engine = rosgraph.Master("/own_worlds", launched.uri).getParam(
-                "/gazebo/my_simulations/engine_pid")
-            core = master.call(launched.uri, "getPid", "/own_worlds")
-            launched.program.process.kill()
-            try:
-                wait_for(lambda: not is_alive(node) and not is_alive(engine), "the end of both")
-            finally:
-                self.end_orphans(launched.uri, core)
-
-    def test_the_simulator_ends_some_time_after_its_master_has_gone(self):
-        port = free_port()
-        uri = f"http://127.0.0.1:{port}"
-        with Program(["rosmaster", "--core", "-p", str(port)], ROS_MASTER_URI=uri) as core:
-            wait_for(lambda: not master.fault_of(uri, "/own_worlds"), "the master")
-            with Program([executable("gazebo_ros", "gzserver"), "_master_timeout:=1"],
-                         ROS_MASTER_URI=uri) as server:
-                wait_for(lambda: master.call(uri, "lookupService", "/own_worlds",
-                                             "/gazebo/save_world"), "the server")
-                core.process.kill()
-                self.assertEqual(server.ended(), 1)
-                self.assertIn("has been gone for 1 s; the simulator ends", server.text)
-
-    def end_orphans(self, uri, core):
-        """What a killed roslaunch leaves besides the simulator: rosout and the master."""
-        found = master.living_node(uri, "/rosout")
-        for pid in (found[1] if found else 0, core):
-            if pid:
-                os.kill(pid, signal.SIGTERM)
-        wait_for(lambda: not is_alive(core), "the end of the master")
 
 
 def support_folder():

@@ -4,9 +4,11 @@ from __future__ import annotations
 import math
 import os
 import signal
+import socket
 import subprocess
 import threading
 import time
+from unittest import mock
 
 import rosnode
 import rospy
@@ -220,6 +222,47 @@ class Program:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
+
+
+def free_port():
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+class Launched:
+    """A roslaunch on a master of its own; use it in a `with`."""
+
+    def __init__(self, folder, home, *words):
+        port = free_port()
+        self.uri = f"http://127.0.0.1:{port}"
+        self.program = Program(["roslaunch", "-p", str(port), *words], folder=folder,
+                               ROS_MASTER_URI=self.uri, HOME=home,
+                               ROS_HOME=os.path.join(home, ".ros"))
+
+    def ask(self, service, kind, **fields):
+        # rospy asks the master of the environment at each call.
+        with mock.patch.dict(os.environ, ROS_MASTER_URI=self.uri):
+            rospy.wait_for_service(f"/gazebo/{service}", SECONDS)
+            return rospy.ServiceProxy(f"/gazebo/{service}", kind)(**fields)
+
+    def names(self):
+        return list(self.ask("get_world_properties", srv.GetWorldProperties).model_names)
+
+    def says(self, text):
+        wait_for(lambda: text in self.program.text or self.program.process.poll() is not None,
+                 f"the words {text!r} in {self.program.text}")
+        assert text in self.program.text, self.program.text
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        # Killed without this, roslaunch would leave its nodes behind.
+        if self.program.process.poll() is None:
+            self.program.interrupt()
+            self.program.ended(60)
+        self.program.__exit__(None, None, None)
 
 
 def run(test_name):

@@ -152,8 +152,8 @@ TABLE: Tuple[Row, ...] = (
           "makes `steps` steps as fast as the machine can, also while paused; answered when they "
           "are done"),
     _ours("save_world", "SaveWorld", "saving.save", "SaveWorld",
-          "the running world as SDF 1.7, the final poses in the models and a `<state>` beside "
-          "them; below the allowed folders only (`~save_roots`)"),
+          "the running world as SDF 1.7, beside the world that was loaded or in "
+          "`~/my_simulations/worlds`; below the allowed folders only (`~save_roots`)"),
     _ours("open_editor", "OpenEditor", "editor.open", "OpenEditor",
           "starts the world editor if it is not there, and tells its address"),
 )
