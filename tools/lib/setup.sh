@@ -273,14 +273,17 @@ build_workspace() {
 }
 
 # use_loopback: where the machine's own name leads nowhere, as in bare containers, ROS programs find
-# each other on the loopback address.
+# each other on the loopback address; the workspace's setup.bash sets it in other shells.
 use_loopback() {
-  local name
-  LOOPBACK=
-  [ -z "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || return 0
+  local name mark="$OWN/loopback"
+  # What setup.bash has set is not the user's own choice.
+  [ ! -f "$mark" ] || [ "${ROS_IP:-}" != 127.0.0.1 ] || unset ROS_IP
   name=$(uname -n)
-  ! timeout 5 getent hosts "$name" >/dev/null || return 0
-  LOOPBACK="export ROS_IP=127.0.0.1; "
+  if [ -n "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || timeout 5 getent hosts "$name" >/dev/null; then
+    rm -f -- "$mark"
+    return 0
+  fi
+  : >"$mark"
   export ROS_IP=127.0.0.1
   say "This machine's own name, $name, does not resolve; ROS_IP=127.0.0.1 is used: programs on this \
 machine find each other, others do not. Name it in /etc/hosts to change that."
