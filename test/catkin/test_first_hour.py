@@ -64,7 +64,7 @@ class Terminals:
     def __init__(self, home: Path, repository: Path) -> None:
         self.home = home
         self.environment = {
-            "HOME": str(home), "PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
+            "HOME": str(home), "PATH": "/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
             "LANG": "C.UTF-8", "REPOSITORY": str(repository), "MY_SIMULATIONS_NO_BROWSER": "1",
             "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}", "ROS_IP": "127.0.0.1",
             # What tells the tests' own processes from others.
