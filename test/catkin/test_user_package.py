@@ -80,7 +80,7 @@ def workspace(tmp_path):
 
 
 def test_tests_of_a_users_package_run_with_catkin_make_run_tests(workspace):
-    done = run(workspace, "catkin_make", "run_tests")
+    done = run(workspace, "catkin_make", "-C", str(workspace), "run_tests")
     assert done.returncode == 0, done.stdout[-4000:]
     results = run(workspace, "catkin_test_results", "build/test_results")
     assert "0 errors, 0 failures" in results.stdout, done.stdout[-4000:]
