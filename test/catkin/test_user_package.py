@@ -57,8 +57,11 @@ if __name__ == "__main__":
 
 
 def run(folder, *words, seconds=300):
-    return subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=seconds)
+    # The system's Python is the one that ROS is installed for.
+    environment = {**os.environ, "PATH": f"/usr/bin:{os.environ['PATH']}"}
+    return subprocess.run(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          timeout=seconds)
 
 
 @pytest.fixture

@@ -409,7 +409,7 @@ def test_python_is_installed_when_asked_for(clone, all_but_common):
 def test_name_that_does_not_resolve_is_replaced_by_the_loopback_address(
         clone, tmp_path, resolves, variables, address):
     home = tmp_path / "home"
-    fake(home, "getent", "exit 0" if resolves else "exit 2")
+    fake(home, "getent", "exit 0" if resolves else "[ $2 = localhost ]")
     fake(home, "uname", "echo lonely")
     for _again in range(2):
         done = shell(clone, "OWN=$HOME; use_loopback\necho \"[${ROS_IP:-}]\"", home, **variables)
@@ -418,6 +418,17 @@ def test_name_that_does_not_resolve_is_replaced_by_the_loopback_address(
         assert said is (not resolves and not variables)
         assert (home / "loopback").exists() is said
         assert done.stdout.splitlines()[-1] == f"[{address}]"
+
+
+def test_localhost_that_does_not_resolve_is_named_to_who_may_not_add_it(clone, tmp_path):
+    home = tmp_path / "home"
+    fake(home, "getent", "exit 2")
+    fake(home, "id", "echo 1000")
+    script = ("OWN=$HOME\n"
+              "command() { [ \"$2\" != sudo ] && builtin command \"$@\"; }\nuse_loopback")
+    done = shell(clone, script, home)
+    assert done.returncode == 1
+    assert "echo '127.0.0.1 localhost' >>/etc/hosts" in done.stderr
 
 
 def test_loopback_address_goes_once_the_name_resolves(clone, tmp_path):
