@@ -273,17 +273,30 @@ build_workspace() {
 }
 
 # use_loopback: where the machine's own name leads nowhere, as in bare containers, ROS programs find
-# each other on the loopback address.
+# each other on the loopback address; the workspace's setup.bash sets it in other shells.
 use_loopback() {
-  local name
-  LOOPBACK=
-  [ -z "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || return 0
+  local name mark="$OWN/loopback"
+  resolve_localhost
+  # What setup.bash has set is not the user's own choice.
+  [ ! -f "$mark" ] || [ "${ROS_IP:-}" != 127.0.0.1 ] || unset ROS_IP
   name=$(uname -n)
-  ! timeout 5 getent hosts "$name" >/dev/null || return 0
-  LOOPBACK="export ROS_IP=127.0.0.1; "
+  if [ -n "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || timeout 5 getent hosts "$name" >/dev/null; then
+    rm -f -- "$mark"
+    return 0
+  fi
+  : >"$mark"
   export ROS_IP=127.0.0.1
   say "This machine's own name, $name, does not resolve; ROS_IP=127.0.0.1 is used: programs on this \
 machine find each other, others do not. Name it in /etc/hosts to change that."
+}
+
+# resolve_localhost: roslaunch needs that name, which a bare root without /etc/hosts has not.
+resolve_localhost() {
+  ! timeout 5 getent hosts localhost >/dev/null || return 0
+  may_install && as_root sh -c 'echo "127.0.0.1 localhost" >>/etc/hosts' ||
+    stop "the name localhost does not resolve, and roslaunch needs it." \
+      "As root: echo '127.0.0.1 localhost' >>/etc/hosts"
+  say "The name localhost did not resolve: '127.0.0.1 localhost' was added to /etc/hosts."
 }
 
 # one_at_a_time: hold the workspace's lock while it is set up; `release` gives it back.
