@@ -64,7 +64,8 @@ FAULTY = {
 }
 """Codes of errors with the voice of who refuses the document in Gazebo 11."""
 _MISSING = ("model-not-found", "mesh-not-found", "image-not-found", "xacro-failed")
-_URI = re.compile(r"'([^']+)' was not found|resource not found: (\w+)")  # the latter: a package
+_URI = re.compile(r"'([^']+)' was not found|resource not found: (\w+)"  # the latter: a package
+                  r"|No such file or directory: ([^\s;]+)")
 _NEEDS_MORE = re.compile(r"Undefined substitution argument|name '\w+' is not defined|unknown macro")
 """What xacro says of a file that is given arguments by others, or is a part of another one."""
 
@@ -124,6 +125,8 @@ class Shelf:
         scheme, _, rest = uri.rpartition("://")
         if scheme.startswith("http"):
             return False
+        if rest.startswith("/"):
+            return os.path.exists(rest)
         parts = [part for part in rest.split("/") if part not in ("", ".", "..")]
         if scheme == "model" and parts and parts[0] in self._undescribed:
             return False
@@ -156,7 +159,8 @@ def _kind(issue: Dict[str, Any], shelf: Shelf) -> str:
         return "clean"
     if issue["code"] in _MISSING:
         found = _URI.search(issue["message"])
-        return "ours" if found is None or shelf.has(found[1] or found[2]) else "missing"
+        return "ours" if found is None or shelf.has(
+            found[1] or found[2] or found[3]) else "missing"
     if is_error:
         return "faulty" if issue["code"] in FAULTY else "ours"
     return "odd"

@@ -68,8 +68,8 @@ def test_a_joint_of_sdf_to_no_link_is_left_out():
 
 
 def test_a_joint_of_sdf_may_name_links_with_the_robot_before_them():
-    model, issues = robot_of(ARM + '<gazebo><joint name="loop" type="fixed"><parent>r::base</parent>'
-                             "<child>world</child></joint></gazebo>")
+    model, issues = robot_of(ARM + '<gazebo><joint name="loop" type="fixed"><parent>r::base'
+                             "</parent><child>world</child></joint></gazebo>")
     assert tolerated(issues) == [] and errors(issues) == []
     assert [(one.parent, one.child) for one in model.joints] == [("world", "base")]
 
