@@ -106,11 +106,14 @@ class Shelf:
     def __init__(self, folders: Sequence[str]) -> None:
         self._tails: Set[str] = set()
         self._undescribed: Set[str] = set()
+        self._packages: Dict[str, str] = {}
         for folder in folders:
             for at, inside, names in os.walk(folder):
                 if "model.config" in names and not any(n.endswith((".sdf", ".urdf"))
                                                        for n in names):
                     self._undescribed.add(os.path.basename(at))  # made by a build
+                if "package.xml" in names:
+                    self._packages[os.path.basename(at)] = at
                 parts = at.split(os.sep)
                 for name in (*names, *inside):
                     for count in range(min(4, len(parts)) + 1):
@@ -128,6 +131,8 @@ class Shelf:
         if rest.startswith("/"):
             return os.path.exists(rest)
         parts = [part for part in rest.split("/") if part not in ("", ".", "..")]
+        if scheme == "package" and parts and parts[0] in self._packages:
+            return os.path.exists(os.path.join(self._packages[parts[0]], *parts[1:]))
         if scheme == "model" and parts and parts[0] in self._undescribed:
             return False
         if len(parts) == 1 and os.path.splitext(parts[0])[1]:
@@ -157,6 +162,8 @@ def _kind(issue: Dict[str, Any], shelf: Shelf) -> str:
     is_error = issue["severity"] == "error"
     if not (is_error or issue["tolerated"]):
         return "clean"
+    if issue["code"] == "xacro-failed" and "XML parsing error" in issue["message"]:
+        return "faulty"
     if issue["code"] in _MISSING:
         found = _URI.search(issue["message"])
         return "ours" if found is None or shelf.has(
