@@ -70,12 +70,12 @@ _NEEDS_MORE = re.compile(r"Undefined substitution argument|name '\w+' is not def
 """What xacro says of a file that is given arguments by others, or is a part of another one."""
 
 
-def files_below(folder: str) -> Iterator[str]:
+def files_below(folder: str, extensions: Sequence[str] = EXTENSIONS) -> Iterator[str]:
     """Every file that may be read, sorted."""
     for at, folders, names in os.walk(folder):
         folders.sort()
         for name in sorted(names):
-            if name.endswith(EXTENSIONS):
+            if name.endswith(tuple(extensions)):
                 yield os.path.join(at, name)
 
 
@@ -180,6 +180,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--seconds", type=float, default=60.0, help="more for a file is a hang")
     parser.add_argument("--show", default="ours,crash,hang", metavar="COLUMN,…",
                         help="files of which columns are told about (default: %(default)s)")
+    parser.add_argument("--kinds", default=",".join(EXTENSIONS), metavar=".EXT,…",
+                        help="which files are read (default: %(default)s)")
     parser.add_argument("--all", action="store_true", help="show warnings, too")
     options = parser.parse_args(argv)
     named: List[Tuple[str, str]] = []
@@ -194,7 +196,7 @@ def main(argv: Sequence[str]) -> int:
     codes: Counter[Tuple[str, str]] = Counter()
     for name, folder in named:
         row: Counter[str] = Counter()
-        for path in files_below(folder):
+        for path in files_below(folder, options.kinds.split(",")):
             began = time.monotonic()
             answer = worker.read(path)
             slowest = max(slowest, (time.monotonic() - began, path))

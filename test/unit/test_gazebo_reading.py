@@ -302,3 +302,14 @@ def test_of_two_joints_with_one_child_the_last_by_name_counts():
 def test_a_robot_without_mass_is_an_empty_model():
     robot, issues = robot_of('<link name="a"/>')
     assert robot.links == [] and tolerated(issues) == ["link-missing"] and errors(issues) == []
+
+
+def test_a_kinematic_link_needs_no_mass():
+    link, issues = link_of("<kinematic>1</kinematic><inertial><mass>0</mass></inertial>")
+    assert link.inertial.mass == 0 and errors(issues) == [] and tolerated(issues) == []
+
+
+def test_an_include_without_uri_in_a_model_is_left_out_alone():
+    model, issues = model_of(LINK + "<include/>", "1.7")
+    assert len(model.links) == 1
+    assert tolerated(issues) == ["include-uri-missing"] and errors(issues) == []
