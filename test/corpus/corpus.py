@@ -122,20 +122,19 @@ class Shelf:
     def has(self, uri: str) -> bool:
         """Whether some path ends as the URI does (its last three names, where it has so many).
 
-        A single name with an extension is too common to be looked for anywhere but beside the
-        file, which the resolver did.
+        Paths, whole or relative, are found where they say or nowhere.
         """
         scheme, _, rest = uri.rpartition("://")
         if scheme.startswith("http"):
             return False
+        if not scheme and not rest.startswith("/"):
+            return False  # beside the file, or in a resource path: the resolver has looked there
         if rest.startswith("/"):
             return os.path.exists(rest)
         parts = [part for part in rest.split("/") if part not in ("", ".", "..")]
         if scheme == "package" and parts and parts[0] in self._packages:
             return os.path.exists(os.path.join(self._packages[parts[0]], *parts[1:]))
         if scheme == "model" and parts and parts[0] in self._undescribed:
-            return False
-        if len(parts) == 1 and os.path.splitext(parts[0])[1]:
             return False
         return "/".join(parts[-3:]) in self._tails
 
