@@ -129,7 +129,7 @@ class Shelf:
             return False
         if not scheme and not rest.startswith("/"):
             return False  # beside the file, or in a resource path: the resolver has looked there
-        if rest.startswith("/"):
+        if scheme == "file" or rest.startswith("/"):
             return os.path.exists(rest)
         parts = [part for part in rest.split("/") if part not in ("", ".", "..")]
         if scheme == "package" and parts and parts[0] in self._packages:
