@@ -125,7 +125,7 @@ class Shelf:
         Paths, whole or relative, are found where they say or nowhere.
         """
         scheme, _, rest = uri.rpartition("://")
-        if scheme.startswith("http"):
+        if scheme not in ("model", "package", "file", ""):
             return False
         if not scheme and not rest.startswith("/"):
             return False  # beside the file, or in a resource path: the resolver has looked there
