@@ -113,7 +113,7 @@ class Shelf:
                                                        for n in names):
                     self._undescribed.add(os.path.basename(at))  # made by a build
                 if "package.xml" in names:
-                    self._packages[os.path.basename(at)] = at
+                    self._packages.setdefault(_package_name(at), at)
                 parts = at.split(os.sep)
                 for name in (*names, *inside):
                     for count in range(min(4, len(parts)) + 1):
@@ -137,6 +137,12 @@ class Shelf:
         if scheme == "model" and parts and parts[0] in self._undescribed:
             return False
         return "/".join(parts[-3:]) in self._tails
+
+
+def _package_name(folder: str) -> str:
+    with open(os.path.join(folder, "package.xml"), errors="replace") as stream:
+        found = re.search(r"<name>\s*([^<\s]+)\s*</name>", stream.read())
+    return found[1] if found else os.path.basename(folder)
 
 
 def verdict(issues: Sequence[Dict[str, Any]], shelf: Shelf) -> str:
