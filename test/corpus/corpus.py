@@ -64,17 +64,18 @@ FAULTY = {
 }
 """Codes of errors with the voice of who refuses the document in Gazebo 11."""
 _MISSING = ("model-not-found", "mesh-not-found", "image-not-found", "xacro-failed")
-_URI = re.compile(r"'([^']+)' was not found|resource not found: (\w+)")  # the latter: a package
+_URI = re.compile(r"'([^']+)' was not found|resource not found: (\w+)"  # the latter: a package
+                  r"|No such file or directory: ([^\s;]+)")
 _NEEDS_MORE = re.compile(r"Undefined substitution argument|name '\w+' is not defined|unknown macro")
 """What xacro says of a file that is given arguments by others, or is a part of another one."""
 
 
-def files_below(folder: str) -> Iterator[str]:
+def files_below(folder: str, extensions: Sequence[str] = EXTENSIONS) -> Iterator[str]:
     """Every file that may be read, sorted."""
     for at, folders, names in os.walk(folder):
         folders.sort()
         for name in sorted(names):
-            if name.endswith(EXTENSIONS):
+            if name.endswith(tuple(extensions)):
                 yield os.path.join(at, name)
 
 
@@ -105,11 +106,14 @@ class Shelf:
     def __init__(self, folders: Sequence[str]) -> None:
         self._tails: Set[str] = set()
         self._undescribed: Set[str] = set()
+        self._packages: Dict[str, str] = {}
         for folder in folders:
             for at, inside, names in os.walk(folder):
                 if "model.config" in names and not any(n.endswith((".sdf", ".urdf"))
                                                        for n in names):
                     self._undescribed.add(os.path.basename(at))  # made by a build
+                if "package.xml" in names:
+                    self._packages.setdefault(_package_name(at), at)
                 parts = at.split(os.sep)
                 for name in (*names, *inside):
                     for count in range(min(4, len(parts)) + 1):
@@ -118,18 +122,27 @@ class Shelf:
     def has(self, uri: str) -> bool:
         """Whether some path ends as the URI does (its last three names, where it has so many).
 
-        A single name with an extension is too common to be looked for anywhere but beside the
-        file, which the resolver did.
+        Paths, whole or relative, are found where they say or nowhere.
         """
         scheme, _, rest = uri.rpartition("://")
-        if scheme.startswith("http"):
+        if scheme not in ("model", "package", "file", ""):
             return False
+        if not scheme and not rest.startswith("/"):
+            return False  # beside the file, or in a resource path: the resolver has looked there
+        if scheme == "file" or rest.startswith("/"):
+            return os.path.exists(rest)
         parts = [part for part in rest.split("/") if part not in ("", ".", "..")]
+        if scheme == "package" and parts and parts[0] in self._packages:
+            return os.path.exists(os.path.join(self._packages[parts[0]], *parts[1:]))
         if scheme == "model" and parts and parts[0] in self._undescribed:
             return False
-        if len(parts) == 1 and os.path.splitext(parts[0])[1]:
-            return False
         return "/".join(parts[-3:]) in self._tails
+
+
+def _package_name(folder: str) -> str:
+    with open(os.path.join(folder, "package.xml"), errors="replace") as stream:
+        found = re.search(r"<name>\s*([^<\s]+)\s*</name>", stream.read())
+    return found[1] if found else os.path.basename(folder)
 
 
 def verdict(issues: Sequence[Dict[str, Any]], shelf: Shelf) -> str:
@@ -154,9 +167,12 @@ def _kind(issue: Dict[str, Any], shelf: Shelf) -> str:
     is_error = issue["severity"] == "error"
     if not (is_error or issue["tolerated"]):
         return "clean"
+    if issue["code"] == "xacro-failed" and "XML parsing error" in issue["message"]:
+        return "faulty"
     if issue["code"] in _MISSING:
         found = _URI.search(issue["message"])
-        return "ours" if found is None or shelf.has(found[1] or found[2]) else "missing"
+        return "ours" if found is None or shelf.has(
+            found[1] or found[2] or found[3]) else "missing"
     if is_error:
         return "faulty" if issue["code"] in FAULTY else "ours"
     return "odd"
@@ -169,6 +185,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--seconds", type=float, default=60.0, help="more for a file is a hang")
     parser.add_argument("--show", default="ours,crash,hang", metavar="COLUMN,…",
                         help="files of which columns are told about (default: %(default)s)")
+    parser.add_argument("--kinds", default=",".join(EXTENSIONS), metavar=".EXT,…",
+                        help="which files are read (default: %(default)s)")
     parser.add_argument("--all", action="store_true", help="show warnings, too")
     options = parser.parse_args(argv)
     named: List[Tuple[str, str]] = []
@@ -183,7 +201,7 @@ def main(argv: Sequence[str]) -> int:
     codes: Counter[Tuple[str, str]] = Counter()
     for name, folder in named:
         row: Counter[str] = Counter()
-        for path in files_below(folder):
+        for path in files_below(folder, options.kinds.split(",")):
             began = time.monotonic()
             answer = worker.read(path)
             slowest = max(slowest, (time.monotonic() - began, path))

@@ -176,3 +176,15 @@ def test_a_room_can_be_furnished():
     assert there >= {"sun", "ground_plane", "unit_box", "unit_sphere", "unit_cylinder", "table",
                      "chair", "shelf", "cabinet", "door", "wall", "bin", "cone", "crate", "ramp",
                      "stairs"}
+
+
+def test_the_strict_count_what_is_tolerated_as_an_error(capsys):
+    path = str(Path(INVALID) / "pose_of_five_numbers.sdf")
+    assert main(["check_model", path]) == 0
+    out = capsys.readouterr().out
+    assert f"{path}:5: warning: <pose>: expected 6 numbers, found '0 0 1 0 0'; read as" in out
+    assert main(["check_model", "--strict", path]) == 1
+    assert f"{path}:5: error: <pose>" in capsys.readouterr().out
+    assert main(["check_model", "--json", path]) == 0
+    (issue,) = json.loads(capsys.readouterr().out)["issues"]
+    assert issue["tolerated"] and issue["severity"] == "warning"

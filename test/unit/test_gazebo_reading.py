@@ -302,3 +302,25 @@ def test_of_two_joints_with_one_child_the_last_by_name_counts():
 def test_a_robot_without_mass_is_an_empty_model():
     robot, issues = robot_of('<link name="a"/>')
     assert robot.links == [] and tolerated(issues) == ["link-missing"] and errors(issues) == []
+
+
+def test_a_kinematic_link_needs_no_mass():
+    link, issues = link_of("<kinematic>1</kinematic><inertial><mass>0</mass></inertial>")
+    assert link.inertial.mass == 0 and errors(issues) == [] and tolerated(issues) == []
+
+
+def test_an_include_without_uri_in_a_model_is_left_out_alone():
+    model, issues = model_of(LINK + "<include/>", "1.7")
+    assert len(model.links) == 1
+    assert tolerated(issues) == ["include-uri-missing"] and errors(issues) == []
+
+
+def test_a_population_may_include_its_model(tmp_path):
+    resolver = shelf(tmp_path, tree=LINK)
+    world, issues = world_of(
+        '<population name="p"><include><static>true</static><name>oak</name><uri>model://tree</uri>'
+        "</include><box><size>1 1 1</size></box><model_count>2</model_count><distribution><type>"
+        "random</type></distribution></population>", "1.7", resolver)
+    assert [(model.name, model.static) for model in world.models] == [
+        ("oak_clone_0", True), ("oak_clone_1", True)]
+    assert errors(issues) == []

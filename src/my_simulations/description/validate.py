@@ -123,7 +123,7 @@ def link_faults(link: Link, static: bool) -> Iterator[Fault]:
                     "a link is named 'world', which joints mean the world by", link)
     if not pose_is_finite(link.pose):
         yield Fault("pose-not-finite", f"the pose of link {link.name!r} is not finite", link)
-    if not static:
+    if not (static or link.kinematic):
         yield from inertial_faults(link.inertial, link.name)
     for collision in link.collisions:
         problem = geometry_fault(collision.geometry)

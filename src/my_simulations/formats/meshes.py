@@ -31,6 +31,8 @@ def load_mesh(mesh: Mesh) -> MeshData:
         status = os.stat(mesh.path) if mesh.path else None
     except OSError:
         status = None
+    if os.path.isdir(mesh.path):
+        raise _fault("mesh-unreadable", f"the mesh {mesh.uri!r} names a folder", mesh.path)
     if status is None or not os.path.isfile(mesh.path):
         raise _fault("mesh-not-found", f"the mesh {mesh.uri!r} was not found", mesh.path)
     return _loaded(mesh.path, status.st_mtime_ns, status.st_size, mesh.scale, mesh.submesh,

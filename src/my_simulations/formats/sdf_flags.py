@@ -13,6 +13,7 @@ from typing import Any, Iterable, Mapping, Optional, Tuple
 
 from ..description.model import Model
 from ..description.validate import link_names
+from ..errors import Issue, Severity
 from .source import Source
 
 FLAGS = ("static", "self_collide", "allow_auto_disable")
@@ -36,13 +37,13 @@ def says(model: Model, element: Any) -> Said:
 
 def settle(model: Model, element: Any, included: Iterable[Tuple[Any, Said]],
            source: Source) -> Said:
-    """Give a model the flags of the models it includes where they come first, with a warning.
+    """Give a model the flags of the models it includes where they come first, and say so once.
 
     Args:
         model: with its own flags.
         element: its `<model>`.
         included: the `<include>`s in it that were read, and what each says.
-        source: for the warnings.
+        source: what hears of it.
 
     Returns:
         what the whole says.
@@ -66,13 +67,19 @@ def _take_over(model: Model, flag: str, value: bool, element: Any, source: Sourc
     if getattr(model, flag) == value:
         return
     setattr(model, flag, value)
+    kind = f"include-flag {flag} {value}"
+    if kind in source.log.told:
+        return  # said once: a world may be full of such models
+    source.log.told.add(kind)
     what = {"static": "static" if value else "able to move",
             "self_collide": "made of links that collide with each other" if value
             else "made of links that pass through each other",
             "allow_auto_disable": "allowed to sleep" if value else "kept awake"}[flag]
-    source.warn("include-flag", f"model {model.name!r} is {what} as a whole: the model included"
-                f" here says <{flag}>{'true' if value else 'false'}</{flag}>", element,
-                f"say <{flag}> in {model.name!r} itself, before the include")
+    source.log.add(Issue(
+        Severity.NOTE, "include-flag", f"model {model.name!r} is {what} as a whole, since the model"
+        f" included here says <{flag}>{'true' if value else 'false'}</{flag}>; so are all such",
+        hint=f"say <{flag}> in {model.name!r} itself, before the include",
+        **source.where(element)))
 
 
 def first_link(element: Any, included: Mapping[Any, Model]) -> str:

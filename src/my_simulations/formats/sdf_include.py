@@ -36,8 +36,8 @@ def read_include(element: Any, source: Source, static: bool = False,
     probe = _Include()
     found = fill(probe, element, INCLUDE, source, [])
     if not probe.uri:
-        source.report(Level.ERROR, "include-uri-missing", "<include> has no <uri>; it is left out",
-                      element)
+        say = source.tolerate if outer else functools.partial(source.report, Level.ERROR)
+        say("include-uri-missing", "<include> has no <uri>; it is left out", element)
         return None
     if probe.pose is None and element.find("pose") is not None:
         probe.pose = IDENTITY  # an empty one, too, replaces that of the model

@@ -90,7 +90,7 @@ class LinkReader:
                 link.visuals.append(visual[0])
                 self.elements[id(visual[0])] = child
                 self._note_pose(*visual, link)
-        if not static:
+        if not (static or link.kinematic):
             self._complete_inertia(link)
         self._distinct("collision", link.collisions, link)
         self._distinct("visual", link.visuals, link)

@@ -13,7 +13,8 @@ from typing import Any, Callable, Dict, List
 
 from ..description.model import Model
 from ..geometry import Pose, Vec3, add, transform
-from .sdf_model import read_model
+from .sdf_include import read_include
+from .sdf_model import Placement, read_model
 from .sdf_tables_world import POPULATION, Population
 from .source import Level, Source
 from .tables import fill
@@ -29,12 +30,12 @@ _ROUNDS = 20
 def read_population(element: Any, source: Source, seed: int) -> List[Model]:
     """The models of a population, placed; none, with an error, where it says not enough."""
     population = Population()
-    found = fill(population, element, POPULATION, source, [])
+    fill(population, element, POPULATION, source, [])
     fatal = source.log.fatal
-    templates = [read_model(child, source).model for child in found.get("model", ())[:1]]
+    templates = _templates(element, source)
     if source.log.fatal > fatal:
         return []
-    problem = _problem(population) if templates else "there is no <model>"
+    problem = _problem(population) if templates else "there is no <model> and no <include>"
     if problem:
         source.report(Level.ERROR, "population-unusable", f"population {population.name!r} is left"
                       f" out: {problem}", element)
@@ -42,6 +43,17 @@ def read_population(element: Any, source: Source, seed: int) -> List[Model]:
     places = positions(population, random.Random(f"{seed}/{population.name}"))
     return [_clone(templates[0], number, place, population)
             for number, place in enumerate(places)]
+
+
+def _templates(element: Any, source: Source) -> List[Model]:
+    """The first model in it, written or included (libsdformat includes anywhere)."""
+    for child in element.iterchildren("model", "include"):
+        if child.tag == "model":
+            return [read_model(child, source).model]
+        included = read_include(child, source)
+        if isinstance(included, Placement):
+            return [included.model]
+    return []
 
 
 def _clone(template: Model, number: int, place: Vec3, population: Population) -> Model:

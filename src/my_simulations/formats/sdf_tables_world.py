@@ -130,7 +130,8 @@ class Population:
 
 
 POPULATION = Table("population", Population, {
-    "pose": Value("pose", POSE), "model": Part(), "model_count": Value("model_count", INT),
+    "pose": Value("pose", POSE), "model": Part(), "include": Part(),
+    "model_count": Value("model_count", INT),
     "box": Group({"size": Value("box", VECTOR3)}),
     "cylinder": Group({"radius": Value("radius", FLOAT), "length": Value("length", FLOAT)}),
     "distribution": Group({

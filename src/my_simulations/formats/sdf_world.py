@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import copy
-from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Any, Callable, Dict, List, Sequence, Set, Tuple
 
 from ..description.model import Link, Model
 from ..description.validate import link_names
@@ -191,13 +191,15 @@ def _is_default(element: Any) -> bool:
 
 def _check_physics(physics: Physics, element: Any, source: Source) -> None:
     usual = Physics()
-    positive: Optional[str] = None
+    instead: List[str] = []
     if not is_finite(physics.max_step_size) or physics.max_step_size <= 0:
-        positive, physics.max_step_size = "max_step_size", usual.max_step_size
-    elif physics.real_time_update_rate < 0:
-        positive, physics.real_time_update_rate = "real_time_update_rate", 0.0
-    elif physics.ode.iters < 1:
-        positive, physics.ode.iters = "ode/solver/iters", usual.ode.iters
-    if positive:
-        source.tolerate("physics-range", f"{positive} is out of range; the default is used",
-                        element)
+        physics.max_step_size = usual.max_step_size
+        instead.append(f"max_step_size is out of range; {usual.max_step_size:g} s is used")
+    if physics.real_time_update_rate < 0:
+        physics.real_time_update_rate = 0.0
+        instead.append("real_time_update_rate is below 0; time goes on as fast as it can")
+    if physics.ode.iters < 1:
+        physics.ode.iters = usual.ode.iters
+        instead.append(f"ode/solver/iters is out of range; {usual.ode.iters} is used")
+    for message in instead:
+        source.tolerate("physics-range", message, element)

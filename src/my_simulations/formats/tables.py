@@ -233,7 +233,7 @@ def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, l
         fault = refusal
     hint = "the text is xacro; expand it with the xacro command first" if "${" in text else ""
     try:
-        if strict or hint:
+        if strict:
             raise fault
         value = kind.salvage(text)
     except ValueError:
@@ -244,7 +244,7 @@ def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, l
         source.tolerate("value-not-finite", f"{shown}: {fault}; its default is used", element)
         return DEFAULT
     source.tolerate("value-odd", f"{shown}: {fault}; read as {kind.format(value)!r}, as Gazebo"
-                    " reads it", element)
+                    " reads it", element, hint)
     return value
 
 
