@@ -118,9 +118,9 @@ class CommandError(Exception):
     """
 
 
-class NoAnswer(CommandError):
+class EngineTimeoutError(CommandError):
     """The engine lives, but has not answered in time; the request may still be carried out."""
 
 
-class EngineLost(CommandError):
+class EngineLostError(CommandError):
     """The engine process died while it worked on this command; the world was restored."""

@@ -236,8 +236,8 @@ def files() -> List[Row]:
     import trimesh
 
     from my_simulations.description.shapes import Mesh
-    from my_simulations.formats.load import read_world_text
-    from my_simulations.formats.meshes import load_mesh
+    from my_simulations.formats.mesh.loading import load_mesh
+    from my_simulations.formats.reading import read_world_text
     from my_simulations.resources.resolver import Resolver
     resolver = Resolver.from_environment()
     rows: List[Row] = []

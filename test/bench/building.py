@@ -72,7 +72,7 @@ EDITS = """async (plan) => {
 
 def plan() -> Any:
     """The plan's JSON, as the page sends it."""
-    from my_simulations.building.plan import Level, Opening, Plan, Wall
+    from my_simulations.building.building_plan import Level, Opening, Plan, Wall
     from my_simulations.building.plan_json import plan_to_json
 
     level = Level("Level 1")
@@ -95,14 +95,14 @@ def places() -> List[Tuple[float, float, float]]:
 
 def sdf_text() -> str:
     """The model element of the building."""
-    from my_simulations.building.requests import building_sdf
+    from my_simulations.building.building_operations import building_sdf
 
     text = building_sdf(plan())[1]
     return text[text.index("<model"):text.rindex("</sdf>")]
 
 
 def convert() -> Row:
-    from my_simulations.building.requests import building_sdf
+    from my_simulations.building.building_operations import building_sdf
 
     tree = plan()
     took = []
@@ -135,8 +135,8 @@ def bare(seconds: float = 4.0) -> float:
 def _bare(seconds: float) -> float:
     import pybullet
 
-    from my_simulations.building.convert import building_model
     from my_simulations.building.plan_json import plan_from_json
+    from my_simulations.building.plan_to_model import building_model
     from my_simulations.geometry import compose
 
     pybullet.connect(pybullet.DIRECT)

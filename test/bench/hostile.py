@@ -58,7 +58,7 @@ def measured() -> List[Tuple[str, float, float]]:
 
 def _read(path: str) -> None:
     from my_simulations.errors import InputError
-    from my_simulations.formats.load import read_world
+    from my_simulations.formats.reading import read_world
     from my_simulations.resources.resolver import Resolver
 
     began = time.perf_counter()

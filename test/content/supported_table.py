@@ -11,7 +11,7 @@ BEGIN, END = "<!-- supported -->\n", "<!-- /supported -->"
 
 def with_table(readme: str) -> str:
     """README's text with the present table between its marks."""
-    from my_simulations.formats.supported import markdown
+    from my_simulations.formats.support_table import markdown
 
     head, rest = readme.split(BEGIN)
     return f"{head}{BEGIN}{markdown().strip()}\n{END}{rest.split(END)[1]}"

@@ -58,7 +58,7 @@ class Worker:
 
 def _serve() -> None:
     """The child: a path a line comes in, what was found goes out."""
-    from my_simulations.cli.check_model import check
+    from my_simulations.cli.check_model_command import check
     from my_simulations.resources.resolver import Resolver
 
     answers = os.fdopen(os.dup(1), "w")

@@ -19,12 +19,12 @@ import sys
 import time
 from typing import Any, Dict, List, Tuple
 
-from my_simulations.engine.process import ProcessEngine
+from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.errors import CommandError, InputError, Issue, Severity
 from my_simulations.resources.resolver import Resolver
-from my_simulations.ros.engines import EngineSupply
+from my_simulations.ros.lifecycle.engine_supply import EngineSupply
 from my_simulations.simulator.simulator import Simulator
-from my_simulations.simulator.starting import start_world
+from my_simulations.simulator.world_loading import start_world
 
 _SETTLED_NS, _END_NS = 5_000_000_000, 10_000_000_000
 _MOVED_M = 0.001

@@ -20,7 +20,7 @@ from my_simulations.engine.commands import (
     RemoveModel,
     SetModelState,
 )
-from my_simulations.engine.rows import axis_rows
+from my_simulations.engine.ring_rows import axis_rows
 from my_simulations.geometry import STILL, Pose, Twist
 
 

@@ -6,10 +6,10 @@ import math
 import pytest
 from conftest import Lab, ball, ground
 
-from my_simulations.building.convert import building_model
-from my_simulations.building.plan import Floor, Level, Opening, Plan, Roof, Stairs, Wall
+from my_simulations.building.building_plan import Floor, Level, Opening, Plan, Roof, Stairs, Wall
+from my_simulations.building.plan_to_model import building_model
 from my_simulations.description.shapes import SOLIDS, mesh_key
-from my_simulations.formats.solids import solid_mesh
+from my_simulations.formats.mesh.terrain import solid_mesh
 
 
 def plan() -> Plan:

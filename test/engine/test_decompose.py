@@ -9,9 +9,8 @@ import pytest
 import trimesh
 
 from my_simulations.description.shapes import MeshData
-from my_simulations.engine import decompose, decompose_many
-from my_simulations.engine.decompose import notices
-from my_simulations.engine.decompose_cache import (
+from my_simulations.engine.convex import batch, decomposition
+from my_simulations.engine.convex.cache import (
     Decomposition,
     PartsCache,
     content_key,
@@ -19,7 +18,8 @@ from my_simulations.engine.decompose_cache import (
     load,
     save,
 )
-from my_simulations.engine.decompose_hulls import (
+from my_simulations.engine.convex.decomposition import notices
+from my_simulations.engine.convex.hulls import (
     drawn_in,
     full_hull,
     hull_of,
@@ -70,7 +70,7 @@ def holds(part, point):
 
 def divided(mesh, folder):
     told = []
-    (made,) = decompose_many.divide_all([("m::l", mesh)], told.append, cache_dir=str(folder))
+    (made,) = batch.divide_all([("m::l", mesh)], told.append, cache_dir=str(folder))
     return made.parts, [issue.code for issue in notices(made)], told
 
 
@@ -295,7 +295,7 @@ def test_a_crash_leaves_the_hull_and_a_warning(tmp_path, monkeypatch, body):
 
 def test_work_that_stands_still_is_ended_and_not_kept(tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "time.sleep(600)")
-    made = decompose.divided(angle(), cache_dir=str(tmp_path / "cache"), deadline=3.0)
+    made = decomposition.divided(angle(), cache_dir=str(tmp_path / "cache"), deadline=3.0)
     assert len(made.parts) == 1 and [one.code for one in notices(made)] == ["mesh-not-decomposed"]
     assert not (tmp_path / "cache").exists()
 
@@ -304,8 +304,8 @@ def test_a_mesh_that_takes_too_much_processor_time_keeps_its_hull_at_once_the_ne
         tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "[None for _ in iter(int, 1)]")
     folder = str(tmp_path / "cache")
-    for made in (decompose.divided(angle(), cache_dir=folder, cpu_seconds=2),
-                 decompose.ready_parts(angle(), cache_dir=folder)):
+    for made in (decomposition.divided(angle(), cache_dir=folder, cpu_seconds=2),
+                 decomposition.ready_parts(angle(), cache_dir=folder)):
         assert len(made.parts) == 1
         assert [one.code for one in notices(made)] == ["mesh-not-decomposed"]
 
@@ -318,12 +318,12 @@ def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path,
                f"open(os.path.join({str(marks)!r}, str(os.getpid())), 'w').close(); "
                f"[time.sleep(0.01) for _ in iter(lambda: len(os.listdir({str(marks)!r})) > 1, 1)];"
                " os.abort()")
-    monkeypatch.setattr(decompose_many, "WORD_EVERY_S", 0.2)
+    monkeypatch.setattr(batch, "WORD_EVERY_S", 0.2)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     second = MeshData(angle().vertices * 2.0, angle().triangles)
     told = []
     meshes = [("a::l", angle()), ("b::l", mesh_of(box())), ("c::l", second), ("d::l", angle())]
-    made = decompose_many.divide_all(meshes, told.append, cache_dir=str(tmp_path / "cache"))
+    made = batch.divide_all(meshes, told.append, cache_dir=str(tmp_path / "cache"))
     assert [volume(one.parts) for one in made] == pytest.approx([5.0, 1.0, 40.0, 5.0])
     assert "2 meshes are divided" in told[0] and str(tmp_path / "cache") in told[0]
     assert any(words.startswith("dividing mesh 1 of 2 (a::l), 20 triangles") for words in told)

@@ -8,7 +8,7 @@ from closed_forms import pendulum
 from conftest import Lab, arm, box, inertial_of_box
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Mimic, Model
-from my_simulations.engine.api import Refused
+from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import (
     FOREVER,
     AddTimedForces,
@@ -160,7 +160,7 @@ def test_a_chain_of_128_links_keeps_them_all(lab: Lab):
 def test_a_longer_chain_is_refused_and_leaves_nothing_behind(lab: Lab):
     import pybullet
     before = pybullet.getNumBodies()
-    with pytest.raises(Refused, match="129"):
+    with pytest.raises(CommandRefusedError, match="129"):
         lab.load(_chain(129))
     assert pybullet.getNumBodies() == before
 
@@ -223,7 +223,7 @@ def test_setting_a_link_takes_its_articulated_body_along(lab: Lab):
 
 def test_a_link_joined_to_the_world_cannot_be_set(lab: Lab):
     model = lab.load(arm("revolute", JointAxis(Y)))
-    with pytest.raises(Refused, match="joined to the world"):
+    with pytest.raises(CommandRefusedError, match="joined to the world"):
         lab.apply(SetLinkState(lab.rows[model, "bob"], IDENTITY))
 
 

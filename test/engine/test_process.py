@@ -16,9 +16,9 @@ from conftest import arm, ball, box, ground
 from my_simulations.description.model import Inertial, JointAxis, Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import InitialState, Physics, World
-from my_simulations.engine.commands import FOREVER, LoadModel, Restart, Servo, TimedWrench
-from my_simulations.engine.process import ProcessEngine
-from my_simulations.errors import CommandError, EngineLost
+from my_simulations.engine.commands import FOREVER, JointPid, LoadModel, Restart, TimedWrench
+from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import STILL, Pose, Twist
 from my_simulations.simulator.simulator import Simulator
 
@@ -151,7 +151,7 @@ def test_a_model_that_kills_every_engine_is_left_out_by_name_and_the_rest_is_loa
     assert "model 'killer' was left out" in loss and "2 times" in loss
     assert [issue.message for issue in sim.issues if issue.code == "model-refused"] == [loss]
     for _ in range(4):   # nor is it the world that is to blame
-        with pytest.raises(EngineLost):
+        with pytest.raises(EngineLostError):
             sim.models.spawn(box("killer"))
     assert not sim.clock.paused
     at, deadline = sim.clock.step, time.monotonic() + 20
@@ -191,7 +191,7 @@ def test_a_reset_that_no_engine_survives_leaves_the_world_as_it_was(start, monke
         return answer
 
     monkeypatch.setattr(ProcessEngine, "submit", sent)
-    with pytest.raises(EngineLost, match="as it was before"):
+    with pytest.raises(EngineLostError, match="as it was before"):
         sim.resets.reset_simulation()
     assert sim.clock.step == step
     assert sim.states.model_state("box")[0].position == pytest.approx(before[0].position, abs=1e-9)
@@ -252,7 +252,7 @@ def test_a_state_that_becomes_infinite_is_put_back_and_reported(start):
 
 def test_the_engine_ends_with_its_parent():
     script = ("import sys, time; sys.path.insert(0, 'src')\n"
-              "from my_simulations.engine.process import ProcessEngine\n"
+              "from my_simulations.engine.process_engine import ProcessEngine\n"
               "from my_simulations.engine.commands import Ping\n"
               "engine = ProcessEngine(); engine.submit(Ping()).result()\n"
               "print(engine.pid, flush=True); time.sleep(60)\n")
@@ -326,7 +326,7 @@ def test_a_world_starts_at_its_saved_time_with_its_velocities_and_joint_position
 def test_a_driven_joint_is_driven_on_after_an_edit_and_a_crash(start):
     sim = start()
     sim.models.spawn(arm("revolute", JointAxis((0, 0, 1))), Pose((0, 0, 2)))
-    sim.wrenches.apply_effort("arm::hinge", Servo(1.0, p=50.0, i=0.0, d=10.0))
+    sim.wrenches.apply_effort("arm::hinge", JointPid(1.0, p=50.0, i=0.0, d=10.0))
     for happens in (lambda: None, lambda: kill(sim), lambda: sim.models.set_link_inertial(
             "arm::bob", Inertial(1.5, Pose((1, 0, 0)), 0.1, 0, 0, 0.1, 0, 0.1))):
         happens()
@@ -364,7 +364,7 @@ def test_a_world_whose_files_have_gone_is_reset_by_another_engine(start, tmp_pat
     lose_files()
     sim.resets.reset_simulation()   # known how it looks, and built at the next step
     assert sim.states.model_state("cube")[0].position == (0, 0, 5)
-    with pytest.raises(EngineLost):
+    with pytest.raises(EngineLostError):
         sim.clock.advance(1)
     assert sim.states.model_state("cube")[0].position == (0, 0, 5)
     sim.clock.advance(300)

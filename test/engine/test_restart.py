@@ -12,7 +12,7 @@ from test_contact import _cube_mesh
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh, mesh_key
-from my_simulations.engine.api import Broken, Refused
+from my_simulations.engine.api import CommandRefusedError, EngineBrokenError
 from my_simulations.engine.commands import Clear, Restart, SetAxes, SetJoints
 from my_simulations.geometry import Pose
 
@@ -78,7 +78,7 @@ def test_models_come_back_where_the_restart_says_and_no_others(lab):
     lab.apply(Restart(((kept, Pose((1, 2, 3))),)))
     lab.backend.read()
     assert lab.pose(kept).position == (1, 2, 3)
-    with pytest.raises(Refused, match="not there"):
+    with pytest.raises(CommandRefusedError, match="not there"):
         lab.remove(gone)
     assert pybullet.getNumBodies() == 1
 
@@ -141,13 +141,13 @@ def test_an_engine_that_cannot_build_a_world_again_ends(lab):
     _filled(lab)
     for path in lab.backend._shapes._files.values():
         os.remove(path)
-    with pytest.raises(Broken, match="built again"):
+    with pytest.raises(EngineBrokenError, match="built again"):
         lab.apply(Restart(tuple((number, Pose()) for number in lab.backend._models)))
 
 
 def test_a_restart_with_a_model_that_is_not_there_changes_nothing(lab):
     number = lab.load(box(), (0, 0, 7))
-    with pytest.raises(Refused, match="not there"):
+    with pytest.raises(CommandRefusedError, match="not there"):
         lab.apply(Restart(((number, Pose()), (99, Pose()))))
     lab.backend.read()
     assert lab.pose(number).position == (0, 0, 7)

@@ -5,9 +5,9 @@ import pytest
 
 from my_simulations.description.compare import differences
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.formats.load import read_world, read_world_text
-from my_simulations.formats.state import apply_state
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.formats.reading import read_world, read_world_text
+from my_simulations.formats.sdf.state_applied import apply_state
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.saving import present_world, save_world
 from my_simulations.simulator.simulator import Simulator

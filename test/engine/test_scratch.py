@@ -15,8 +15,8 @@ from test_contact import _cube_mesh
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, mesh_key
 from my_simulations.engine.commands import LoadModel
-from my_simulations.engine.process import ProcessEngine
-from my_simulations.engine.scratch import Scratch, sweep
+from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.engine.scratch_folder import Scratch, sweep
 from my_simulations.geometry import Pose
 
 
@@ -68,7 +68,7 @@ def test_the_folder_of_a_killed_engine_goes_with_it(temporary):
 
 
 def test_the_folder_of_a_killed_owner_goes_when_the_next_engine_starts(temporary):
-    script = ("import sys; from my_simulations.engine.scratch import Scratch\n"
+    script = ("import sys; from my_simulations.engine.scratch_folder import Scratch\n"
               "scratch = Scratch(); print(scratch.path, flush=True); sys.stdin.read()\n")
     owner = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE,
                              stdout=subprocess.PIPE, text=True,

@@ -10,8 +10,8 @@ from my_simulations.engine.commands import (
     FOREVER,
     AddTimedForces,
     ClearTimedForces,
+    JointPid,
     Restart,
-    Servo,
     TimedEffort,
 )
 from my_simulations.geometry import Pose
@@ -19,7 +19,7 @@ from my_simulations.geometry import Pose
 UP = JointAxis((0, 0, 1))
 
 
-def _drive(lab: Lab, model: int, servo: Servo, number: int = 1) -> None:
+def _drive(lab: Lab, model: int, servo: JointPid, number: int = 1) -> None:
     lab.apply(
         AddTimedForces(
             (
@@ -34,7 +34,7 @@ def _drive(lab: Lab, model: int, servo: Servo, number: int = 1) -> None:
 @pytest.mark.parametrize("p, d", [(4.0, 0.4), (100.0, 20.0), (400.0, 8.0)])
 def test_a_position_loop_swings_in_as_its_gains_say(lab, laws, p, d):
     model = lab.load(arm("revolute", UP, mass=1.0, length=1.0, moment=1e-9))
-    _drive(lab, model, Servo(0.5, p=p, i=0.0, d=d))
+    _drive(lab, model, JointPid(0.5, p=p, i=0.0, d=d))
     off = 0.0
     for n in range(1, 201):
         lab.steps(10)
@@ -44,14 +44,14 @@ def test_a_position_loop_swings_in_as_its_gains_say(lab, laws, p, d):
 
 def test_a_velocity_loop_reaches_its_rate_and_keeps_it(lab):
     model = lab.load(arm("revolute", UP))
-    _drive(lab, model, Servo(-3.0, rate=True, p=5.0, i=0.0))
+    _drive(lab, model, JointPid(-3.0, rate=True, p=5.0, i=0.0))
     lab.seconds(5.0)
     assert lab.joint(model)[1] == pytest.approx(-3.0, abs=0.01)
 
 
 def test_the_integral_carries_the_weight_of_an_arm(lab):
     model = lab.load(arm("revolute", JointAxis((0, 1, 0)), mass=2.0))
-    _drive(lab, model, Servo(0.3, p=200.0, i=200.0, d=40.0))
+    _drive(lab, model, JointPid(0.3, p=200.0, i=200.0, d=40.0))
     lab.seconds(15.0)
     assert lab.joint(model)[0] == pytest.approx(0.3, abs=1e-3)
 
@@ -60,7 +60,7 @@ def test_a_loop_drives_no_harder_than_the_axis_may_be_driven(lab):
     strong = lab.load(arm("revolute", UP))
     weak = lab.load(arm("revolute", JointAxis((0, 0, 1), effort=0.5)), (5, 0, 0))
     for number, model in enumerate((strong, weak), 1):
-        _drive(lab, model, Servo(9.0, p=100.0, i=0.0, d=0.0), number)
+        _drive(lab, model, JointPid(9.0, p=100.0, i=0.0, d=0.0), number)
     lab.steps(100)   # w = M t / I
     assert lab.joint(weak)[1] == pytest.approx(0.5 * 0.1 / 1.001, rel=0.01)
     assert lab.joint(strong)[1] > 10 * lab.joint(weak)[1]
@@ -70,7 +70,7 @@ def test_a_loop_ends_when_it_is_cleared_or_the_world_begins_anew(lab):
     model = lab.load(arm("revolute", UP))
     for end in (lambda: lab.apply(ClearTimedForces((1,))),
                 lambda: lab.apply(Restart(((model, Pose()),)))):
-        _drive(lab, model, Servo(5.0, rate=True))
+        _drive(lab, model, JointPid(5.0, rate=True))
         lab.steps(100)
         end()
         lab.steps(1)

@@ -13,9 +13,9 @@ from conftest import Lab, arm, box, ground, slab
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.api import Refused
-from my_simulations.engine.commands import Clear, Connect
-from my_simulations.engine.process import ProcessEngine
+from my_simulations.engine.api import CommandRefusedError
+from my_simulations.engine.commands import Clear, ConnectModels
+from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.geometry import Pose, Twist, compose, inverse, quat_from_rpy, transform
 from my_simulations.simulator.history import History
 from my_simulations.simulator.operations import RemoveModel
@@ -31,7 +31,7 @@ def _tie(lab: Lab, joint: Joint, parent: int, child: int, parent_link: str = "li
     if parent >= 0:
         parent_row = lab.rows[parent, parent_link]
         above = compose(inverse(lab.pose(parent, parent_link)), at)
-    lab.apply(Connect(joint, parent_row, above, lab.rows[child, "link"], joint.pose))
+    lab.apply(ConnectModels(joint, parent_row, above, lab.rows[child, "link"], joint.pose))
 
 
 def _bob(name: str = "bob") -> Model:
@@ -144,14 +144,17 @@ def test_tied_links_do_not_collide(lab: Lab):
 
 def test_what_no_constraint_can_stand_for_is_refused(lab: Lab):
     one, other = lab.load(box("a")), lab.load(box("b"), (2, 0, 0))
-    with pytest.raises(Refused, match="screw"):
+    with pytest.raises(CommandRefusedError, match="screw"):
         _tie(lab, _swing("screw"), one, other)
-    with pytest.raises(Refused, match="slides"):
+    with pytest.raises(CommandRefusedError, match="slides"):
         _tie(lab, _swing("prismatic"), one, other)
     lab.remove(one)
-    with pytest.raises(Refused, match="not there any more"):
-        lab.apply(Connect(_swing("ball"), lab.rows[one, "link"], Pose(), lab.rows[other, "link"],
-                          Pose()))
+    with pytest.raises(CommandRefusedError, match="not there any more"):
+        lab.apply(
+            ConnectModels(
+                _swing("ball"), lab.rows[one, "link"], Pose(), lab.rows[other, "link"], Pose()
+            )
+        )
 
 
 def test_ties_are_gone_after_everything_was_taken_out(lab: Lab):
@@ -169,7 +172,7 @@ def test_links_of_two_articulated_models_hold_together(lab: Lab):
     second = lab.load(arm("revolute", JointAxis(Y)), (2.0, 0, 0))
     at = (1.0, 0.0, 0.0)
     joint = Joint("tie", "ball", "", "", Pose((-1.0, 0, 0)))
-    lab.apply(Connect(joint, lab.rows[first, "bob"], Pose(at), lab.rows[second, "bob"],
+    lab.apply(ConnectModels(joint, lab.rows[first, "bob"], Pose(at), lab.rows[second, "bob"],
                       Pose((-1.0, 0, 0))))
     lab.seconds(1)
     assert transform(lab.pose(first, "bob"), at) == pytest.approx(

@@ -9,10 +9,10 @@ import pytest
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline import InlineEngine
+from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.errors import InputError, errors_of
-from my_simulations.formats.load import read_entity, read_file, read_world_text
-from my_simulations.formats.meshes import collision_meshes
+from my_simulations.formats.mesh.loading import collision_meshes
+from my_simulations.formats.reading import read_entity, read_file, read_world_text
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
 

@@ -12,7 +12,7 @@ import rosgraph
 import support
 from support import Launched, Program, executable, free_port, wait_for
 
-from my_simulations.ros import master
+from my_simulations.ros.lifecycle import master_api
 
 LAUNCH = """<launch>
   <param name="gazebo/master_timeout" value="1"/>
@@ -40,10 +40,10 @@ class Abandoned(unittest.TestCase):
             stream.write(LAUNCH)
         with Launched(folder.name, folder.name, file) as launched:
             launched.names()
-            node = master.living_node(launched.uri, "/gazebo")[1]
+            node = master_api.living_node(launched.uri, "/gazebo")[1]
             engine = rosgraph.Master("/abandoned", launched.uri).getParam(
                 "/gazebo/my_simulations/engine_pid")
-            core = master.call(launched.uri, "getPid", "/abandoned")
+            core = master_api.call(launched.uri, "getPid", "/abandoned")
             launched.program.process.kill()
             try:
                 wait_for(lambda: not is_alive(node) and not is_alive(engine), "the end of both")
@@ -54,10 +54,10 @@ class Abandoned(unittest.TestCase):
         port = free_port()
         uri = f"http://127.0.0.1:{port}"
         with Program(["rosmaster", "--core", "-p", str(port)], ROS_MASTER_URI=uri) as core:
-            wait_for(lambda: not master.fault_of(uri, "/abandoned"), "the master")
+            wait_for(lambda: not master_api.fault_of(uri, "/abandoned"), "the master")
             with Program([executable("gazebo_ros", "gzserver"), "_master_timeout:=1"],
                          ROS_MASTER_URI=uri) as server:
-                wait_for(lambda: master.call(uri, "lookupService", "/abandoned",
+                wait_for(lambda: master_api.call(uri, "lookupService", "/abandoned",
                                              "/gazebo/save_world"), "the server")
                 core.process.kill()
                 self.assertEqual(server.ended(), 1)
@@ -65,7 +65,7 @@ class Abandoned(unittest.TestCase):
 
     def end_orphans(self, uri, core):
         """What a killed roslaunch leaves besides the simulator: rosout and the master."""
-        found = master.living_node(uri, "/rosout")
+        found = master_api.living_node(uri, "/rosout")
         for pid in (found[1] if found else 0, core):
             if pid:
                 os.kill(pid, signal.SIGTERM)

@@ -12,9 +12,9 @@ import rospy
 import support
 from object_flow_support import entry
 
-from my_simulations.building.plan import Level, Opening, Plan, Wall
+from my_simulations.building.building_operations import building_save
+from my_simulations.building.building_plan import Level, Opening, Plan, Wall
 from my_simulations.building.plan_json import plan_to_json
-from my_simulations.building.requests import building_save
 
 PACKAGE = "<package format='2'><name>my_house</name><version>0.0.1</version>" \
           "<description>d</description><maintainer email='a@b.c'>a</maintainer>" \

@@ -15,7 +15,7 @@ import rospy
 import support
 from support import Program, executable, wait_for
 
-from my_simulations.editor.state_log import LogReader
+from my_simulations.editor.logs.state_log import LogReader
 
 WORLD = '<sdf version="1.5"><world name="default">{}</world></sdf>'
 

@@ -14,7 +14,7 @@ from gazebo_msgs.msg import PerformanceMetrics
 from geometry_msgs.msg import Vector3
 from support import Collected, box, pose, srv
 
-from my_simulations.ros.physics import PARAMETERS
+from my_simulations.ros.services.physics_parameters import PARAMETERS
 
 LAMP = ('<sdf version="1.6"><!-- a lamp --><light name="any" type="point"><pose>0 0 1 0 0 0</pose>'
         '<diffuse>0.5 0.5 0.5 1</diffuse><attenuation><constant>0.3</constant></attenuation>'

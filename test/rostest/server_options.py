@@ -11,7 +11,7 @@ import rospy
 import support
 from support import Program, executable, wait_for
 
-from my_simulations.editor.state_log import LogReader
+from my_simulations.editor.logs.state_log import LogReader
 
 STEPS = 300
 ARM = """<robot name="arm"><link name="world"/>

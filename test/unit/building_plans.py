@@ -1,7 +1,7 @@
 """Plans that the tests of buildings share."""
 from __future__ import annotations
 
-from my_simulations.building.plan import Floor, Level, Opening, Plan, Stairs, Wall
+from my_simulations.building.building_plan import Floor, Level, Opening, Plan, Stairs, Wall
 
 
 def two_rooms():

@@ -11,8 +11,8 @@ from my_simulations import editor
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Visual
 from my_simulations.description.world import Light, World
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import Pose
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator

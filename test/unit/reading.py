@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 
 from my_simulations.errors import InputError, Severity
-from my_simulations.formats.load import read_entity, read_world_text
+from my_simulations.formats.reading import read_entity, read_world_text
 from my_simulations.resources.resolver import Resolver
 
 DATA = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "data")

@@ -6,13 +6,13 @@ import pytest
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import Box, Collision, Plane
 from my_simulations.description.world import World
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
-from my_simulations.formats.advise import MOST, advised
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.formats.loading_advice import MOST, advised
 from my_simulations.geometry import Pose
-from my_simulations.simulator import arrival
-from my_simulations.simulator.arrival import arrival_advice
+from my_simulations.simulator import spawn_advice
 from my_simulations.simulator.simulator import Simulator
+from my_simulations.simulator.spawn_advice import arrival_advice
 
 
 def cube(name, height, size=1.0, moment=0.17):
@@ -61,7 +61,7 @@ def test_its_own_oddities_are_told(sim):
 
 
 def test_in_a_crowd_only_the_model_itself_is_looked_at(sim, monkeypatch):
-    monkeypatch.setattr(arrival, "NEIGHBOURS", 2)
+    monkeypatch.setattr(spawn_advice, "NEIGHBOURS", 2)
     assert said(sim, cube("new", 4.5)) == []
     assert [code for code, _ in said(sim, cube("odd", 4.5, moment=20.0))] == ["inertia-odd"]
 

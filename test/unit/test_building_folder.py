@@ -11,18 +11,18 @@ from building_plans import one_wall, two_rooms
 from PIL import Image
 from reading import codes
 
-from my_simulations.building import folder as folders
-from my_simulations.building.folder import About, load_building, save_building
-from my_simulations.building.plan import FloorImage, Opening, Wall
-from my_simulations.building.plan_json import plan_to_json
-from my_simulations.building.requests import (
+from my_simulations.building import building_folder as folders
+from my_simulations.building.building_folder import About, load_building, save_building
+from my_simulations.building.building_operations import (
     building_list,
     building_load,
     building_save,
     building_sdf,
 )
+from my_simulations.building.building_plan import FloorImage, Opening, Wall
+from my_simulations.building.plan_json import plan_to_json
 from my_simulations.errors import CommandError, InputError
-from my_simulations.formats.load import read_file
+from my_simulations.formats.reading import read_file
 from my_simulations.resources.resolver import Resolver
 
 

@@ -7,12 +7,12 @@ import pytest
 from building_plans import link, one_wall, two_rooms
 from reading import codes, errors
 
-from my_simulations.building.convert import building_model
-from my_simulations.building.plan import Level, Opening, Plan, Stairs, Wall
+from my_simulations.building.building_plan import Level, Opening, Plan, Stairs, Wall
+from my_simulations.building.plan_to_model import building_model
 from my_simulations.description.compare import differences
 from my_simulations.errors import InputError
-from my_simulations.formats.load import read_entity
-from my_simulations.formats.sdf_write import write_entity
+from my_simulations.formats.reading import read_entity
+from my_simulations.formats.sdf.writer.entities import write_entity
 from my_simulations.geometry import compose, rpy_from_quat, transform
 from my_simulations.resources.resolver import Resolver
 
@@ -121,7 +121,7 @@ def test_a_wall_without_length_is_refused():
 
 
 def test_a_floor_that_crosses_itself_is_refused():
-    from my_simulations.building.plan import Floor
+    from my_simulations.building.building_plan import Floor
 
     plan = one_wall()
     plan.levels[0].floors.append(Floor(0, [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]))
@@ -129,7 +129,7 @@ def test_a_floor_that_crosses_itself_is_refused():
 
 
 def test_walls_that_cross_or_overlap_are_mentioned_and_built():
-    from my_simulations.building.check import check_plan
+    from my_simulations.building.plan_check import check_plan
 
     plan = one_wall()
     plan.levels[0].walls += [Wall(1, (2.0, -1.0), (2.0, 1.0)), Wall(2, (3.0, 0.0), (5.0, 0.0)),

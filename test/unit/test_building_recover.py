@@ -8,13 +8,13 @@ import pytest
 from building_plans import one_wall, two_rooms
 from reading import VALID, codes, model_of
 
-from my_simulations.building.convert import building_model
-from my_simulations.building.plan import Opening, Roof
-from my_simulations.building.recover import plan_from_model
+from my_simulations.building.building_plan import Opening, Roof
+from my_simulations.building.model_to_plan import plan_from_model
+from my_simulations.building.plan_to_model import building_model
 from my_simulations.description.compare import differences
 from my_simulations.errors import InputError
-from my_simulations.formats.load import read_entity, read_file
-from my_simulations.formats.sdf_write import write_entity
+from my_simulations.formats.reading import read_entity, read_file
+from my_simulations.formats.sdf.writer.entities import write_entity
 from my_simulations.resources.resolver import Resolver
 
 

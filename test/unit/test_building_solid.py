@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from building_plans import link, one_wall, two_rooms
 
-from my_simulations.building.convert import building_model
-from my_simulations.building.cut import loop_of, rectangles
-from my_simulations.building.plan import Floor, Level, Opening, Plan, Roof, Stairs, Wall
+from my_simulations.building.building_plan import Floor, Level, Opening, Plan, Roof, Stairs, Wall
+from my_simulations.building.plan_to_model import building_model
+from my_simulations.building.rectangles import loop_of, rectangles
 from my_simulations.description.shapes import Box
-from my_simulations.formats.solids import solid_mesh
+from my_simulations.formats.mesh.terrain import solid_mesh
 from my_simulations.geometry import compose, inverse, rotate, transform
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from reading import INVALID, VALID, sdf
 
-from my_simulations.cli.check_model import check, main
+from my_simulations.cli.check_model_command import check, main
 from my_simulations.errors import Severity
 from my_simulations.resources.resolver import Resolver
 

@@ -12,7 +12,7 @@ import content_solids as solids
 import numpy as np
 import pytest
 
-from my_simulations.objects.listing import parse_objects
+from my_simulations.objects.object_list import parse_objects
 from my_simulations.objects.selection import parse_groups, select
 from my_simulations.objects.yaml_source import read_yaml
 

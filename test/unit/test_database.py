@@ -17,11 +17,11 @@ import pytest
 from reading import sdf
 
 from my_simulations.errors import Severity, errors_of
-from my_simulations.formats.load import read_world_text
-from my_simulations.resources.database import ModelDatabase
-from my_simulations.resources.database_http import Limits
-from my_simulations.resources.downloads import DownloadNotes
-from my_simulations.resources.resolver import NotFound, NotProvided, Resolver
+from my_simulations.formats.reading import read_world_text
+from my_simulations.resources.database.download_notes import DownloadNotes
+from my_simulations.resources.database.http_download import Limits
+from my_simulations.resources.database.model_database import ModelDatabase
+from my_simulations.resources.resolver import ModelNotProvidedError, Resolver, ResourceNotFoundError
 
 LIST = "<database><name>d</name><models>{}</models></database>"
 MODEL = sdf('<model name="{}"><static>1</static><link name="l"/></model>', "1.6")
@@ -183,7 +183,7 @@ def test_a_file_inside_a_downloaded_model_resolves(server, database, tmp_path):
     server.add("lamp")
     resolver = Resolver(missing=database())
     assert resolver.resolve("model://lamp/meshes/a.txt").endswith("lamp/meshes/a.txt")
-    with pytest.raises(NotFound):
+    with pytest.raises(ResourceNotFoundError):
         resolver.resolve("model://lamp/meshes/none.txt")
 
 
@@ -198,7 +198,7 @@ def test_without_the_variable_there_is_no_network(value, server, monkeypatch):
         raise AssertionError("a connection was made")
 
     monkeypatch.setattr(socket.socket, "connect", connect)
-    with pytest.raises(NotFound):
+    with pytest.raises(ResourceNotFoundError):
         Resolver.from_environment().resolve("model://surely_not_here")
 
 
@@ -217,7 +217,7 @@ def test_a_server_that_hangs_costs_no_more_than_the_deadline_for_all_models(
     server.hang = {"slow/model.tar.gz", "other/model.tar.gz"}
     source = database(seconds=0.4)
     for name in ("slow", "other", "slow"):
-        with pytest.raises(NotProvided, match="in time"):
+        with pytest.raises(ModelNotProvidedError, match="in time"):
             source.provide(name)
     assert server.asked.count("slow/model.tar.gz") == 1
     assert nothing_left(tmp_path)
@@ -230,7 +230,7 @@ def test_a_server_that_is_not_there_is_reported(tmp_path):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         uri = f"http://127.0.0.1:{free.getsockname()[1]}"
-    with pytest.raises(NotProvided, match="cannot be had"):
+    with pytest.raises(ModelNotProvidedError, match="cannot be had"):
         ModelDatabase(uri, str(tmp_path / "models")).provide("lamp")
 
 
@@ -256,7 +256,7 @@ def test_a_damaged_archive_leaves_nothing_behind(fault, server, database, tmp_pa
     server.add("lamp")
     path = "lamp/model.tar.gz"
     server.files[path], server.headers[path] = BROKEN[fault](server.files[path])
-    with pytest.raises(NotProvided):
+    with pytest.raises(ModelNotProvidedError):
         database().provide("lamp")
     assert nothing_left(tmp_path)
 
@@ -282,7 +282,7 @@ HOSTILE = {
 @pytest.mark.parametrize("kind", HOSTILE)
 def test_an_archive_that_reaches_out_is_refused_whole(kind, server, database, tmp_path):
     server.add("lamp", more=[(HOSTILE[kind], b"")])
-    with pytest.raises(NotProvided):
+    with pytest.raises(ModelNotProvidedError):
         database().provide("lamp")
     assert nothing_left(tmp_path)
     assert [p.name for p in tmp_path.iterdir() if "evil" in p.name] == []
@@ -293,7 +293,7 @@ def test_an_archive_that_reaches_out_is_refused_whole(kind, server, database, tm
 ])
 def test_what_is_too_large_is_refused(limits, server, database, tmp_path):
     server.add("lamp")
-    with pytest.raises(NotProvided):
+    with pytest.raises(ModelNotProvidedError):
         database(limits=limits).provide("lamp")
     assert nothing_left(tmp_path)
 
@@ -302,7 +302,7 @@ def test_a_size_that_is_not_told_is_limited_too(server, database):
     server.add("lamp")
     server.files["lamp/model.tar.gz"] = gzip.compress(os.urandom(100000))
     server.headers["lamp/model.tar.gz"] = {"Content-Length": None}
-    with pytest.raises(NotProvided, match="more than 1000 bytes"):
+    with pytest.raises(ModelNotProvidedError, match="more than 1000 bytes"):
         database(limits=Limits(archive_bytes=1000)).provide("lamp")
 
 
@@ -316,7 +316,7 @@ def test_an_archive_that_is_all_headers_costs_this_process_nothing(server, datab
     server.files["lamp/model.tar.gz"] = stream.getvalue()
     assert len(stream.getvalue()) < 2 << 20
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    with pytest.raises(NotProvided, match="MB of memory"):
+    with pytest.raises(ModelNotProvidedError, match="MB of memory"):
         database().provide("lamp")
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 64 << 10
     assert nothing_left(tmp_path)
@@ -324,7 +324,7 @@ def test_an_archive_that_is_all_headers_costs_this_process_nothing(server, datab
 
 @pytest.mark.parametrize("name", ["", ".", "..", "../x", "a/b", ".hidden", "a\0b", "a\n"])
 def test_a_name_that_is_none_asks_nobody(name, server, database):
-    with pytest.raises(NotProvided):
+    with pytest.raises(ModelNotProvidedError):
         database().provide(name)
     assert server.asked == []
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 import pytest
 
 from my_simulations.description.world import Actor, Animation, Trajectory, Waypoint
-from my_simulations.editor.document import Documents
-from my_simulations.editor.pages import Pages
-from my_simulations.editor.protocol import Protocol
+from my_simulations.editor.scene.scene_json import Documents
+from my_simulations.editor.transport.http_pages import Pages
+from my_simulations.editor.transport.protocol import Protocol
 from my_simulations.geometry import Pose
 from my_simulations.resources.resolver import Resolver
 

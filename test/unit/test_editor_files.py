@@ -10,9 +10,9 @@ import sys
 import pytest
 from editor_case import Browser, Refused, box, cases
 
-from my_simulations.editor.autosave import process_id
-from my_simulations.formats.load import read_world
-from my_simulations.resources.own import own_directory
+from my_simulations.editor.library.autosave import process_id
+from my_simulations.formats.reading import read_world
+from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 
 case = pytest.fixture(cases)

@@ -9,7 +9,7 @@ import pytest
 from editor_case import Browser, box, cases
 
 from my_simulations.description.shapes import Mesh
-from my_simulations.editor.options import is_loopback
+from my_simulations.editor.editor_options import is_loopback
 from my_simulations.resources.resolver import Resolver
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"\0" * 32

@@ -13,7 +13,7 @@ from building_plans import two_rooms
 from editor_case import Refused, arm, box, cases
 
 from my_simulations.building.plan_json import plan_to_json
-from my_simulations.editor.state_log import MAGIC, LogReader, LogWriter
+from my_simulations.editor.logs.state_log import MAGIC, LogReader, LogWriter
 from my_simulations.engine.ring import DEMAND_NS, POSE_DEMAND_NS
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist

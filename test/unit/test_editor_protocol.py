@@ -10,11 +10,11 @@ import pytest
 from editor_case import Case
 
 from my_simulations.description import model, shapes, world
-from my_simulations.editor.document import NAMES, Documents
-from my_simulations.editor.frames import LIVE, LOG, Poses, SentPoses, record_type
-from my_simulations.editor.pages import Pages
-from my_simulations.editor.plain import HIDDEN
-from my_simulations.editor.protocol import Protocol, ProtocolFault
+from my_simulations.editor.scene.plain_json import HIDDEN
+from my_simulations.editor.scene.scene_json import NAMES, Documents
+from my_simulations.editor.transport.http_pages import Pages
+from my_simulations.editor.transport.pose_messages import LIVE, LOG, Poses, SentPoses, record_type
+from my_simulations.editor.transport.protocol import Protocol, ProtocolError
 from my_simulations.resources.resolver import Resolver
 
 PATH = Pages.own_folder() + "/protocol.json"
@@ -99,7 +99,7 @@ def test_the_frames_layout_is_that_of_the_file(data):
     ({"url": None, "pattern": None, "scale": [1, 1], "more": 1}, "Texture"),
     ({"url": None, "pattern": None}, "Texture"), ([[1]], "string[]")])
 def test_what_does_not_fit_a_type_is_refused_with_its_place(protocol, value, expected):
-    with pytest.raises(ProtocolFault, match="place"):
+    with pytest.raises(ProtocolError, match="place"):
         protocol._check(value, expected, "place", 0)
 
 

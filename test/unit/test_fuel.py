@@ -11,11 +11,11 @@ from reading import sdf
 from test_database import Server
 
 from my_simulations.errors import errors_of
-from my_simulations.formats.load import read_world_text
-from my_simulations.resources.download_time import DownloadTime
-from my_simulations.resources.fuel import FuelModels
-from my_simulations.resources.fuel_uri import FuelUri, fuel_uri
-from my_simulations.resources.resolver import NotFound, NotProvided, Resolver
+from my_simulations.formats.reading import read_world_text
+from my_simulations.resources.database.download_time import DownloadTime
+from my_simulations.resources.database.fuel import FuelModels
+from my_simulations.resources.database.fuel_uri import FuelUri, fuel_uri
+from my_simulations.resources.resolver import ModelNotProvidedError, Resolver, ResourceNotFoundError
 
 PUBLIC = "https://fuel.gazebosim.org"
 CONFIG = '<model><name>{}</name><sdf version="1.6">model.sdf</sdf></model>'
@@ -147,7 +147,7 @@ def test_a_version_that_is_named_is_the_one_that_is_asked_for(models, server, ca
 
 def test_a_server_that_nobody_named_is_not_asked(server, cache):
     offer(server)
-    with pytest.raises(NotProvided, match="no server that is asked"):
+    with pytest.raises(ModelNotProvidedError, match="no server that is asked"):
         FuelModels([str(cache)], [PUBLIC]).path(lamp(server))
     assert server.asked == []
 
@@ -177,7 +177,7 @@ def test_a_server_that_hangs_costs_the_deadline_once(server, cache):
     server.hang = {offer(server)}
     models = FuelModels([str(cache)], [server.uri], seconds=0.3)
     for _ in range(2):
-        with pytest.raises(NotProvided, match="in time"):
+        with pytest.raises(ModelNotProvidedError, match="in time"):
             models.path(lamp(server))
     assert len(server.asked) == 1
     server.hang.clear()
@@ -197,7 +197,7 @@ def symlink(name):
 ], ids=["dots", "absolute", "backslashes", "link"])
 def test_an_archive_that_reaches_out_is_refused_whole(more, models, server, cache):
     offer(server, more=[more])
-    with pytest.raises(NotProvided):
+    with pytest.raises(ModelNotProvidedError):
         models.path(lamp(server))
     assert [name for _, _, files in os.walk(cache) for name in files] == []
 
@@ -205,7 +205,7 @@ def test_an_archive_that_reaches_out_is_refused_whole(more, models, server, cach
 @pytest.mark.parametrize("data", [b"", b"<html>", archive("x")[:-30], b"PK\x05\x06" + bytes(18)])
 def test_a_broken_archive_is_refused(data, models, server, cache):
     server.files[offer(server)] = data
-    with pytest.raises(NotProvided):
+    with pytest.raises(ModelNotProvidedError):
         models.path(lamp(server))
     assert models.models() == []
 
@@ -214,7 +214,7 @@ def test_a_zip_bomb_is_refused_by_what_comes_out_of_it(server, cache, monkeypatc
     offer(server, more=[("bomb.bin", bytes(8 << 20))])
     small = type("Limits", (), dict(archive_bytes=1 << 20, unpacked_bytes=1 << 20, files=99))()
     monkeypatch.setattr(DownloadTime, "__init__", _limited(small))
-    with pytest.raises(NotProvided, match="more than 99 files or 1048576 bytes"):
+    with pytest.raises(ModelNotProvidedError, match="more than 99 files or 1048576 bytes"):
         FuelModels([str(cache)], [server.uri]).path(lamp(server))
 
 
@@ -227,7 +227,7 @@ def _limited(limits):
 
 
 def test_other_addresses_are_refused_with_what_is_read(models):
-    with pytest.raises(NotFound, match="https://HOST/1.0/OWNER/models/NAME"):
+    with pytest.raises(ResourceNotFoundError, match="https://HOST/1.0/OWNER/models/NAME"):
         Resolver(fuel=models).resolve("https://example.invalid/mesh.dae")
 
 

@@ -18,7 +18,7 @@ from reading import (
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Inertial
 from my_simulations.description.unflatten import unflattened
-from my_simulations.formats.values import BOOL, COLOR, FLOAT, INT, LIMIT, POSE, VECTOR2, VECTOR3
+from my_simulations.formats.xml.values import BOOL, COLOR, FLOAT, INT, LIMIT, POSE, VECTOR2, VECTOR3
 from my_simulations.geometry import IDENTITY, pose_from_xyzrpy
 from my_simulations.resources.resolver import Resolver
 

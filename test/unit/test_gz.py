@@ -5,50 +5,59 @@ from pathlib import Path
 
 import pytest
 
-from my_simulations.cli import gz
-from my_simulations.editor.state_log import LogWriter
+from my_simulations.cli import gz_command
+from my_simulations.editor.logs.state_log import LogWriter
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 def test_no_command_lists_them_all(capsys):
-    assert gz.main(["gz"]) == gz.USAGE
+    assert gz_command.main(["gz"]) == gz_command.USAGE
     text = capsys.readouterr().out
     for name in ("log", "model", "physics", "sdf", "stats", "topic", "world"):
         assert f"\n  {name} " in text
 
 
 def test_unknown_command_is_wrong_usage(capsys):
-    assert gz.main(["gz", "wrold"]) == gz.USAGE
+    assert gz_command.main(["gz", "wrold"]) == gz_command.USAGE
     assert "no command 'wrold'" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", sorted(gz.INSTEAD))
+@pytest.mark.parametrize("name", sorted(gz_command.INSTEAD))
 def test_command_that_is_not_offered_names_the_substitute(name, capsys):
-    assert gz.main(["gz", name]) == gz.USAGE
-    assert gz.INSTEAD[name] in capsys.readouterr().err
+    assert gz_command.main(["gz", name]) == gz_command.USAGE
+    assert gz_command.INSTEAD[name] in capsys.readouterr().err
 
 
 def test_sdf_check_of_a_sound_file(capsys):
-    assert gz.main(["gz", "sdf", "-k", str(REPOSITORY / "world" / "empty_world.world")]) == gz.OK
+    assert (
+        gz_command.main(["gz", "sdf", "-k", str(REPOSITORY / "world" / "empty_world.world")])
+        == gz_command.OK
+    )
     assert "Check complete" in capsys.readouterr().out
 
 
 def test_sdf_check_of_a_faulty_file(tmp_path, capsys):
     file = tmp_path / "a.sdf"
     file.write_text("<sdf version='1.6'><model name='m'><link/></model></sdf>")
-    assert gz.main(["gz", "sdf", "-k", str(file)]) == gz.FAILED
+    assert gz_command.main(["gz", "sdf", "-k", str(file)]) == gz_command.FAILED
     assert "Check complete" not in capsys.readouterr().out
 
 
 def test_sdf_print_turns_a_urdf_into_sdf(capsys):
-    assert gz.main(["gz", "sdf", "-p", str(REPOSITORY / "objects" / "ball.urdf")]) == gz.OK
+    assert (
+        gz_command.main(["gz", "sdf", "-p", str(REPOSITORY / "objects" / "ball.urdf")])
+        == gz_command.OK
+    )
     text = capsys.readouterr().out
     assert "<sdf version=" in text and '<model name="ball">' in text
 
 
 def test_sdf_print_writes_includes_in_full(capsys):
-    assert gz.main(["gz", "sdf", "-p", str(REPOSITORY / "world" / "empty_world.world")]) == gz.OK
+    assert (
+        gz_command.main(["gz", "sdf", "-p", str(REPOSITORY / "world" / "empty_world.world")])
+        == gz_command.OK
+    )
     text = capsys.readouterr().out
     assert '<model name="ground_plane">' in text and "<include>" not in text
 
@@ -59,18 +68,18 @@ def test_log_info_tells_the_times(tmp_path, capsys):
     log.document(1.0, {})
     log.begin = 1.0
     log.close(3.5)
-    assert gz.main(["gz", "log", "-i", "-f", str(path)]) == gz.OK
+    assert gz_command.main(["gz", "log", "-i", "-f", str(path)]) == gz_command.OK
     assert "End: 3.500 s" in capsys.readouterr().out
 
 
 def test_log_that_is_none_is_a_failure(tmp_path, capsys):
     path = tmp_path / "state.log"
     path.write_text("no log")
-    assert gz.main(["gz", "log", "-i", "-f", str(path)]) == gz.FAILED
+    assert gz_command.main(["gz", "log", "-i", "-f", str(path)]) == gz_command.FAILED
     assert "is no state log" in capsys.readouterr().err
 
 
 def test_world_needs_a_master(capsys, monkeypatch):
     monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")
-    assert gz.main(["gz", "world", "-p", "1"]) == gz.FAILED
+    assert gz_command.main(["gz", "world", "-p", "1"]) == gz_command.FAILED
     assert "no ROS master" in capsys.readouterr().err

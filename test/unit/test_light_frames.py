@@ -7,10 +7,10 @@ import pytest
 
 from my_simulations.description.model import Link, Model
 from my_simulations.description.world import Light, World
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import STILL, Pose, quat_from_rpy
-from my_simulations.simulator.registry import UnknownFrame
+from my_simulations.simulator.registry import UnknownFrameError
 from my_simulations.simulator.simulator import Simulator
 
 
@@ -32,5 +32,5 @@ def test_states_are_told_and_set_in_the_frame_of_a_light(sim):
 
 def test_a_light_that_is_gone_is_no_frame(sim):
     sim.lights.delete("lamp")
-    with pytest.raises(UnknownFrame):
+    with pytest.raises(UnknownFrameError):
         sim.states.model_state("box", "lamp")

@@ -9,7 +9,7 @@ from reading import INVALID, VALID
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh, mesh_key
 from my_simulations.errors import InputError, Severity
-from my_simulations.formats.meshes import collision_meshes, load_mesh, without_missing_meshes
+from my_simulations.formats.mesh.loading import collision_meshes, load_mesh, without_missing_meshes
 
 
 def load(name, **options):

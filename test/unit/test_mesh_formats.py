@@ -13,9 +13,9 @@ from reading import VALID
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, mesh_key
 from my_simulations.errors import InputError
-from my_simulations.formats import mesh_part, meshes
-from my_simulations.formats.mesh_part import MeshPart
-from my_simulations.formats.meshes import load_mesh
+from my_simulations.formats.mesh import loading, part
+from my_simulations.formats.mesh.loading import load_mesh
+from my_simulations.formats.mesh.part import MeshPart
 
 CORNERS = [(0.0, 0.0, 0.0), (0.0254, 0.0, 0.0), (0.0, 0.0508, 0.0)]
 VERTEX = '<input semantic="VERTEX" source="#v" offset="0"/>'
@@ -274,7 +274,7 @@ def test_a_gltf_file_that_asks_for_too_much_is_refused_before_it_is_read(tmp_pat
 
 
 def test_what_uses_one_piece_many_times_is_bounded(tmp_path, monkeypatch):
-    monkeypatch.setattr(mesh_part, "MOST_TRIANGLES", 3)
+    monkeypatch.setattr(part, "MOST_TRIANGLES", 3)
     with open(os.path.join(VALID, "inch_y_up.dae")) as stream:
         node = re.search(r"<instance_geometry[^>]*/>", stream.read()).group(0)
     assert len(load_mesh(written(tmp_path, "a.dae", collada((node, node * 3)))).triangles) == 3
@@ -287,7 +287,7 @@ def test_archives_are_no_meshes(tmp_path):
 
 
 def test_readers_are_imported_with_the_first_mesh_only():
-    code = ("import sys, my_simulations.formats.meshes\n"
+    code = ("import sys, my_simulations.formats.mesh.loading\n"
             "print(*sorted({'numpy', 'lxml', 'trimesh', 'collada', 'scipy'} & set(sys.modules)))")
     done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, check=True,
                           env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
@@ -304,7 +304,7 @@ def test_an_index_beyond_all_vertices_is_a_fault_with_its_line(tmp_path, index):
 
 def test_a_part_that_names_no_vertex_of_its_own_is_a_fault_of_the_file(tmp_path, monkeypatch):
     triangles = np.array([[0, 1, -2147483648]])
-    monkeypatch.setattr(meshes, "_parts", lambda path: [
+    monkeypatch.setattr(loading, "_parts", lambda path: [
         MeshPart(("p",), np.zeros((3, 3)), triangles)])
     fault = fault_of(written(tmp_path, "negative.dae", "<COLLADA/>"))
     assert "a vertex that does not exist" in fault.message
@@ -316,13 +316,13 @@ def test_whatever_a_reader_raises_is_a_fault_of_that_file_and_the_others_are_rea
         raise IndexError(path) if "bad" in path else MemoryError
 
     good = Mesh("inch_y_up.dae", os.path.join(VALID, "inch_y_up.dae"))
-    kept = meshes._parts
-    monkeypatch.setattr(meshes, "_parts", lambda path: kept(path) if path == good.path
+    kept = loading._parts
+    monkeypatch.setattr(loading, "_parts", lambda path: kept(path) if path == good.path
                         else read(path))
     faulty = [written(tmp_path, name, "<COLLADA/>") for name in ("bad.dae", "large.dae")]
     model = Model("m", links=[Link("l", collisions=[
         Collision(str(n), mesh) for n, mesh in enumerate([faulty[0], good, faulty[1]])])])
-    table, issues = meshes.collision_meshes(model)
+    table, issues = loading.collision_meshes(model)
     assert list(table) == [mesh_key(good)]
     assert [(one.code, os.path.basename(one.file)) for one in issues] == [
         ("mesh-unreadable", "bad.dae"), ("mesh-unreadable", "large.dae")]

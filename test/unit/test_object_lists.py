@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from my_simulations.errors import InputError, Severity
-from my_simulations.objects.listing import ObjectFile, parse_objects
+from my_simulations.objects.object_list import ObjectFile, parse_objects
 from my_simulations.objects.selection import closest, parse_groups, select
 from my_simulations.objects.yaml_source import Source, read_yaml
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from my_simulations.errors import InputError
-from my_simulations.objects.route import Circle, Polygon, parse_numbers, parse_points
+from my_simulations.objects.motion_path import Circle, Polygon, parse_numbers, parse_points
 
 
 def test_a_polygon_is_closed_and_heads_along_its_edges():

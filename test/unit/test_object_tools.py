@@ -13,8 +13,8 @@ from my_simulations.cli.progress import Progress, bar
 from my_simulations.cli.remove_object import chosen_models
 from my_simulations.cli.upload_objects import transferable, world_name
 from my_simulations.errors import InputError
-from my_simulations.objects.listing import parse_objects
-from my_simulations.objects.route import Circle, Polygon
+from my_simulations.objects.motion_path import Circle, Polygon
+from my_simulations.objects.object_list import parse_objects
 from my_simulations.objects.yaml_source import Source
 
 SOURCE = Source("/objects")

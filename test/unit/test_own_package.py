@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from my_simulations.cli.roslaunch_underlay import separate_first_path, with_own_files
-from my_simulations.resources import own
-from my_simulations.resources.resolver import NotFound, Resolver
+from my_simulations.resources import package_files
+from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -21,17 +21,17 @@ def users(tmp_path, monkeypatch):
         "<package><name>my_simulations</name><version>0.0.0</version>"
         "<description/><maintainer email='a@b'>a</maintainer><license>a</license></package>")
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "src"))
-    monkeypatch.setenv(own.UNDERLAY, str(tmp_path / "underlay"))
+    monkeypatch.setenv(package_files.UNDERLAY, str(tmp_path / "underlay"))
     return package
 
 
 def test_users_package_comes_first_and_ours_behind_it(users):
-    assert own.package_directories() == [str(users), str(REPOSITORY)]
+    assert package_files.package_directories() == [str(users), str(REPOSITORY)]
 
 
 def test_ours_is_alone_without_an_underlay(users, monkeypatch):
-    monkeypatch.delenv(own.UNDERLAY)
-    assert own.package_directories() == [str(REPOSITORY)]
+    monkeypatch.delenv(package_files.UNDERLAY)
+    assert package_files.package_directories() == [str(REPOSITORY)]
 
 
 def test_world_that_the_user_makes_counts_at_once(users):
@@ -54,7 +54,7 @@ def test_package_uri_is_looked_for_in_the_users_package_and_then_in_ours(users):
     mine.parent.mkdir()
     mine.write_text("<robot name='mine'/>")
     assert resolver.resolve(uri) == str(mine)
-    with pytest.raises(NotFound) as fault:
+    with pytest.raises(ResourceNotFoundError) as fault:
         resolver.resolve("package://my_simulations/urdf/none.urdf")
     assert fault.value.tried[:2] == [str(users / "urdf" / "none.urdf"),
                                      str(REPOSITORY / "urdf" / "none.urdf")]
@@ -62,11 +62,15 @@ def test_package_uri_is_looked_for_in_the_users_package_and_then_in_ours(users):
 
 def test_file_of_a_package_falls_back_to_ours_for_our_name_alone(users):
     inside = "objects/ball.urdf"
-    assert own.file_in_package(str(users), "my_simulations", inside) == str(REPOSITORY / inside)
-    assert own.file_in_package(str(users), "my_lab", inside) == str(users / inside)
+    assert package_files.file_in_package(str(users), "my_simulations", inside) == str(
+        REPOSITORY / inside
+    )
+    assert package_files.file_in_package(str(users), "my_lab", inside) == str(users / inside)
     (users / "objects").mkdir()
     (users / "objects" / "ball.urdf").touch()
-    assert own.file_in_package(str(users), "my_simulations", inside) == str(users / inside)
+    assert package_files.file_in_package(str(users), "my_simulations", inside) == str(
+        users / inside
+    )
 
 
 @pytest.mark.parametrize(("text", "path"), [

@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
-from my_simulations.engine.plan import BASE, PlanError, open_joints, plan_bodies
+from my_simulations.engine.body_plan import BASE, PlanError, open_joints, plan_bodies
 from my_simulations.geometry import Pose
 
 

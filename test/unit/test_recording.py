@@ -12,16 +12,16 @@ import time
 import pytest
 from editor_case import Case, box
 
-from my_simulations.cli.faces import Faces
+from my_simulations.cli.front_ends import FrontEnds
 from my_simulations.description.world import World
-from my_simulations.editor.recording import Recorder, path_of
-from my_simulations.editor.state_log import LogReader
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.editor.logs.recorder import Recorder, path_of
+from my_simulations.editor.logs.state_log import LogReader
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, Severity
 from my_simulations.geometry import Pose, Twist
 from my_simulations.resources.resolver import Resolver
-from my_simulations.ros.options import parse
+from my_simulations.ros.lifecycle.server_options import parse
 from my_simulations.simulator.simulator import Simulator
 
 DEADLINE = 10.0
@@ -207,7 +207,7 @@ def test_a_second_log_of_one_place_gets_a_folder_of_its_own(tmp_path):
 def test_the_editor_lists_and_plays_the_log_that_is_being_recorded(tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     made = Case(tmp_path, [box("a")])
-    faces = Faces()
+    faces = FrontEnds()
     wanted = parse(["-r", "--record_path", str(tmp_path / "else where")]).recording
     recorder = faces.record(made.sim, made.resolver, wanted, made.issues.append)
     usual = faces.record(made.sim, made.resolver, parse(["-r"]).recording, made.issues.append)
@@ -235,8 +235,8 @@ def test_the_editor_lists_and_plays_the_log_that_is_being_recorded(tmp_path, mon
 
 def test_recording_imports_nothing_that_serves_pages(tmp_path):
     program = ("import sys; sys.path[:0] = sys.argv[1:]\n"
-               "from my_simulations.editor.recording import Recorder, path_of\n"
-               "from my_simulations.cli.faces import Faces\n"
+               "from my_simulations.editor.logs.recorder import Recorder, path_of\n"
+               "from my_simulations.cli.front_ends import Faces\n"
                "assert not {'aiohttp', 'asyncio', 'numpy', 'trimesh', 'lxml'} & set(sys.modules), "
                "sorted(sys.modules)")
     subprocess.run([sys.executable, "-B", "-c", program, *sys.path], timeout=60, check=True)

@@ -4,8 +4,8 @@ import os
 import pytest
 
 from my_simulations.resources.model_config import description_in, version_of
-from my_simulations.resources.packages import ExportedPaths, PackageIndex
-from my_simulations.resources.resolver import NotFound, Resolver
+from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
+from my_simulations.resources.ros_packages import ExportedPaths, PackageIndex
 
 
 @pytest.fixture
@@ -77,7 +77,7 @@ def test_percent_signs_of_a_file_uri_are_decoded(resolver, tree):
 
 
 def test_what_is_nowhere_raises_with_every_place_tried(resolver, tree):
-    with pytest.raises(NotFound) as caught:
+    with pytest.raises(ResourceNotFoundError) as caught:
         resolver.resolve("model://gone/x.dae")
     assert caught.value.uri == "model://gone/x.dae"
     assert caught.value.tried == [
@@ -90,7 +90,7 @@ def test_what_is_nowhere_raises_with_every_place_tried(resolver, tree):
 @pytest.mark.parametrize("uri", ["", "  ", "__default__", "http://example.invalid/a.dae", "model://",
                                  "package://"])
 def test_what_names_no_file_here_raises(resolver, uri):
-    with pytest.raises(NotFound):
+    with pytest.raises(ResourceNotFoundError):
         Resolver().resolve(uri)
 
 
@@ -200,7 +200,7 @@ def test_a_folder_without_config_may_hold_one_description(tmp_path):
 
 def test_a_folder_without_description_is_not_a_model(tmp_path):
     (tmp_path / "thing").mkdir()
-    with pytest.raises(NotFound) as caught:
+    with pytest.raises(ResourceNotFoundError) as caught:
         Resolver([str(tmp_path)]).model_file("model://thing")
     assert str(tmp_path / "thing" / "model.config") in caught.value.tried
 

@@ -7,8 +7,8 @@ import xmlrpc.server
 
 import pytest
 
-from my_simulations.ros.abandoned import Abandonment
-from my_simulations.ros.launched import Launch
+from my_simulations.ros.lifecycle.abandoned import Abandonment
+from my_simulations.ros.lifecycle.launch_info import Launch
 
 NOBODY = "http://127.0.0.1:1"
 

@@ -3,7 +3,12 @@ import struct
 import pytest
 
 from my_simulations.geometry import Pose, compose, pose_from_xyzrpy
-from my_simulations.ros.buffers import ROW_BYTES, StatesBuffer, packed_strings, packed_time
+from my_simulations.ros.topics.state_buffers import (
+    ROW_BYTES,
+    StatesBuffer,
+    packed_strings,
+    packed_time,
+)
 
 
 def rows(*numbers):

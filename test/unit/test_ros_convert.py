@@ -3,7 +3,7 @@ from types import SimpleNamespace as Fields
 import pytest
 
 from my_simulations.errors import CommandError
-from my_simulations.ros.convert import finite, pose_from_message, twist_from_message
+from my_simulations.ros.message_conversion import finite, pose_from_message, twist_from_message
 
 
 def pose_message(position=(1.0, 2.0, 3.0), orientation=(0.0, 0.0, 0.0, 1.0)):

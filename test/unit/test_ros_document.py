@@ -2,7 +2,7 @@ import pytest
 
 from my_simulations.description.model import Link, Model, PluginSpec
 from my_simulations.errors import CommandError
-from my_simulations.ros.document import asks_to_replace, checked_name, named, root_of
+from my_simulations.ros.services.spawn_request import asks_to_replace, checked_name, named, root_of
 
 
 @pytest.mark.parametrize("text, root", [

@@ -5,7 +5,7 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from my_simulations.ros import master
+from my_simulations.ros.lifecycle import master_api
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def unused_uri():
 
 def test_a_master_that_answers_ends_the_wait_without_a_word(graph):
     said = []
-    assert master.wait(graph, "/me", threading.Event(), said.append)
+    assert master_api.wait(graph, "/me", threading.Event(), said.append)
     assert said == []
 
 
@@ -49,12 +49,12 @@ def test_without_a_master_it_says_so_until_it_is_stopped():
         said.append(line)
         stop.set()
 
-    assert not master.wait(uri, "/me", stop, say)
+    assert not master_api.wait(uri, "/me", stop, say)
     assert uri in said[0] and "roscore" in said[0]
 
 
 def test_the_wait_ends_at_its_deadline():
-    assert not master.wait(unused_uri(), "/me", threading.Event(), lambda line: None,
+    assert not master_api.wait(unused_uri(), "/me", threading.Event(), lambda line: None,
                            time.monotonic())
 
 
@@ -64,21 +64,21 @@ def test_a_server_that_is_no_master_is_a_fault():
         mute.listen(1)
         uri = f"http://127.0.0.1:{mute.getsockname()[1]}"
         with pytest.raises(OSError):
-            master.call(uri, "getPid", "/me", seconds=0.1)
+            master_api.call(uri, "getPid", "/me", seconds=0.1)
 
 
 @pytest.mark.parametrize("uri", ["nonsense", "http://no port", "http://127.0.0.1:port"])
 def test_a_uri_that_cannot_be_read_is_a_fault(uri):
-    assert "ROS_MASTER_URI" in master.fault_of(uri, "/me")
+    assert "ROS_MASTER_URI" in master_api.fault_of(uri, "/me")
 
 
 def test_a_living_node_of_the_name_is_found(graph):
-    assert master.living_node(graph, "/alive") == (graph, 42)
+    assert master_api.living_node(graph, "/alive") == (graph, 42)
 
 
 def test_a_dead_or_unknown_node_is_none(graph):
-    assert master.living_node(graph, "/dead") is None
-    assert master.living_node(graph, "/nobody") is None
+    assert master_api.living_node(graph, "/dead") is None
+    assert master_api.living_node(graph, "/nobody") is None
 
 
 @pytest.mark.parametrize("argv, environment, name", [
@@ -92,4 +92,4 @@ def test_the_node_name_follows_remappings_and_namespace(monkeypatch, argv, envir
     monkeypatch.delenv("ROS_NAMESPACE", raising=False)
     if environment:
         monkeypatch.setenv("ROS_NAMESPACE", environment)
-    assert master.node_name(argv, "gazebo") == name
+    assert master_api.node_name(argv, "gazebo") == name

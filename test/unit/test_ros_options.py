@@ -1,6 +1,6 @@
 import pytest
 
-from my_simulations.ros.options import Recording, parse
+from my_simulations.ros.lifecycle.server_options import Recording, parse
 
 
 def test_launch_file_arguments_are_understood():

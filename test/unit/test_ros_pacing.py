@@ -1,4 +1,4 @@
-from my_simulations.ros.pacing import StateGate, StepSelector
+from my_simulations.ros.topics.publish_pacing import StateGate, StepSelector
 
 MS = 1000000
 

@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import threading
 
-from my_simulations.ros.sleeper import Sleeper
+from my_simulations.ros.topics.worker_thread import WorkerThread
 
 
-class Counter(Sleeper):
+class Counter(WorkerThread):
     """Counts how often it was woken."""
 
     def __init__(self):

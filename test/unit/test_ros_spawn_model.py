@@ -1,7 +1,7 @@
 import pytest
 
 from my_simulations.cli import spawn_model
-from my_simulations.ros.profile import StartProfile
+from my_simulations.ros.lifecycle.start_profile import StartProfile
 
 
 def parsed(*words):

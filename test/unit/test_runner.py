@@ -22,8 +22,8 @@ from my_simulations.engine.commands import (
     SetModelState,
     SetPhysics,
 )
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import DEMAND_NS, LATEST_POSES, POSE_DEMAND_NS
 from my_simulations.geometry import Pose, Twist
 

@@ -9,10 +9,10 @@ from reading import VALID, model_of, sdf, world_of
 
 from my_simulations.description.model import Joint, JointAxis, Link, Mimic, Model
 from my_simulations.description.world import World
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
-from my_simulations.formats.load import read_file, read_world
-from my_simulations.formats.sdf_write import write_entity, write_world
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.formats.reading import read_file, read_world
+from my_simulations.formats.sdf.writer.entities import write_entity, write_world
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.saving import save_world
 from my_simulations.simulator.simulator import Simulator

@@ -16,13 +16,13 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.unflatten import unflattened
 from my_simulations.description.world import Light, World
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, errors_of
-from my_simulations.formats.load import read_world
-from my_simulations.formats.state import apply_state
+from my_simulations.formats.reading import read_world
+from my_simulations.formats.sdf.state_applied import apply_state
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
-from my_simulations.resources.own import own_directory
+from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import safe_file
 from my_simulations.simulator.saving import allowed_path, default_roots, present_world, save_world

@@ -6,8 +6,8 @@ from reading import INERTIAL, errors, model_of, sdf, tolerated, warnings, world_
 
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Mimic
-from my_simulations.formats.load import read_world_text
-from my_simulations.formats.sdf_write import write_world
+from my_simulations.formats.reading import read_world_text
+from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.resources.resolver import Resolver
 
 

@@ -6,7 +6,7 @@ from reading import INVALID, VALID, refusal
 
 from my_simulations.description.validate import validate
 from my_simulations.errors import InputError, Severity, errors_of, strictly
-from my_simulations.formats.load import read_file, read_world, read_world_text
+from my_simulations.formats.reading import read_file, read_world, read_world_text
 from my_simulations.resources.resolver import Resolver
 
 MODEL_FAULTS = {
@@ -203,7 +203,7 @@ def test_a_model_of_the_valid_fixtures_has_no_fault():
 
 
 def test_a_service_text_that_is_garbage_is_refused_not_raised():
-    from my_simulations.formats.load import read_entity
+    from my_simulations.formats.reading import read_entity
 
     for garbage in ("", " ", "\0", "hello", "<", "<a", "</a>", "<a/>", "<robot", "{}", "<?xml?>"):
         with pytest.raises(InputError):

@@ -23,9 +23,9 @@ from my_simulations.description.shapes import (
     Surface,
 )
 from my_simulations.errors import Severity, errors_of
-from my_simulations.formats import sdf_model
-from my_simulations.formats.load import read_entity, read_world_text
-from my_simulations.formats.sdf_model import DEEPEST
+from my_simulations.formats.reading import read_entity, read_world_text
+from my_simulations.formats.sdf import model
+from my_simulations.formats.sdf.model import DEEPEST
 from my_simulations.geometry import quat_from_rpy
 from my_simulations.resources.resolver import Resolver
 
@@ -408,8 +408,8 @@ def test_a_fault_of_a_nested_model_is_told_once_however_deep_it_lies(monkeypatch
     text = nested_models(20).replace('<link name="l"/></model>', '<link name="l"><inertial><mass>-1'
                                      '</mass></inertial></link></model>', 1)
     asked = []
-    original = sdf_model.own_faults
-    monkeypatch.setattr(sdf_model, "own_faults",
+    original = model.own_faults
+    monkeypatch.setattr(model, "own_faults",
                         lambda model, static: asked.append(model) or original(model, static))
     _, issues = read_world_text(text, Resolver())
     assert len(errors_of(issues)) == 1

@@ -5,7 +5,7 @@ import pytest
 from reading import INERTIAL, errors, warnings, world_of
 
 from my_simulations.description.shapes import Box, Sphere
-from my_simulations.formats.state import apply_state
+from my_simulations.formats.sdf.state_applied import apply_state
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
 BOX = '<collision name="c"><geometry><box><size>1 2 3</size></box></geometry></collision>'

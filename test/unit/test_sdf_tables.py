@@ -3,8 +3,9 @@ import inspect
 
 import pytest
 
-from my_simulations.formats import sdf_tables, urdf_tables
-from my_simulations.formats.tables import Table
+from my_simulations.formats.sdf import model_tables
+from my_simulations.formats.urdf import urdf_tables
+from my_simulations.formats.xml.binding import Table
 
 
 def tables_of(module):
@@ -14,7 +15,7 @@ def tables_of(module):
 
 
 ALL = [pytest.param(table, id=f"{module.__name__.rsplit('.')[-1]}-{table.name}")
-       for module in (sdf_tables, urdf_tables) for table in tables_of(module)]
+       for module in (model_tables, urdf_tables) for table in tables_of(module)]
 
 
 @pytest.mark.parametrize("table", ALL)
@@ -28,8 +29,8 @@ def test_every_default_of_a_table_survives_writing_and_reading(table):
 
 def test_a_misnamed_field_would_be_noticed():
     from my_simulations.description.shapes import Box
-    from my_simulations.formats.tables import Value
-    from my_simulations.formats.values import FLOAT
+    from my_simulations.formats.xml.binding import Value
+    from my_simulations.formats.xml.values import FLOAT
 
     with pytest.raises(AttributeError):
         list(Table("box", Box, {"size": Value("sise", FLOAT)}).values())
@@ -46,7 +47,7 @@ def test_a_misnamed_field_would_be_noticed():
     ("TEXT", " a b ", "a b"),
 ])
 def test_values_are_read(kind, text, value):
-    from my_simulations.formats import values
+    from my_simulations.formats.xml import values
 
     assert getattr(values, kind).parse(text) == value
 
@@ -57,7 +58,7 @@ def test_values_are_read(kind, text, value):
     ("POSE", "1 2 3"), ("POSE", "1 2 3 4 5 6 7"), ("SCALE", "1 2"), ("RPY", "0 0 x"),
 ])
 def test_values_that_are_none_are_refused_with_what_was_found(kind, text):
-    from my_simulations.formats import values
+    from my_simulations.formats.xml import values
 
     with pytest.raises(ValueError, match="expected"):
         getattr(values, kind).parse(text)

@@ -4,7 +4,7 @@ import math
 import pytest
 from reading import INERTIAL, codes, errors, link_of, model_of, warnings, world_of
 
-from my_simulations.formats.load import read_entity
+from my_simulations.formats.reading import read_entity
 from my_simulations.resources.resolver import Resolver
 
 TURNED = (f'<link name="a">{INERTIAL}</link><link name="b">'

@@ -5,7 +5,7 @@ import pytest
 from reading import INERTIAL, codes, errors, sdf, tolerated, warnings, world_of
 
 from my_simulations.description.world import Light, Physics
-from my_simulations.formats.load import read_entity, read_world, read_world_text
+from my_simulations.formats.reading import read_entity, read_world, read_world_text
 from my_simulations.resources.resolver import Resolver
 
 BOX = '<link name="l"><collision name="c"><geometry><box/></geometry></collision></link>'

@@ -5,10 +5,10 @@ import pytest
 from reading import DATA, codes, errors, refusal, sdf, warnings
 
 from my_simulations.errors import InputError, Severity
-from my_simulations.formats.load import read_entity, read_world, read_world_text
-from my_simulations.formats.source import Log
-from my_simulations.formats.xmlrepair import balanced
-from my_simulations.formats.xmltext import parse
+from my_simulations.formats.reading import read_entity, read_world, read_world_text
+from my_simulations.formats.xml.parsing import parse
+from my_simulations.formats.xml.repair import balanced
+from my_simulations.formats.xml.source import Log
 from my_simulations.resources.resolver import Resolver
 
 MODEL = '<model name="m"><link name="l"/></model>'

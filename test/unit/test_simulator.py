@@ -11,12 +11,12 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.shapes import Box, Collision, Mesh
 from my_simulations.description.world import World
 from my_simulations.engine.commands import FOREVER, TimedWrench
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
-from my_simulations.errors import CommandError, EngineLost
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
 from my_simulations.simulator.feeds import ROW_WIDTH
-from my_simulations.simulator.registry import Rows, UnknownEntity, UnknownFrame
+from my_simulations.simulator.registry import Rows, UnknownEntityError, UnknownFrameError
 from my_simulations.simulator.simulator import Simulator
 
 
@@ -117,7 +117,7 @@ def test_a_deleted_model_is_gone_and_its_rows_are_used_again(case):
         sim.models.spawn(box("a"))
         sim.models.delete("a")
         assert not sim.models.has("a")
-        with pytest.raises(UnknownEntity):
+        with pytest.raises(UnknownEntityError):
             sim.states.model_state("a")
     sim.models.spawn(box("b"))
     assert sim._session.registry.model("b").first_link_row == 0
@@ -125,7 +125,7 @@ def test_a_deleted_model_is_gone_and_its_rows_are_used_again(case):
 
 def test_an_unknown_name_is_answered_with_the_closest(case):
     sim = case(box("cylinder")).sim
-    with pytest.raises(UnknownEntity, match="did you mean cylinder"):
+    with pytest.raises(UnknownEntityError, match="did you mean cylinder"):
         sim.models.delete("cilinder")
 
 
@@ -136,10 +136,10 @@ def test_an_unknown_link_or_joint_is_answered_with_the_scoped_name_that_was_mean
                         ("crate::lnik", r"did you mean crate::link\?"),
                         ("carte::link", r"did you mean crate::link\?"),
                         ("lnik", r"did you mean crate::link\?")):
-        with pytest.raises(UnknownEntity, match=meant):
+        with pytest.raises(UnknownEntityError, match=meant):
             sim.states.link_state(name)
     for name in ("hnige", "robot::hnige"):
-        with pytest.raises(UnknownEntity, match=r"did you mean robot::hinge\?"):
+        with pytest.raises(UnknownEntityError, match=r"did you mean robot::hinge\?"):
             sim.joints.find(name)
 
 
@@ -148,7 +148,7 @@ def test_links_are_found_by_scoped_and_by_plain_name(case):
     close(sim.states.link_state("b::y")[0], (0, 0, 0))
     close(sim.states.link_state("y")[0], (1, 0, 0))   # the first in the world
     close(sim.states.link_state("z")[0], (1, 0, 0))
-    with pytest.raises(UnknownEntity):
+    with pytest.raises(UnknownEntityError):
         sim.states.link_state("a::z")
 
 
@@ -200,7 +200,7 @@ def test_links_and_collisions_are_frames_and_tf_names_are_not(case):
     close(sim.states.model_state("b", "a::y")[0], (-1, 0, 0))
     close(sim.states.model_state("b", "a::y::c")[0], (-1, 0, -2))
     for unknown in ("/world", "base_link", "a::nothing"):
-        with pytest.raises(UnknownFrame):
+        with pytest.raises(UnknownFrameError):
             sim.states.model_state("b", unknown)
 
 
@@ -320,9 +320,9 @@ def test_a_restarted_world_runs_on_unless_it_was_paused(case):
 
 def test_the_command_that_killed_the_engine_fails_and_others_are_sent_again(case):
     made = case(box("a"))
-    from my_simulations.engine import kinematic
+    from my_simulations.engine import kinematic_backend
     blown = threading.Event()
-    original = kinematic.KinematicBackend.step
+    original = kinematic_backend.KinematicBackend.step
 
     def blow_up(self, first, count):
         if not blown.is_set() and self.models:
@@ -331,12 +331,12 @@ def test_the_command_that_killed_the_engine_fails_and_others_are_sent_again(case
             time.sleep(0.2)   # dies before it answers the advance
         original(self, first, count)
 
-    kinematic.KinematicBackend.step = blow_up
+    kinematic_backend.KinematicBackend.step = blow_up
     try:
-        with pytest.raises(EngineLost, match="killed"):
+        with pytest.raises(EngineLostError, match="killed"):
             made.sim.clock.advance(5)
     finally:
-        kinematic.KinematicBackend.step = original
+        kinematic_backend.KinematicBackend.step = original
     made.sim.states.set_model_state("a", Pose((1, 0, 0)), STILL)
     close(made.sim.states.model_state("a")[0], (1, 0, 0))
 

@@ -21,11 +21,11 @@ from my_simulations.description.world import (
     World,
 )
 from my_simulations.errors import CommandError
-from my_simulations.formats.load import read_world
-from my_simulations.formats.sdf_write import write_world
+from my_simulations.formats.reading import read_world
+from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import STILL, Pose, Twist, quat_from_rpy
 from my_simulations.resources.resolver import Resolver
-from my_simulations.simulator.registry import UnknownEntity
+from my_simulations.simulator.registry import UnknownEntityError
 from my_simulations.simulator.saving import present_world
 
 
@@ -54,7 +54,7 @@ def test_a_renamed_model_is_found_by_its_new_name_only(case):
     assert sim.models.names() == ["z", "b"]
     close(sim.states.link_state("z::x")[0], (1, 2, 3))
     close(sim.states.link_state("x")[0], (1, 2, 3))
-    with pytest.raises(UnknownEntity):
+    with pytest.raises(UnknownEntityError):
         sim.states.link_state("a::x")
 
 
@@ -121,13 +121,13 @@ def test_a_joint_is_found_plain_and_scoped_and_edited_in_place(case):
     sim.joints.edit("b::hinge", replace(joint, axis=JointAxis(damping=3.0)))
     assert sim.models.get("b").joints[0].axis.damping == 3.0
     assert sim.models.get("a").joints[0].axis.damping == 0.0
-    with pytest.raises(UnknownEntity):
+    with pytest.raises(UnknownEntityError):
         sim.joints.find("knee")
 
 
 def test_holding_an_unknown_model_is_refused_and_holds_nothing(case):
     made = case(box("a"))
-    with pytest.raises(UnknownEntity):
+    with pytest.raises(UnknownEntityError):
         made.sim.models.pin(["a", "nobody"])
     assert made.engine.backend.held == ()
 
@@ -165,7 +165,7 @@ def test_a_light_without_a_usable_name_or_pose_is_refused(case, light):
 def test_an_unknown_light_is_an_error(case):
     sim = case().sim
     for act in (sim.lights.get, sim.lights.delete, lambda name: sim.lights.set(name, Light(name))):
-        with pytest.raises(UnknownEntity):
+        with pytest.raises(UnknownEntityError):
             act("nobody")
 
 

@@ -10,8 +10,8 @@ from PIL import Image, TiffImagePlugin
 
 from my_simulations.description.shapes import Heightmap, ImageMap, Polyline
 from my_simulations.errors import InputError
-from my_simulations.formats.images import elevations, grey_levels
-from my_simulations.formats.solids import solid_mesh
+from my_simulations.formats.image.levels import elevations, grey_levels
+from my_simulations.formats.mesh.terrain import solid_mesh
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 HOLE = [(1, 1), (1, 2), (2, 2), (2, 1)]
@@ -251,8 +251,8 @@ def test_an_elevation_model_keeps_its_extremes_when_it_is_thinned(tmp_path):
 MEMORY = """
 import resource, sys
 from my_simulations.description.shapes import Heightmap, ImageMap
-from my_simulations.formats.images import elevations, grey_levels
-from my_simulations.formats.solids import solid_mesh
+from my_simulations.formats.image.levels import elevations, grey_levels
+from my_simulations.formats.mesh.terrain import solid_mesh
 for kind in (Heightmap, ImageMap):
     shape = kind()
     shape.uri = shape.path = sys.argv[1]

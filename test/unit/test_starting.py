@@ -2,13 +2,13 @@ import time
 
 import pytest
 
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import InputError, Severity, warning
 from my_simulations.resources.resolver import Resolver
-from my_simulations.ros.engines import EngineSupply
+from my_simulations.ros.lifecycle.engine_supply import EngineSupply
 from my_simulations.simulator.issue_log import IssueLog
-from my_simulations.simulator.starting import load_world, start_world
+from my_simulations.simulator.world_loading import load_world, start_world
 
 WORLD = """<sdf version="1.6"><world name="w">
 <model name="good"><static>true</static><link name="l"><collision name="c"><geometry>

@@ -4,12 +4,12 @@ from __future__ import annotations
 import pytest
 from reading import sdf
 
-from my_simulations.cli import check_model, spawn_model
+from my_simulations.cli import check_model_command, spawn_model
 from my_simulations.errors import InputError
-from my_simulations.formats.load import read_entity
+from my_simulations.formats.reading import read_entity
 from my_simulations.resources.resolver import Resolver
 from my_simulations.resources.suggestions import suggestion
-from my_simulations.ros.options import parse
+from my_simulations.ros.lifecycle.server_options import parse
 
 
 def nothing():
@@ -74,7 +74,7 @@ def test_numbers_that_are_parted_by_commas_are_told_how_to_be():
     (lambda: parse(["--seed", "x"]), "'x' is not a number"),
     (lambda: parse(["--iters", "many"]), "'many' is not a number of steps"),
     (lambda: parse(["--record_period", "1,5"]), "write a point, not a comma"),
-    (lambda: check_model.main(["check_model", "--jsn", "a"]), "did you mean --json?"),
+    (lambda: check_model_command.main(["check_model", "--jsn", "a"]), "did you mean --json?"),
     (lambda: spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-x", "1,5"]),
      "'1,5' is not a number; write a point, not a comma"),
     (lambda: spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-timeut",

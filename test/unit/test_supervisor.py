@@ -7,9 +7,9 @@ import time
 import pytest
 
 from my_simulations.engine.commands import Advance, Batch, Command, Ping, SetJoints
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
-from my_simulations.errors import CommandError, NoAnswer
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.errors import CommandError, EngineTimeoutError
 from my_simulations.simulator.supervisor import Supervisor
 from my_simulations.simulator.watchdog import Watchdog
 
@@ -45,9 +45,9 @@ def watch():
 
 def test_a_command_without_an_answer_is_a_named_error(watch):
     supervisor = watch(lambda: _Silent(KinematicBackend), 0.1)
-    with pytest.raises(NoAnswer, match=r"not answered for 0\.1 s; Ping may still"):
+    with pytest.raises(EngineTimeoutError, match=r"not answered for 0\.1 s; Ping may still"):
         supervisor.call(Ping())
-    assert issubclass(NoAnswer, CommandError)
+    assert issubclass(EngineTimeoutError, CommandError)
     assert supervisor.call(Advance(3)).step == 3   # the engine is still there
 
 

@@ -8,12 +8,12 @@ import pytest
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.commands import FOREVER, TimedWrench
-from my_simulations.engine.inline import InlineEngine
-from my_simulations.engine.kinematic import KinematicBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import Clock
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
-from my_simulations.simulator.registry import UnknownEntity, UnknownFrame
+from my_simulations.simulator.registry import UnknownEntityError, UnknownFrameError
 from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.wrenches import first_step, steps_of
 
@@ -130,11 +130,11 @@ def test_loads_are_cleared_by_either_form_of_the_name(case):
 
 def test_unknown_names_and_joints_without_axis_are_refused(case):
     made = case(arm("a"))
-    with pytest.raises(UnknownEntity):
+    with pytest.raises(UnknownEntityError):
         made.sim.wrenches.apply_wrench("none", (1, 0, 0), (0, 0, 0))
-    with pytest.raises(UnknownFrame):
+    with pytest.raises(UnknownFrameError):
         made.sim.wrenches.apply_wrench("base", (1, 0, 0), (0, 0, 0), frame="none")
-    with pytest.raises(UnknownEntity):
+    with pytest.raises(UnknownEntityError):
         made.sim.wrenches.apply_effort("none", 1.0)
     with pytest.raises(CommandError, match="no axis"):
         made.sim.wrenches.apply_effort("weld", 1.0)

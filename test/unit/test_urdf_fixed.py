@@ -6,7 +6,7 @@ import pytest
 from reading import URDF_INERTIAL, codes, errors, robot_joint, robot_link, robot_of
 
 from my_simulations.description.model import Inertial
-from my_simulations.formats.urdf_lump import merged
+from my_simulations.formats.urdf.fixed_joint_lumping import merged
 from my_simulations.geometry import Pose, add, quat_from_rpy, rotate, scale
 
 BOX = '<geometry><box size="1 1 1"/></geometry>'

@@ -16,7 +16,7 @@ from reading import (
 from my_simulations.description.model import INFINITE, JointAxis
 from my_simulations.description.shapes import Box, Cylinder, Mesh, Sphere
 from my_simulations.errors import Severity
-from my_simulations.formats.load import read_entity
+from my_simulations.formats.reading import read_entity
 from my_simulations.geometry import quat_from_rpy
 from my_simulations.resources.resolver import Resolver
 

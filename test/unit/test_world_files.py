@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from my_simulations.errors import InputError
-from my_simulations.resources.own import own_directory
-from my_simulations.resources.resolver import NotFound, Resolver
+from my_simulations.resources.package_files import own_directory
+from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
 from my_simulations.resources.world_files import (
     SHIPPED,
     advice_on,
@@ -17,7 +17,7 @@ from my_simulations.resources.world_files import (
     folder_of_users,
     ships,
 )
-from my_simulations.simulator.starting import load_world
+from my_simulations.simulator.world_loading import load_world
 
 SHEETS_NAMES = ("test.world", "my_world.sdf")
 """What the lab sheet tells students to call their own worlds."""
@@ -40,7 +40,7 @@ def test_the_folder_of_the_command_comes_first_then_the_users_worlds_then_resour
     for folder in places:
         assert find_world("w.world", resolver, str(typed)) == str(folder / "w.world")
         (folder / "w.world").unlink()
-    with pytest.raises(NotFound) as missing:
+    with pytest.raises(ResourceNotFoundError) as missing:
         find_world("w.world", resolver, str(typed))
     assert missing.value.tried[:2] == [str(typed / "w.world"), str(own / "w.world")]
 
@@ -92,7 +92,7 @@ def test_a_students_file_in_the_packages_folder_is_the_students(tmp_path, monkey
     assert folder_of_users(str(package / "world/lab_room.world")) == ""
 
 
-PROBE = ("import sys; from my_simulations.ros.launched import Launch; "
+PROBE = ("import sys; from my_simulations.ros.lifecycle.launch_info import Launch; "
          "one = Launch.of(sys.argv); print(one.pid, one.folder, one.alive)")
 
 

@@ -14,12 +14,12 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.shapes import Box, Collision, Polyline
 from my_simulations.description.world import Light, World
 from my_simulations.errors import Severity, errors_of
-from my_simulations.formats import sdf_tables
-from my_simulations.formats.load import read_entity, read_file, read_world, read_world_text
-from my_simulations.formats.sdf_write import _Writer, write_entity, write_world
-from my_simulations.formats.sdf_write_geometry import tables_by_shape
-from my_simulations.formats.tables import Kept, Part, Table
-from my_simulations.formats.values import BOOL, FLOAT, FRICTION, INT, LIMIT, POSE, TEXT, VECTOR3
+from my_simulations.formats.reading import read_entity, read_file, read_world, read_world_text
+from my_simulations.formats.sdf import model_tables
+from my_simulations.formats.sdf.writer.entities import _Writer, write_entity, write_world
+from my_simulations.formats.sdf.writer.geometry_element import tables_by_shape
+from my_simulations.formats.xml.binding import Kept, Part, Table
+from my_simulations.formats.xml.values import BOOL, FLOAT, FRICTION, INT, LIMIT, POSE, TEXT, VECTOR3
 from my_simulations.geometry import Pose, quat_from_rpy, rpy_from_quat
 from my_simulations.resources.resolver import Resolver
 
@@ -97,7 +97,7 @@ def test_every_field_of_a_link_survives():
 def surface(odd):
     """XML that sets every value of <surface>."""
     root = etree.Element("surface")
-    for path, value, default in sdf_tables.SURFACE.values():
+    for path, value, default in model_tables.SURFACE.values():
         at = root
         for tag in path.split("/"):
             found = at.find(tag)
@@ -297,7 +297,7 @@ def test_every_shape_has_a_writer():
 
 
 def tables():
-    return [value for value in vars(sdf_tables).values() if isinstance(value, Table)]
+    return [value for value in vars(model_tables).values() if isinstance(value, Table)]
 
 
 def test_the_tables_have_kept_elements_and_dataclasses():

@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 
 from my_simulations.errors import InputError
-from my_simulations.objects.yaml_guard import DEEPEST, LARGEST
+from my_simulations.objects.guarded_yaml import DEEPEST, LARGEST
 from my_simulations.objects.yaml_source import read_yaml
 
 LAUGHS = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(

@@ -11,7 +11,7 @@ from dataclasses import MISSING, asdict, fields
 from typing import Any, Callable, Dict, List, Optional, Tuple, Type, Union
 
 from ..errors import InputError, Issue, error
-from .plan import Floor, FloorImage, Level, Opening, Plan, Roof, Stairs, Wall
+from .building_plan import Floor, FloorImage, Level, Opening, Plan, Roof, Stairs, Wall
 
 FORMAT = 1
 """Grows when older readers could no longer read what is written."""

@@ -6,8 +6,8 @@ from typing import Any, List, Optional, Sequence, Tuple
 
 from ..description.shapes import Box, Geometry, Polyline
 from ..geometry import IDENTITY, Pose, Vec3, quat_from_rpy
-from .cut import is_rectilinear, rectangles
-from .plan import Level, Plan, Roof
+from .building_plan import Level, Plan, Roof
+from .rectangles import is_rectilinear, rectangles
 
 Parts = List[Tuple[Geometry, Pose]]
 

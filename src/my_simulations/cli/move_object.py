@@ -9,7 +9,7 @@ from typing import Any, Callable, List, Optional, Sequence, Union
 
 from ..errors import InputError
 from ..geometry import Pose, quat_from_rpy
-from ..objects.route import Circle, Polygon, parse_numbers, parse_points
+from ..objects.motion_path import Circle, Polygon, parse_numbers, parse_points
 from ..objects.selection import unknown_name
 from ..ros.arguments import Parser
 from . import object_client as client
@@ -27,7 +27,7 @@ NEAR = 0.01
 Route = Union[Polygon, Circle]
 
 
-class Stopped(Exception):
+class MotionStoppedError(Exception):
     """ROS shuts this program down."""
 
 
@@ -108,7 +108,7 @@ def target_of(options: argparse.Namespace) -> Union[Pose, Route]:
 def _move(options: argparse.Namespace, target: Union[Pose, Route],
           remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
-    simulator = client.Simulator(
+    simulator = client.SimulatorClient(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
     stops = options.stop_objects.split()
     _wait_for_models(simulator, parameters, [options.name, *stops], options.timeout)
@@ -119,7 +119,7 @@ def _move(options: argparse.Namespace, target: Union[Pose, Route],
     try:
         _as_node(options.name, remappings,
                  lambda: _follow(simulator, options, target, stops))
-    except (Stopped, KeyboardInterrupt):
+    except (MotionStoppedError, KeyboardInterrupt):
         print(f"{NAME}: ended")
     return client.OK
 
@@ -139,13 +139,13 @@ def _as_node(model: str, remappings: Sequence[str], work: Callable[[], None]) ->
         work()
     except client.ToolError:
         if rospy.is_shutdown():
-            raise Stopped from None
+            raise MotionStoppedError from None
         raise
     finally:
         rospy.signal_shutdown("done")
 
 
-def _wait_for_models(simulator: client.Simulator, parameters: client.Parameters,
+def _wait_for_models(simulator: client.SimulatorClient, parameters: client.Parameters,
                      names: Sequence[str], timeout: float) -> None:
     def all_there() -> bool:
         return set(names) <= set(simulator.model_names())
@@ -162,7 +162,7 @@ def _wait_for_models(simulator: client.Simulator, parameters: client.Parameters,
                                f"{timeout:g} s; {hint}") from None
 
 
-def _place(simulator: client.Simulator, parameters: client.Parameters,
+def _place(simulator: client.SimulatorClient, parameters: client.Parameters,
            options: argparse.Namespace, pose: Pose) -> None:
     def reached() -> bool:
         simulator.place(options.name, pose)
@@ -176,7 +176,7 @@ def _place(simulator: client.Simulator, parameters: client.Parameters,
                     "something holds it back")
 
 
-def _follow(simulator: client.Simulator, options: argparse.Namespace, route: Route,
+def _follow(simulator: client.SimulatorClient, options: argparse.Namespace, route: Route,
             stops: List[str]) -> None:
     clock = _Clock(options.timeout)
     distance, last = 0.0, clock.now()
@@ -197,7 +197,7 @@ def _follow(simulator: client.Simulator, options: argparse.Namespace, route: Rou
                                            quat_from_rpy(0.0, 0.0, place.yaw)))
 
 
-def _blocked(simulator: client.Simulator, route: Route, ahead: float, stops: List[str],
+def _blocked(simulator: client.SimulatorClient, route: Route, ahead: float, stops: List[str],
              options: argparse.Namespace) -> bool:
     point = route.at(ahead)
     for name in stops:
@@ -250,7 +250,7 @@ class _Clock:
             if due(now):
                 return now
             if rospy.is_shutdown():
-                raise Stopped
+                raise MotionStoppedError
             if now != seen:
                 seen, since = now, time.monotonic()
             elif time.monotonic() - since > self._limit:

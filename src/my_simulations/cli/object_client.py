@@ -14,13 +14,13 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Seque
 
 from ..errors import InputError, Issue, Severity
 from ..geometry import Pose, Vec3, quat_from_rpy
-from ..objects.listing import ObjectList, parse_objects
+from ..objects.object_list import ObjectList, parse_objects
 from ..objects.selection import parse_groups
 from ..objects.yaml_source import Source
-from ..resources.own import PACKAGE
-from ..ros import master
+from ..resources.package_files import PACKAGE
 from ..ros.arguments import number
-from ..ros.deadline import NoAnswer, within
+from ..ros.call_deadline import CallTimeoutError, within
+from ..ros.lifecycle import master_api
 
 OK, FAILED, USAGE = 0, 1, 2
 TIMEOUT = 30.0
@@ -96,8 +96,8 @@ class Parameters:
         Raises:
             ToolError: there is none.
         """
-        self.uri = master.uri(remappings)
-        fault = master.fault_of(self.uri, CALLER)
+        self.uri = master_api.uri(remappings)
+        fault = master_api.fault_of(self.uri, CALLER)
         if fault:
             raise ToolError(f"no ROS master at {self.uri} ({fault}); start one with roscore or "
                             "roslaunch, or set ROS_MASTER_URI")
@@ -135,7 +135,7 @@ class Parameters:
 
     def _call(self, method: str, *arguments: Any) -> Any:
         try:
-            return master.call(self.uri, method, CALLER, *arguments)
+            return master_api.call(self.uri, method, CALLER, *arguments)
         except OSError as fault:
             raise ToolError(f"the ROS master at {self.uri} does not answer any more ({fault}); "
                             "is roscore still up?") from fault
@@ -145,10 +145,10 @@ def full_name(name: str, remappings: Sequence[str]) -> str:
     """A name resolved in the namespace the tool was started in."""
     if name.startswith("/"):
         return name.rstrip("/")
-    return master.node_name([word for word in remappings if word.startswith("__ns:=")], name)
+    return master_api.node_name([word for word in remappings if word.startswith("__ns:=")], name)
 
 
-class Simulator:
+class SimulatorClient:
     """The services of a running simulator, ours or a real Gazebo."""
 
     def __init__(self, parameters: Parameters, name: str, timeout: float) -> None:
@@ -249,7 +249,7 @@ class Simulator:
             self._proxies[full] = rospy.ServiceProxy(full, _service_class(kind), persistent=True)
         try:
             return within(self._timeout, f"service {full}", lambda: self._proxies[full](**fields))
-        except NoAnswer as fault:
+        except CallTimeoutError as fault:
             raise ToolError(str(fault)) from fault
         except (rospy.ServiceException, rospy.ROSException, OSError) as fault:
             self._proxies.pop(full).close()

@@ -6,7 +6,7 @@ import contextlib
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import Issue
-from ..objects.listing import ObjectList
+from ..objects.object_list import ObjectList
 from ..objects.selection import ALL, select, unknown_name
 from ..ros.arguments import Parser
 from . import object_client as client
@@ -69,7 +69,7 @@ def chosen_models(words: Sequence[str], world: Sequence[str], listing: ObjectLis
 
 def _remove_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
-    simulator = client.Simulator(
+    simulator = client.SimulatorClient(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
     listing, groups, issues = client.read_list(parameters, "", 0.0)
     if listing is None and ALL in options.names:
@@ -85,7 +85,7 @@ def _remove_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     return client.FAILED if wrong or client.has_errors(issues) else client.OK
 
 
-def _remove_each(names: Sequence[str], simulator: client.Simulator) -> int:
+def _remove_each(names: Sequence[str], simulator: client.SimulatorClient) -> int:
     progress = Progress(len(names))
     wrong = 0
     for name in names:

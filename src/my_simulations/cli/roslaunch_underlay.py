@@ -12,7 +12,7 @@ import re
 import sys
 from typing import Any, Callable, List, Tuple
 
-from ..resources.own import PACKAGE, own_directory
+from ..resources.package_files import PACKAGE, own_directory
 
 _PATH = re.compile(r"[^ '\"]*")
 

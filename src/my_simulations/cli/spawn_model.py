@@ -13,8 +13,8 @@ from decimal import Decimal
 from typing import Any, Dict, List, Optional, Sequence
 
 from ..ros.arguments import Parser, number
-from ..ros.deadline import NoAnswer, within
-from ..ros.launched import Launch
+from ..ros.call_deadline import CallTimeoutError, within
+from ..ros.lifecycle.launch_info import Launch
 
 OK, FAILED, USAGE = 0, 1, 2
 WAIT_SECONDS = 120.0
@@ -25,7 +25,7 @@ OURS = "my_simulations/version"
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class SpawnFailed(Exception):
+class SpawnError(Exception):
     """The model is not in the world; the text says why and what to do."""
 
 
@@ -116,7 +116,7 @@ def main(argv: Optional[List[str]] = None) -> int:
         reader.error(str(fault))
     try:
         _spawn(options, words)
-    except SpawnFailed as fault:
+    except SpawnError as fault:
         print(f"spawn_model: {fault}", file=sys.stderr)
         return FAILED
     except KeyboardInterrupt:
@@ -135,7 +135,7 @@ def _spawn(options: argparse.Namespace, words: List[str]) -> None:
     _reach_master(words)
     import rospy
 
-    from ..ros import client
+    from ..ros import service_client
 
     rospy.init_node("spawn_model", argv=words, anonymous=True, disable_rostime=True)
     try:
@@ -152,22 +152,22 @@ def _spawn(options: argparse.Namespace, words: List[str]) -> None:
             _call(options, "unpause_physics", Empty, EmptyRequest())
         if options.bond:
             _bond(options)
-    except (client.NotThere, NoAnswer, rospy.ROSException) as fault:
-        raise SpawnFailed(str(fault)) from fault
+    except (service_client.ServiceUnavailableError, CallTimeoutError, rospy.ROSException) as fault:
+        raise SpawnError(str(fault)) from fault
     except rospy.ServiceException as fault:
-        raise SpawnFailed(f"the call failed: {fault}") from fault
+        raise SpawnError(f"the call failed: {fault}") from fault
 
 
 def _reach_master(words: List[str]) -> None:
-    from ..ros import master
+    from ..ros.lifecycle import master_api
 
     def say(line: str) -> None:
         print(f"spawn_model: {line}", file=sys.stderr, flush=True)
 
-    uri = master.uri(words)
+    uri = master_api.uri(words)
     deadline = time.monotonic() + MASTER_SECONDS
-    if not master.wait(uri, "/spawn_model", threading.Event(), say, deadline):
-        raise SpawnFailed(f"no ROS master answered at {uri} within {MASTER_SECONDS:g} s")
+    if not master_api.wait(uri, "/spawn_model", threading.Event(), say, deadline):
+        raise SpawnError(f"no ROS master answered at {uri} within {MASTER_SECONDS:g} s")
 
 
 def _document(options: argparse.Namespace) -> str:
@@ -182,20 +182,20 @@ def _document(options: argparse.Namespace) -> str:
     else:
         text, where = _file_text(options.file), options.file
     if not text.strip():
-        raise SpawnFailed(f"{where} is empty")
+        raise SpawnError(f"{where} is empty")
     return text
 
 
 def _file_text(path: str) -> str:
     if not os.path.exists(path):
-        raise SpawnFailed(f"there is no file {path}")
+        raise SpawnError(f"there is no file {path}")
     if not os.path.isfile(path):
-        raise SpawnFailed(f"{path} is not a file")
+        raise SpawnError(f"{path} is not a file")
     try:
         with open(path, encoding="utf-8") as file:
             return file.read()
     except (OSError, UnicodeDecodeError) as fault:
-        raise SpawnFailed(f"{path} cannot be read: {fault}") from fault
+        raise SpawnError(f"{path} cannot be read: {fault}") from fault
 
 
 def _parameter(name: str) -> str:
@@ -206,12 +206,12 @@ def _parameter(name: str) -> str:
     if value is None:
         near = difflib.get_close_matches(full, rospy.get_param_names(), 1, 0.8)
         meant = f"did you mean {near[0]}? Else " if near else ""
-        raise SpawnFailed(f'there is no parameter {full}; {meant}load it with <param '
+        raise SpawnError(f'there is no parameter {full}; {meant}load it with <param '
                           f'name="{name}" textfile=.../> or command=...')
     if not isinstance(value, str):
-        raise SpawnFailed(f"parameter {full} is not text but {type(value).__name__}")
+        raise SpawnError(f"parameter {full} is not text but {type(value).__name__}")
     if not value.strip():
-        raise SpawnFailed(f"parameter {full} is empty")
+        raise SpawnError(f"parameter {full} is empty")
     return value
 
 
@@ -219,10 +219,10 @@ def _wait_for_model(options: argparse.Namespace) -> None:
     import rospy
     from gazebo_msgs.srv import GetWorldProperties
 
-    from ..ros import client
+    from ..ros import service_client
 
-    name = client.api_name(options.gazebo_namespace, "get_world_properties")
-    world = client.service(name, GetWorldProperties, options.timeout)
+    name = service_client.api_name(options.gazebo_namespace, "get_world_properties")
+    world = service_client.service(name, GetWorldProperties, options.timeout)
 
     def is_there() -> bool:
         try:
@@ -230,7 +230,7 @@ def _wait_for_model(options: argparse.Namespace) -> None:
         except rospy.ServiceException:
             return False
 
-    client.wait_until(is_there, f"model {options.wait!r}", options.timeout)
+    service_client.wait_until(is_there, f"model {options.wait!r}", options.timeout)
 
 
 def _origin(options: argparse.Namespace) -> str:
@@ -245,16 +245,18 @@ def _call_spawn(options: argparse.Namespace, text: str, launch: Launch) -> None:
     from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 
     from ..geometry import quat_from_rpy
-    from ..objects.document import FILE, LAUNCH, marked
-    from ..ros import client
+    from ..objects.object_document import FILE, LAUNCH, marked
+    from ..ros import service_client
 
     kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
-    client.service(client.api_name(options.gazebo_namespace, kind), SpawnModel, options.timeout)
+    service_client.service(
+        service_client.api_name(options.gazebo_namespace, kind), SpawnModel, options.timeout
+    )
 
     if options.package_to_model:
         text = _package_to_model(text)
     # What our own server is told besides; Gazebo would only wonder at it.
-    if rospy.get_param(client.api_name(options.gazebo_namespace, OURS), None) is not None:
+    if rospy.get_param(service_client.api_name(options.gazebo_namespace, OURS), None) is not None:
         text = marked(text, {FILE: _origin(options), LAUNCH: str(launch.pid or "")})
     namespace = options.robot_namespace
     request = SpawnModelRequest(
@@ -294,7 +296,7 @@ def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
         near = difflib.get_close_matches(plain, known, 1)
         hint = (f"did you mean {near[0]}?" if near else
                 f"it has {', '.join(known)}" if known else "it has none")
-        raise SpawnFailed(f"the model {options.model!r} is in the world, but has no joint "
+        raise SpawnError(f"the model {options.model!r} is in the world, but has no joint "
                           f"{joint!r}; {hint}")
 
 
@@ -305,13 +307,13 @@ def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> st
 
 def _answer(options: argparse.Namespace, name: str, kind: Any, request: Any) -> Any:
     """The answer of a service of the server that has succeeded; raises SpawnFailed."""
-    from ..ros import client
+    from ..ros import service_client
 
-    full = client.api_name(options.gazebo_namespace, name)
-    proxy = client.service(full, kind, options.timeout)
+    full = service_client.api_name(options.gazebo_namespace, name)
+    proxy = service_client.service(full, kind, options.timeout)
     answer = within(options.timeout, f"service {full}", lambda: proxy(request))
     if not getattr(answer, "success", True):
-        raise SpawnFailed(answer.status_message)
+        raise SpawnError(answer.status_message)
     return answer
 
 
@@ -322,7 +324,7 @@ def _package_to_model(text: str) -> str:
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as fault:
-        raise SpawnFailed(f"the description is not well-formed XML: {fault}") from fault
+        raise SpawnError(f"the description is not well-formed XML: {fault}") from fault
     for mesh in root.iter("mesh"):
         name = mesh.get("filename", "")
         if name.startswith("package:"):
@@ -335,9 +337,9 @@ def _bond(options: argparse.Namespace) -> None:
     import rospy
     from gazebo_msgs.srv import DeleteModel
 
-    from ..ros import client
+    from ..ros import service_client
 
-    name = client.api_name(options.gazebo_namespace, "delete_model")
+    name = service_client.api_name(options.gazebo_namespace, "delete_model")
     proxy: Any = rospy.ServiceProxy(name, DeleteModel)
 
     def delete() -> None:

@@ -6,11 +6,11 @@ import contextlib
 from typing import List, Optional, Sequence, Set
 
 from ..errors import InputError
-from ..objects.document import FILE, LAUNCH, REPLACE, marked
-from ..objects.listing import PlacedObject
+from ..objects.object_document import FILE, LAUNCH, REPLACE, marked
+from ..objects.object_list import PlacedObject
 from ..objects.selection import select
 from ..ros.arguments import Parser
-from ..ros.launched import Launch
+from ..ros.lifecycle.launch_info import Launch
 from . import object_client as client
 from .object_documents import Document, Documents, package_finder
 from .progress import MANY, Progress
@@ -52,7 +52,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: Launch) -> int:
     parameters = client.Parameters(remappings)
-    simulator = client.Simulator(
+    simulator = client.SimulatorClient(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
     listing, groups, issues = client.read_list(
         parameters, options.package, min(options.timeout, client.LIST_SECONDS))
@@ -74,7 +74,7 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: L
     return client.FAILED if failed or wrong else client.OK
 
 
-def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeout: float,
+def _spawn_each(objects: List[PlacedObject], simulator: client.SimulatorClient, timeout: float,
                 launch: Launch) -> int:
     """Spawns one after the other; how many failed."""
     there = set(simulator.model_names())
@@ -96,7 +96,7 @@ def _spawn_each(objects: List[PlacedObject], simulator: client.Simulator, timeou
     return wrong
 
 
-def _spawn_one(placed: PlacedObject, document: Document, simulator: client.Simulator,
+def _spawn_one(placed: PlacedObject, document: Document, simulator: client.SimulatorClient,
                there: Set[str], launch: Launch) -> str:
     replaced = placed.name in there
     xml = document.xml

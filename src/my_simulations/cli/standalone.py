@@ -7,14 +7,14 @@ import threading
 from typing import TYPE_CHECKING, Callable, List, Optional
 
 from ..errors import CommandError, InputError, Issue, Severity
-from .browser import show
-from .faces import Faces
+from .front_ends import FrontEnds
 from .signals import end_quietly
+from .web_browser import show
 
 if TYPE_CHECKING:
-    from ..editor.recording import Recorder
+    from ..editor.logs.recorder import Recorder
     from ..resources.resolver import Resolver
-    from ..ros.options import Recording
+    from ..ros.lifecycle.server_options import Recording
     from ..simulator.simulator import Simulator
 
 OK, FAILED = 0, 1
@@ -26,7 +26,7 @@ def main(words: List[str], program: str) -> int:
     Returns:
         0 after SIGINT or SIGTERM, 1 when the world or the editor could not be started.
     """
-    from ..ros.options import parse
+    from ..ros.lifecycle.server_options import parse
 
     end_quietly()  # also while the world is read: nothing is lost by that
     options = parse(words[1:], program)
@@ -37,11 +37,11 @@ def main(words: List[str], program: str) -> int:
     for notice in options.notices:
         say(notice)
     from ..engine.commands import FOREVER
-    from ..engine.process import ProcessEngine
+    from ..engine.process_engine import ProcessEngine
     from ..resources.resolver import Resolver
-    from ..ros.engines import EngineSupply
+    from ..ros.lifecycle.engine_supply import EngineSupply
     from ..simulator.issue_log import IssueLog
-    from ..simulator.starting import start_world
+    from ..simulator.world_loading import start_world
 
     def tell(issue: Issue) -> None:
         if options.verbose or issue.severity is not Severity.NOTE or issue.code == "meshes":
@@ -64,7 +64,7 @@ def main(words: List[str], program: str) -> int:
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: ended.set())
-    faces = Faces()
+    faces = FrontEnds()
     recorder = _record(faces, simulator, resolver, options.recording, say)
     try:
         if not options.paused:
@@ -83,7 +83,7 @@ def main(words: List[str], program: str) -> int:
         simulator.close()
 
 
-def _record(faces: Faces, simulator: "Simulator", resolver: "Resolver", wanted: "Recording",
+def _record(faces: FrontEnds, simulator: "Simulator", resolver: "Resolver", wanted: "Recording",
             say: Callable[[object], None]) -> "Optional[Recorder]":
     if not wanted.on:
         return None

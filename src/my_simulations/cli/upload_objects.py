@@ -7,10 +7,10 @@ import xmlrpc.client
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, error, warning
-from ..objects.listing import parse_objects
+from ..objects.object_list import parse_objects
 from ..objects.selection import closest, parse_groups
 from ..objects.yaml_source import read_yaml
-from ..resources.own import file_in_package
+from ..resources.package_files import file_in_package
 from ..ros.arguments import Parser
 from . import object_client as client
 from .object_documents import package_finder, package_names

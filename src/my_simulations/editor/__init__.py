@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Optional
 
-from .options import EditorOptions
+from .editor_options import EditorOptions
 
 if TYPE_CHECKING:
     from ..resources.resolver import Resolver
     from ..simulator.simulator import Simulator
-    from .server import EditorServer
+    from .transport.server import EditorServer
 
 __all__ = ["EditorOptions", "start"]
 
@@ -23,6 +23,6 @@ def start(simulator: "Simulator", resolver: "Resolver",
     Raises:
         CommandError: the address cannot be listened at, or the page is not installed.
     """
-    from .server import EditorServer
+    from .transport.server import EditorServer
 
     return EditorServer(simulator, resolver, options or EditorOptions())

@@ -13,23 +13,23 @@ from ..errors import CommandError, Issue, Severity, error
 from ..resources.resolver import Resolver
 from ..simulator.history import History
 from ..simulator.simulator import Simulator
-from .autosave import Autosave
-from .building_requests import BuildingRequests
-from .client import Client
-from .document import Documents
-from .faults import Refusal
-from .guard import Guard
-from .hub import Hub
-from .library import Library
-from .library_requests import LibraryRequests
-from .options import EditorOptions
-from .pages import Pages
-from .protocol import Protocol
-from .replay import Logs
-from .requests import Requests
-from .sockets import Route, Sockets
-from .watching import Watching
-from .worlds import WorldFiles
+from .editor_options import EditorOptions
+from .library.autosave import Autosave
+from .library.building_requests import BuildingRequests
+from .library.library_requests import LibraryRequests
+from .library.model_library import Library
+from .library.world_files import WorldFiles
+from .logs.replay import Logs
+from .scene.scene_json import Documents
+from .transport.access_guard import Guard
+from .transport.browser_client import Client
+from .transport.error_messages import EditRefusedError
+from .transport.http_pages import Pages
+from .transport.hub import Hub
+from .transport.protocol import Protocol
+from .transport.requests import Requests
+from .transport.watch_requests import Watching
+from .transport.web_socket import Route, Sockets
 
 _AUTOSAVE_S = 1.0
 
@@ -139,4 +139,4 @@ class Assembly:
             return self._files.text(), name
         if name.endswith(".log"):
             return self._logs.data(name[:-len(".log")]), name
-        raise Refusal("not-found", f"there is nothing to download called {name!r}")
+        raise EditRefusedError("not-found", f"there is nothing to download called {name!r}")

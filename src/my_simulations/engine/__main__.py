@@ -9,11 +9,11 @@ import sys
 from typing import Iterator, List, Tuple
 
 from .api import Event, Reply
-from .child import die_with_parent, keep_freed_memory
+from .child_process import die_with_parent, keep_freed_memory
 from .commands import Command
+from .message_pipe import Wire
 from .ring import RingWriter
 from .runner import Runner
-from .wire import Wire
 
 
 class _Pipes:

@@ -52,7 +52,7 @@ class Engine(Protocol):
         """Where the states are read."""
 
     def submit(self, command: Command) -> "Future[Reply]":
-        """Queue a command. The future fails with `EngineGone` when the engine died first."""
+        """Queue a command. The future fails with `EngineGoneError` when the engine died first."""
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
         """Set who hears of events (called from the engine's reader thread)."""
@@ -80,15 +80,15 @@ class Engine(Protocol):
         """End it and wait for the end."""
 
 
-class EngineGone(Exception):
+class EngineGoneError(Exception):
     """The engine died before it answered."""
 
 
-class Refused(Exception):
+class CommandRefusedError(Exception):
     """A command that cannot be carried out; the message is one sentence for the user."""
 
 
-class Broken(Exception):
+class EngineBrokenError(Exception):
     """The world is lost half way through a change: this engine ends, and another takes over."""
 
 
@@ -98,7 +98,7 @@ class Backend(Protocol):
     def apply(self, command: Command) -> object:
         """Carry out a command that changes the world.
 
-        Raises `Refused`, then nothing changed, or `Broken`.
+        Raises `CommandRefusedError`, then nothing changed, or `EngineBrokenError`.
         """
 
     def configure(self, settings: PhysicsSettings) -> None:

@@ -52,7 +52,7 @@ class PhysicsSettings:
 
 
 @dataclass(frozen=True)
-class Servo:
+class JointPid:
     """A PID loop that drives a joint axis anew in every step (see `engine.bullet.servos`).
 
     Attributes:
@@ -114,7 +114,7 @@ class TimedEffort:
     start: int
     stop: int
     effort: float = 0.0
-    pid: Optional[Servo] = None
+    pid: Optional[JointPid] = None
 
     def begun(self, step: int) -> "TimedEffort":
         """As it acts when it is queued whole at `step`: none of its steps lies in the past."""
@@ -167,7 +167,7 @@ class LoadModel(Command):
 
 
 @dataclass(frozen=True)
-class Connect(Command):
+class ConnectModels(Command):
     """Join links of two models, or a link and the world, until either model is removed.
 
     Attributes:
@@ -239,7 +239,7 @@ class SetAxes(Command):
 
 
 @dataclass(frozen=True)
-class Hold(Command):
+class PinModels(Command):
     """Hold models where they are, at rest, whatever acts on them; `SetModelState` moves them.
 
     Replaces those held so far; the others fall, wakened, from where they are.

@@ -10,7 +10,7 @@ import time
 import traceback
 from typing import List, Optional, Protocol, Tuple
 
-from .api import Backend, Broken, Event, Refused, Reply
+from .api import Backend, CommandRefusedError, EngineBrokenError, Event, Reply
 from .commands import (
     AddTimedForces,
     Advance,
@@ -132,10 +132,10 @@ class Runner:
                     answers.append((number, value, ""))
                     # What comes after a refusal is not vouched for: one number says it all.
                     self._applied = self._applied if refused else number
-            except Refused as refusal:
+            except CommandRefusedError as refusal:
                 refused = True
                 answers.append((number, None, str(refusal)))
-            except Broken:
+            except EngineBrokenError:
                 raise
             except Exception as fault:  # a fault of the engine's own must not end the world
                 refused = True
@@ -161,7 +161,7 @@ class Runner:
             return self._step
         if isinstance(command, Advance):
             if self._advance is not None:
-                raise Refused("another advance is under way")
+                raise CommandRefusedError("another advance is under way")
             self._advance = (number, self._step + max(0, command.steps))
             return None
         if isinstance(command, SetPhysics):
@@ -180,7 +180,7 @@ class Runner:
 
     def _configure(self, settings: PhysicsSettings) -> None:
         if not 0.0 < settings.step_size <= 10.0:
-            raise Refused(f"the step size {settings.step_size} s is not in 0 to 10 s")
+            raise CommandRefusedError(f"the step size {settings.step_size} s is not in 0 to 10 s")
         if settings.step_size != self._settings.step_size:
             now = self._clock.sim_ns(self._step)
             self._clock = Clock(self._step, now, picoseconds(settings.step_size))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Dict, Iterable, List, Mapping, Sequence, Tuple
 
 from ..errors import Issue, error
-from .listing import ObjectList, PlacedObject
+from .object_list import ObjectList, PlacedObject
 from .yaml_source import Source
 
 ALL = "all"

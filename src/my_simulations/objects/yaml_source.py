@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import yaml
 
 from ..errors import InputError, Issue, error, warning
-from .yaml_guard import LARGEST, GuardedLoader
+from .guarded_yaml import LARGEST, GuardedLoader
 
 KeyPath = Tuple[str, ...]
 

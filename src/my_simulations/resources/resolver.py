@@ -10,10 +10,10 @@ from __future__ import annotations
 import os
 from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
-from .fuel_uri import FuelUri, fuel_uri, is_web_address
+from .database.fuel_uri import FuelUri, fuel_uri, is_web_address
 from .model_config import description_in
-from .own import PACKAGE, package_directories
-from .packages import ExportedPaths, FindPackage, PackageIndex, package_name
+from .package_files import PACKAGE, package_directories
+from .ros_packages import ExportedPaths, FindPackage, PackageIndex, package_name
 from .suggestions import suggestion
 
 DATABASE = "GAZEBO_MODEL_DATABASE_URI"
@@ -24,7 +24,7 @@ Progress = Callable[[str, int, int], None]
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
 
 
-class NotFound(Exception):
+class ResourceNotFoundError(Exception):
     """No file for a URI.
 
     Attributes:
@@ -42,7 +42,7 @@ class NotFound(Exception):
         super().__init__(f"{uri!r} was not found: {why}")
 
 
-class NotProvided(Exception):
+class ModelNotProvidedError(Exception):
     """A model that a source of missing models cannot give; the text says why."""
 
 
@@ -131,10 +131,10 @@ class Resolver:
 
         missing: Optional[MissingModels] = None
         if os.environ.get(DATABASE, "").strip():
-            from .database import ModelDatabase
+            from .database.model_database import ModelDatabase
 
             missing = ModelDatabase.from_environment(progress)
-        from .fuel import FuelModels
+        from .database.fuel import FuelModels
 
         return cls(models, resources, find, packages.exported, missing,
                    lambda: packages.folders() + own, FuelModels.from_environment(progress), own)
@@ -156,7 +156,7 @@ class Resolver:
         return [*self._all("models"), *self._all("media"), *self._packages(),
                 *self.fuel_folders()]
 
-    def meant(self, missing: NotFound) -> str:
+    def meant(self, missing: ResourceNotFoundError) -> str:
         """The beginning of a hint: a URI that is there and much like one that is not; or ""."""
         found = suggestion(missing.uri, missing.tried, self._packages)
         return f"did you mean {found}? Else " if found else ""
@@ -190,7 +190,7 @@ class Resolver:
         """
         uri = uri.strip()
         if not uri or uri == "__default__":
-            raise NotFound(uri, reason="the URI is empty")
+            raise ResourceNotFoundError(uri, reason="the URI is empty")
         if is_web_address(uri):
             return self._from_fuel(uri)
         tried: List[str] = []
@@ -204,13 +204,16 @@ class Resolver:
     def _from_fuel(self, uri: str) -> str:
         known = fuel_uri(uri)
         if known is None or self._fuel is None:
-            raise NotFound(uri, reason="of web addresses only those of models on a Fuel server are"
-                           " read, https://HOST/1.0/OWNER/models/NAME, or model://, package://,"
-                           " file:// and paths")
+            raise ResourceNotFoundError(
+                uri,
+                reason="of web addresses only those of models on a Fuel server are"
+                " read, https://HOST/1.0/OWNER/models/NAME, or model://, package://,"
+                " file:// and paths",
+            )
         try:
             return os.path.abspath(self._fuel.path(known))
-        except NotProvided as fault:
-            raise NotFound(uri, reason=str(fault)) from None
+        except ModelNotProvidedError as fault:
+            raise ResourceNotFoundError(uri, reason=str(fault)) from None
 
     def _provided(self, uri: str, tried: List[str]) -> str:
         """The path from the source of missing models, else NotFound."""
@@ -218,12 +221,12 @@ class Resolver:
         if self._missing is not None and uri.startswith("model://") and name:
             try:
                 path = os.path.join(self._missing.provide(name), inside)
-            except NotProvided as fault:
-                raise NotFound(uri, [*tried, str(fault)]) from None
+            except ModelNotProvidedError as fault:
+                raise ResourceNotFoundError(uri, [*tried, str(fault)]) from None
             if os.path.exists(path):
                 return os.path.abspath(path)
             tried.append(path)
-        raise NotFound(uri, tried)
+        raise ResourceNotFoundError(uri, tried)
 
     def model_file(self, uri: str, base_dir: str = "") -> str:
         """The description file `uri` names: the file itself, or the one its folder's config picks.
@@ -236,7 +239,7 @@ class Resolver:
             return path
         found = description_in(path)
         if found is None:
-            raise NotFound(
+            raise ResourceNotFoundError(
                 uri,
                 [os.path.join(path, "model.config"), os.path.join(path, "manifest.xml"),
                  os.path.join(path, "model.sdf")],
@@ -265,7 +268,7 @@ class Resolver:
             yield from self._for_model(rest)
         else:
             known = "model://, package://, file:// or a path"
-            raise NotFound(uri, reason=f"{scheme}:// is not read; use {known}")
+            raise ResourceNotFoundError(uri, reason=f"{scheme}:// is not read; use {known}")
 
     def _for_model(self, rest: str) -> Iterator[str]:
         for folder in self._all("models"):
@@ -274,7 +277,7 @@ class Resolver:
     def _for_package(self, uri: str, rest: str) -> Iterator[str]:
         name, inside = _split_package(rest)
         if not name:
-            raise NotFound(uri, reason="no name follows ://")
+            raise ResourceNotFoundError(uri, reason="no name follows ://")
         folder = self._find_package(name)
         yield os.path.join(folder, inside) if folder else f"ROS package {name}"
         for behind in self._own[1:] if name == PACKAGE else ():

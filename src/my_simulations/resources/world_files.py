@@ -5,8 +5,8 @@ import difflib
 import os
 from typing import List, Tuple
 
-from .own import own_directory
-from .resolver import NotFound, Resolver
+from .package_files import own_directory
+from .resolver import Resolver, ResourceNotFoundError
 
 ENDINGS = (".world", ".sdf")
 """What a world's file name ends in."""
@@ -81,9 +81,9 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
                 tried.append(candidate)
     try:
         return resolver.resolve(name)
-    except NotFound as missing:
+    except ResourceNotFoundError as missing:
         more = [place for place in missing.tried if place not in tried]
-        raise NotFound(name, tried + more, missing.reason) from None
+        raise ResourceNotFoundError(name, tried + more, missing.reason) from None
 
 
 def advice_on(name: str, caller: str = "") -> str:

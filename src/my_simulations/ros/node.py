@@ -12,16 +12,16 @@ from ..errors import CommandError, InputError
 from ..geometry import Pose, is_finite
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
-from . import abandoned
-from .editor import Open
 from .interface import Row, rows
-from .launched import Launch
-from .log import log_issue
-from .membership import Membership
-from .world import WorldServices
+from .issue_logging import log_issue
+from .lifecycle import abandoned
+from .lifecycle.launch_info import Launch
+from .lifecycle.master_membership import Membership
+from .services.editor_service import Open
+from .services.world_services import WorldServices
 
 if TYPE_CHECKING:
-    from .models import ModelServices
+    from .services.model_services import ModelServices
 
 ROSOUT_SECONDS = 1.0
 """How long a node that is about to end waits for /rosout to hear why."""
@@ -64,9 +64,9 @@ class Node:
 
     def advertise(self) -> None:
         """Offer topics, services and parameters."""
-        from .connections import take_side_by_side
-        from .publishers import Publishers
+        from .lifecycle.tcpros_handshake import take_side_by_side
         from .registration import register
+        from .topics.state_publishers import Publishers
 
         if _flag(self._parameters, "lockstep", False):
             self._simulator.clock.set_manual_stepping(True)
@@ -103,7 +103,7 @@ class Node:
         from .registration import register
 
         if self._extensions:
-            from .metrics import Metrics
+            from .topics.performance_metrics import Metrics
 
             self._metrics = Metrics(self._simulator)
             self._metrics.start()
@@ -116,11 +116,11 @@ class Node:
 
     def _faces(self) -> Dict[str, Any]:
         """Who handles what, by the first half of the table's handlers."""
-        from .joints import JointServices
-        from .lights import LightServices
-        from .links import LinkServices
-        from .loads import LoadServices
-        from .states import StateServices
+        from .services.joint_services import JointServices
+        from .services.light_services import LightServices
+        from .services.link_services import LinkServices
+        from .services.state_services import StateServices
+        from .services.wrench_services import LoadServices
 
         simulator = self._simulator
         return {
@@ -131,14 +131,14 @@ class Node:
         }
 
     def _models(self) -> ModelServices:
-        from .models import ModelServices
+        from .services.model_services import ModelServices
 
         return ModelServices(self._simulator, self._resolver, log_issue, self._launch.pid)
 
     def _late_faces(self) -> Dict[str, Any]:
-        from .editor import EditorService
-        from .saving import SaveService
-        from .stepping import SteppingService
+        from .services.editor_service import EditorService
+        from .services.save_service import SaveService
+        from .services.step_service import SteppingService
 
         simulator = self._simulator
         return {
@@ -216,7 +216,7 @@ class Node:
 def _reconfigure(simulator: Simulator) -> Optional[Any]:
     """The dynamic_reconfigure server; None where its messages are not installed."""
     try:
-        from .reconfigure import Reconfigure
+        from .services.physics_reconfigure import Reconfigure
     except ImportError as fault:
         rospy.logwarn("the physics settings are not offered to dynamic_reconfigure: %s", fault)
         return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Dict, Optional, Tuple
 
 from ..engine.ring import BELL, DEMAND_NS, LINK_WIDTH, POSE_DEMAND_NS
-from .layout import Layout, lay_out
+from .row_layout import Layout, lay_out
 from .session import Session
 
 ROW_WIDTH = LINK_WIDTH

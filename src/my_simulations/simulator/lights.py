@@ -7,8 +7,8 @@ from typing import List, Optional
 from ..description.world import Light
 from ..errors import CommandError
 from ..geometry import Pose, compose, normalised, pose_is_finite
-from .order import Turn
-from .registry import UnknownEntity
+from .order_slot import OrderSlot
+from .registry import UnknownEntityError
 from .session import Session
 
 
@@ -28,9 +28,9 @@ class Lights:
         for light in self.all():
             if light.name == name:
                 return light
-        raise UnknownEntity(f"there is no light '{name}'")
+        raise UnknownEntityError(f"there is no light '{name}'")
 
-    def add(self, light: Light, frame: str = "", slot: Optional[Turn] = None) -> None:
+    def add(self, light: Light, frame: str = "", slot: Optional[OrderSlot] = None) -> None:
         """Add a light, its pose given in `frame`; last, or at its former place in the order.
 
         Raises CommandError: empty or taken name, unknown frame, a pose that is not finite.

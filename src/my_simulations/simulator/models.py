@@ -12,21 +12,21 @@ from ..engine.commands import (
     AddTimedForces,
     Batch,
     Command,
-    Hold,
     LoadModel,
     ModelState,
+    PinModels,
     RemoveModel,
 )
 from ..engine.ring import Snapshot
 from ..errors import CommandError, error
-from ..formats.meshes import without_missing_meshes
+from ..formats.mesh.loading import without_missing_meshes
 from ..geometry import Pose, compose, normalised
-from .connections import Connections, Departed
-from .initial import initial_commands
-from .order import Turn
+from .convex_meshes import ConvexParts
+from .initial_state import initial_commands
+from .inter_model_joints import DeletedModel, InterModelJoints
+from .order_slot import OrderSlot
 from .registry import Entity
 from .session import Session
-from .solids import ConvexParts
 from .wrenches import Wrenches
 
 
@@ -41,7 +41,7 @@ class Models:
         self._session = session
         self._wrenches = wrenches
         self._convex_meshes = convex_meshes
-        self._between = Connections()
+        self._between = InterModelJoints()
         self._pinned: List[str] = []
         self._losses: List[str] = []
         self._saved_starts = dict(session.world.initial)
@@ -104,7 +104,7 @@ class Models:
 
     def spawn(self, model: Model, pose: Optional[Pose] = None, frame: str = "",
               meshes: Optional[MeshTable] = None, replace: bool = False,
-              state: Optional[ModelState] = None, deleted: Optional[Departed] = None,
+              state: Optional[ModelState] = None, deleted: Optional[DeletedModel] = None,
               launched: bool = False) -> None:
         """Put a model into the world; returns when it is there.
 
@@ -128,7 +128,7 @@ class Models:
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
         with session.structure_lock:
-            again = Connections() if deleted is None else deleted.joints
+            again = InterModelJoints() if deleted is None else deleted.joints
             between = self._between.joined(again)
             with session.registry_lock:
                 old = self._replaceable(model.name, replace)
@@ -152,7 +152,7 @@ class Models:
                     self._between = self._between.without(model.name)
                     self._forget(old)
 
-    def delete(self, name: str) -> Departed:
+    def delete(self, name: str) -> DeletedModel:
         """Delete a model; returns when it is gone, with what brings it back to its place.
 
         Raises UnknownEntity.
@@ -163,8 +163,11 @@ class Models:
                 entity = session.registry.model(name)
             session.call(RemoveModel(entity.model_id))
             with session.registry_lock:
-                deleted = Departed(Turn.of(session.registry.names(), name), self._between.of(name),
-                                   entity.launched)
+                deleted = DeletedModel(
+                    OrderSlot.of(session.registry.names(), name),
+                    self._between.of(name),
+                    entity.launched,
+                )
                 session.registry.remove(name)
                 self._between = self._between.without(name)
                 self._forget(entity)
@@ -269,10 +272,10 @@ class Models:
             self._pinned = list(names)
             self._session.call(self._pin_command())
 
-    def _pin_command(self) -> Hold:
+    def _pin_command(self) -> PinModels:
         with self._session.registry_lock:
             registry = self._session.registry
-            return Hold(tuple(registry.model(name).model_id
+            return PinModels(tuple(registry.model(name).model_id
                               for name in self._pinned if name in registry))
 
     # -- whole worlds, for the other parts, which hold the structure lock --------------------------
@@ -286,7 +289,7 @@ class Models:
         session = self._session
         self._saved_starts = dict(session.world.initial)
         self._losses = list(session.world.losses)
-        self._between = Connections(session.world.joints)
+        self._between = InterModelJoints(session.world.joints)
         self.divide_meshes(session.world, meshes)
         for model in session.world.models:
             try:

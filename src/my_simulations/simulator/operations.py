@@ -14,11 +14,11 @@ from ..description.world import Light, Physics
 from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
-from .connections import Departed
-from .moments import Moment
-from .order import Turn
+from .inter_model_joints import DeletedModel
+from .order_slot import OrderSlot
 from .scene import SceneSettings
 from .simulator import Simulator
+from .world_state import WorldState
 from .wrenches import Effort
 
 
@@ -56,7 +56,7 @@ class AddModel:
     pose: Pose
     meshes: MeshTable = field(default_factory=dict)
     state: Optional[ModelState] = None
-    deleted: Optional[Departed] = None
+    deleted: Optional[DeletedModel] = None
 
     def apply(self, world: Simulator) -> Operation:
         """Put it in."""
@@ -167,7 +167,7 @@ class AddLight:
     """A light comes: last, or where its turn is."""
 
     light: Light
-    slot: Optional[Turn] = None
+    slot: Optional[OrderSlot] = None
 
     def apply(self, world: Simulator) -> Operation:
         """Put it in."""
@@ -184,7 +184,7 @@ class RemoveLight:
     def apply(self, world: Simulator) -> Operation:
         """Take it out."""
         names = [light.name for light in world.lights.all()]
-        return AddLight(world.lights.delete(self.name), Turn.of(names, self.name))
+        return AddLight(world.lights.delete(self.name), OrderSlot.of(names, self.name))
 
 
 @dataclass(frozen=True)
@@ -242,7 +242,7 @@ class SetSurrounding:
 class PutBack:
     """States as they were at a moment."""
 
-    moment: Moment
+    moment: WorldState
 
     def apply(self, world: Simulator) -> Operation:
         """Put them back."""
@@ -299,14 +299,14 @@ class Push:
         else:
             world.wrenches.apply_wrench(self.link, self.force, self.torque, duration_ns=duration,
                        point=rotate(pose.orientation, lever))
-        return _PutModelBack(Moment(back.step, back.sim_ns, {name: back.models[name]}), self)
+        return _PutModelBack(WorldState(back.step, back.sim_ns, {name: back.models[name]}), self)
 
 
 @dataclass(frozen=True)
 class _PutModelBack:
     """Undoes a push: states go back, the clock does not; its own inverse is the push again."""
 
-    moment: Moment
+    moment: WorldState
     push: Push
 
     def apply(self, world: Simulator) -> Operation:

@@ -21,10 +21,10 @@ from ..description.shapes import MeshTable
 from ..description.world import Light
 from ..engine.commands import LinkState, ModelState
 from ..engine.ring import Snapshot
-from ..engine.rows import AXES, axis_rows, row_name
+from ..engine.ring_rows import AXES, axis_rows, row_name
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
-from .order import Turn
+from .order_slot import OrderSlot
 
 _FEW = 3
 """Names that a message suggests."""
@@ -36,11 +36,11 @@ WORLD_FRAMES = ("", "world", "map", "/map")
 """The names of the world frame (Gazebo behaviour)."""
 
 
-class UnknownEntity(CommandError):
+class UnknownEntityError(CommandError):
     """No model, link or joint of that name."""
 
 
-class UnknownFrame(CommandError):
+class UnknownFrameError(CommandError):
     """A reference frame that is neither the world nor an entity."""
 
 
@@ -193,7 +193,7 @@ class Registry:
         """All entities, in order."""
         return list(self._entities.values())
 
-    def add(self, entity: Entity, turn: Optional[Turn] = None) -> None:
+    def add(self, entity: Entity, turn: Optional[OrderSlot] = None) -> None:
         """A model has come: where its turn is, or last, also when it replaces one of its name."""
         if entity.model.name in self._entities:
             self.remove(entity.model.name)
@@ -218,7 +218,7 @@ class Registry:
         self._sort_links(new)
         self.revision += 1
 
-    def _put(self, entity: Entity, turn: Turn) -> None:
+    def _put(self, entity: Entity, turn: OrderSlot) -> None:
         name = entity.model.name
         names = [one for one in self._entities if one != name]
         names.insert(turn.among(names), name)
@@ -247,7 +247,7 @@ class Registry:
         """The entity of a model name. Raises UnknownEntity."""
         found = self._entities.get(name)
         if found is None:
-            raise UnknownEntity(f"there is no model '{name}'" + self._nearest(name))
+            raise UnknownEntityError(f"there is no model '{name}'" + self._nearest(name))
         return found
 
     def link(self, name: str) -> Tuple[Entity, int]:
@@ -257,7 +257,7 @@ class Registry:
         """
         found = self._scoped_link(name) or self._plain_link(name)
         if found is None:
-            raise UnknownEntity(f"there is no link '{name}'" + self._nearest_link(name))
+            raise UnknownEntityError(f"there is no link '{name}'" + self._nearest_link(name))
         return found
 
     def joint_row(self, name: str) -> int:
@@ -267,7 +267,7 @@ class Registry:
             if row is not None:
                 self._joint_taken(name, entity)
                 return row
-        raise UnknownEntity(f"there is no movable joint '{name}'" + self._nearest_joint(name))
+        raise UnknownEntityError(f"there is no movable joint '{name}'" + self._nearest_joint(name))
 
     def joint(self, name: str) -> Tuple[Entity, Joint, int]:
         """Model, joint and axis number of a joint by plain or scoped name, fixed ones too.
@@ -277,7 +277,7 @@ class Registry:
         for entity, joint, number in self._joints_named(name):
             self._joint_taken(name, entity)
             return entity, joint, number
-        raise UnknownEntity(f"there is no joint '{name}'" + self._nearest_joint(name))
+        raise UnknownEntityError(f"there is no joint '{name}'" + self._nearest_joint(name))
 
     def _joints_named(self, name: str) -> Iterator[Tuple[Entity, Joint, int]]:
         for entity in self._entities.values():
@@ -311,7 +311,7 @@ class Registry:
                 return Anchor(-1, light.pose)
         if name in WORLD_FRAMES:
             return None
-        raise UnknownFrame(f"there is no model, link or frame '{name}'" + self._nearest(name))
+        raise UnknownFrameError(f"there is no model, link or frame '{name}'" + self._nearest(name))
 
     def _scoped_link(self, name: str) -> Optional[Tuple[Entity, int]]:
         at = name.find("::")

@@ -17,7 +17,7 @@ from ..engine.commands import (
 )
 from ..geometry import STILL
 from .clock import SimClock
-from .initial import initial_commands
+from .initial_state import initial_commands
 from .models import Models
 from .registry import Entity
 from .session import Session

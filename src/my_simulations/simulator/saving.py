@@ -15,13 +15,13 @@ from ..description.model import Joint, Model
 from ..description.unflatten import unflattened
 from ..description.world import LightState, LinkState, ModelState, SavedState, World
 from ..engine.ring import Snapshot
-from ..engine.rows import axis_rows
+from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, InputError
-from ..formats.load import read_file
-from ..formats.sdf_write import write_world
+from ..formats.reading import read_file
+from ..formats.sdf.writer.entities import write_world
 from ..geometry import STILL, compose, inverse
-from ..resources.own import package_directories
-from ..resources.resolver import NotFound, Resolver
+from ..resources.package_files import package_directories
+from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_files import ENDINGS, folder_of_users, ships, users_folder
 from .registry import Entity
 from .safe_file import write_whole
@@ -171,7 +171,7 @@ class _Includes:
     def _read(self, uri: str) -> Optional[Model]:
         try:
             found, _ = read_file(self._resolver.model_file(uri), self._resolver)
-        except (NotFound, InputError):
+        except (ResourceNotFoundError, InputError):
             return None  # what cannot be found again must be written in full
         return found if isinstance(found, Model) else None
 

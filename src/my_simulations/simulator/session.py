@@ -11,9 +11,9 @@ from ..description.world import World
 from ..engine.api import Reply
 from ..engine.commands import Command
 from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
-from ..engine.rows import axis_rows
+from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
-from ..formats.surroundings import with_surroundings
+from ..formats.sdf.world_settings import with_surroundings
 from ..geometry import Pose
 from .registry import Entity, Registry, Rows
 from .supervisor import Supervisor

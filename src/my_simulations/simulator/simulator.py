@@ -22,6 +22,7 @@ from ..engine.commands import (
 )
 from ..errors import CommandError, Issue, Severity, error, warning
 from .clock import SimClock
+from .convex_meshes import ConvexParts
 from .feeds import StateFeed
 from .joints import Joints
 from .lights import Lights
@@ -30,7 +31,6 @@ from .physics import WorldPhysics
 from .resets import Resets
 from .scene import SceneSettings
 from .session import Session
-from .solids import ConvexParts
 from .states import States
 from .supervisor import Supervisor
 from .wrenches import Wrenches

@@ -16,10 +16,10 @@ from ..engine.commands import (
 from ..engine.ring import LINK_WIDTH, Snapshot
 from ..geometry import IDENTITY, Pose, Twist, compose
 from .clock import SimClock
-from .frames import in_frame, relative, usable
-from .moments import Moment
+from .reference_frames import in_frame, relative, usable
 from .registry import Entity
 from .session import Session
+from .world_state import WorldState
 
 
 class States:
@@ -79,9 +79,9 @@ class States:
         self._session.call(Ping())
         return self.latest()
 
-    def capture(self) -> Moment:
+    def capture(self) -> WorldState:
         """States of all models and the clock, for `restore`."""
-        return Moment.of(*self.latest(), self._clock.now())
+        return WorldState.of(*self.latest(), self._clock.now())
 
     def contacts(self) -> List[Tuple[str, str, Contact]]:
         """The contacts of the last step, with the scoped names of both links."""
@@ -121,7 +121,7 @@ class States:
         pose, twist, reference = in_frame(pose, twist, anchor)
         session.call(SetLinkState(row, pose, twist, reference))
 
-    def restore(self, state: Moment, clock: bool = True) -> None:
+    def restore(self, state: WorldState, clock: bool = True) -> None:
         """Restore poses, velocities, joints and, with `clock`, the time; models added since stay.
 
         Models that were deleted, or have other links now, are skipped.

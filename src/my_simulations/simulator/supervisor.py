@@ -14,10 +14,10 @@ import time
 from concurrent.futures import TimeoutError as FutureTimeout
 from typing import Callable, List, Optional, Tuple
 
-from ..engine.api import Engine, EngineGone, Reply
+from ..engine.api import Engine, EngineGoneError, Reply
 from ..engine.commands import Advance, Batch, Command, LoadModel
 from ..engine.ring import HEARTBEAT, PROGRESS
-from ..errors import CommandError, EngineLost, Issue, NoAnswer, error
+from ..errors import CommandError, EngineLostError, EngineTimeoutError, Issue, error
 from .watchdog import PERIOD_S, Watchdog
 
 _COMMAND_S = 120.0    # how long a command may take (a heavy mesh takes a while)
@@ -85,14 +85,18 @@ class Supervisor:
                 raise CommandError(self._failure)
             try:
                 reply = self._answer(engine, command)
-            except EngineGone:
+            except EngineGoneError:
                 deaths += self._await_restart(command)
                 if isinstance(command, Advance) and deaths:
-                    raise EngineLost(f"{deaths[0]} over this request; the world was put back as "
-                                     f"it was at step {engine.ring.step}") from None
+                    raise EngineLostError(
+                        f"{deaths[0]} over this request; the world was put back as "
+                        f"it was at step {engine.ring.step}"
+                    ) from None
                 if len(deaths) >= _TRIES:
-                    raise EngineLost(f"{deaths[-1]} over this request, {_TRIES} times; the world "
-                                     "was put back as it was before") from None
+                    raise EngineLostError(
+                        f"{deaths[-1]} over this request, {_TRIES} times; the world "
+                        "was put back as it was before"
+                    ) from None
                 continue
             if reply.error:
                 raise CommandError(reply.error)
@@ -179,7 +183,7 @@ class Supervisor:
         try:
             self._engine.restart()
             self._restore(self._submit, paused)
-        except EngineGone:
+        except EngineGoneError:
             return  # it died again: that death is in the queue
         except (OSError, CommandError) as fault:
             self._failure = f"the physics engine could not be restored: {fault}"
@@ -203,7 +207,7 @@ class Supervisor:
                 words = engine.ring.words
                 if words[HEARTBEAT] == beat and words[PROGRESS] != progress:
                     continue  # it is still at one long row of commands, and gets on
-                raise NoAnswer(
+                raise EngineTimeoutError(
                     f"the physics engine has not answered for {self._patience:g} s; "
                     f"{type(command).__name__} may still be carried out") from late
 

@@ -8,7 +8,7 @@ from ..engine.commands import (
     FOREVER,
     AddTimedForces,
     ClearTimedForces,
-    Servo,
+    JointPid,
     TimedEffort,
     TimedForce,
     TimedWrench,
@@ -20,7 +20,7 @@ from .session import Session
 
 NANOSECOND_PS = 1000
 
-Effort = Union[float, Servo]
+Effort = Union[float, JointPid]
 """N m or N, or the PID controller that computes it in every step."""
 
 
@@ -81,9 +81,9 @@ class Wrenches:
         with self._session.structure_lock:
             row = self._session.axis_row(joint)
             if duration_ns:
-                pid = effort if isinstance(effort, Servo) else None
+                pid = effort if isinstance(effort, JointPid) else None
                 self.add([TimedEffort(0, row, *self._span(start_ns, duration_ns),
-                                      0.0 if isinstance(effort, Servo) else effort, pid)],
+                                      0.0 if isinstance(effort, JointPid) else effort, pid)],
                          whole=True)
 
     def efforts_on(self, joint: str) -> Tuple[Effort, ...]:

@@ -15,8 +15,8 @@ from gazebo_msgs.srv import (
     SpawnModelRequest,
 )
 
-from my_simulations.ros.client import NotThere, api_name, service
-from my_simulations.ros.deadline import NoAnswer, within
+from my_simulations.ros.call_deadline import CallTimeoutError, within
+from my_simulations.ros.service_client import ServiceUnavailableError, api_name, service
 
 CALL_SECONDS = 300.0
 """How long an answer may take; dividing a big mesh into convex parts takes minutes."""
@@ -77,7 +77,7 @@ def _call(name: str, service_class: Any, request: Any) -> Optional[bool]:
     try:
         proxy = service(name, service_class)
         answer = within(CALL_SECONDS, name, lambda: proxy(request))
-    except (NotThere, NoAnswer, rospy.ServiceException) as fault:
+    except (ServiceUnavailableError, CallTimeoutError, rospy.ServiceException) as fault:
         rospy.logerr("%s: %s", name, fault)
         return None
     rospy.loginfo("%s: %s", name, answer.status_message)

@@ -8,17 +8,18 @@ import pybullet
 
 from ...description.model import Model
 from ...geometry import Pose, pose_is_finite
-from ..api import Broken, Event, Refused
+from ..api import CommandRefusedError, EngineBrokenError, Event
+from ..body_plan import PlanError, open_joints
 from ..commands import (
     AddTimedForces,
     Clear,
     ClearTimedForces,
     Command,
-    Connect,
-    Hold,
+    ConnectModels,
     LoadModel,
     ModelState,
     PhysicsSettings,
+    PinModels,
     ReadContacts,
     RemoveModel,
     Restart,
@@ -27,25 +28,24 @@ from ..commands import (
     SetLinkState,
     SetModelState,
 )
-from ..plan import PlanError, open_joints
 from ..ring import JOINTS, LINKS
-from . import bodies, joints
+from . import bodies, joint_axes
 from .bodies import Body, Part
-from .builder import Builder
-from .constraints import Constraints
-from .contacts import read_contacts
-from .decay import Decay
+from .body_builder import Builder
+from .collision_shapes import ShapeError, ShapeFactory
+from .contact_readout import read_contacts
 from .forces import Forces
-from .friction import EVERY, FrictionBalance
-from .holds import Holds
-from .moving import Mover
-from .readout import Readout
-from .restore import Entry, inherited, restore
-from .shapes import ShapeError, ShapeFactory
-from .spin import SpinKeeper
-from .starts import Start, Starts
-from .ties import Ties
-from .wake import Waker
+from .gyroscopic_rigid import GyroscopicRigid
+from .initial_state_cache import InitialStateCache, Start
+from .inter_model_joints import InterModelJoints
+from .joint_constraints import Constraints
+from .pair_friction import EVERY, FrictionBalance
+from .pinned_bodies import PinnedBodies
+from .state_readout import StateReadout
+from .state_restore import Entry, inherited, restore
+from .state_setter import StateSetter
+from .velocity_decay import VelocityDecay
+from .wake_up import WakeUp
 
 
 class BulletBackend:
@@ -59,21 +59,21 @@ class BulletBackend:
         self._bodies: Dict[int, Body] = {}
         self._rows: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
-        self._readout = Readout(self._on_diverged)
-        self._waker = Waker(self._bodies, self._readout.touch)
+        self._readout = StateReadout(self._on_diverged)
+        self._waker = WakeUp(self._bodies, self._readout.touch)
         self._forces = Forces(self._waker.around)
         self._friction = FrictionBalance(self._on_misfit)
-        self._spin = SpinKeeper()
-        self._holds = Holds(self._waker.around)
-        self._ties = Ties()
-        self._decay = Decay()
-        self._mover = Mover(self._rows, self._axes, self._readout, self._waker,
+        self._spin = GyroscopicRigid()
+        self._holds = PinnedBodies(self._waker.around)
+        self._ties = InterModelJoints()
+        self._decay = VelocityDecay()
+        self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                             self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
                          self._decay, self._readout)
         self._events: List[Event] = []
-        self._starts = Starts(self._readout)
+        self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
@@ -81,8 +81,8 @@ class BulletBackend:
             SetModelState: lambda command: self._mover.set_model(
                 command, self._entry(command.model_id)),
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
-            SetAxes: self._set_axes, Hold: self._hold,
-            Connect: self._connect,
+            SetAxes: self._set_axes, PinModels: self._hold,
+            ConnectModels: self._connect,
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
@@ -92,7 +92,7 @@ class BulletBackend:
     # -- Backend ---------------------------------------------------------------------------------
 
     def apply(self, command: Command) -> object:
-        """Carry out a command; raises `Refused`."""
+        """Carry out a command; raises `CommandRefusedError`."""
         if not isinstance(command, (Restart, Clear)):
             self._settle()
         return self._appliers[type(command)](command)
@@ -107,7 +107,7 @@ class BulletBackend:
         if settings.step_size != before.step_size:
             for entry in self._models.values():
                 for body in entry.bodies:
-                    joints.set_up(body, entry.model, self._forces, settings.step_size)
+                    joint_axes.set_up(body, entry.model, self._forces, settings.step_size)
                     if body.rigid and body.moves:
                         link = entry.model.links[body.parts[0].row - entry.first_row]
                         bodies.set_decay(body.uid, link, settings.step_size)
@@ -176,7 +176,7 @@ class BulletBackend:
         try:
             builder = Builder(command, self._shapes)
         except (PlanError, ShapeError) as fault:
-            raise Refused(str(fault)) from fault
+            raise CommandRefusedError(str(fault)) from fault
         entry = self._enter(builder, command.model, command.pose)
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
@@ -189,7 +189,7 @@ class BulletBackend:
         try:
             built = builder.build(pose, dt)
         except ShapeError as fault:
-            raise Refused(str(fault)) from fault
+            raise CommandRefusedError(str(fault)) from fault
         constraints = Constraints(model, builder.plans, built, pose,
                                   open_joints(model, builder.plans), first_row)
         entry = Entry(model, builder, built, first_row, pose, constraints)
@@ -198,7 +198,7 @@ class BulletBackend:
             self._register(body)
             for part in body.parts:
                 self._decay.add(body, part, model.links[part.row - first_row])
-            joints.set_up(body, model, self._forces, dt)
+            joint_axes.set_up(body, model, self._forces, dt)
         return entry
 
     def _restart(self, command: Restart) -> None:
@@ -224,8 +224,11 @@ class BulletBackend:
         try:
             for entry, pose in starts:
                 self._enter(entry.builder, entry.model, pose)
-        except (Refused, pybullet.error) as fault:  # what could be built before: files have gone
-            raise Broken(f"the world could not be built again: {fault}") from fault
+        except (
+            CommandRefusedError,
+            pybullet.error,
+        ) as fault:  # what could be built before: files have gone
+            raise EngineBrokenError(f"the world could not be built again: {fault}") from fault
 
     def _inherited(self, command: LoadModel) -> ModelState:
         self._readout.read()
@@ -235,12 +238,14 @@ class BulletBackend:
 
     def _check_load(self, command: LoadModel) -> None:
         if command.model_id in self._models:
-            raise Refused(f"model number {command.model_id} is taken")
+            raise CommandRefusedError(f"model number {command.model_id} is taken")
         if not pose_is_finite(command.pose):
-            raise Refused(f"the pose of model '{command.model.name}' is not finite")
+            raise CommandRefusedError(f"the pose of model '{command.model.name}' is not finite")
         if (command.first_link_row + len(command.model.links) > LINKS
                 or command.first_joint_row + len(command.model.joints) > JOINTS):
-            raise Refused(f"the world is full: {LINKS} links and {JOINTS} joints are its limit")
+            raise CommandRefusedError(
+                f"the world is full: {LINKS} links and {JOINTS} joints are its limit"
+            )
 
     def _register(self, body: Body) -> None:
         for uid in body.uids:
@@ -270,7 +275,7 @@ class BulletBackend:
                 del self._axes[axis.row]
             bodies.remove(body)
 
-    def _connect(self, command: Connect) -> None:
+    def _connect(self, command: ConnectModels) -> None:
         self._ties.connect(command, self._rows)
         self._waker.around([self._rows[row][0] for row in (command.child_row, command.parent_row)
                             if row >= 0])
@@ -295,7 +300,7 @@ class BulletBackend:
 
     def _entry(self, model_id: int) -> Entry:
         if model_id not in self._models:
-            raise Refused("the model is not there any more")
+            raise CommandRefusedError("the model is not there any more")
         return self._models[model_id]
 
     # -- states ----------------------------------------------------------------------------------
@@ -305,9 +310,9 @@ class BulletBackend:
         entry.model = replace(entry.model, joints=list(command.joints))
         self._waker.around(entry.bodies)
         for body in entry.bodies:
-            joints.set_up(body, entry.model, self._forces, self._settings.step_size)
+            joint_axes.set_up(body, entry.model, self._forces, self._settings.step_size)
 
-    def _hold(self, command: Hold) -> None:
+    def _hold(self, command: PinModels) -> None:
         self._holds.set(body for number in command.model_ids
                         for body in self._entry(number).bodies)
 
@@ -316,7 +321,7 @@ class BulletBackend:
     def _add_timed_forces(self, command: AddTimedForces) -> None:
         refusal = self._forces.add(command.forces)
         if refusal:
-            raise Refused(refusal)
+            raise CommandRefusedError(refusal)
 
     def _clear_timed_forces(self, command: ClearTimedForces) -> None:
         self._forces.clear(command.force_ids)

@@ -20,8 +20,8 @@ from ...geometry import (
     rotate,
     twist_at,
 )
-from ..plan import BASE
-from . import surfaces
+from ..body_plan import BASE
+from . import surface_coefficients
 
 SLEEP_THRESHOLD = 0.01
 """Bodies slower than about 0.1 m/s (measured) for 2 s of sim time may sleep, as Gazebo's."""
@@ -133,7 +133,7 @@ class Body:
 def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
                  may_sleep: bool) -> None:
     """Gazebo's dynamics for one link: the file's inertia, no hidden damping, its surface."""
-    surface = surfaces.of_link(link)
+    surface = surface_coefficients.of_link(link)
 
     # One call each: some settings make PyBullet apply all of a call to the base (measured, 3.2.7:
     # with maxJointVelocity, the mass of a link became that of the base and freed a fixed one).
@@ -142,8 +142,12 @@ def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
 
     if mass > 0.0:
         change(mass=mass, localInertiaDiagonal=moments)
-    change(lateralFriction=surfaces.friction(surface, mass == 0.0), spinningFriction=0.0,
-           rollingFriction=0.0, restitution=surfaces.restitution(surface))
+    change(
+        lateralFriction=surface_coefficients.friction(surface, mass == 0.0),
+        spinningFriction=0.0,
+        rollingFriction=0.0,
+        restitution=surface_coefficients.restitution(surface),
+    )
     change(contactProcessingThreshold=0.0)
     change(linearDamping=0.0, angularDamping=0.0)
     if index != BASE:

@@ -9,11 +9,11 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
+from ..body_plan import BASE
 from ..commands import TimedEffort, TimedForce, TimedWrench
-from ..plan import BASE
 from .bodies import Axis, Body, Part
-from .implicit import ImplicitAxes
-from .servos import MOST_EFFORT, Loop
+from .implicit_axes import ImplicitAxes
+from .joint_pid import MOST_EFFORT, PidController
 
 _NOTHING = (0.0, 0.0, 0.0)
 
@@ -25,7 +25,7 @@ class Forces:
         self._wake = wake
         self._timed: Dict[int, TimedForce] = {}
         self._acting: Dict[int, TimedForce] = {}
-        self._loops: Dict[int, Loop] = {}
+        self._loops: Dict[int, PidController] = {}
         self._parts: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
@@ -160,7 +160,7 @@ class Forces:
             elif step >= force.start and force_id not in self._acting:
                 self._acting[force_id] = force
                 if isinstance(force, TimedEffort) and force.pid is not None:
-                    self._loops[force_id] = Loop(force.pid)
+                    self._loops[force_id] = PidController(force.pid)
                 beginning.append(force)
         if beginning:
             self._wake([self._target(force) for force in beginning])

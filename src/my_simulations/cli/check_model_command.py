@@ -1,0 +1,201 @@
+"""`check_model`: everything wrong with world, SDF, URDF and xacro files and model folders."""
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from dataclasses import asdict
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+
+from ..description.flatten import flattened
+from ..description.model import Link, Model
+from ..description.shapes import MeshTable
+from ..description.validate import Fault
+from ..description.world import Actor, Light, World
+from ..errors import InputError, Issue, Severity, error, errors_of, strictly
+from ..formats.loading_advice import findings
+from ..formats.mesh.loading import collision_meshes
+from ..formats.reading import read_any
+from ..formats.xml.parsing import content, parse
+from ..formats.xml.source import Log
+from ..resources.database.download_notes import DownloadNotes
+from ..resources.model_config import description_in
+from ..resources.resolver import Resolver
+from ..ros.arguments import Parser
+from .object_documents import run_xacro
+
+NAME = "check_model"
+XACRO_SECONDS = 60.0
+
+Loaded = Union[World, Model, Light, Actor]
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = Parser(
+        prog=NAME, description="Read worlds, models and robots as the simulator does, and say what"
+        " is wrong with them. Needs no ROS master.",
+        epilog="Exit code: 0 when there are no errors (warnings may be), 1 when there are, 2 for a"
+        " wrong command line.")
+    made.add_argument("files", nargs="+", metavar="FILE",
+                      help=".world, .sdf, .urdf or .xacro, or the folder of a model")
+    made.add_argument("--strict", action="store_true", help="count what is read as Gazebo reads it,"
+                      " although the format forbids it, as errors")
+    made.add_argument("--json", action="store_true", help="print one JSON object a file, a line"
+                      " each, with counts and issues")
+    return made
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Runs the check.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 clean or warnings only, 1 errors, 2 wrong usage.
+    """
+    options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
+    resolver = Resolver.from_environment(DownloadNotes(lambda note: print(note, file=sys.stderr)))
+    failed = False
+    for file in options.files:
+        loaded, issues = check(file, resolver)
+        if options.strict:
+            issues = strictly(issues)
+        failed = failed or bool(errors_of(issues))
+        if options.json:
+            print(json.dumps({"file": file, **counts(loaded),
+                              "issues": [_plain(issue) for issue in issues]}), flush=True)
+        else:
+            _show(file, loaded, issues)
+    return 1 if failed else 0
+
+
+def check(file: str, resolver: Resolver) -> Tuple[Optional[Loaded], List[Issue]]:
+    """What a file describes, None where nothing usable, and all that is to be said about it."""
+    try:
+        path, text = _document(file)
+        root = parse(text, path, Log())
+    except InputError as fault:
+        return None, fault.issues
+    try:
+        loaded, issues = read_any(text, resolver, path)
+    except InputError as fault:
+        return None, fault.issues
+    models = _models(loaded)
+    issues = list(issues)
+    meshes: Dict[str, MeshTable] = {}
+    for model in models:
+        meshes[model.name], faults = collision_meshes(model)
+        issues += faults
+    issues += [_placed(finding, models, root, path) for finding in findings(models, meshes)]
+    return loaded, issues
+
+
+def _document(file: str) -> Tuple[str, Union[str, bytes]]:
+    path = file
+    if os.path.isdir(file):
+        found = description_in(file)
+        if found is None:
+            raise InputError([error("model-missing", "the folder holds no model.config that names a"
+                                    " file, and no model.sdf", file=file)])
+        path = found
+    if path.endswith(".xacro"):
+        return path, run_xacro(path, XACRO_SECONDS)
+    try:
+        return path, content(path)
+    except OSError as fault:
+        raise InputError([error("file-unreadable", f"cannot be read: {fault.strerror or fault}",
+                                file=path)]) from None
+
+
+def _models(loaded: Loaded) -> List[Model]:
+    if isinstance(loaded, World):
+        return loaded.models
+    return [loaded] if isinstance(loaded, Model) else []
+
+
+def _placed(fault: Fault, models: Sequence[Model], root: Any, path: str) -> Issue:
+    """The finding, at the element of the file that it is about, or at the one that includes it."""
+    where: Dict[str, Any] = {"file": path}
+    element = _element_of(fault.subject, models, root)
+    if element is not None:
+        where["line"] = element.sourceline or 0
+        where["xpath"] = element.getroottree().getpath(element)
+    return Issue(fault.severity, fault.code, fault.message, hint=fault.hint, **where)
+
+
+def _element_of(subject: Any, models: Sequence[Model], root: Any) -> Optional[Any]:
+    for model in models:
+        for link in flattened(model).links:
+            if subject is link.inertial or any(subject is one for one in link.collisions):
+                return _named(root, model, link, getattr(subject, "name", ""))
+    return None
+
+
+def _named(root: Any, model: Model, link: Link, collision: str) -> Optional[Any]:
+    """The innermost element that can be told by its name, collision, link or model."""
+    holder = root if root.tag == "robot" else None
+    for element in root.iter("model", "include"):
+        name = element.get("name") if element.tag == "model" else element.findtext("name")
+        uri = (element.findtext("uri") or "").strip()
+        if name == model.name or (name is None and uri and uri == model.uri):
+            holder = element
+            break
+    if holder is None:
+        return None
+    plain = link.name.rpartition("::")[2]
+    for inner in holder.iter("link"):
+        if inner.get("name") == plain:
+            return next((one for one in inner.iter("collision")
+                         if collision and one.get("name") == collision), inner)
+    return holder
+
+
+def counts(loaded: Optional[Loaded]) -> Dict[str, Any]:
+    """How much of what a file describes, for `--json`."""
+    models = [] if loaded is None else _models(loaded)
+    flat = [flattened(model) for model in models]
+    links = [link for model in flat for link in model.links]
+    kinds: Dict[str, int] = {}
+    for link in links:
+        for collision in link.collisions:
+            kind = type(collision.geometry).__name__.lower()
+            kinds[kind] = kinds.get(kind, 0) + 1
+    lights = loaded.lights if isinstance(loaded, World) else []
+    return {
+        "models": sum(1 + _nested(model) for model in models),
+        "links": len(links),
+        "joints": sum(len(model.joints) for model in flat),
+        "collisions": dict(sorted(kinds.items())),
+        "visuals": sum(len(link.visuals) for link in links),
+        "lights": len(lights) + isinstance(loaded, Light),
+        "plugins": sum(map(_plugins, models)) + (
+            len(loaded.plugins) if isinstance(loaded, World) else 0),
+    }
+
+
+def _nested(model: Model) -> int:
+    return sum(1 + _nested(inner) for inner in model.models)
+
+
+def _plugins(model: Model) -> int:
+    return len(model.plugins) + sum(map(_plugins, model.models))
+
+
+def _plain(issue: Issue) -> Dict[str, Any]:
+    return {**asdict(issue), "severity": issue.severity.value}
+
+
+def _show(file: str, loaded: Optional[Loaded], issues: Sequence[Issue]) -> None:
+    for issue in issues:
+        print(issue)
+    found = counts(loaded)
+    collisions = sum(found["collisions"].values())
+    faults = len(errors_of(issues))
+    warned = sum(issue.severity is Severity.WARNING for issue in issues)
+    print(f"{file}: {faults} errors, {warned} warnings; {found['models']} models, "
+          f"{found['links']} links, {found['joints']} joints, {collisions} collisions, "
+          f"{found['visuals']} visuals, {found['lights']} lights, {found['plugins']} plugins",
+          flush=True)

@@ -1,0 +1,51 @@
+"""`gazebo`: server and editor in one; with a ROS master as a node, without one on its own."""
+from __future__ import annotations
+
+import sys
+import threading
+from typing import List, Optional
+
+from . import gzserver_command
+from .signals import end_quietly
+
+
+def main(argv: Optional[List[str]] = None) -> int:
+    """Run a world with its editor until a signal ends it.
+
+    Returns:
+        As `gzserver`.
+    """
+    words = sys.argv if argv is None else argv
+    end_quietly()
+    from ..ros.lifecycle import master_api
+
+    if master_api.fault_of(master_api.uri(words), "/gazebo"):
+        from . import standalone
+
+        return standalone.main(words, "gazebo")
+    threading.Thread(target=_show, args=(words,), daemon=True).start()
+    return gzserver_command.main(words, program="gazebo", gui=True)
+
+
+def _show(words: List[str]) -> None:
+    """Show the editor's address as soon as the node has one."""
+    import time
+
+    from ..ros.lifecycle import master_api
+    from .web_browser import show
+
+    name, uri = master_api.node_name(words, "gazebo"), master_api.uri(words)
+    until = time.monotonic() + 60.0
+    while time.monotonic() < until:
+        try:
+            found = master_api.call(uri, "getParam", name, f"{name}/my_simulations/editor_url")
+        except OSError:
+            return
+        if isinstance(found, str) and master_api.living_node(uri, name) is not None:
+            show(found, "gazebo")
+            return
+        time.sleep(0.25)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,209 @@
+"""The commands of `gz` that ask a running simulator, through its ROS services."""
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from typing import Any, Iterator, Sequence, Tuple
+
+from ..geometry import Vec3, rpy_from_quat
+from ..objects.object_document import root_tag
+from ..objects.selection import closest
+from ..ros.lifecycle import master_api
+from . import object_client as client
+
+OK = client.OK
+FIND_SECONDS = 10.0
+STATS_SECONDS = 0.2
+"""Between two lines of `gz stats` (Gazebo behaviour)."""
+
+
+class Running:
+    """The simulator that a command is about."""
+
+    def __init__(self, node: str, remappings: Sequence[str]) -> None:
+        """Finds it. Raises ToolError where there is none."""
+        self.node = client.full_name(node, remappings)
+        self.parameters = client.Parameters(remappings)
+        self.simulator = client.SimulatorClient(self.parameters, self.node, FIND_SECONDS)
+
+    def ask(self, service: str, kind: str, **fields: Any) -> Any:
+        """The answer of a service. Raises ToolError when it fails."""
+        answer = self.simulator.ask(service, kind, **fields)
+        if not getattr(answer, "success", True):
+            raise client.ToolError(answer.status_message)
+        return answer
+
+
+def world(options: argparse.Namespace, running: Running) -> int:
+    """`gz world`."""
+    done = 0
+    if options.pause is not None:
+        running.ask("pause_physics" if options.pause else "unpause_physics", "Empty")
+        done += 1
+    for wanted, service in ((options.reset_all, "reset_simulation"),
+                            (options.reset_time, "reset_time"),
+                            (options.reset_models, "reset_world")):
+        if wanted:
+            running.ask(service, "Empty")
+            done += 1
+    steps = 1 if options.step else options.multi_step
+    if steps:
+        running.ask("step_world", "StepWorld", steps=steps)
+        done += 1
+    return _something(done, "gz world", "-p 0|1, -s, -m N, -r, -t or -o")
+
+
+def model(options: argparse.Namespace, running: Running) -> int:
+    """`gz model`."""
+    if options.list:
+        for name in running.simulator.model_names():
+            print(name)
+        return OK
+    name = options.model_name
+    if not name:
+        raise client.ToolError("give -l, or -m NAME")
+    if options.spawn_file or options.spawn_string:
+        return _spawn(options, running)
+    known = running.simulator.model_names()
+    if name not in known:
+        near = closest(name, known)
+        raise client.ToolError(f"there is no model '{name}' in the world" + (
+            f"; did you mean {' or '.join(near)}?" if near else "; gz model -l lists them"))
+    given = [getattr(options, axis) for axis in "xyzRPY"]
+    if options.delete:
+        running.simulator.delete(name)
+    elif options.info:
+        _show(running, name)
+    elif options.pose or all(value is None for value in given):
+        position, rpy = _pose(running, name)
+        print(" ".join(f"{value:.6g}" for value in (*position, *rpy)))
+    else:
+        position, rpy = _pose(running, name)
+        now = [old if new is None else new for old, new in zip((*position, *rpy), given)]
+        _place(running, name, now)
+    return OK
+
+
+def physics(options: argparse.Namespace, running: Running) -> int:
+    """`gz physics`."""
+    now = running.ask("get_physics_properties", "GetPhysicsProperties")
+    fields = {"time_step": now.time_step, "max_update_rate": now.max_update_rate,
+              "gravity": now.gravity, "ode_config": now.ode_config}
+    changed = False
+    if options.gravity is not None:
+        now.gravity.x, now.gravity.y, now.gravity.z = _vector(options.gravity)
+        changed = True
+    if options.iters is not None:
+        now.ode_config.sor_pgs_iters = options.iters
+        changed = True
+    for key, value in (("time_step", options.step_size), ("max_update_rate", options.update_rate)):
+        if value is not None:
+            fields[key], changed = value, True
+    if changed:
+        running.ask("set_physics_properties", "SetPhysicsProperties", **fields)
+        return OK
+    print(f"gravity: {now.gravity.x:g},{now.gravity.y:g},{now.gravity.z:g} m/s^2\n"
+          f"step size: {now.time_step:g} s\nupdate rate: {now.max_update_rate:g} Hz\n"
+          f"iterations: {now.ode_config.sor_pgs_iters}")
+    return OK
+
+
+def stats(options: argparse.Namespace, running: Running) -> int:
+    """`gz stats`: one line five times a second; real time counts from the first line."""
+    if options.plot:
+        print("# real-time factor (percent), simtime (sec), realtime (sec), paused (T or F)")
+    for factor, sim, real, paused in _measured(running, options.duration):
+        still = "T" if paused else "F"
+        if options.plot:
+            print(f"{100 * factor:4.2f}, {sim:16.6f}, {real:16.6f}, {still}", flush=True)
+        else:
+            print(f"Factor[{factor:4.2f}] SimTime[{sim:4.2f}] RealTime[{real:4.2f}] "
+                  f"Paused[{still}]", flush=True)
+    return OK
+
+
+def topic(options: argparse.Namespace, running: Running) -> int:
+    """`gz topic`."""
+    for word in ("echo", "info", "hz", "bw"):
+        name = getattr(options, word)
+        if name:
+            try:
+                os.execvp("rostopic", ["rostopic", word, name])
+            except OSError as fault:
+                raise client.ToolError(f"rostopic does not start: {fault}") from fault
+    if not options.list:
+        raise client.ToolError("give -l, -e TOPIC, -i TOPIC, -z TOPIC or -b TOPIC")
+    state = master_api.call(running.parameters.uri, "getSystemState", client.CALLER) or ((), (), ())
+    names = {name for part in state[:2] for name, nodes in part if running.node in nodes}
+    print("\n".join(sorted(names)))
+    return OK
+
+
+def _measured(running: Running, duration: float) -> Iterator[Tuple[float, float, float, bool]]:
+    """Factor, sim time, real time (s) and whether time stands still, until the time is over."""
+    began = before = time.monotonic()
+    sim_before = running.ask("get_world_properties", "GetWorldProperties").sim_time
+    while before - began < duration:
+        time.sleep(STATS_SECONDS)
+        paused = running.ask("get_physics_properties", "GetPhysicsProperties").pause
+        sim, now = running.ask("get_world_properties", "GetWorldProperties").sim_time, \
+            time.monotonic()
+        yield max(0.0, sim - sim_before) / (now - before), sim, now - began, paused
+        sim_before, before = sim, now
+
+
+def _spawn(options: argparse.Namespace, running: Running) -> int:
+    if options.spawn_file:
+        try:
+            with open(options.spawn_file, encoding="utf-8") as file:
+                text = file.read()
+        except (OSError, UnicodeDecodeError) as fault:
+            raise client.ToolError(f"{options.spawn_file} cannot be read: {fault}") from fault
+    else:
+        text = sys.stdin.read()
+    x, y, z, roll, pitch, yaw = (getattr(options, axis) or 0.0 for axis in "xyzRPY")
+    running.simulator.spawn(options.model_name, text, root_tag(text) != "robot", (x, y, z),
+                            (roll, pitch, yaw))
+    return OK
+
+
+def _pose(running: Running, name: str) -> Tuple[Vec3, Vec3]:
+    state = running.ask("get_model_state", "GetModelState", model_name=name)
+    place, turn = state.pose.position, state.pose.orientation
+    return (place.x, place.y, place.z), rpy_from_quat((turn.x, turn.y, turn.z, turn.w))
+
+
+def _place(running: Running, name: str, numbers: Sequence[float]) -> None:
+    """Moves a model, at rest, to x y z R P Y."""
+    from ..geometry import Pose, quat_from_rpy
+
+    x, y, z, roll, pitch, yaw = numbers
+    running.simulator.place(name, Pose((x, y, z), quat_from_rpy(roll, pitch, yaw)))
+
+
+def _show(running: Running, name: str) -> None:
+    """Prints a model's parts as YAML."""
+    found = running.ask("get_model_properties", "GetModelProperties", model_name=name)
+    position, rpy = _pose(running, name)
+    print(f"name: {name}\nis_static: {str(found.is_static).lower()}\n"
+          f"pose: [{', '.join(f'{value:.6g}' for value in (*position, *rpy))}]\n"
+          f"canonical_link: {found.canonical_body_name}")
+    for title, names in (("links", found.body_names), ("collisions", found.geom_names),
+                         ("joints", found.joint_names), ("models", found.child_model_names)):
+        print(f"{title}: [{', '.join(names)}]")
+
+
+def _vector(text: str) -> Vec3:
+    try:
+        x, y, z = (float(word) for word in text.replace(",", " ").split())
+    except ValueError as fault:
+        raise client.ToolError(f"{text!r} is not three numbers: -g 0,0,-9.8") from fault
+    return x, y, z
+
+
+def _something(done: int, command: str, options: str) -> int:
+    if not done:
+        raise client.ToolError(f"nothing to do; {command} takes {options}")
+    return OK

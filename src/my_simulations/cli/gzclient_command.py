@@ -1,0 +1,125 @@
+"""`gzclient`: finds the world editor of a running server and shows it."""
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from typing import Any, List, Optional
+
+from ..ros.lifecycle import master_api
+from .web_browser import show
+
+PROGRAM = "gzclient"
+SERVER_SECONDS = 60.0
+"""How long a server may take to come."""
+
+POLL_SECONDS = 0.25
+WATCH_SECONDS = 5.0
+
+OK, FAILED = 0, 1
+
+USAGE = """usage: gzclient [-h] [options of Gazebo's client, which do nothing] [name:=value ...]
+
+Show the world editor of the running node `gazebo`: in a browser where there is a display, else by
+its address. Ends with the node."""
+
+
+def main(argv: Optional[List[str]] = None) -> int:
+    """Show the editor of the node `gazebo`, and stay until that node or we are ended.
+
+    Options of Gazebo's client are accepted and do nothing.
+
+    Returns:
+        0 after a signal or the server's end, 1 when there is no server or it has no editor.
+    """
+    words = sys.argv if argv is None else argv
+    if "-h" in words[1:] or "--help" in words[1:]:
+        print(USAGE)
+        return OK
+    client = _Client(words)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda _number, _frame: client.ended.set())
+    return client.run()
+
+
+class _Client:
+    """Asks the master, without a node of its own."""
+
+    def __init__(self, words: List[str]) -> None:
+        self.ended = threading.Event()
+        self._master = master_api.uri(words)
+        self._name = master_api.node_name(words, "gazebo_gui")
+        namespace = self._name.rpartition("/")[0]
+        self._server = f"{namespace}/gazebo"
+
+    def run(self) -> int:
+        try:
+            url = self._find()
+            if url is None:
+                return OK if self.ended.is_set() else FAILED
+            show(url, PROGRAM)
+            self._stay()
+        except OSError as fault:
+            if not self.ended.is_set():
+                _complain(f"the ROS master at {self._master} stopped answering: {fault}")
+        return OK
+
+    def _find(self) -> Optional[str]:
+        """The editor's address; None after having said why there is none."""
+        import time
+
+        until = time.monotonic() + SERVER_SECONDS
+        if not master_api.wait(self._master, self._name, self.ended, _complain, until):
+            return None
+        told = False
+        while not self.ended.is_set():
+            server = master_api.living_node(self._master, self._server)
+            if server is not None:
+                url = self._parameter() or self._ask()
+                if url:
+                    return url
+            if time.monotonic() > until:
+                _complain(f"there is no world editor: the node {self._server} on {self._master} "
+                          + ("has none; it was started without `gui`, and without extensions"
+                             if server is not None else "does not run"))
+                return None
+            if not told:
+                told = True
+                _complain(f"waiting for the node {self._server} on {self._master}")
+            self.ended.wait(POLL_SECONDS)
+        return None
+
+    def _parameter(self) -> str:
+        found: Any = master_api.call(self._master, "getParam", self._name,
+                                 f"{self._server}/my_simulations/editor_url")
+        return found if isinstance(found, str) else ""
+
+    def _ask(self) -> str:
+        """Have the server start its editor, where it offers that."""
+        service = f"{self._server}/open_editor"
+        if not master_api.call(self._master, "lookupService", self._name, service):
+            return ""
+        import rospy
+        from my_simulations_msgs.srv import OpenEditor
+
+        try:
+            answer = rospy.ServiceProxy(service, OpenEditor)()
+        except rospy.ServiceException:
+            return ""  # it is ending, or starting anew
+        if not answer.success:
+            _complain(answer.status_message)
+        return str(answer.url)
+
+    def _stay(self) -> None:
+        """Until a signal, or until the server has gone: launch files may require us."""
+        while not self.ended.wait(WATCH_SECONDS):
+            if master_api.living_node(self._master, self._server) is None:
+                return
+
+
+def _complain(line: str) -> None:
+    print(f"{PROGRAM}: {line}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

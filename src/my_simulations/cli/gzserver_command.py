@@ -1,0 +1,50 @@
+"""`gzserver`: the simulation server, as a ROS node named gazebo."""
+from __future__ import annotations
+
+import io
+import sys
+from typing import List, Optional
+
+from .signals import end_quietly
+
+
+def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool = False) -> int:
+    """Run the server until a signal ends it.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+        program: the name in usage and messages.
+        gui: start the world editor at once; else when the parameter `~gui` or a service asks.
+
+    Returns:
+        0 after SIGINT or SIGTERM, 1 when the node could not start.
+    """
+    words = sys.argv if argv is None else argv
+    end_quietly()
+    from ..ros.lifecycle.server_options import parse
+    from ..ros.lifecycle.start_profile import StartProfile
+
+    options = parse(words[1:], program)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # rospy writes its log lines there: behind a pipe they must not wait for a full buffer.
+        sys.stdout.reconfigure(line_buffering=True)
+    profile = StartProfile()
+    profile.mark("command line read")
+    # The engine comes before every other import: its own imports take as long as all of ours.
+    from ..engine.process_engine import ProcessEngine
+    from ..ros.lifecycle.engine_supply import EngineSupply
+
+    engines = EngineSupply(ProcessEngine)
+    profile.mark("engine process started")
+    from ..ros.lifecycle.server import Server
+    from .front_ends import FrontEnds
+
+    def say(line: str) -> None:
+        print(f"{program}: {line}", file=sys.stderr, flush=True)
+
+    faces = FrontEnds()
+    return Server(options, words, say, engines, profile, faces.edit, gui, faces.record).run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

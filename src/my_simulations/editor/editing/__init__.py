@@ -1,0 +1,1 @@
+"""Edits that the page asks for, as operations on the simulator."""

@@ -1,0 +1,335 @@
+"""Operations of the page as operations on the simulator, each with words for the history."""
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+from ...description.model import Model
+from ...description.unflatten import unflattened
+from ...description.world import Light
+from ...engine.commands import JointPid
+from ...errors import CommandError, Issue
+from ...formats.sdf.writer.entities import write_world
+from ...geometry import Pose, compose, inverse, normalised, pose_is_finite
+from ...resources.resolver import Resolver
+from ...simulator.history import History
+from ...simulator.operations import (
+    AddLight,
+    AddModel,
+    Drive,
+    EditLight,
+    EditModel,
+    Group,
+    Operation,
+    Place,
+    Push,
+    RemoveLight,
+    RemoveModel,
+    Reset,
+    pose_of,
+)
+from ...simulator.simulator import Simulator
+from ..scene.plain_json import pose_of as pose_from
+from ..transport.protocol import Protocol
+from .inserts import (
+    Entity,
+    checked,
+    entities_of_text,
+    entity_of_text,
+    entity_of_uri,
+    free_name,
+    simple_shape,
+    taken_names,
+    world_of,
+)
+from .model_scaling import resized
+from .property_path import made
+from .property_target import property_change
+
+_MOST_IN_A_GROUP = 5000
+_MOST_STEPS = 1000000
+_DEEPEST_GROUP = 4
+_MOST_GAIN = 1e9
+
+Planned = Tuple[str, Operation, Dict[str, Any]]
+"""Words, what to do, and the reply's value."""
+
+
+class Edits:
+    """Makes operations of messages and has the history carry them out. One thread at a time.
+
+    Args:
+        simulator: what is edited.
+        resolver: finds what texts and URIs name.
+        history: remembers.
+        protocol: says which operations there are.
+        tell: hears of warnings about what was inserted.
+        dragged: poses from before a drag that a move ends, by name; forgets them.
+    """
+
+    def __init__(self, simulator: Simulator, resolver: Resolver, history: History,
+                 protocol: Protocol, tell: Callable[[Issue], None],
+                 dragged: Callable[[List[str]], Dict[str, Pose]]) -> None:
+        self._world = simulator
+        self._resolver = resolver
+        self._history = history
+        self._protocol = protocol
+        self._tell = tell
+        self._dragged = dragged
+
+    def do(self, op: Dict[str, Any]) -> Dict[str, Any]:
+        """Carry out one operation as one step of the history; returns the reply's value.
+
+        Raises CommandError, InputError; then nothing has changed.
+        """
+        label, operation, value = self._planned(op, 0)
+        self._history.do(label, operation)
+        return value
+
+    def copy(self, names: List[str]) -> str:
+        """Models and lights as SDF text, where they are now. Raises CommandError."""
+        models: List[Model] = []
+        lights: List[Light] = []
+        for name in names:
+            if self._world.models.has(name):
+                model = unflattened(self._world.models.get(name))
+                models.append(replace(model, pose=self._world.states.model_state(name)[0]))
+            else:
+                lights.append(self._world.lights.get(name))
+        if not models and not lights:
+            raise CommandError("nothing is selected that could be copied")
+        return write_world(world_of(models, lights)).decode()
+
+    def _planned(self, op: Dict[str, Any], depth: int) -> Planned:
+        kind = self._protocol.check_operation(op)
+        if kind == "group":
+            return self._group(op, depth)
+        planners: Dict[str, Callable[[Dict[str, Any]], Planned]] = {
+            "insert": self._insert, "insert_light": self._insert_light, "delete": self._delete,
+            "move": self._move, "scale": self._scale, "rename": self._rename, "set": self._set,
+            "paste": self._paste, "wrench": self._wrench, "reset": self._reset,
+            "joint": self._joint,
+        }
+        return planners[kind](op)
+
+    # -- coming and going ------------------------------------------------------------------------
+
+    def _insert(self, op: Dict[str, Any]) -> Planned:
+        given = [name for name in ("shape", "uri", "sdf") if op.get(name)]
+        if len(given) != 1:
+            raise CommandError("insert needs one of shape, uri and sdf")
+        issues: List[Issue] = []
+        entity: Entity
+        if given == ["shape"]:
+            entity = simple_shape(op["shape"])
+        elif given == ["uri"]:
+            entity, issues = entity_of_uri(op["uri"], self._resolver)
+        else:
+            entity, issues = entity_of_text(op["sdf"], self._resolver)
+        for issue in issues:
+            self._tell(issue)
+        if isinstance(entity, Model) and op.get("scale"):
+            entity = resized(entity, tuple(op["scale"]))  # type: ignore[arg-type]
+        name = free_name(op.get("name") or entity.name, taken_names(self._world))
+        pose = pose_from(op["pose"]) if op.get("pose") else entity.pose
+        return f"Insert {name}", self._addition(entity, name, pose), {"name": name}
+
+    def _addition(self, entity: Entity, name: str, pose: Pose) -> Operation:
+        pose = _usable(pose)
+        if isinstance(entity, Light):
+            return AddLight(replace(entity, name=name, pose=pose))
+        model = replace(entity, name=name, pose=pose)
+        meshes, issues = checked(model)
+        for issue in issues:
+            self._tell(issue)
+        return AddModel(model, pose, meshes)
+
+    def _insert_light(self, op: Dict[str, Any]) -> Planned:
+        given = dict(op["light"])
+        kind = given.setdefault("type", "point")
+        if kind not in ("point", "spot", "directional"):
+            raise CommandError(f"there is no light {kind!r}; there are point, spot, directional")
+        taken = taken_names(self._world)
+        wanted = str(given.get("name") or "")
+        number = 0
+        while not wanted:
+            name = f"user_{kind}_light_{number}"
+            wanted = name if name not in taken else ""
+            number += 1
+        given["name"] = free_name(wanted, taken)
+        light = made(Light, given)
+        light = replace(light, pose=_usable(light.pose))
+        return f"Insert {light.name}", AddLight(light), {"name": light.name}
+
+    def _delete(self, op: Dict[str, Any]) -> Planned:
+        names = list(dict.fromkeys(op["names"]))
+        if not names:
+            raise CommandError("nothing is selected")
+        lights = {light.name for light in self._world.lights.all()}
+        parts: List[Operation] = []
+        for name in names:
+            if name not in lights:
+                self._world.models.get(name)
+            parts.append(RemoveLight(name) if name in lights else RemoveModel(name))
+        return f"Delete {_listed(names)}", _one(parts), {"names": names}
+
+    def _paste(self, op: Dict[str, Any]) -> Planned:
+        entities, issues = entities_of_text(op["text"], self._resolver)
+        for issue in issues:
+            self._tell(issue)
+        if not entities:
+            raise CommandError("there is nothing to paste")
+        taken = set(taken_names(self._world))
+        target = _usable(pose_from(op["pose"])) if op.get("pose") else None
+        first = entities[-1].pose
+        names, parts = [], []
+        for entity in entities:
+            name = free_name(op.get("name") or f"{entity.name}_clone", taken)
+            taken.add(name)
+            pose = entity.pose
+            if target is not None:
+                # All of them keep their places about the last one, which goes to the pose.
+                pose = target if entity is entities[-1] else compose(
+                    target, compose(inverse(first), pose))
+            names.append(name)
+            parts.append(self._addition(entity, name, pose))
+        return f"Paste {_listed(names)}", _one(parts), {"names": names, "name": names[-1]}
+
+    # -- changing --------------------------------------------------------------------------------
+
+    def _move(self, op: Dict[str, Any]) -> Planned:
+        poses = {name: _usable(pose_from(pose)) for name, pose in op["poses"].items()}
+        if not poses:
+            raise CommandError("there is nothing to move")
+        for name in poses:
+            pose_of(self._world, name)
+        label = str(op.get("label") or "move")[:40]
+        operation = Place(poses, self._dragged(list(poses)))
+        return f"{label.capitalize()} {_listed(list(poses))}", operation, {}
+
+    def _scale(self, op: Dict[str, Any]) -> Planned:
+        model = self._world.models.get(op["name"])
+        x, y, z = op["scale"]
+        new = resized(model, (float(x), float(y), float(z)))
+        meshes, _ = checked(new)
+        return f"Scale {model.name}", EditModel(model.name, new, meshes), {"name": model.name}
+
+    def _rename(self, op: Dict[str, Any]) -> Planned:
+        name, to = op["name"], op["to"].strip()
+        if not to or "::" in to or to in ("world", "default"):
+            raise CommandError(f"{to!r} is no name for a model or a light")
+        label = f"Rename {name} to {to}"
+        if any(light.name == name for light in self._world.lights.all()):
+            return (label, EditLight(name, replace(self._world.lights.get(name), name=to)),
+                    {"name": to})
+        model = self._world.models.get(name)
+        return label, EditModel(name, replace(model, name=to)), {"name": to}
+
+    def _set(self, op: Dict[str, Any]) -> Planned:
+        target, path = op["target"], op["path"]
+        operation = property_change(self._world, self._resolver, target, path, op.get("value"))
+        return f"Set {path} of {target or 'the world'}", operation, {}
+
+    def _reset(self, op: Dict[str, Any]) -> Planned:
+        words = {"time": "time", "poses": "model poses", "world": "world"}[op["what"]]
+        return f"Reset {words}", Reset(op["what"]), {}
+
+    # -- pushing and driving ---------------------------------------------------------------------
+
+    def _wrench(self, op: Dict[str, Any]) -> Planned:
+        steps = op.get("steps") or 1
+        if not 0 < steps <= _MOST_STEPS:
+            raise CommandError(f"a force acts for 1 to {_MOST_STEPS} steps, not {steps}")
+        link = op["link"]
+        if self._world.models.has(link):
+            model = self._world.models.get(link)
+            if not model.links:
+                raise CommandError(f"model {link!r} has no links")
+            link = f"{link}::{model.canonical_link or model.links[0].name}"
+        point = op.get("point")
+        operation = Push(link, _vector(op["force"]), _vector(op["torque"]),
+                         None if point is None else _vector(point),
+                         bool(op.get("in_link_axes")), steps)
+        return f"Apply force to {link}", operation, {}
+
+    def _joint(self, op: Dict[str, Any]) -> Planned:
+        name, value = op["joint"], float(op["value"])
+        owner, joint, number = self._world.joints.find(name)
+        scoped = f"{owner}::{joint.name}" + ("::1" if number else "")
+        axis = joint.axis2 if number else joint.axis
+        if axis is None:
+            raise CommandError(f"joint {joint.name!r} cannot move")
+        if not math.isfinite(value):
+            raise CommandError(f"joint {joint.name!r} cannot be driven with {value!r}")
+        mode = op["mode"]
+        if mode == "force":
+            return f"Drive {scoped}", Drive(scoped, (value,) if value else ()), {}
+        servo = JointPid(value, mode == "velocity", **_gains(op.get("gains") or {}))
+        verb = f"Drive {scoped} to" if mode == "position" else f"Turn {scoped} at"
+        return f"{verb} {value:g}", Drive(scoped, (servo,)), {}
+
+    # -- several ---------------------------------------------------------------------------------
+
+    def _group(self, op: Dict[str, Any], depth: int) -> Planned:
+        if depth >= _DEEPEST_GROUP or len(op["ops"]) > _MOST_IN_A_GROUP or not op["ops"]:
+            raise CommandError(f"a group holds 1 to {_MOST_IN_A_GROUP} operations, nested "
+                               f"{_DEEPEST_GROUP} deep at most")
+        label = str(op.get("label") or "")
+        deferred = _Deferred(self, op["ops"], depth + 1)
+        return label or f"{len(op['ops'])} changes", deferred, deferred.value
+
+
+class _Deferred:
+    """A group whose parts are planned one by one, since each may build on those before it."""
+
+    def __init__(self, edits: Edits, ops: List[Dict[str, Any]], depth: int) -> None:
+        self._edits, self._ops, self._depth = edits, ops, depth
+        self.value: Dict[str, Any] = {"names": []}
+
+    def apply(self, world: Simulator) -> Operation:
+        """All of them or none."""
+        done: List[Operation] = []
+        try:
+            for op in self._ops:
+                _, operation, value = self._edits._planned(op, self._depth)
+                done.append(operation.apply(world))
+                self.value["names"] += value.get("names") or (
+                    [value["name"]] if value.get("name") else [])
+        except Exception:
+            for back in reversed(done):
+                back.apply(world)
+            raise
+        return Group(tuple(reversed(done)))
+
+
+def _one(parts: List[Operation]) -> Operation:
+    return parts[0] if len(parts) == 1 else Group(tuple(parts))
+
+
+def _listed(names: List[str]) -> str:
+    shown = ", ".join(names[:3])
+    return shown if len(names) <= 3 else f"{shown} and {len(names) - 3} more"
+
+
+def _gains(given: Dict[str, Any]) -> Dict[str, float]:
+    """Those of a PID loop. Raises CommandError for what is no gain."""
+    given = {name: gain for name, gain in given.items() if gain is not None}
+    for name, gain in given.items():
+        if not 0.0 <= gain <= _MOST_GAIN:
+            raise CommandError(f"the gain {name.upper()} must be 0 to {_MOST_GAIN:g}, "
+                               f"found {gain!r}")
+    return {name: float(gain) for name, gain in given.items()}
+
+
+def _vector(values: Any) -> Tuple[float, float, float]:
+    x, y, z = values
+    return (float(x), float(y), float(z))
+
+
+def _usable(pose: Optional[Pose]) -> Pose:
+    """A finite pose with a unit quaternion. Raises CommandError."""
+    pose = pose or Pose()
+    if not pose_is_finite(pose):
+        raise CommandError("a pose holds a number that is not finite")
+    return Pose(pose.position, normalised(pose.orientation))

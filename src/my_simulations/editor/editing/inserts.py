@@ -1,0 +1,111 @@
+"""What can be put into the world: Gazebo's simple shapes, and what a text or a file describes."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Collection, Dict, List, Tuple, Union
+
+from ...description.compare import BUILT_IN
+from ...description.flatten import flattened
+from ...description.model import Inertial, Link, Model
+from ...description.shapes import (
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Material,
+    MeshTable,
+    Sphere,
+    Visual,
+)
+from ...description.validate import validate
+from ...description.world import Light, World
+from ...errors import CommandError, InputError, Issue, errors_of
+from ...formats.mesh.loading import collision_meshes
+from ...formats.reading import read_entity, read_file, read_world_text
+from ...geometry import Pose, Vec3
+from ...resources.resolver import Resolver, ResourceNotFoundError
+from ...simulator.simulator import Simulator
+
+Entity = Union[Model, Light]
+
+_SHAPES: Dict[str, Tuple[Geometry, Vec3]] = {
+    "box": (Box((1.0, 1.0, 1.0)), (1 / 6, 1 / 6, 1 / 6)),
+    "sphere": (Sphere(0.5), (0.1, 0.1, 0.1)),
+    "cylinder": (Cylinder(0.5, 1.0), (7 / 48, 7 / 48, 0.125)),
+}
+
+
+def simple_shape(shape: str) -> Model:
+    """Gazebo's unit box, sphere or cylinder of 1 kg, standing on the ground."""
+    geometry, (ixx, iyy, izz) = _SHAPES[shape]
+    grey = Material(script_uris=[BUILT_IN], script_name="Gazebo/Grey")
+    link = Link("link", inertial=Inertial(1.0, ixx=ixx, iyy=iyy, izz=izz),
+                collisions=[Collision("collision", geometry)],
+                visuals=[Visual("visual", geometry, material=grey)])
+    return Model(f"unit_{shape}", Pose((0.0, 0.0, 0.5)), links=[link])
+
+
+def entity_of_text(text: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
+    """The model or light of a document. Raises InputError when it cannot be used as it is."""
+    entity, issues = read_entity(text, resolver, "<inserted text>")
+    return _usable(entity, issues)
+
+
+def entity_of_uri(uri: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
+    """The model or light a URI names, with the URI. Raises CommandError, InputError."""
+    try:
+        path = resolver.model_file(uri)
+    except ResourceNotFoundError as missing:
+        raise CommandError(str(missing)) from missing
+    entity, issues = read_file(path, resolver)
+    entity, issues = _usable(entity, issues)
+    return (replace(entity, uri=uri) if isinstance(entity, Model) else entity), issues
+
+
+def entities_of_text(text: str, resolver: Resolver) -> Tuple[List[Entity], List[Issue]]:
+    """All models and lights of what was copied: a world, or one of them alone."""
+    if "<world" not in text:
+        entity, issues = entity_of_text(text, resolver)
+        return [entity], issues
+    world, issues = read_world_text(text, resolver, "<clipboard>")
+    if errors_of(issues):
+        raise InputError(issues)
+    return [*world.models, *world.lights], issues
+
+
+def _usable(entity: Entity, issues: List[Issue]) -> Tuple[Entity, List[Issue]]:
+    if errors_of(issues):
+        raise InputError(issues)
+    return entity, [issue for issue in issues if issue not in errors_of(issues)]
+
+
+def checked(model: Model) -> Tuple[MeshTable, List[Issue]]:
+    """The collision meshes of a model that can be simulated, and what is odd about it.
+
+    Raises InputError for one that cannot.
+    """
+    found = validate(model)
+    if errors_of(found):
+        raise InputError(found)
+    meshes, issues = collision_meshes(flattened(model))
+    return meshes, issues
+
+
+def taken_names(simulator: Simulator) -> Collection[str]:
+    """Names of all models and lights."""
+    return {*simulator.models.names(), *(light.name for light in simulator.lights.all())}
+
+
+def free_name(wanted: str, taken: Collection[str]) -> str:
+    """`wanted`, or with the first free number: name_0, name_1, … (Gazebo behaviour)."""
+    if wanted not in taken:
+        return wanted
+    number = 0
+    while f"{wanted}_{number}" in taken:
+        number += 1
+    return f"{wanted}_{number}"
+
+
+def world_of(models: List[Model], lights: List[Light]) -> World:
+    """A world that carries copies."""
+    return World("clipboard", models=models, lights=lights)

@@ -1,0 +1,1 @@
+"""Models, worlds and buildings on disk that the page lists, opens and saves."""

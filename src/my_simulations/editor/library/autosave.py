@@ -1,0 +1,157 @@
+"""Edits that nobody saved, kept on disk, so that a crash of page, node or machine costs nothing.
+
+An entry is a world file and a small JSON file about it, each written whole. An entry whose process
+is gone is offered at the next start.
+"""
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import threading
+import time
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+from ...errors import CommandError, Issue, warning
+from ...simulator.history import History
+from ...simulator.safe_file import write_whole
+from .world_files import WorldFiles
+
+
+@dataclass(frozen=True)
+class Entry:
+    """`file`: the world it belongs to, "" for a new one; `saved_at` s since 1970; `launched`: the
+    models of it that a launch file had spawned.
+    """
+
+    about: str
+    world: str
+    file: str
+    saved_at: float
+    process: str
+    launched: Tuple[str, ...] = ()
+
+
+class Autosave:
+    """Keeps the running world's edits.
+
+    Args:
+        files: gives the world's text and its file.
+        history: says what is dirty.
+        folder: where entries lie.
+        tell: hears when that does not work.
+    """
+
+    def __init__(self, files: WorldFiles, history: History, folder: str,
+                 tell: Callable[[Issue], None]) -> None:
+        self._files = files
+        self._history = history
+        self._folder = folder
+        self._tell = tell
+        self._lock = threading.Lock()
+        self._kept: Optional[int] = None
+        self._complained = False
+        self._process = process_id(os.getpid())
+        self._name = f"{os.getpid()}-{time.time_ns():x}"
+        self.found: Optional[Entry] = self._newest()
+
+    def push(self) -> Dict[str, Any]:
+        """The push `autosave`."""
+        found = self.found
+        return {"type": "autosave", "found": found is not None,
+                "file": found.file if found else "", "time": found.saved_at if found else 0.0}
+
+    def keep(self) -> None:
+        """Write the entry anew if there are edits that are not in it; remove it if there are none.
+
+        Blocks; call it now and then, from any thread.
+        """
+        with self._lock:
+            state = self._history.state if self._history.dirty else None
+            if state == self._kept:
+                return
+            try:
+                if state is None:
+                    self._remove(self._path(".json"), self._path(".world"))
+                else:
+                    self._write()
+                self._kept = state
+                self._complained = False
+            except CommandError as fault:
+                if not self._complained:
+                    self._tell(warning("autosave", f"unsaved changes cannot be kept: {fault}"))
+                self._complained = True
+
+    def restore(self) -> str:
+        """Load what was found; returns the file it belongs to. Raises CommandError."""
+        found = self.found
+        if found is None:
+            raise CommandError("there are no unsaved changes of an earlier session")
+        self._files.restore(found.world, found.file, list(found.launched))
+        self.keep()
+        self.discard()
+        return found.file
+
+    def discard(self) -> None:
+        """Forget what was found."""
+        if self.found is not None:
+            self._remove(self.found.about, self.found.world)
+            self.found = None
+
+    def _write(self) -> None:
+        write_whole(self._path(".world"), self._files.text(), overwrite=True)
+        about = {"file": self._files.file, "time": time.time(), "process": self._process,
+                 "world": self._name + ".world", "launched": self._files.launched()}
+        write_whole(self._path(".json"), json.dumps(about).encode(), overwrite=True)
+
+    def _path(self, extension: str) -> str:
+        return os.path.join(self._folder, self._name + extension)
+
+    @staticmethod
+    def _remove(*paths: str) -> None:
+        for path in paths:
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(path)
+
+    def _newest(self) -> Optional[Entry]:
+        """The newest entry whose process is gone, of this world's file before others."""
+        entries = [entry for entry in map(self._read, self._listed()) if entry is not None]
+        left = [entry for entry in entries if not _lives(entry.process)]
+        return max(left, default=None,
+                   key=lambda entry: (entry.file == self._files.file, entry.saved_at))
+
+    def _listed(self) -> List[str]:
+        try:
+            return [name for name in os.listdir(self._folder) if name.endswith(".json")]
+        except OSError:
+            return []
+
+    def _read(self, name: str) -> Optional[Entry]:
+        path = os.path.join(self._folder, name)
+        try:
+            with open(path, encoding="utf-8") as stream:
+                about = json.load(stream)
+            world = os.path.join(self._folder, os.path.basename(str(about["world"])))
+            if not os.path.isfile(world):
+                return None
+            return Entry(path, world, str(about["file"]), float(about["time"]),
+                         str(about["process"]), tuple(map(str, about.get("launched", ()))))
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+
+def process_id(pid: int) -> str:
+    """What no other process has, now or after a restart of the machine; "" for none."""
+    try:
+        with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as stream:
+            started = stream.read().rpartition(")")[2].split()[19]
+        with open("/proc/sys/kernel/random/boot_id", encoding="ascii") as stream:
+            return f"{pid}/{started}/{stream.read().strip()}"
+    except (OSError, IndexError):
+        return ""
+
+
+def _lives(process: str) -> bool:
+    pid = process.partition("/")[0]
+    return pid.isdigit() and process_id(int(pid)) == process

@@ -1,0 +1,108 @@
+"""The requests about models that may be inserted."""
+from __future__ import annotations
+
+import asyncio
+from concurrent.futures import Executor
+from typing import Any, Callable, Dict, Optional
+
+from ...description.flatten import flattened
+from ...errors import CommandError, Issue
+from ...resources.database.fuel_uri import is_web_address
+from ...resources.resolver import Resolver
+from ..editing.inserts import Entity, entity_of_text, entity_of_uri
+from ..scene.scene_json import Documents
+from ..transport.browser_client import Client
+from ..transport.hub import Hub
+from ..transport.web_socket import Route
+from .model_library import Library
+
+_LOOK_S = 2.0
+
+
+class LibraryRequests:
+    """`library…` and `preview`; runs in a pool of threads.
+
+    Args:
+        hub: hears of changes and downloads.
+        resolver: finds models.
+        library: knows them.
+        pool: where requests run.
+        tell: hears of what is odd about a model.
+    """
+
+    def __init__(self, hub: Hub, resolver: Resolver, library: Library, pool: Executor,
+                 tell: Callable[[Issue], None]) -> None:
+        self._hub = hub
+        self._resolver = resolver
+        self._library = library
+        self._pool = pool
+        self._tell = tell
+        self._asked = False
+        self._told: Optional[Any] = None
+
+    def routes(self) -> Dict[str, Route]:
+        """By type of request."""
+        handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
+            "library": self._list, "library_add": self._add, "library_remove": self._remove,
+            "library_get": self._get, "preview": self._preview,
+        }
+        return {kind: Route(handler, self._pool) for kind, handler in handlers.items()}
+
+    async def watch(self) -> None:
+        """Push the library whenever it has changed, once somebody has asked for it."""
+        loop = asyncio.get_running_loop()
+        while True:
+            await asyncio.sleep(_LOOK_S)
+            if not self._asked or not self._hub.clients:
+                continue
+            signature = await loop.run_in_executor(self._pool, self._library.signature)
+            if signature != self._told:
+                self._hub.push(await loop.run_in_executor(self._pool, self._push))
+
+    def _push(self) -> Dict[str, Any]:
+        return {"type": "library", **self._locations()}
+
+    def _locations(self) -> Dict[str, Any]:
+        self._told = self._library.signature()  # first: what changes meanwhile is told again
+        return {"locations": self._library.locations()}
+
+    def _list(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
+        if not self._asked:
+            self._asked = True
+            self._pool.submit(self._fetch)
+        return self._locations()
+
+    def _fetch(self) -> None:
+        self._library.fetch_list()
+        self._hub.push_soon(self._push())
+
+    def _add(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        self._library.add(message["path"])
+        return self._locations()
+
+    def _remove(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        self._library.remove(message["path"])
+        return self._locations()
+
+    def _get(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        uri = message["uri"]
+        if not uri.startswith(("model://", "file://")) and not is_web_address(uri):
+            raise CommandError(f"{uri!r} is no URI of a model")
+        self._library.provide(uri)
+        entity, issues = entity_of_uri(uri, self._resolver)
+        for issue in issues:
+            self._tell(issue)
+        return shown(entity, self._hub.documents)
+
+    def _preview(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        entity, _ = entity_of_text(message["sdf"], self._resolver)
+        return shown(entity, self._hub.documents)
+
+
+def shown(entity: Entity, documents: Documents) -> Dict[str, Any]:
+    """The document of a model or light that is not in the world."""
+    from ...description.model import Model
+
+    if isinstance(entity, Model):
+        return {"model": documents.model(flattened(entity), entity.pose), "light": None}
+    return {"model": None, "light": documents.light(entity)}

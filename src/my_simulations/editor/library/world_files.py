@@ -1,0 +1,220 @@
+"""World files: opened, saved, begun anew; and what a file dialog lists."""
+from __future__ import annotations
+
+import os
+import threading
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Set, Tuple
+
+from ...description.world import World
+from ...errors import Issue, Severity
+from ...formats.sdf.writer.entities import write_world
+from ...resources.resolver import Resolver
+from ...resources.world_files import ships
+from ...simulator.history import History
+from ...simulator.saving import (
+    EXTENSIONS,
+    allowed_path,
+    default_roots,
+    present_world,
+    refuse_shipped,
+    save_world,
+)
+from ...simulator.simulator import Simulator
+from ...simulator.world_loading import load_world
+from ..editor_options import EditorOptions
+from ..transport.error_messages import EditRefusedError
+
+NEW_WORLD = "worlds/empty.world"
+_MOST_LISTED = 5000
+
+
+class WorldFiles:
+    """Which file the running world belongs to.
+
+    Attributes:
+        file: its path; "" for a world that was never saved.
+    """
+
+    def __init__(self, simulator: Simulator, resolver: Resolver, history: History,
+                 options: EditorOptions, tell: Callable[[Issue], None]) -> None:
+        self._world = simulator
+        self._resolver = resolver
+        self._history = history
+        self._options = options
+        self._chosen: Dict[str, bool] = {"state": False, "launched": False}
+        self._tell = tell
+        self._lock = threading.RLock()
+        self._ours: Set[str] = set()   # files that were opened or saved here: Save replaces them
+        self.file = simulator.world.file
+
+    def roots(self) -> List[str]:
+        """Folders below which worlds are opened and saved; saving starts in the first."""
+        if self._options.save_roots is not None:
+            return list(self._options.save_roots)
+        return default_roots(self.file, self._options.caller)
+
+    def save(self, message: Dict[str, Any]) -> Dict[str, Any]:
+        """`save`: to a path, or to where the world was opened or saved.
+
+        What is chosen with a path, holds for the next saves without one.
+        """
+        with self._lock:
+            path, overwrite = message.get("path") or "", bool(message.get("overwrite"))
+            if not path:
+                if self.file not in self._ours or ships(self.file):
+                    raise EditRefusedError(
+                        "path-needed",
+                        "not everything in the file could be loaded; give the world another name"
+                        if self._world.models.losses
+                        else "the world was not saved yet; give it a name",
+                    )
+                path, overwrite = self.file, True
+            if not os.path.splitext(path)[1]:
+                path += EXTENSIONS[0]
+            target = allowed_path(path, self.roots())
+            refuse_shipped(target)
+            if os.path.lexists(target) and not overwrite:
+                raise EditRefusedError(
+                    "exists",
+                    f"{target} exists already" + self._would_lose(target),
+                    "replace it, or choose another name",
+                )
+            inline = message.get("format") != "includes"
+            for choice in self._chosen:
+                if message.get(choice) is not None or message.get("path"):
+                    self._chosen[choice] = bool(message.get(choice))
+            left_out = [] if self._chosen["launched"] else self._world.models.launched()
+            self.file = save_world(self._world, target, roots=self.roots(), inline=inline,
+                                   resolver=self._resolver, overwrite=overwrite,
+                                   despite_losses=True,  # whoever says overwrite was asked
+                                   **self._chosen)
+            self._ours.add(self.file)
+            self._history.saved()
+            return {"path": self.file, "left_out": left_out}
+
+    def _would_lose(self, target: str) -> str:
+        losses = self._world.models.losses
+        if not losses or os.path.realpath(self._world.world.file) != target:
+            return ""
+        more = f" (and {len(losses) - 1} more)" if len(losses) > 1 else ""
+        return f", and what could not be loaded of it would be lost: {losses[0]}{more}"
+
+    def open(self, message: Dict[str, Any]) -> Dict[str, Any]:
+        """`open`: another world takes the place of the running one."""
+        with self._lock:
+            self._check_discard(message)
+            path = self._readable(message["path"])
+            self.load(path)
+            self.file = path
+            if not self._world.models.losses:  # else Save asks before it replaces the file by less
+                self._ours.add(path)
+            return {"file": path}
+
+    def new(self, message: Dict[str, Any]) -> Dict[str, Any]:
+        """`new`: ground and sun."""
+        with self._lock:
+            self._check_discard(message)
+            self.load(NEW_WORLD)
+            self.file = ""
+            return {"file": ""}
+
+    def load(self, name: str) -> None:
+        """Replace the running world by a file's. Raises InputError, CommandError."""
+        self._load(name, lambda world: world)
+        self._history.clear()
+
+    def restore(self, kept: str, file: str, launched: List[str]) -> None:
+        """Replace the running world by edits of it that were kept.
+
+        Args:
+            kept: file that holds them.
+            file: the world file that they belong to; "" for none.
+            launched: which of the models a launch file had spawned.
+
+        Raises InputError, CommandError.
+        """
+        with self._lock:
+            self._load(kept, lambda world: replace(world, file=file))
+            self._world.models.set_launched(launched)
+            self._history.clear(dirty=True)
+            self.file = file
+
+    def _load(self, name: str, changed: Callable[[World], World]) -> None:
+        world, meshes = load_world(name, self._resolver, self._tell)
+        self._options.log(Issue(Severity.NOTE, "world-file", f"the world file is {world.file}"))
+        self._world.load_world(changed(world), meshes)
+
+    def folders(self, message: Dict[str, Any]) -> Dict[str, Any]:
+        """`folders`: folders and world files below an allowed root."""
+        roots = list(dict.fromkeys(os.path.realpath(os.path.expanduser(root))
+                                   for root in self.roots()))
+        wanted = message.get("path") or (roots[0] if roots else "")
+        folder = os.path.realpath(os.path.expanduser(wanted))
+        if not any(_is_in(folder, root) for root in roots):
+            raise EditRefusedError(
+                "not-allowed",
+                f"{folder} is not among the folders that may be used: " + ", ".join(roots),
+            )
+        parent = os.path.dirname(folder)
+        folders, files = _listed(folder)
+        return {"path": folder, "roots": roots, "folders": folders, "files": files,
+                "parent": parent if any(_is_in(parent, root) for root in roots) else None,
+                "launched": self._world.models.launched(), "chosen": dict(self._chosen)}
+
+    def launched(self) -> List[str]:
+        """The models that the launch file spawned."""
+        return self._world.models.launched()
+
+    def text(self) -> bytes:
+        """The world as SDF, as it is now, with all that is in it."""
+        world = present_world(self._world)
+        return write_world(world, world.state)
+
+    def _check_discard(self, message: Dict[str, Any]) -> None:
+        if self._history.dirty and not message.get("discard"):
+            raise EditRefusedError("unsaved", "the world has changes that were not saved",
+                          "save it first, or discard them")
+
+    def _readable(self, name: str) -> str:
+        """The real path of a world that may be opened."""
+        path = os.path.realpath(os.path.expanduser(name))
+        places = self.roots()
+        if not os.path.isabs(os.path.expanduser(name)) and places:
+            path = os.path.realpath(os.path.join(os.path.expanduser(places[0]), name))
+        roots = [*places, *self._resolver.resource_folders()]
+        if not any(_is_in(path, os.path.realpath(os.path.expanduser(root))) for root in roots):
+            raise EditRefusedError("not-allowed", f"{path} lies outside of all folders of worlds")
+        if not os.path.isfile(path):
+            raise EditRefusedError("file-not-found", f"there is no file {path}")
+        return path
+
+
+def _is_in(path: str, root: str) -> bool:
+    return path == root or path.startswith(root.rstrip(os.sep) + os.sep)
+
+
+def _listed(folder: str) -> Tuple[List[Dict[str, Any]], List[Dict[str, Any]]]:
+    folders: List[Dict[str, Any]] = []
+    files: List[Dict[str, Any]] = []
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name.lower())
+    except FileNotFoundError:
+        return [], []  # the first world that is saved makes it
+    except OSError as fault:
+        raise EditRefusedError(
+            "folder-unreadable", f"{folder}: {fault.strerror or fault}"
+        ) from fault
+    for entry in entries[:_MOST_LISTED]:
+        if entry.name.startswith("."):
+            continue
+        try:
+            if entry.is_dir():
+                folders.append({"name": entry.name, "path": entry.path})
+            elif os.path.splitext(entry.name)[1].lower() in EXTENSIONS:
+                status = entry.stat()
+                files.append({"name": entry.name, "path": entry.path, "size": status.st_size,
+                              "modified": status.st_mtime})
+        except OSError:
+            continue  # it went away meanwhile
+    return folders, files

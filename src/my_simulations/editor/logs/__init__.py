@@ -1,0 +1,1 @@
+"""State logs: recorded and played back."""

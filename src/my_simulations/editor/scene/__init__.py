@@ -1,0 +1,1 @@
+"""The world as the page draws it: JSON, materials, meshes."""

@@ -1,0 +1,123 @@
+"""The subset of Ogre's `.material` scripts that models use: colours and one texture a material.
+
+The first technique's first pass counts. Source: Ogre's script format, as far as public Gazebo
+models use it.
+"""
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from typing import Dict, List, Optional, Sequence, Tuple
+
+from ...description.shapes import Color
+
+_TOKEN = re.compile(r'"[^"]*"|[{}]|\n|[^\s{}"]+')
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_LARGEST = 1 << 20
+_DEEPEST = 20
+
+
+@dataclass
+class ScriptMaterial:
+    """What a script says of one material; None and "" where it says nothing."""
+
+    name: str
+    ambient: Optional[Color] = None
+    diffuse: Optional[Color] = None
+    specular: Optional[Color] = None
+    emissive: Optional[Color] = None
+    lighting: bool = True
+    blend: bool = False
+    texture: str = ""
+    scale: Tuple[float, float] = (1.0, 1.0)
+    parent: str = field(default="", repr=False)
+
+
+def read_materials(text: str) -> Dict[str, ScriptMaterial]:
+    """The materials of a script by name; what cannot be understood is passed over."""
+    words = [word.strip('"') if word.startswith('"') else word
+             for word in _TOKEN.findall(_COMMENT.sub("", text[:_LARGEST]))]
+    found: Dict[str, ScriptMaterial] = {}
+    at = 0
+    while at < len(words):
+        if words[at] != "material":
+            at += 1
+            continue
+        line, at = _line(words, at + 1)
+        while at < len(words) and words[at] == "\n":
+            at += 1
+        if not line or at >= len(words) or words[at] != "{":
+            continue
+        name, parent = _heading(line)
+        base = found.get(parent)
+        material = replace(base, name=name) if base else ScriptMaterial(name, parent=parent)
+        at = _block(words, at + 1, material, (), {})
+        found[name] = material
+    return found
+
+
+def _heading(line: List[str]) -> Tuple[str, str]:
+    text = " ".join(line)
+    name, _, parent = text.partition(" : ")
+    return name.strip(), parent.strip()
+
+
+def _line(words: Sequence[str], at: int) -> Tuple[List[str], int]:
+    """The words up to the end of the line or a brace."""
+    line: List[str] = []
+    while at < len(words) and words[at] not in ("\n", "{", "}"):
+        line.append(words[at])
+        at += 1
+    return line, at
+
+
+def _block(words: Sequence[str], at: int, material: ScriptMaterial, above: Tuple[str, ...],
+           seen: Dict[str, int]) -> int:
+    """Read a block's inside; returns the place behind its closing brace."""
+    while at < len(words):
+        if words[at] == "}":
+            return at + 1
+        line, at = _line(words, at)
+        after = at
+        while after < len(words) and words[after] == "\n":
+            after += 1
+        if after < len(words) and words[after] == "{" and len(above) < _DEEPEST:
+            kind = line[0] if line else ""
+            seen[kind] = seen.get(kind, 0) + 1
+            at = _block(words, after + 1, material, (*above, kind), seen)
+        else:
+            if line and all(seen.get(kind, 1) == 1 for kind in ("technique", "pass")):
+                _setting(line, material)
+            at = max(after, at + (0 if at < len(words) and words[at] == "}" else 1)) \
+                if after < len(words) else len(words)
+    return at
+
+
+def _setting(line: List[str], material: ScriptMaterial) -> None:
+    word, values = line[0], line[1:]
+    if word in ("ambient", "diffuse", "specular", "emissive"):
+        numbers = _numbers(values)
+        if len(numbers) >= 3:
+            # A specular line of 4 numbers is r g b shininess; of 5, r g b a shininess.
+            has_alpha = len(numbers) >= (5 if word == "specular" else 4)
+            alpha = numbers[3] if has_alpha else 1.0
+            setattr(material, word, (numbers[0], numbers[1], numbers[2], alpha))
+    elif word == "lighting" and values:
+        material.lighting = values[0] != "off"
+    elif word == "scene_blend" and values:
+        material.blend = values[0] == "alpha_blend"
+    elif word == "texture" and values and not material.texture:
+        material.texture = values[0]
+    elif word == "scale" and len(_numbers(values)) >= 2:
+        u, v = _numbers(values)[:2]
+        material.scale = (u or 1.0, v or 1.0)
+
+
+def _numbers(values: Sequence[str]) -> List[float]:
+    found: List[float] = []
+    for value in values:
+        try:
+            found.append(float(value))
+        except ValueError:
+            break
+    return found

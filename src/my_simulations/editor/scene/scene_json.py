@@ -1,0 +1,168 @@
+"""The world as the page gets it: the description as JSON, with present poses and URLs."""
+from __future__ import annotations
+
+import os
+import re
+from typing import Any, Dict, Sequence
+
+from ...description.model import Joint, Link, Model
+from ...description.shapes import (
+    Box,
+    Capsule,
+    Collision,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Heightmap,
+    ImageMap,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+    Visual,
+)
+from ...description.world import Actor, Light, World
+from ...engine.ring import Snapshot
+from ...geometry import Pose, Vec3
+from ...resources.resolver import Resolver, ResourceNotFoundError
+from ...simulator.registry import Entity
+from ..transport.served_files import MESHES, ServedFiles
+from .generated_meshes import Solids
+from .materials import Materials
+from .plain_json import plain, plain_fields
+
+NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule", Cone: "cone",
+         Ellipsoid: "ellipsoid", Plane: "plane", Mesh: "mesh", Heightmap: "heightmap",
+         Polyline: "polyline", ImageMap: "image"}
+"""`type` of a geometry; what is not here is "empty"."""
+
+_SCALABLE = (Box, Sphere, Cylinder, Capsule, Cone, Ellipsoid, Mesh, Polyline)
+_LOADED = {".dae": "dae", ".stl": "stl", ".stla": "stl", ".stlb": "stl", ".obj": "obj",
+           ".glb": "glb", ".gltf": "gltf"}
+_LAYER = re.compile(r"<layer>\s*(-?\d+)\s*</layer>")
+_WIND = re.compile(r"<enable_wind>\s*(\w+)\s*</enable_wind>")
+
+
+class Documents:
+    """Makes documents. Safe from any thread."""
+
+    def __init__(self, resolver: Resolver) -> None:
+        self.served = ServedFiles(resolver)
+        self.solids = Solids()
+        self._materials = Materials(resolver, self.served)
+        self._resolver = resolver
+
+    def world(self, world: World, physics: Any, gravity: Vec3, models: Sequence[Dict[str, Any]],
+              ) -> Dict[str, Any]:
+        """The protocol's `World` around documents of its models."""
+        if world.file:
+            self.served.add_root(os.path.dirname(os.path.abspath(world.file)))
+        return {**self.surroundings(world, physics, gravity), "models": list(models),
+                "lights": [self.light(light) for light in world.lights],
+                "roads": [{**plain_fields(road, "material"),
+                           "material": self._materials.document(road.material)}
+                          for road in world.roads],
+                "actors": [self.actor(actor) for actor in world.actors]}
+
+    def surroundings(self, world: World, physics: Any, gravity: Vec3) -> Dict[str, Any]:
+        """Everything of a world but models, lights, roads and actors."""
+        return {"name": world.name, "file": world.file, "gravity": list(gravity),
+                "physics": plain(physics), "plugins": [plain(p) for p in world.plugins],
+                **{name: plain(getattr(world, name))
+                   for name in ("magnetic_field", "scene", "gui_camera", "wind", "atmosphere",
+                                "spherical_coordinates")}}
+
+    def entity(self, entity: Entity, snapshot: Snapshot) -> Dict[str, Any]:
+        """A model of the running world; ids are the rows of its links."""
+        return self.model(entity.model, entity.state(snapshot)[0], entity.first_link_row)
+
+    def model(self, model: Model, pose: Pose, first_id: int = 0) -> Dict[str, Any]:
+        """The protocol's `Model` of a flattened model at a world pose."""
+        wind = _WIND.search("".join(model.extra))
+        return {
+            "name": model.name, "pose": plain(pose), "static": model.static,
+            "self_collide": model.self_collide, "allow_auto_disable": model.allow_auto_disable,
+            "enable_wind": wind is not None and wind.group(1).lower() in ("true", "1"),
+            "canonical_link": model.canonical_link,
+            "links": [self._link(link, first_id + n) for n, link in enumerate(model.links)],
+            "joints": [_joint(joint) for joint in model.joints],
+            "plugins": [plain(plugin) for plugin in model.plugins],
+            "uri": model.uri, "scalable": is_scalable(model),
+        }
+
+    @staticmethod
+    def light(light: Light) -> Dict[str, Any]:
+        """The protocol's `Light`."""
+        return plain_fields(light)
+
+    def actor(self, actor: Actor) -> Dict[str, Any]:
+        """The protocol's `Actor`: its skin is a geometry, "empty" for an actor without one."""
+        return {**plain_fields(actor, "plugins", "skin_scale"),
+                "geometry": self._found_mesh(actor.skin, actor.base_dir, actor.skin_scale),
+                "animations": [{**plain_fields(one, "scale"), "geometry":
+                                self._found_mesh(one.filename, actor.base_dir, one.scale)}
+                               for one in actor.animations]}
+
+    def _found_mesh(self, uri: str, base_dir: str, scale: float) -> Dict[str, Any]:
+        if not uri:
+            return {"type": "empty"}
+        try:
+            path = self._resolver.resolve(uri, base_dir)
+        except ResourceNotFoundError:
+            path = ""
+        if path.lower().endswith(".bvh"):  # a skeleton without triangles
+            return {"type": "mesh", "url": None, "problem": f"{uri} is BVH, which is not shown"}
+        return self.geometry(Mesh(uri, path, (scale, scale, scale)))
+
+    def _link(self, link: Link, known: int) -> Dict[str, Any]:
+        return {**plain_fields(link, "collisions", "visuals"), "id": known,
+                "collisions": [self._collision(one) for one in link.collisions],
+                "visuals": [self._visual(one) for one in link.visuals]}
+
+    def _collision(self, collision: Collision) -> Dict[str, Any]:
+        return {**plain_fields(collision, "geometry"),
+                "geometry": self.geometry(collision.geometry)}
+
+    def _visual(self, visual: Visual) -> Dict[str, Any]:
+        layer = _LAYER.search("".join(visual.extra))
+        return {**plain_fields(visual, "geometry", "material"),
+                "geometry": self.geometry(visual.geometry),
+                "material": self._materials.document(visual.material),
+                "layer": int(layer.group(1)) if layer else None}
+
+    def geometry(self, shape: Geometry) -> Dict[str, Any]:
+        """The protocol's `Geometry`, with a URL where the page must load something."""
+        found = {"type": NAMES.get(type(shape), "empty"), **plain_fields(shape)}
+        if isinstance(shape, Mesh):
+            found.update(self._mesh(shape))
+        elif isinstance(shape, (Heightmap, Polyline, ImageMap)):
+            found.update(url=self.solids.url(shape), format="stl")
+        return found
+
+    def _mesh(self, mesh: Mesh) -> Dict[str, Any]:
+        """Where the page gets the triangles, or why it cannot."""
+        extension = os.path.splitext(mesh.path)[1].lower()
+        if not mesh.path or not os.path.isfile(mesh.path):
+            return {"url": None, "format": None, "problem": f"{mesh.uri} was not found"}
+        url = self.served.url(mesh.path)
+        if url is None and extension in MESHES:
+            return {"url": None, "format": None,
+                    "problem": f"{mesh.uri} lies outside of all model and resource folders"}
+        if url is not None and extension in _LOADED:
+            return {"url": url, "format": _LOADED[extension],
+                    "fallback": self.solids.url(mesh)}
+        return {"url": self.solids.url(mesh), "format": "stl", "submesh": "", "center": False}
+
+
+def _joint(joint: Joint) -> Dict[str, Any]:
+    return plain_fields(joint)
+
+
+def is_scalable(model: Model) -> bool:
+    """One link, and nothing in it that has no size along three axes."""
+    if len(model.links) != 1:
+        return False
+    link = model.links[0]
+    shapes = [one.geometry for one in link.collisions] + [one.geometry for one in link.visuals]
+    return bool(shapes) and all(isinstance(shape, _SCALABLE) for shape in shapes)

@@ -1,0 +1,1 @@
+"""HTTP, web sockets and messages between the page and the simulator."""

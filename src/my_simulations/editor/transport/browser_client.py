@@ -1,0 +1,92 @@
+"""One browser at the other end of a web socket."""
+from __future__ import annotations
+
+import asyncio
+import json
+from collections import deque
+from typing import Any, Deque, Dict, Set, Union
+
+from aiohttp import web
+
+from .pose_messages import SentPoses
+
+_MOST_WAITING = 64 << 20
+"""Bytes, or so; a browser that is so far behind is cut off and starts anew."""
+
+_FULL = 1 << 20
+
+
+def encoded(message: Dict[str, Any]) -> str:
+    """A message as text."""
+    return json.dumps(message, separators=(",", ":"), allow_nan=False)
+
+
+class Client:
+    """Sends in order; of pose frames only ever the newest.
+
+    Attributes:
+        number: tells clients apart.
+        live: gets the running world's changes and frames.
+        sent: the poses it has.
+        topics: what it watches.
+        replay: what it plays, if it looks at a log.
+    """
+
+    def __init__(self, number: int, socket: web.WebSocketResponse) -> None:
+        self.number = number
+        self.session = ""
+        self.live = False
+        self.sent = SentPoses()
+        self.topics: Set[str] = set()
+        self.replay: Any = None
+        self._socket = socket
+        self._queue: Deque[Union[str, bytes]] = deque()
+        self._waiting = 0
+        self._sending = False
+        self._news = asyncio.Event()
+
+    @property
+    def free(self) -> bool:
+        """Whether a frame would go out at once; else better send a newer one later."""
+        return not self._queue and not self._sending
+
+    @property
+    def full(self) -> bool:
+        """Whether what comes many times a second had better be left out."""
+        return self._waiting > _FULL
+
+    def post(self, message: Dict[str, Any]) -> None:
+        """Queue a message."""
+        self.append(encoded(message))
+
+    def append(self, data: Union[str, bytes]) -> None:
+        """Queue a message that is text already, or a frame."""
+        self._queue.append(data)
+        self._waiting += len(data)
+        self._news.set()
+
+    async def close(self) -> None:
+        """End the connection."""
+        await self._socket.close(code=1001, message=b"the server ends")
+
+    async def pump(self) -> None:
+        """Send what is queued until the connection ends."""
+        while not self._socket.closed:
+            await self._news.wait()
+            self._news.clear()
+            self._sending = True
+            try:
+                while self._queue:
+                    if self._waiting > _MOST_WAITING:
+                        await self._socket.close(code=1013, message=b"too slow")
+                        return
+                    data = self._queue.popleft()
+                    self._waiting -= len(data)
+                    if isinstance(data, str):
+                        await self._socket.send_str(data)
+                    else:
+                        await self._socket.send_bytes(data)
+            except (ConnectionError, RuntimeError):
+                return  # it went away; its reader hears of that too
+            finally:
+                self._sending = False

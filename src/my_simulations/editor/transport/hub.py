@@ -1,0 +1,256 @@
+"""The clients of one world: what all of them are told, and when.
+
+Everything here runs in the server's event loop, but for what is said to be safe from any thread.
+"""
+from __future__ import annotations
+
+import asyncio
+import functools
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
+
+from ...errors import CommandError, Issue, error
+from ...simulator.simulator import Simulator
+from ..scene.scene_changes import Mirror
+from ..scene.scene_json import Documents
+from .browser_client import Client, encoded
+from .clock_statistics import RealTime
+from .error_messages import issue_document
+from .pose_messages import LIVE, Poses
+from .pose_reader import PoseReader
+from .protocol import Protocol
+
+_KEPT_ISSUES = 100
+_DEMAND = "editor"
+_QUIET_S = 1.0
+_QUIET_PERIOD_S = 0.2
+"""How often a world that stands still, and has for `_QUIET_S`, is looked at.
+
+Waking a sleeping processor costs more than the look does. What pages do ends the quiet at once.
+"""
+
+
+class Hub:
+    """Tells clients of changes, poses, time and issues.
+
+    Args:
+        simulator: the world.
+        documents: makes documents.
+        protocol: gives the rates.
+        check: hold what is sent to the protocol.
+    """
+
+    def __init__(self, simulator: Simulator, documents: Documents, protocol: Protocol,
+                 check: bool = False) -> None:
+        self.simulator = simulator
+        self.protocol = protocol
+        self.documents = documents
+        self.clients: Dict[int, Client] = {}
+        self.on_tick: List[Callable[[Optional[Poses], int], None]] = []
+        self.clock = RealTime(simulator)
+        self._check = check
+        self._mirror = Mirror(simulator, documents)
+        self._loop = asyncio.get_running_loop()
+        self._writer = ThreadPoolExecutor(1, "editor documents")
+        self._nudged = asyncio.Event()
+        self._news_at = 0.0
+        self._sequence = -1
+        self._listeners = 0
+        self._states_hz = 0.0
+        self._stats_due = 0.0
+        self._issues: Deque[Issue] = deque(maxlen=_KEPT_ISSUES)
+        self._poses: Optional[Poses] = None
+        self._reader = PoseReader(simulator)
+
+    # -- telling ---------------------------------------------------------------------------------
+
+    def push(self, message: Dict[str, Any], to: Optional[Iterable[Client]] = None) -> None:
+        """Send a message to clients, all by default."""
+        self.check([message])
+        text = encoded(message)
+        for client in list(self.clients.values()) if to is None else to:
+            client.append(text)
+
+    def check(self, messages: Iterable[Dict[str, Any]]) -> None:
+        """Hold pushes to the protocol where that was asked for. Raises ProtocolFault."""
+        for message in messages if self._check else ():
+            self.protocol.check_push(message)
+
+    def push_soon(self, message: Dict[str, Any]) -> None:
+        """As `push` to all; safe from any thread."""
+        self._soon(self.push, message)
+
+    def tell(self, issue: Issue) -> None:
+        """Show an issue to everybody, and to who comes later; safe from any thread."""
+        self._soon(self._tell, issue)
+
+    def nudge(self) -> None:
+        """Something may have changed: look now; safe from any thread."""
+        self._soon(self._nudged.set)
+
+    def stir(self) -> None:
+        """A page does something: look often again."""
+        quiet, self._news_at = self._quiet(), self._loop.time()
+        if quiet:
+            self._nudged.set()
+
+    def stats_soon(self) -> None:
+        """Tell the time now; safe from any thread."""
+        self._stats_due = 0.0
+        self.nudge()
+
+    def _soon(self, call: Callable[..., object], *arguments: Any) -> None:
+        try:
+            self._loop.call_soon_threadsafe(functools.partial(call, *arguments))
+        except RuntimeError:
+            return  # the server has ended
+
+    def _tell(self, issue: Issue) -> None:
+        self._issues.append(issue)
+        self.push({"type": "issue", "issue": issue_document(issue)})
+
+    # -- coming and going ------------------------------------------------------------------------
+
+    async def welcome(self, client: Client, new: bool) -> None:
+        """Give a client the world, and from then on all of its changes."""
+        if self._mirror.revision < 0:
+            await self._look()
+        world = await self._loop.run_in_executor(self._writer, self._whole)
+        client.append(world)
+        client.sent.forget()
+        client.live = True
+        self._sequence = -1
+        self.push(self.clock.read(), [client])
+        for issue in list(self._issues) if new else ():
+            self.push({"type": "issue", "issue": issue_document(issue)}, [client])
+        self._nudged.set()
+
+    async def whole(self) -> Dict[str, Any]:
+        """The push `world`, of now."""
+        return await self._loop.run_in_executor(self._writer, self._mirror.whole)
+
+    def again(self) -> None:
+        """Let the next tick come with all poses, moved or not."""
+        self._sequence = -1
+        self._nudged.set()
+
+    def listen(self, more: int) -> None:
+        """So many more (fewer) want poses."""
+        self._listeners += more
+        self._ask()
+        self._sequence = -1
+        self._nudged.set()
+
+    def want(self, states_hz: float) -> None:
+        """Have the engine read whole states so often, not only poses, while somebody listens."""
+        if states_hz != self._states_hz:
+            self._states_hz = states_hz
+            self._ask()
+
+    def _ask(self) -> None:
+        rate = self.protocol.limits["frames_hz"]
+        self.simulator.feed.request(_DEMAND, poses_hz=rate if self._listeners else 0.0,
+                                  states_hz=self._states_hz if self._listeners else 0.0)
+
+    def now(self) -> Tuple[Optional[Poses], int]:
+        """All poses of now, and the revision of the world that clients know.
+
+        None for the poses while names have changed that clients have not heard of.
+        """
+        revision = self._mirror.revision
+        return self._reader.read(revision, self.clock.real_ns * 1e-9), revision
+
+    # -- the loop --------------------------------------------------------------------------------
+
+    async def run(self) -> None:
+        """Look after the world until cancelled."""
+        period = 1.0 / self.protocol.limits["frames_hz"]
+        while True:
+            if not self._listeners:
+                await self._nudged.wait()
+                self._nudged.clear()
+                continue
+            started = self._loop.time()
+            self._nudged.clear()
+            try:
+                await self._tick()
+            except CommandError as fault:
+                self._tell(error("editor-view", str(fault)))
+                await asyncio.sleep(1.0)
+            except Exception as defect:
+                # Whatever is wrong with one look at the world, the next one may go well.
+                self._tell(error("editor-defect", "the editor failed to follow the world: "
+                                 f"{type(defect).__name__}: {defect}"))
+                self._loop.call_exception_handler(
+                    {"message": "the editor failed to follow the world", "exception": defect})
+                await asyncio.sleep(1.0)
+            await self._pause(started + (_QUIET_PERIOD_S if self._quiet() else period))
+
+    def _quiet(self) -> bool:
+        """Whether nothing has happened for a while, and nothing will by itself."""
+        return self.simulator.clock.paused and self._loop.time() > self._news_at + _QUIET_S
+
+    async def _pause(self, until: float) -> None:
+        left = until - self._loop.time()
+        if left <= 0.0:
+            await asyncio.sleep(0)
+            return
+        timer = self._loop.call_later(left, self._nudged.set)
+        await self._nudged.wait()
+        timer.cancel()
+
+    async def _tick(self) -> None:
+        if self.simulator.models.revision != self._mirror.revision:
+            await self._look()
+        sequence = self.simulator.feed.changes
+        moved = sequence != self._sequence or self._behind()
+        if moved:
+            self._news_at = self._loop.time()
+            self._sequence = sequence
+            # None: names have changed that clients have not heard of.
+            self._poses, _ = self.now()
+            if self._poses is None:
+                self._sequence = -1
+            self._send_poses()
+        for listener in self.on_tick:
+            listener(self._poses if moved else None, self._mirror.revision)
+        if self._loop.time() >= self._stats_due:
+            self._stats_due = self._loop.time() + 1.0 / self.protocol.limits["stats_hz"]
+            news = self.clock.news()
+            if news is not None:
+                self.push(news, self._live())
+
+    def _live(self) -> List[Client]:
+        return [client for client in self.clients.values() if client.live]
+
+    def _behind(self) -> bool:
+        """Whether some client could not take its last frame."""
+        return any(client.live and client.sent.late for client in self.clients.values())
+
+    async def _look(self) -> None:
+        """Tell everybody what has changed in the description."""
+        news = await self._loop.run_in_executor(self._writer, self._mirror.news)
+        if news is None:
+            return
+        live = self._live()
+        self.push(news.push, live)
+        for client in live:
+            client.sent.forget(news.links)
+        self._sequence = -1
+
+    def _whole(self) -> str:
+        message = self._mirror.whole()
+        self.check([message])
+        return encoded(message)
+
+    def _send_poses(self) -> None:
+        poses = self._poses
+        for client in self.clients.values():
+            if not client.live:
+                continue
+            client.sent.late = poses is None or not client.free
+            if poses is not None and client.free:
+                frame = client.sent.frame(LIVE, self._mirror.revision, poses)
+                if frame:
+                    client.append(frame)

@@ -1,0 +1,189 @@
+"""What the page may ask for, each with its handler and its thread."""
+from __future__ import annotations
+
+import secrets
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable, Dict, List
+
+from ... import __version__
+from ...errors import CommandError, Issue
+from ...resources.resolver import Resolver
+from ...simulator.history import History
+from ...simulator.simulator import Simulator
+from ..editing.drags import Drags
+from ..editing.edit_requests import Edits
+from ..library.autosave import Autosave
+from ..library.world_files import WorldFiles
+from ..scene.plain_json import pose_of
+from .browser_client import Client
+from .error_messages import EditRefusedError
+from .hub import Hub
+from .web_socket import Route
+
+_MOST_STEPS = 100000
+_LISTED = 200
+"""Labels of the history that are sent."""
+
+
+class Requests:
+    """The requests about the world itself: editing, time and files.
+
+    All but `hello` run in one thread, in the order in which they came.
+    """
+
+    def __init__(self, hub: Hub, resolver: Resolver, history: History, files: WorldFiles,
+                 autosave: Autosave, tell: Callable[[Issue], None]) -> None:
+        self._hub = hub
+        self._world: Simulator = hub.simulator
+        self._history = history
+        self._files = files
+        self._autosave = autosave
+        self._drags = Drags(self._world)
+        self._pending: Dict[int, Dict[str, Any]] = {}
+        self._edits = Edits(self._world, resolver, history, hub.protocol, tell,
+                            self._drags.taken)
+        self._told: Dict[str, Any] = {}
+        self.thread = ThreadPoolExecutor(1, "editor edits")
+
+    def routes(self) -> Dict[str, Route]:
+        """By type of request."""
+        handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
+            "edit": self._edit, "copy": self._copy, "undo": self._undo, "redo": self._redo,
+            "play": self._play, "pause": self._pause, "step": self._step, "save": self._save,
+            "open": self._open, "new": self._new, "autosave": self._restore,
+            "drag_end": self._drag_end, "folders": self._folders,
+        }
+        return {"hello": Route(self._hello, None), "drag": Route(self._drag, None),
+                **{kind: Route(handler, self.thread) for kind, handler in handlers.items()}}
+
+    def leave(self, client: Client) -> None:
+        """A client has gone: what it held falls."""
+        self._pending.pop(client.number, None)
+        self.thread.submit(self._drags.end, client.number)
+
+    def history_push(self) -> Dict[str, Any]:
+        """The push `history`."""
+        return {"type": "history", "undo": self._history.undo_labels[:_LISTED],
+                "redo": self._history.redo_labels[:_LISTED], "dirty": self._history.dirty,
+                "file": self._files.file}
+
+    # -- greeting --------------------------------------------------------------------------------
+
+    async def _hello(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        version = self._hub.protocol.version
+        if message["version"] != version:
+            raise EditRefusedError("version", f"the page speaks version {message['version']} of the"
+                          f" protocol, the server {version}", "load the page again")
+        given = message.get("session") or ""
+        client.session = given or secrets.token_hex(8)
+        await self._hub.welcome(client, new=not given)
+        self._hub.push(self.history_push(), [client])
+        if self._autosave.found is not None:
+            self._hub.push(self._autosave.push(), [client])
+        return {"session": client.session, "version": version, "app": __version__}
+
+    # -- editing ---------------------------------------------------------------------------------
+
+    def _edit(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        op = message["op"]
+        value = self._edits.do(op)
+        if op.get("kind") == "move":
+            self._drags.moved(list(op["poses"]))
+        self._changed()
+        return value
+
+    def _copy(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return {"text": self._edits.copy(message["names"])}
+
+    def _undo(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._moved_in_history(self._history.undo, message)
+
+    def _redo(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._moved_in_history(self._history.redo, message)
+
+    def _moved_in_history(self, move: Callable[[int], str],
+                          message: Dict[str, Any]) -> Dict[str, Any]:
+        try:
+            return {"label": move(message.get("to") or 0)}
+        finally:
+            self._changed()
+
+    async def _drag(self, client: Client, message: Dict[str, Any]) -> None:
+        """Latest wins: while one drag is carried out, only the newest waits."""
+        names: List[str] = message["names"]
+        if len(names) != len(message["poses"]):
+            raise CommandError("drag: as many poses as names are needed")
+        waiting = client.number in self._pending
+        self._pending.setdefault(client.number, {}).update(zip(names, message["poses"]))
+        if not waiting:
+            self.thread.submit(self._drag_now, client.number)
+
+    def _drag_now(self, number: int) -> None:
+        poses = self._pending.pop(number, None)
+        if poses:
+            self._drags.drag(number, {name: pose_of(pose) for name, pose in poses.items()})
+
+    def _drag_end(self, client: Client, _message: Dict[str, Any]) -> None:
+        self._pending.pop(client.number, None)
+        self._drags.end(client.number)
+
+    # -- time ------------------------------------------------------------------------------------
+
+    def _play(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
+        self._world.clock.unpause()
+        return self._time()
+
+    def _pause(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
+        self._world.clock.pause()
+        return self._time()
+
+    def _step(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        steps = message["steps"]
+        if not 0 < steps <= _MOST_STEPS:
+            raise CommandError(f"steps must be 1 to {_MOST_STEPS}, not {steps}")
+        step = self._world.clock.advance(steps)
+        self._time()
+        return {"step": step}
+
+    def _time(self) -> Dict[str, Any]:
+        self._hub.stats_soon()
+        return {}
+
+    # -- files -----------------------------------------------------------------------------------
+
+    def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._filed(self._files.save, message)
+
+    def _open(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._filed(self._files.open, message)
+
+    def _new(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._filed(self._files.new, message)
+
+    def _folders(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._files.folders(message)
+
+    def _filed(self, handler: Callable[[Dict[str, Any]], Dict[str, Any]],
+               message: Dict[str, Any]) -> Dict[str, Any]:
+        try:
+            return handler(message)
+        finally:
+            self._changed()
+
+    def _restore(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        try:
+            if message["action"] == "restore":
+                return {"file": self._autosave.restore()}
+            self._autosave.discard()
+            return {"file": ""}
+        finally:
+            self._hub.push_soon(self._autosave.push())
+            self._changed()
+
+    def _changed(self) -> None:
+        """After an edit: everybody looks at the world, and at the history if it differs."""
+        self._hub.nudge()
+        push = self.history_push()
+        if push != self._told:
+            self._told = push
+            self._hub.push_soon(push)

@@ -1,0 +1,162 @@
+"""Which files of this machine the page may have, and under which URL.
+
+Only pictures, meshes and materials, and only below a known root: the model and resource folders,
+the caches of Fuel models, the folders of ROS packages, the folder of the world. A link that leads
+out of its root is refused.
+"""
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import threading
+from typing import Dict, List, Optional
+from urllib.parse import quote
+
+from ...resources.resolver import Resolver
+from .content_types import MESHES, PICTURES, extension
+
+SERVED = MESHES | PICTURES
+
+_BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials", "textures"),
+           "textures", os.path.join("..", "textures"))
+_ID = re.compile(rb'"/resource/([0-9a-f]+)/')
+
+
+class ServedFiles:
+    """Roots by short id."""
+
+    def __init__(self, resolver: Resolver) -> None:
+        self._resolver = resolver
+        self._lock = threading.Lock()
+        self._roots: Dict[str, str] = {}
+        self._more: List[str] = []
+
+    def add_root(self, folder: str) -> None:
+        """Files below this folder may be served, too."""
+        with self._lock:
+            if folder and folder not in self._more:
+                self._more.append(folder)
+
+    def url(self, path: str) -> Optional[str]:
+        """The URL of a file; None for one that must not be served."""
+        real = os.path.realpath(path) if path else ""
+        if extension(path) not in SERVED or extension(real) not in SERVED:
+            return None
+        root = self._root_of(real)
+        if root is None:
+            return None
+        return f"/resource/{self._id(root)}/{quote(os.path.relpath(real, root))}"
+
+    def serve_again(self, document: bytes, beside: str = "") -> None:
+        """Serve what a JSON document of an earlier session names, as far as it may be served.
+
+        An id cannot be turned back into its root: it is looked for among all that there are now,
+        which may take a look at all ROS packages. `beside`: the folder of that session's world,
+        which counts where it lies below one of those.
+        """
+        with self._lock:
+            wanted = {known.decode() for known in _ID.findall(document)}.difference(self._roots)
+        if not wanted:
+            return
+        roots = self._resolver.all_folders()
+        with self._lock:
+            roots += self._more
+        if beside and "\0" not in beside:
+            inside = os.path.join(os.path.realpath(beside), "any")
+            roots += [beside] if self._root_of(inside) is not None else []
+        for root in map(os.path.realpath, roots):
+            if _id_of(root) in wanted:
+                self._id(root)
+
+    def path(self, root_id: str, inside: str) -> Optional[str]:
+        """The file of a URL's two parts; None where there is none that may be served.
+
+        A picture that a mesh names and that does not lie beside it is looked for where models keep
+        their textures (Gazebo behaviour).
+        """
+        root = self._roots.get(root_id)
+        kind = extension(inside)
+        if root is None or "\0" in inside or kind not in SERVED:
+            return None
+        wanted = os.path.normpath(os.path.join(root, inside))
+        if not _is_below(wanted, root):
+            return None
+        found = self._existing(wanted)
+        if found is None and kind in PICTURES:
+            folder, name = os.path.split(wanted)
+            places = [os.path.normpath(os.path.join(folder, beside, name)) for beside in _BESIDE]
+            places += [os.path.join(media, "materials", "textures", name)
+                       for base in self._resolver.resource_folders()
+                       for media in (base, os.path.join(base, "media"),
+                                     os.path.join(base, "Media"))]
+            found = next((hit for hit in map(self._existing, places) if hit), None)
+        return found
+
+    def picture(self, name: str, folders: List[str]) -> Optional[str]:
+        """The URL of a texture by file name, looked for in these folders first."""
+        for folder in folders:
+            for place in (os.path.join(folder, name), os.path.join(folder, "..", "textures", name)):
+                found = self._existing(os.path.normpath(place))
+                if found is not None:
+                    return self.url(found)
+        for base in self._resolver.resource_folders():
+            for media in ("", "media", "Media"):
+                found = self._existing(os.path.join(base, media, "materials", "textures", name))
+                if found is not None:
+                    return self.url(found)
+        return None
+
+    def _existing(self, path: str) -> Optional[str]:
+        """The real path of a file that may be served; its name in any letter case.
+
+        A link may have the name of a picture and lead to something else.
+        """
+        real = os.path.realpath(path)
+        if not os.path.isfile(real):
+            folder, name = os.path.split(real)
+            try:
+                same = [entry for entry in os.listdir(folder) if entry.lower() == name.lower()]
+            except OSError:
+                return None
+            if not same:
+                return None
+            real = os.path.realpath(os.path.join(folder, same[0]))
+        served = extension(real) in SERVED and os.path.isfile(real)
+        return real if served and self._root_of(real) is not None else None
+
+    def _root_of(self, real: str) -> Optional[str]:
+        """The root that holds a real path: the longest that fits."""
+        with self._lock:
+            more = list(self._more)
+        folders = [*self._resolver.model_folders(), *self._resolver.resource_folders(),
+                   *self._resolver.fuel_folders(), *more]
+        fitting = [root for root in map(os.path.realpath, folders) if _is_below(real, root)]
+        if fitting:
+            return max(fitting, key=len)
+        package = _package_above(real)
+        return package if package and self._resolver.knows_package(package) else None
+
+    def _id(self, root: str) -> str:
+        known = _id_of(root)
+        with self._lock:
+            self._roots[known] = root
+        return known
+
+
+def _id_of(root: str) -> str:
+    return hashlib.sha256(root.encode()).hexdigest()[:10]
+
+
+def _is_below(path: str, root: str) -> bool:
+    return root not in ("", os.sep) and path.startswith(root.rstrip(os.sep) + os.sep)
+
+
+def _package_above(path: str) -> str:
+    """The nearest folder above that holds a package.xml, or ""."""
+    folder = os.path.dirname(path)
+    while os.path.dirname(folder) != folder:
+        if os.path.isfile(os.path.join(folder, "package.xml")):
+            return folder
+        folder = os.path.dirname(folder)
+    return ""

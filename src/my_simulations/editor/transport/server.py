@@ -1,0 +1,122 @@
+"""The server's life: a thread with a loop of its own, a listening socket, and an orderly end."""
+from __future__ import annotations
+
+import asyncio
+import errno
+import socket
+import threading
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as TimeoutError_
+from typing import Optional
+
+from aiohttp import web
+
+from ...errors import CommandError, Issue
+from ...resources.resolver import Resolver
+from ...simulator.simulator import Simulator
+from ..assembly import Assembly
+from ..editor_options import DEFAULT_PORT, EditorOptions
+from .access_guard import Guard
+
+_START_S = 10.0
+_END_S = 3.0
+
+
+class EditorServer:
+    """Serves one simulator until `stop`.
+
+    Attributes:
+        url: what to open in a browser; holds the token where one is needed.
+
+    Raises:
+        CommandError: it cannot listen there, or the page is not installed.
+    """
+
+    def __init__(self, simulator: Simulator, resolver: Resolver, options: EditorOptions) -> None:
+        self._world = (simulator, resolver)
+        self._options = options
+        self._guard = Guard(options)
+        self._editor: Optional[Assembly] = None
+        self._loop: Optional[asyncio.AbstractEventLoop] = None
+        self._stopping: "Optional[asyncio.Future[str]]" = None
+        self._listener = _listening(options)
+        self._started: "Future[None]" = Future()
+        self._thread = threading.Thread(target=self._main, name="editor", daemon=True)
+        self._thread.start()
+        try:
+            self._started.result(_START_S)
+        except TimeoutError_ as slow:
+            raise CommandError(f"the editor did not start within {_START_S:g} s") from slow
+        self.url = _url(self._listener, options.host, self._guard.token)
+
+    def stop(self, reason: str = "the simulator ends") -> None:
+        """Tell the pages, and end; unsaved edits stay in the autosave."""
+        if self._loop is None or not self._thread.is_alive():
+            return
+        try:
+            self._loop.call_soon_threadsafe(self._end, reason)
+        except RuntimeError:
+            return  # it has ended by itself
+        self._thread.join(_END_S)
+
+    def tell(self, issue: Issue) -> None:
+        """Show an issue on all pages; safe from any thread."""
+        if self._editor is not None:
+            self._editor.tell(issue)
+
+    def _main(self) -> None:
+        try:
+            asyncio.run(self._serve())
+        except Exception as fault:
+            self._listener.close()
+            if self._started.done():
+                raise
+            self._started.set_exception(fault)
+
+    def _end(self, reason: str) -> None:
+        if self._stopping is not None and not self._stopping.done():
+            self._stopping.set_result(reason)
+
+    async def _serve(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._stopping = self._loop.create_future()
+        self._editor = Assembly(*self._world, self._options, self._guard)
+        runner = web.AppRunner(self._editor.application, access_log=None, handle_signals=False,
+                               shutdown_timeout=0.5)
+        await runner.setup()
+        await web.SockSite(runner, self._listener).start()
+        self._editor.start()
+        self._started.set_result(None)
+        reason = await self._stopping
+        await self._editor.close(reason, runner)
+
+
+def _listening(options: EditorOptions) -> socket.socket:
+    """A listening socket. Raises CommandError."""
+    host = options.host.strip("[]")
+    ports = [options.port] + ([0] if options.port == DEFAULT_PORT else [])
+    for port in ports:
+        try:
+            family, kind, _, _, address = socket.getaddrinfo(
+                host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+            listener = socket.socket(family, kind)
+        except OSError as fault:
+            raise CommandError(f"the editor cannot listen at {host!r}: {fault}") from fault
+        try:
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            listener.bind(address)
+            listener.listen(64)
+            return listener
+        except OSError as fault:
+            listener.close()
+            if fault.errno != errno.EADDRINUSE or port == ports[-1]:
+                raise CommandError(f"the editor cannot listen at {host}:{port}: "
+                                   f"{fault.strerror}") from fault
+    raise AssertionError("there is a port to try")
+
+
+def _url(listener: socket.socket, host: str, token: str) -> str:
+    port = listener.getsockname()[1]
+    shown = {"0.0.0.0": socket.gethostname(), "::": socket.gethostname()}.get(host, host)
+    shown = f"[{shown}]" if ":" in shown else shown
+    return f"http://{shown}:{port}/" + (f"?token={token}" if token else "")

@@ -1,0 +1,155 @@
+"""What a page watches besides poses: contacts, joints, and values for plots."""
+from __future__ import annotations
+
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
+
+from ...engine.commands import JointPid
+from ...engine.ring import Snapshot
+from ...errors import CommandError
+from ...geometry import Pose, Twist, rpy_from_quat
+from ...simulator.registry import Entity
+from ...simulator.simulator import Simulator
+from ...simulator.wrenches import Effort
+from .clock_statistics import RealTime
+
+MOST_TOPICS = 200
+
+_POSE = {"x": 0, "y": 1, "z": 2, "roll": 3, "pitch": 4, "yaw": 5}
+_TWIST = {"vx": 0, "vy": 1, "vz": 2, "wx": 3, "wy": 4, "wz": 5}
+_JOINT = {"position": (0, 0), "rate": (0, 1), "position2": (1, 0), "rate2": (1, 1)}
+_WORLD = ("sim_time", "real_time", "real_time_factor", "iterations")
+
+
+class WatchedEntityGoneError(Exception):
+    """What a topic is about is not there (any more)."""
+
+
+def check_topic(topic: str) -> None:
+    """Raises CommandError for a topic that could never be."""
+    kind, colon, rest = topic.partition(":")
+    if topic == "contacts" or (kind == "joints" and rest):
+        return
+    if kind == "plot" and colon:
+        owner, _, field = rest.rpartition(".")
+        if rest in _WORLD or (owner and field in {**_POSE, **_TWIST, **_JOINT}):
+            return
+    raise CommandError(f"there is no topic {topic!r}; there are contacts, joints:MODEL,"
+                       " plot:sim_time, plot:NAME.x and the like")
+
+
+class Watches:
+    """Makes the pushes of topics, of one moment each. For one thread at a time."""
+
+    def __init__(self, simulator: Simulator, clock: RealTime) -> None:
+        self._world = simulator
+        self._clock = clock
+        self._step, self._time = 0, 0.0
+
+    def pushes(self, topics: Iterable[str]) -> Dict[str, Dict[str, Any]]:
+        """The push of each topic, now."""
+        entities, snapshot = self._world.states.latest()
+        names = {entity.model.name: entity for entity in entities}
+        # The snapshot may be older than the clock: while nothing moves, none is written.
+        self._step, clock = self._world.clock.now()
+        self._time = time = clock.sim_ns(self._step) * 1e-9
+        found = {}
+        for topic in topics:
+            push: Dict[str, Any] = {"type": "watch", "topic": topic, "time": time}
+            try:
+                push.update(self._read(topic, names, snapshot))
+            except (WatchedEntityGoneError, CommandError) as fault:
+                push["problem"] = str(fault)
+            found[topic] = push
+        return found
+
+    def _read(self, topic: str, names: Dict[str, Entity], snapshot: Snapshot) -> Dict[str, Any]:
+        kind, _, rest = topic.partition(":")
+        if kind == "contacts":
+            return {"contacts": self._contacts()}
+        if kind == "joints":
+            return {"joints": self._driven_joints(_owner(names, rest), snapshot)}
+        return {"value": self._value(rest, names, snapshot)}
+
+    def _driven_joints(self, entity: Entity, snapshot: Snapshot) -> List[Dict[str, Any]]:
+        found = list(_joints(entity, snapshot))
+        for state, row in zip(found, entity.joint_names):
+            drive = _drive(self._world.wrenches.efforts_on(f"{entity.model.name}::{row}"))
+            if drive is not None:
+                state["drive"] = drive
+        return found
+
+    def _contacts(self) -> List[Dict[str, Any]]:
+        return [{"a": a, "b": b, "position": list(one.position), "normal": list(one.normal),
+                 "depth": one.depth, "force": one.force} for a, b,
+                one in self._world.states.contacts()]
+
+    def _value(self, variable: str, names: Dict[str, Entity], snapshot: Snapshot) -> float:
+        if variable in _WORLD:
+            known = {"sim_time": lambda: self._time,
+                     "real_time": lambda: self._clock.real_ns * 1e-9,
+                     "real_time_factor": lambda: self._clock.factor,
+                     "iterations": lambda: float(self._step)}
+            return float(known[variable]())
+        owner, _, field = variable.rpartition(".")
+        if field in _JOINT:
+            return _joint_value(names, owner, *_JOINT[field], snapshot)
+        pose, twist = _state(names, owner, snapshot)
+        if field in _POSE:
+            return (*pose.position, *rpy_from_quat(pose.orientation))[_POSE[field]]
+        return (*twist.linear, *twist.angular)[_TWIST[field]]
+
+
+def _owner(names: Dict[str, Entity], name: str) -> Entity:
+    found = names.get(name)
+    if found is None:
+        raise WatchedEntityGoneError(f"there is no model {name!r}")
+    return found
+
+
+def _split(names: Dict[str, Entity], scoped: str) -> Tuple[Entity, str]:
+    at = scoped.find("::")
+    while at > 0:
+        if scoped[:at] in names:
+            return names[scoped[:at]], scoped[at + 2:]
+        at = scoped.find("::", at + 2)
+    raise WatchedEntityGoneError(f"there is no {scoped!r}")
+
+
+def _state(names: Dict[str, Entity], name: str, snapshot: Snapshot) -> Tuple[Pose, Twist]:
+    if name in names:
+        return names[name].state(snapshot)
+    entity, link = _split(names, name)
+    if link not in entity.link_names:
+        raise WatchedEntityGoneError(f"there is no link {name!r}")
+    return snapshot.link(entity.first_link_row + entity.link_names.index(link))
+
+
+def _joint_value(names: Dict[str, Entity], name: str, axis: int, which: int,
+                 snapshot: Snapshot) -> float:
+    entity, joint = _split(names, name)
+    for state in _joints(entity, snapshot):
+        if state["name"] == joint and state["axis"] == axis:
+            return float(state["rate" if which else "position"])
+    raise WatchedEntityGoneError(f"there is no axis {axis} of a joint {name!r}")
+
+
+def _drive(efforts: Sequence[Effort]) -> Optional[Dict[str, Any]]:
+    """What an axis was asked for last, as a page asks for it."""
+    if not efforts:
+        return None
+    last = efforts[-1]
+    if not isinstance(last, JointPid):
+        return {"mode": "force", "value": last}
+    return {"mode": "velocity" if last.rate else "position", "value": last.target,
+            "gains": {"p": last.p, "i": last.i, "d": last.d}}
+
+
+def _joints(entity: Entity, snapshot: Snapshot) -> Iterable[Dict[str, Any]]:
+    """Positions and rates of all axes of a model."""
+    for n, row in enumerate(entity.joint_names):
+        position, rate = snapshot.joint(entity.first_joint_row + n)
+        second = row.endswith("::1")
+        yield {"name": row[:-3] if second else row, "axis": int(second), "position": position,
+               "rate": rate}
+
+

@@ -1,0 +1,261 @@
+"""Builds the bodies of a model, as often as the world begins anew."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+import pybullet
+
+from ...description.model import Link, Model
+from ...description.shapes import MeshTable
+from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, multiply
+from ..body_plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
+from ..commands import LoadModel
+from ..principal_inertia import principal
+from ..ring_rows import AXES, axis_rows, row_name
+from . import surface_coefficients
+from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics
+from .collision_shapes import Recipe, ShapeFactory
+from .implicit_axes import mobility
+from .mass_matrix import MassMatrix
+
+_LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
+_JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
+                "fixed": pybullet.JOINT_FIXED, "ball": pybullet.JOINT_SPHERICAL}
+
+
+@dataclass(frozen=True)
+class _Masses:
+    """Mass of a link, its principal axes in the link frame, and the moments about them."""
+
+    mass: float
+    com: Pose
+    moments: Vec3
+
+
+@dataclass(frozen=True)
+class _Rigid:
+    """A joint-free link, ready to be built."""
+
+    number: int
+    static: bool
+    masses: _Masses
+    model_from_com: Pose
+    pieces: Tuple[Recipe, ...]
+
+
+@dataclass(frozen=True)
+class _Tree:
+    """A tree of links, ready to be built; one of `shapes` a link, None for no shape."""
+
+    plan: BodyPlan
+    masses: Tuple[_Masses, ...]
+    shapes: Tuple[Optional[Recipe], ...]
+    model_from_base: Pose
+    arguments: Dict[str, Any]
+
+
+class Builder:
+    """What a model becomes: everything about its bodies that no pose changes.
+
+    Attributes:
+        model_id: the model's number.
+        plans: which links make a body.
+        link_rows, joint_rows: those of the tables that are the model's.
+    """
+
+    def __init__(self, command: LoadModel, shapes: ShapeFactory) -> None:
+        """Raises PlanError, ShapeError."""
+        self._model: Model = command.model
+        self.model_id = command.model_id
+        self._first_row = command.first_link_row
+        self._articulated = command.articulated
+        self._shapes = shapes
+        self._axis_rows = {row.name: command.first_joint_row + n
+                           for n, row in enumerate(axis_rows(command.model))}
+        self.link_rows = slice(command.first_link_row,
+                               command.first_link_row + len(command.model.links))
+        self.joint_rows = slice(command.first_joint_row,
+                                command.first_joint_row + len(self._axis_rows))
+        self._eases: Dict[int, float] = {}
+        self.plans = plan_bodies(command.model)
+        self._prints = [self._rigid(plan, command.meshes) if self._is_rigid(plan)
+                        else self._tree(plan, command.meshes) for plan in self.plans]
+
+    def build(self, pose: Pose, dt: float) -> List[Body]:
+        """All bodies, with the model frame at `pose` and Gazebo's dynamics, not PyBullet's.
+
+        `dt` is the step size, s. Raises ShapeError; then what had been built is gone.
+        """
+        built: List[Body] = []
+        try:
+            for each in self._prints:
+                built.append(self._build_rigid(each, pose, dt) if isinstance(each, _Rigid)
+                             else self._build_tree(each, pose))
+            self._ignore_each_other(built)
+        except Exception:
+            for body in built:
+                remove(body)
+            raise
+        return built
+
+    # -- rigid bodies ----------------------------------------------------------------------------
+
+    def _is_rigid(self, plan: BodyPlan) -> bool:
+        if not plan.is_rigid:
+            return False
+        return (not self._articulated or self._model.static
+                or self._model.links[plan.links[0].index].kinematic)
+
+    def _rigid(self, plan: BodyPlan, meshes: MeshTable) -> _Rigid:
+        number = plan.links[0].index
+        link = self._model.links[number]
+        static = self._model.static or link.kinematic
+        masses = (_Masses(0.0, IDENTITY, (0.0, 0.0, 0.0)) if static
+                  else _Masses(link.inertial.mass, *principal(link.inertial)))
+        return _Rigid(number, static, masses, compose(link.pose, masses.com), tuple(
+            self._shapes.recipes(link.collisions, meshes, inverse(masses.com), static)))
+
+    def _build_rigid(self, rigid: _Rigid, pose: Pose, dt: float) -> Body:
+        link, masses = self._model.links[rigid.number], rigid.masses
+        at = compose(pose, rigid.model_from_com)
+        uids = [
+            pybullet.createMultiBody(masses.mass, shape, self._shapes.unseen, at.position,
+                                     at.orientation,
+                                     useMaximalCoordinates=int(not self._articulated))
+            for shape in ([piece.make() for piece in rigid.pieces] or [-1])
+        ]
+        part = self._part(rigid.number, BASE, masses)
+        body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
+                    moves=not rigid.static, rigid=not self._articulated,
+                    may_sleep=self._may_sleep(link))
+        for uid in uids:
+            set_dynamics(uid, BASE, link, masses.mass, masses.moments,
+                         body.may_sleep and not rigid.static)
+            if body.rigid:
+                set_decay(uid, link, dt)
+        body.radius = radius_of(uids[0])
+        return body
+
+    def _part(self, number: int, index: int, masses: _Masses) -> Part:
+        link = self._model.links[number]
+        surface = surface_coefficients.of_link(link)
+        return Part(
+            self._first_row + number,
+            index,
+            masses.com,
+            masses.mass,
+            masses.moments,
+            surface.mu,
+            surface_coefficients.friction(surface, masses.mass == 0.0),
+            link.gravity,
+        )
+
+    def _may_sleep(self, link: Link) -> bool:
+        return (self._model.allow_auto_disable and link.gravity
+                and not any(joint.type in AXES for joint in self._model.joints))
+
+    # -- trees -----------------------------------------------------------------------------------
+
+    def _tree(self, plan: BodyPlan, meshes: MeshTable) -> _Tree:
+        offset = 0 if plan.fixed_base else 1
+        hung = plan.links[offset:]
+        masses = tuple(self._masses(plan, n) for n in range(len(plan.links)))
+        coms = [compose(inverse(node.link_from_frame), each.com)
+                for node, each in zip(hung, masses[offset:])]
+        base = _Masses(0.0, IDENTITY, (0.0, 0.0, 0.0)) if plan.fixed_base else masses[0]
+        at = IDENTITY if plan.fixed_base else self._model.links[plan.links[0].index].pose
+        return _Tree(plan, masses, tuple(self._tree_shape(node, meshes) for node in plan.links),
+                     at, {
+            "baseMass": base.mass,
+            "baseInertialFramePosition": base.com.position,
+            "baseInertialFrameOrientation": base.com.orientation,
+            "linkMasses": [each.mass for each in masses[offset:]],
+            "linkPositions": [node.parent_from_frame.position for node in hung],
+            "linkOrientations": [node.parent_from_frame.orientation for node in hung],
+            "linkInertialFramePositions": [com.position for com in coms],
+            "linkInertialFrameOrientations": [com.orientation for com in coms],
+            "linkParentIndices": [node.parent + 1 - offset if node.parent >= 0 else 0
+                                  for node in hung],
+            "linkJointTypes": [_JOINT_TYPES[node.kind] for node in hung],
+            "linkJointAxis": [node.axis or (0.0, 0.0, 1.0) for node in hung],
+            "flags": (pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
+                      | pybullet.URDF_USE_SELF_COLLISION) if self._model.self_collide else 0})
+
+    def _masses(self, plan: BodyPlan, n: int) -> _Masses:
+        if plan.links[n].index == NO_LINK:
+            beyond = next(link for link in plan.links[n:] if link.index != NO_LINK)
+            mass = _LIGHT * self._model.links[beyond.index].inertial.mass
+            return _Masses(mass, IDENTITY, (mass * 1e-3,) * 3)
+        inertial = self._model.links[plan.links[n].index].inertial
+        return _Masses(inertial.mass, *principal(inertial))
+
+    def _tree_shape(self, node: TreeLink, meshes: MeshTable) -> Optional[Recipe]:
+        if node.index == NO_LINK:
+            return None
+        link = self._model.links[node.index]
+        found = self._shapes.recipes(link.collisions, meshes, inverse(node.link_from_frame),
+                                     False)
+        return found[0] if found else None
+
+    def _build_tree(self, tree: _Tree, pose: Pose) -> Body:
+        fixed, unseen = tree.plan.fixed_base, self._shapes.unseen
+        shapes = [-1 if recipe is None else recipe.make() for recipe in tree.shapes]
+        base_shape, hung = (-1, shapes) if fixed else (shapes[0], shapes[1:])
+        at = compose(pose, tree.model_from_base)
+        uid = pybullet.createMultiBody(
+            baseCollisionShapeIndex=base_shape, baseVisualShapeIndex=unseen,
+            basePosition=at.position, baseOrientation=at.orientation,
+            linkCollisionShapeIndices=hung, linkVisualShapeIndices=[unseen] * len(hung),
+            **tree.arguments)
+        return self._finish_tree(uid, tree)
+
+    def _finish_tree(self, uid: int, tree: _Tree) -> Body:
+        parts: List[Part] = []
+        axes: List[Axis] = []
+        balls: List[Ball] = []
+        for n, (node, masses) in enumerate(zip(tree.plan.links, tree.masses)):
+            index = n if tree.plan.fixed_base else n - 1
+            link = Link("") if node.index == NO_LINK else self._model.links[node.index]
+            set_dynamics(uid, index, link, masses.mass, masses.moments, False)
+            if node.index != NO_LINK:
+                parts.append(self._part(node.index, index, masses))
+            if node.joint is not None and node.number is not None:
+                row = self._axis_rows[row_name(node.joint.name, node.number)]
+                axes.append(Axis(row, index, node.joint.name, node.number))
+            elif node.kind == "ball":
+                balls.append(self._ball(tree.plan, node, index, parts))
+        if tree.plan.fixed_base:
+            pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
+        self._ease(uid, axes)
+        return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
+                    balls=tuple(balls))
+
+    def _ease(self, uid: int, axes: Sequence[Axis]) -> None:
+        """Work out once how easily the axes of a tree move."""
+        if axes and axes[0].row not in self._eases:
+            found = mobility(MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
+            self._eases.update((axis.row, ease) for axis, ease in zip(axes, found))
+        for axis in axes:
+            axis.ease = self._eases[axis.row]
+
+    def _ball(self, plan: BodyPlan, node: TreeLink, index: int, parts: Sequence[Part]) -> Ball:
+        child, parent, above = parts[-1], None, IDENTITY
+        if node.parent >= 0:
+            over = plan.links[node.parent].index
+            row = self._first_row + over
+            parent = next(part for part in parts if part.row == row)
+            above = parent.com_pose(self._model.links[over].pose)
+        mine = child.com_pose(self._model.links[node.index].pose)
+        return Ball(index, child, parent, multiply(conjugate(mine.orientation),
+                                                   above.orientation))
+
+    def _ignore_each_other(self, built: Sequence[Body]) -> None:
+        """Links of one model collide only when self_collide asks (SDF 1.7, model/self_collide)."""
+        if self._model.self_collide or self._model.static:
+            return
+        for n, one in enumerate(built):
+            for other in built[n + 1:]:
+                for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
+                    for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
+                        pybullet.setCollisionFilterPair(one.uid, other.uid, a, b, 0)

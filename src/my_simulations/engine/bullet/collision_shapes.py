@@ -1,0 +1,223 @@
+"""Collision shapes of a link, in PyBullet's terms."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
+
+import numpy as np
+import pybullet
+
+from ...description.shapes import (
+    SOLIDS,
+    Box,
+    Capsule,
+    Collision,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Empty,
+    Geometry,
+    Mesh,
+    MeshData,
+    MeshTable,
+    Plane,
+    Sphere,
+    mesh_key,
+)
+from ...geometry import IDENTITY, Pose, compose, multiply, transform
+from ..convex.hull_points import hull_points, naming_triangles
+from ..scratch_folder import Scratch
+
+MAX_SHAPES = 16
+"""Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
+
+
+class ShapeError(ValueError):
+    """A collision that PyBullet refuses; the message is one sentence for the user."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments."""
+
+    names: str
+    arguments: Dict[str, Any]
+
+    def make(self) -> int:
+        """PyBullet's number of a new one, which goes with its body. Raises ShapeError."""
+        shape: int = pybullet.createCollisionShapeArray(**self.arguments)
+        if shape < 0:
+            raise ShapeError(f"the physics engine refused the collision shapes {self.names}")
+        return shape
+
+
+class ShapeFactory:
+    """Knows what makes a shape. Meshes go through files of its own, removed at the end."""
+
+    def __init__(self) -> None:
+        self._scratch = Scratch()
+        self._files: Dict[str, str] = {}
+        self._count = 0
+        self._unseen = -1
+
+    def close(self) -> None:
+        """Remove the mesh files."""
+        self._scratch.close()
+
+    @property
+    def unseen(self) -> int:
+        """A visual shape of one triangle, for all bodies of a world; nobody looks at them here.
+
+        Without one PyBullet makes a picture of every collision shape, textures and all: a sphere
+        or a plane takes three times as long to create, a mesh is read twice (measured).
+        """
+        if self._unseen < 0:
+            self._unseen = pybullet.createVisualShape(
+                pybullet.GEOM_MESH, vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], indices=[0, 1, 2])
+        return self._unseen
+
+    def forget_world(self) -> None:
+        """The simulation was reset, and what was made for it is gone; files stay."""
+        self._unseen = -1
+
+    def recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
+                static: bool) -> List[Recipe]:
+        """What makes the shape of a link, files written: one, or several for a large static link.
+
+        Args:
+            collisions: the link's, poses in the link frame.
+            meshes: loaded meshes by `mesh_key`.
+            frame: the link frame seen from the frame the body is built in.
+            static: static meshes collide as triangles, others as their convex hull.
+
+        Raises:
+            ShapeError: there is no such shape.
+        """
+        solid = [c for c in collisions if not isinstance(c.geometry, Empty)]
+        if static or len(solid) <= MAX_SHAPES:
+            return [self._recipe(solid[at:at + MAX_SHAPES], meshes, frame, static)
+                    for at in range(0, len(solid), MAX_SHAPES)]
+        # A moving link must be one body: curved shapes first, the rest as hulls of one file.
+        solid.sort(key=lambda c: isinstance(c.geometry, (Box, Mesh)))
+        kept, rest = solid[:MAX_SHAPES - 1], solid[MAX_SHAPES - 1:]
+        return [self._recipe(kept, meshes, frame, static, self._hulls(rest, meshes, frame))]
+
+    def _recipe(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
+                static: bool, more: Optional[Dict[str, Any]] = None) -> Recipe:
+        columns = [self._column(c, meshes, frame, static) for c in collisions]
+        if more is not None:
+            columns.append(more)
+        return Recipe(", ".join(c.name for c in collisions), {
+            "shapeTypes": [c["type"] for c in columns],
+            "halfExtents": [c.get("half", (0, 0, 0)) for c in columns],
+            "radii": [c.get("radius", 0.0) for c in columns],
+            "lengths": [c.get("length", 0.0) for c in columns],
+            "fileNames": [c.get("file", "") for c in columns],
+            "meshScales": [(1.0, 1.0, 1.0)] * len(columns),
+            "planeNormals": [(0.0, 0.0, 1.0)] * len(columns),
+            "flags": [c.get("flags", 0) for c in columns],
+            "collisionFramePositions": [c["pose"].position for c in columns],
+            "collisionFrameOrientations": [c["pose"].orientation for c in columns],
+        })
+
+    def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
+                static: bool) -> Dict[str, Any]:
+        column = self._geometry(collision.geometry, meshes, static)
+        pose = compose(frame, collision.pose)
+        if isinstance(collision.geometry, Plane):
+            pose = Pose(pose.position, multiply(pose.orientation, _to_z(collision.geometry)))
+        column["pose"] = pose
+        return column
+
+    def _geometry(self, geometry: Geometry, meshes: MeshTable, static: bool) -> Dict[str, Any]:
+        if isinstance(geometry, Box):
+            return {"type": pybullet.GEOM_BOX, "half": tuple(s / 2.0 for s in geometry.size)}
+        if isinstance(geometry, Sphere):
+            return {"type": pybullet.GEOM_SPHERE, "radius": geometry.radius}
+        if isinstance(geometry, Cylinder):
+            return {"type": pybullet.GEOM_CYLINDER, "radius": geometry.radius,
+                    "length": geometry.length}
+        if isinstance(geometry, Plane):
+            return {"type": pybullet.GEOM_PLANE}
+        if isinstance(geometry, Capsule):
+            return {"type": pybullet.GEOM_CAPSULE, "radius": geometry.radius,
+                    "length": geometry.length}
+        if isinstance(geometry, (Ellipsoid, Cone)):
+            return {"type": pybullet.GEOM_MESH, "file": self._hull(geometry)}
+        if isinstance(geometry, SOLIDS):
+            key = mesh_key(geometry)
+            if key not in meshes:
+                raise ShapeError(f"the shape {key} was not made ready")
+            flags = pybullet.GEOM_FORCE_CONCAVE_TRIMESH if static else 0
+            return {"type": pybullet.GEOM_MESH, "flags": flags,
+                    "file": self._file(key, meshes[key], static)}
+        raise ShapeError(f"no collision shape for {type(geometry).__name__}")
+
+    def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable,
+               frame: Pose) -> Dict[str, Any]:
+        """Several collisions as one file of convex parts, in the body's frame."""
+        self._count += 1
+        path = os.path.join(self._scratch.path, f"{self._count}.obj")
+        with open(path, "w", encoding="ascii") as stream:
+            first = 1
+            for collision in collisions:
+                pose = compose(frame, collision.pose)
+                for points, triangles in _pieces(collision, meshes):
+                    moved = [transform(pose, (p[0], p[1], p[2])) for p in points.tolist()]
+                    _write_part(stream, moved, triangles.tolist(), first)
+                    first += len(moved)
+        return {"type": pybullet.GEOM_MESH, "file": path, "pose": IDENTITY}
+
+    def _hull(self, geometry: Geometry) -> str:
+        """A curved shape that Bullet does not have, as a hull of points."""
+        points = hull_points(geometry)
+        return self._file(repr(geometry), MeshData(points, naming_triangles(len(points))), True)
+
+    def _file(self, key: str, mesh: MeshData, static: bool) -> str:
+        """The mesh as a file: PyBullet takes compounds of meshes by file name only.
+
+        Static ones as their triangles, moving ones as their convex pieces.
+        """
+        key = f"{key} {'triangles' if static else 'pieces'}"
+        if key not in self._files:
+            self._count += 1
+            path = os.path.join(self._scratch.path, f"{self._count}.obj")
+            first = 1
+            with open(path, "w", encoding="ascii") as stream:
+                for piece in [mesh] if static or not mesh.parts else mesh.parts:
+                    vertices = np.asarray(piece.vertices).tolist()
+                    _write_part(stream, vertices, np.asarray(piece.triangles).tolist(), first)
+                    first += len(vertices)
+            self._files[key] = path
+        return self._files[key]
+
+
+def _write_part(stream: TextIO, vertices: Sequence[Sequence[float]],
+                triangles: Sequence[Sequence[int]], first: int) -> None:
+    """One OBJ object; `first` is the file-wide number of its first vertex."""
+    stream.write(f"o part{first}\n")
+    stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
+    stream.writelines(f"f {a + first} {b + first} {c + first}\n" for a, b, c in triangles)
+
+
+def _pieces(collision: Collision, meshes: MeshTable) -> List[Tuple[np.ndarray, np.ndarray]]:
+    """The convex pieces of a collision as points, and triangles that name them all."""
+    geometry = collision.geometry
+    if isinstance(geometry, SOLIDS):
+        mesh = meshes[mesh_key(geometry)]
+        return [(np.asarray(piece.vertices), np.asarray(piece.triangles))
+                for piece in mesh.parts or [mesh]]
+    points = hull_points(geometry)
+    return [(points, naming_triangles(len(points)))]
+
+
+def _to_z(plane: Plane) -> "tuple[float, float, float, float]":
+    """The rotation that turns z into the plane's normal."""
+    n = np.asarray(plane.normal, dtype=float)
+    n = n / np.linalg.norm(n)
+    if n[2] < -1.0 + 1e-12:
+        return (1.0, 0.0, 0.0, 0.0)
+    q = np.array([-n[1], n[0], 0.0, 1.0 + n[2]])
+    q /= np.linalg.norm(q)
+    return (float(q[0]), float(q[1]), float(q[2]), float(q[3]))

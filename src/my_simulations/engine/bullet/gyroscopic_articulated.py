@@ -1,0 +1,141 @@
+"""Keeps the angular momentum of articulated bodies that tumble freely.
+
+Bullet's gyroscopic terms gain momentum and energy: a body that turns at 10 rad/s is off by 6 % and
+13 % after 20 s. What joints do among the links leaves the momentum L about the common centre of
+mass as it was; so after a free step the whole body is given the velocity that is missing. Its
+attitude was moved on with the velocity I^-1 L of the end of the step instead of that of its
+middle, which would take energy away in the long run: it is turned back by half of the difference.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Set
+
+import numpy as np
+import pybullet
+
+from ...geometry import multiply, normalised
+from .bodies import Body
+
+_FAST = 2.0  # rad/s
+
+
+@dataclass
+class Whole:
+    """A body as one: its centre of mass, that one's velocity, momentum and inertia about it."""
+
+    centre: np.ndarray
+    speed: np.ndarray
+    momentum: np.ndarray
+    inertia: np.ndarray
+
+
+class GyroscopicArticulated:
+    """Corrects free, fast articulated bodies, every so many steps.
+
+    What they are off by adds up over the steps, so it can be mended at the end of a row of them in
+    which a body met nothing.
+    """
+
+    def __init__(self) -> None:
+        self._bodies: Dict[int, Body] = {}
+        self._then: Dict[int, Whole] = {}
+
+    def add(self, body: Body) -> None:
+        """Know a body; those joined to the world, and those gravity turns, are left alone."""
+        if (not body.rigid and body.moves and body.base is not None
+                and all(part.gravity for part in body.parts)):
+            self._bodies[body.uid] = body
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        self._bodies.pop(body.uid, None)
+        self._then.pop(body.uid, None)
+
+    def moved(self, body: Body) -> None:
+        """A body was put somewhere, or given another velocity."""
+        self._then.pop(body.uid, None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self._bodies.clear()
+        self._then.clear()
+
+    @property
+    def idle(self) -> bool:
+        """True when no body can need it."""
+        return not self._bodies
+
+    def mend(self, dt: float) -> None:
+        """Correct those that met nothing since the last time, and see who turns fast now."""
+        for uid, then in self._then.items():
+            _mend(self._bodies[uid], then, dt)
+        self._then = {uid: _whole(body) for uid, body in self._bodies.items()
+                      if not body.ties and _is_fast(uid)}
+
+    def after(self, loaded: Set[int]) -> None:
+        """After each step: who met something. `loaded`: rows of links that a load acted on."""
+        for uid in list(self._then):
+            body = self._bodies[uid]
+            if (body.ties or any(part.row in loaded for part in body.parts)
+                    or pybullet.getContactPoints(bodyA=uid)):
+                del self._then[uid]
+
+
+def _mend(body: Body, then: Whole, dt: float) -> None:
+    now = _whole(body)
+    try:
+        ahead = (np.linalg.solve(now.inertia, then.momentum)
+                 - np.linalg.solve(then.inertia, then.momentum)) * dt / 2
+        back = _turn_of(-ahead)
+        inertia = back @ now.inertia @ back.T
+        missing = np.linalg.solve(inertia, then.momentum - back @ now.momentum)
+    except np.linalg.LinAlgError:  # all mass on a line: about it there is no inertia
+        return
+    _correct(body.uid, now.centre, now.speed, back, -ahead, missing)
+
+
+def _correct(uid: int, centre: np.ndarray, speed: np.ndarray, back: np.ndarray,
+             angle: np.ndarray, missing: np.ndarray) -> None:
+    """Turn a body about its centre of mass, and its velocities along, and add a turning rate."""
+    position, turn = pybullet.getBasePositionAndOrientation(uid)
+    linear, angular = (np.array(v) for v in pybullet.getBaseVelocity(uid))
+    arm = back @ (np.array(position) - centre)
+    small = normalised((angle[0] / 2, angle[1] / 2, angle[2] / 2, 1.0))
+    pybullet.resetBasePositionAndOrientation(uid, (centre + arm).tolist(), multiply(small, turn))
+    pybullet.resetBaseVelocity(
+        uid, (speed + back @ (linear - speed) + np.cross(missing, arm)).tolist(),
+        (back @ angular + missing).tolist())
+
+
+def _turn_of(angle: np.ndarray) -> np.ndarray:
+    """The matrix of a small rotation, to second order as exact as a unit quaternion is."""
+    small = normalised((angle[0] / 2, angle[1] / 2, angle[2] / 2, 1.0))
+    return np.array(pybullet.getMatrixFromQuaternion(small)).reshape(3, 3)
+
+
+def _is_fast(uid: int) -> bool:
+    x, y, z = pybullet.getBaseVelocity(uid)[1]
+    return x * x + y * y + z * z > _FAST * _FAST
+
+
+def _whole(body: Body) -> Whole:
+    base, hung = body.parts[0], body.parts[1:]
+    states = [(*pybullet.getBasePositionAndOrientation(body.uid),
+               *pybullet.getBaseVelocity(body.uid))]
+    for state in pybullet.getLinkStates(body.uid, [part.index for part in hung],
+                                        computeLinkVelocity=1, computeForwardKinematics=1):
+        states.append((state[0], state[1], state[6], state[7]))
+    mass = np.array([part.mass for part in (base, *hung)])
+    at, speed, spin = (np.array([state[n] for state in states]) for n in (0, 2, 3))
+    turns = np.array([pybullet.getMatrixFromQuaternion(state[1]) for state in states])
+    axes = turns.reshape(-1, 3, 3)
+    own = (axes * np.array([part.moments for part in (base, *hung)])[:, None, :]
+           ) @ axes.transpose(0, 2, 1)
+    centre = mass @ at / mass.sum()
+    drift = mass @ speed / mass.sum()
+    arm, moving = at - centre, speed - drift
+    momentum = (np.einsum("nij,nj->i", own, spin)
+                + (mass[:, None] * np.cross(arm, moving)).sum(axis=0))
+    spread = np.einsum("n,ni,nj->ij", mass, arm, arm)
+    return Whole(centre, drift, momentum, own.sum(axis=0) + np.trace(spread) * np.eye(3) - spread)

@@ -1,0 +1,91 @@
+"""Joints between links of different models, or between a rigid body and the world.
+
+Constraints hold them, so limits, friction, damping, springs and motors of their axes do not act.
+Tied bodies do not sleep, and those that are tied to each other do not collide (Gazebo behaviour).
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Tuple
+
+import pybullet
+
+from ...geometry import IDENTITY
+from ..api import CommandRefusedError
+from ..body_plan import BASE, TIE_TYPES
+from ..commands import ConnectModels
+from .bodies import SLEEP_THRESHOLD, Body, Part
+from .joint_constraints import End, tie
+
+
+@dataclass
+class _Tie:
+    bodies: Tuple[Body, ...]
+    constraints: List[int]
+
+
+class InterModelJoints:
+    """The joints that go with either of the models they connect."""
+
+    def __init__(self) -> None:
+        self._ties: List[_Tie] = []
+        self._anchor: Optional[End] = None
+
+    def connect(self, command: ConnectModels, rows: Dict[int, End]) -> None:
+        """Tie two links. Raises `CommandRefusedError`."""
+        joint = command.joint
+        if joint.type not in TIE_TYPES:
+            raise CommandRefusedError(
+                f"joint '{joint.name}' of type {joint.type} cannot connect two models"
+            )
+        ends = [(command.child_row, command.child_from_joint),
+                (command.parent_row, command.parent_from_joint)]
+        ends.sort(key=lambda end: end[0] < 0)  # the world last
+        if ends[0][0] not in rows or not (ends[1][0] < 0 or ends[1][0] in rows):
+            raise CommandRefusedError(f"a link of joint '{joint.name}' is not there any more")
+        one = rows[ends[0][0]]
+        other = rows[ends[1][0]] if ends[1][0] >= 0 else self._world()
+        if joint.type == "prismatic" and (one[0].rigid or other[0].rigid):
+            raise CommandRefusedError(
+                f"joint '{joint.name}' slides between bodies that are not articulated"
+            )
+        made = tie(joint, one, ends[0][1], other, ends[1][1])
+        tied = tuple(end[0] for end in (one, other) if end is not self._anchor)
+        self._ties.append(_Tie(tied, made))
+        if len(tied) == 2:
+            for uid in one[0].uids:
+                for near in other[0].uids:
+                    pybullet.setCollisionFilterPair(uid, near, one[1].index, other[1].index, 0)
+        for body in tied:
+            body.ties += 1
+            if body.ties == 1 and body.rigid and body.moves:
+                pybullet.changeDynamics(body.uid, BASE,
+                                        activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+
+    def _world(self) -> End:
+        """An immovable body without a shape: PyBullet ties rigid bodies to bodies only."""
+        if self._anchor is None:
+            uid = pybullet.createMultiBody(0.0)
+            part = Part(-1, BASE, IDENTITY, 0.0, (0.0, 0.0, 0.0), 0.0, 0.0, False)
+            self._anchor = Body(uid, -1, [part], moves=False, rigid=False, may_sleep=False), part
+        return self._anchor
+
+    def forget(self, body: Body) -> None:
+        """A body goes: untie it from the others."""
+        if not body.ties:
+            return
+        for one in [one for one in self._ties if body in one.bodies]:
+            self._ties.remove(one)
+            for made in one.constraints:
+                pybullet.removeConstraint(made)
+            for tied in one.bodies:
+                tied.ties -= 1
+                if not tied.ties and tied.rigid and tied.moves and tied.may_sleep:
+                    pybullet.changeDynamics(
+                        tied.uid, BASE, sleepThreshold=SLEEP_THRESHOLD,
+                        activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self._ties.clear()
+        self._anchor = None

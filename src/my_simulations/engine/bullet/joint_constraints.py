@@ -1,0 +1,181 @@
+"""What a tree of joints cannot say: closed loops, screws, gearboxes, axes that follow others."""
+from __future__ import annotations
+
+import math
+from typing import List, Optional, Sequence, Tuple
+
+import pybullet
+
+from ...description.model import WORLD, Joint, Model
+from ...geometry import Pose, Vec3, compose, inverse, rotate, scale, transform
+from ..body_plan import NO_LINK, BodyPlan
+from .bodies import Axis, Body, Part
+
+_FORCE = 1e7          # N or N m: what a closed loop or a gear may need
+_HINGE_LENGTH = 0.1   # m between the points that stand for a hinge
+_LEAST_RADIUS = 0.01  # m, of the points that stand for no freedom at all
+_ERP = 0.2
+
+End = Tuple[Body, Part]
+"""A link as the end of a joint."""
+
+
+def tie(joint: Joint, child: End, child_from_joint: Pose, parent: Optional[End],
+        parent_from_joint: Pose) -> List[int]:
+    """Hold a link to another as a joint would, limits and what else its axes have aside.
+
+    PyBullet has no hinge between bodies: points that stay together stand for it. Universal joints
+    hold as balls. Sliding ones are for links of articulated bodies only. Of the joint, type and
+    axis count; its frame is given in the frame of both links, or of the world for `parent` None.
+    Returns PyBullet's numbers of the constraints.
+    """
+    points: List[Vec3] = [(0.0, 0.0, 0.0)]
+    kind = {"fixed": pybullet.JOINT_FIXED, "prismatic": pybullet.JOINT_PRISMATIC}.get(
+        joint.type, pybullet.JOINT_POINT2POINT)
+    axis = joint.axis.xyz if joint.axis is not None else (0.0, 0.0, 1.0)
+    if joint.type in ("revolute", "continuous"):
+        points = [scale(axis, half * _HINGE_LENGTH) for half in (-0.5, 0.5)]
+    elif joint.type == "fixed" and (child[0].rigid or (parent is not None and parent[0].rigid)):
+        kind = pybullet.JOINT_POINT2POINT  # to rigid bodies "fixed" gets the turns wrong
+        points = _about_the_centre(child[1], child_from_joint)
+    return [_tie(child, compose(child_from_joint, Pose(at)), parent,
+                 compose(parent_from_joint, Pose(at)), kind, axis) for at in points]
+
+
+def _about_the_centre(part: Part, link_from_joint: Pose) -> List[Vec3]:
+    """Three points, in the joint frame, about a link's centre of mass.
+
+    As far from it as the mass is on average, they move the least when one of them is corrected.
+    """
+    radius = max(_LEAST_RADIUS, (sum(part.moments) / max(part.mass, 1e-9) / 2.0) ** 0.5)
+    joint_from_com = compose(inverse(link_from_joint), part.link_from_com)
+    turns = (0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0)
+    return [transform(joint_from_com, (radius * math.cos(turn), radius * math.sin(turn), 0.0))
+            for turn in turns]
+
+
+def _tie(one: End, mine: Pose, other: Optional[End], theirs: Pose, kind: int, axis: Vec3) -> int:
+    (body, part), uid, index = one, -1, -1
+    mine = compose(inverse(part.link_from_com), mine)
+    if other is not None:
+        theirs = compose(inverse(other[1].link_from_com), theirs)
+        uid, index = other[0].uid, other[1].index
+        if body.rigid and not other[0].rigid:  # PyBullet wants the articulated body first
+            (body, part), uid, index = other, body.uid, part.index
+            mine, theirs = theirs, mine
+    made = pybullet.createConstraint(
+        body.uid, part.index, uid, index, kind, rotate(mine.orientation, axis), mine.position,
+        theirs.position, mine.orientation, theirs.orientation)
+    pybullet.changeConstraint(made, maxForce=_FORCE)
+    return int(made)
+
+
+class Constraints:
+    """The constraints of one model; `remove` before its bodies go."""
+
+    def __init__(self, model: Model, plans: Sequence[BodyPlan], bodies: Sequence[Body],
+                 pose: Pose, open_joints: Sequence[Joint], first_row: int) -> None:
+        self._model = model
+        self._pose = pose
+        self._parts = {part.row - first_row: (body, part)
+                       for body in bodies for part in body.parts}
+        self._axes = {(axis.name, axis.number): (body, axis)
+                      for body in bodies for axis in body.axes}
+        self._made: List[int] = []
+        for joint in open_joints:
+            if joint.type == "gearbox":
+                self._gearbox(joint)
+            else:
+                self._close(joint)
+        for plan, body in zip(plans, bodies):
+            self._screws(plan, body)
+        self._mimics()
+
+    def remove(self) -> None:
+        """Take them out."""
+        for made in self._made:
+            pybullet.removeConstraint(made)
+        self._made.clear()
+
+    # -- loops -----------------------------------------------------------------------------------
+
+    def _close(self, joint: Joint) -> None:
+        """A joint that would close a loop."""
+        parent, child = self._end(joint.parent), self._end(joint.child)
+        at = self._model_from_joint(joint)
+        if child is not None:
+            self._made += tie(joint, child, self._seen_from(child, at), parent,
+                              compose(self._pose, at) if parent is None
+                              else self._seen_from(parent, at))
+        elif parent is not None:
+            self._made += tie(joint, parent, self._seen_from(parent, at), None,
+                              compose(self._pose, at))
+
+    def _seen_from(self, end: End, at: Pose) -> Pose:
+        """A pose of the model frame seen from a link, at joint positions 0."""
+        index = next(n for n, (_, other) in self._parts.items() if other is end[1])
+        return compose(inverse(self._model.links[index].pose), at)
+
+    def _end(self, name: str) -> Optional[End]:
+        if name == WORLD:
+            return None
+        return self._parts[self._index(name)]
+
+    def _index(self, name: str) -> int:
+        return next(n for n, link in enumerate(self._model.links) if link.name == name)
+
+    def _model_from_joint(self, joint: Joint) -> Pose:
+        if joint.child == WORLD:
+            return joint.pose
+        return compose(self._model.links[self._index(joint.child)].pose, joint.pose)
+
+    # -- gears -----------------------------------------------------------------------------------
+
+    def _gear(self, follower: Tuple[Body, int], leader: Tuple[Body, int], ratio: float,
+              target: float = 0.0) -> None:
+        """follower + ratio leader = target, of two axes of one body."""
+        if follower[0].uid != leader[0].uid:
+            return
+        made = pybullet.createConstraint(
+            follower[0].uid, follower[1], leader[0].uid, leader[1], pybullet.JOINT_GEAR,
+            (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        pybullet.changeConstraint(made, gearRatio=ratio, maxForce=_FORCE, erp=_ERP,
+                                  relativePositionTarget=target)
+        self._made.append(made)
+
+    def _screws(self, plan: BodyPlan, body: Body) -> None:
+        """Turning by thread_pitch rad a metre; positive pitches are left-handed in Gazebo."""
+        offset = 0 if plan.fixed_base else 1
+        for n, node in enumerate(plan.links[:-1]):
+            following = plan.links[n + 1]
+            if node.index == NO_LINK and node.joint is not None and node.joint.type == "screw":
+                turning, sliding = n - offset, n + 1 - offset
+                if node.kind == "prismatic":
+                    turning, sliding = sliding, turning
+                assert following.joint is node.joint
+                self._gear((body, turning), (body, sliding), node.joint.thread_pitch)
+
+    def _gearbox(self, joint: Joint) -> None:
+        """theta2 = -ratio theta1: angles of child and parent about the reference link."""
+        first = self._axis_between(joint.gearbox_reference, joint.parent)
+        second = self._axis_between(joint.gearbox_reference, joint.child)
+        if first is not None and second is not None:
+            self._gear((second[0], second[1].index), (first[0], first[1].index),
+                       joint.gearbox_ratio)
+
+    def _axis_between(self, one: str, other: str) -> Optional[Tuple[Body, Axis]]:
+        for joint in self._model.joints:
+            if {joint.parent, joint.child} == {one, other}:
+                return self._axes.get((joint.name, 0))
+        return None
+
+    def _mimics(self) -> None:
+        for joint in self._model.joints:
+            mimic = joint.axis.mimic if joint.axis is not None else None
+            if mimic is None:
+                continue
+            follower, leader = self._axes.get((joint.name, 0)), self._axes.get((mimic.joint, 0))
+            if follower is not None and leader is not None:
+                self._gear((follower[0], follower[1].index), (leader[0], leader[1].index),
+                           -mimic.multiplier, mimic.offset)
+

@@ -1,0 +1,56 @@
+"""Bodies that are held: dragged by hand, they go where they are put and nowhere else."""
+from __future__ import annotations
+
+from typing import Callable, Dict, Iterable, List
+
+import pybullet
+
+from ...geometry import Pose
+from .bodies import Body
+
+_STILL = (0.0, 0.0, 0.0)
+
+
+class PinnedBodies:
+    """Puts held bodies back, at rest, after every step."""
+
+    def __init__(self, wake: Callable[[List[Body]], None]) -> None:
+        self._wake = wake
+        self._bodies: Dict[int, Body] = {}
+        self._poses: Dict[int, Pose] = {}
+
+    @property
+    def idle(self) -> bool:
+        """True when nothing is held."""
+        return not self._bodies
+
+    def set(self, bodies: Iterable[Body]) -> None:
+        """Hold these, and let go of all others."""
+        before = self._bodies
+        self._bodies = {body.uid: body for body in bodies
+                        if body.moves and (body.rigid or body.base is not None)}
+        self._poses.clear()
+        for body in self._bodies.values():
+            self.moved(body)
+        self._wake([body for uid, body in before.items() if uid not in self._bodies])
+
+    def moved(self, body: Body) -> None:
+        """A body was put somewhere: it is held there from now on."""
+        if body.uid in self._bodies:
+            self._poses[body.uid] = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        self._bodies.pop(body.uid, None)
+        self._poses.pop(body.uid, None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self._bodies.clear()
+        self._poses.clear()
+
+    def apply(self) -> None:
+        """Undo what the last step did to them."""
+        for uid, pose in self._poses.items():
+            pybullet.resetBasePositionAndOrientation(uid, pose.position, pose.orientation)
+            pybullet.resetBaseVelocity(uid, _STILL, _STILL)

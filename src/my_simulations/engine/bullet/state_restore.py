@@ -1,0 +1,106 @@
+"""Models that begin where others, or they themselves before a crash, were."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, List
+
+import numpy as np
+import pybullet
+
+from ...description.model import Model
+from ...geometry import Pose, compose, conjugate, inverse, multiply, rotate, subtract, twist_at
+from ..commands import LinkState, ModelState
+from ..ring_rows import axis_rows, row_name
+from . import bodies
+from .bodies import Body
+from .body_builder import Builder
+from .joint_constraints import Constraints
+
+
+@dataclass
+class Entry:
+    """A model in the engine; `pose` is where its frame was put when it was built."""
+
+    model: Model
+    builder: Builder
+    bodies: List[Body]
+    first_row: int
+    pose: Pose
+    constraints: Constraints
+
+
+def restore(entry: Entry, state: ModelState) -> None:
+    """Give a model just built the state; links and joint axes in the description's order."""
+    rates = {row.name: values
+             for row, values in zip(axis_rows(entry.model), state.joints)}
+    for body in entry.bodies:
+        link = state.links[body.parts[0].row - entry.first_row]
+        if body.rigid or body.base is not None:
+            bodies.place(body, link.pose)
+        for axis in body.axes:
+            pybullet.resetJointState(body.uid, axis.index,
+                                     *rates[row_name(axis.name, axis.number)])
+        for ball in body.balls:
+            _restore_ball(body, ball, entry, state)
+        if not body.rigid and body.base is None:
+            _restore_base(body, link.pose)
+        if body.moves and (body.rigid or body.base is not None):
+            bodies.launch(body, link.pose, link.twist)
+
+
+def _restore_base(body: Body, link_pose: Pose) -> None:
+    """Put the fixed base where it must be for the first link to have its pose."""
+    base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+    part = body.parts[0]
+    at = pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)
+    base_from_com = compose(inverse(base), Pose(at[0], at[1]))
+    target = compose(part.com_pose(link_pose), inverse(base_from_com))
+    if not _nearly(base, target):
+        pybullet.resetBasePositionAndOrientation(body.uid, target.position,
+                                                 target.orientation)
+
+
+def _restore_ball(body: Body, ball: bodies.Ball, entry: Entry, state: ModelState) -> None:
+    child = state.links[ball.child.row - entry.first_row]
+    mine, spin, theirs = ball.child.com_pose(child.pose), child.twist.angular, entry.pose
+    if ball.parent is not None:
+        parent = state.links[ball.parent.row - entry.first_row]
+        theirs = ball.parent.com_pose(parent.pose)
+        spin = subtract(spin, parent.twist.angular)
+    between = multiply(conjugate(theirs.orientation), mine.orientation)
+    pybullet.resetJointStateMultiDof(
+        body.uid, ball.index, targetValue=multiply(ball.zero, between),
+        targetVelocity=rotate(conjugate(mine.orientation), spin))
+
+
+def inherited(before: Entry, model: Model, frame: Pose, state_of: Callable[[int], LinkState],
+              axis_table: np.ndarray) -> ModelState:
+    """The state of `before`, whose frame is at `frame`, for the links and joints `model` has.
+
+    `state_of` gives a link row's state; `axis_table` is (rows, 2): positions and rates.
+    """
+    rows = {link.name: before.first_row + n for n, link in enumerate(before.model.links)}
+    poses = {link.name: link.pose for link in before.model.links}
+    states = []
+    for link in model.links:
+        if link.name not in rows:
+            states.append(LinkState(compose(frame, link.pose)))
+            continue
+        state = state_of(rows[link.name])
+        if link.pose != poses[link.name]:
+            shift = compose(inverse(poses[link.name]), link.pose)
+            state = LinkState(compose(state.pose, shift),
+                              twist_at(state.twist, rotate(state.pose.orientation,
+                                                           shift.position)))
+        states.append(state)
+    axes = {row_name(axis.name, axis.number): axis_table[axis.row].tolist()
+            for body in before.bodies for axis in body.axes}
+    joints_of = axis_rows(model)
+    return ModelState(tuple(states), tuple(
+        (values[0], values[1])
+        for values in (axes.get(row.name, (0.0, 0.0)) for row in joints_of)))
+
+
+def _nearly(one: Pose, other: Pose) -> bool:
+    return all(abs(a - b) < 1e-9 for a, b in zip((*one.position, *one.orientation),
+                                                   (*other.position, *other.orientation)))

@@ -1,0 +1,162 @@
+"""Puts bodies somewhere, and tells everyone who remembers where they were."""
+from __future__ import annotations
+
+from typing import Dict, Optional, Tuple
+
+import pybullet
+
+from ...geometry import (
+    STILL,
+    Pose,
+    Twist,
+    add,
+    compose,
+    conjugate,
+    cross,
+    inverse,
+    multiply,
+    pose_is_finite,
+    rotate,
+    subtract,
+)
+from ..api import CommandRefusedError
+from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
+from . import bodies
+from .bodies import Axis, Body, Part
+from .forces import Forces
+from .gyroscopic_rigid import GyroscopicRigid
+from .pinned_bodies import PinnedBodies
+from .state_readout import StateReadout
+from .state_restore import Entry
+from .wake_up import WakeUp
+
+
+class StateSetter:
+    """Sets poses, velocities and joint positions of what is in the world."""
+
+    def __init__(self, rows: Dict[int, Tuple[Body, Part]], axes: Dict[int, Tuple[Body, Axis]],
+                 readout: StateReadout, waker: WakeUp, forces: Forces, spin: GyroscopicRigid,
+                 holds: PinnedBodies) -> None:
+        """`rows` and `axes` are looked into, never changed: who has a row of the tables."""
+        self._rows = rows
+        self._axes = axes
+        self._readout = readout
+        self._waker = waker
+        self._forces = forces
+        self._spin = spin
+        self._holds = holds
+
+    def link_state(self, row: int) -> LinkState:
+        """Of the link at a row, as last read."""
+        values = self._readout.links[row].tolist()
+        return LinkState(Pose((values[0], values[1], values[2]),
+                              (values[3], values[4], values[5], values[6])),
+                         Twist((values[7], values[8], values[9]),
+                               (values[10], values[11], values[12])))
+
+    def model_pose(self, entry: Entry) -> Pose:
+        """Where the model frame is: its canonical link's pose says it."""
+        names = [link.name for link in entry.model.links]
+        if not names:
+            return entry.pose
+        lead = names.index(entry.model.canonical_link) if entry.model.canonical_link else 0
+        return compose(self.link_state(entry.first_row + lead).pose,
+                       inverse(entry.model.links[lead].pose))
+
+    def set_model(self, command: SetModelState, entry: Entry) -> None:
+        """Move all bodies of a model. Raises Refused."""
+        self._readout.read()
+        pose, twist = self._in_world(command.pose, command.twist, command.frame)
+        if not entry.model.links:
+            return
+        current = self.model_pose(entry)
+        self._waker.around(entry.bodies)
+        for body in entry.bodies:
+            self._move(body, current, pose, twist)
+        self._waker.around(entry.bodies)
+
+    def set_link(self, command: SetLinkState) -> None:
+        """Move the body of a link. Raises Refused."""
+        if command.row not in self._rows:
+            raise CommandRefusedError("the link is not there any more")
+        self._readout.read()
+        body, part = self._rows[command.row]
+        if not body.rigid and body.base is None:
+            raise CommandRefusedError("the link belongs to a body that is joined to the world")
+        pose, twist = self._in_world(command.pose, command.twist, command.frame)
+        current = self.link_state(part.row).pose
+        self._waker.around([body])
+        self._move(body, current, pose, twist)
+        self._waker.around([body])
+
+    def set_joints(self, command: SetJoints) -> None:
+        """Set joint axes; all are looked at before the first is moved. Raises Refused."""
+        for row, position, rate in command.joints:
+            if row not in self._axes:
+                raise CommandRefusedError("the joint is not there any more")
+            if not (abs(position) < 1e12 and abs(rate) < 1e12):
+                raise CommandRefusedError("the joint position is not finite")
+        for row, position, rate in command.joints:
+            body, axis = self._axes[row]
+            self._waker.around([body])
+            pybullet.resetJointState(body.uid, axis.index, position, rate)
+            self._forces.disturbed(body)
+            self._spin.moved(body)
+            self._readout.touch(body)
+
+    def put_back(self, body: Body) -> None:
+        """Put a body whose state is no number back where it last was one, at rest."""
+        last = self.link_state(body.parts[0].row)
+        if body.rigid or body.base is not None:
+            bodies.place(body, last.pose)
+            bodies.launch(body, last.pose, STILL)
+        for axis in body.axes:
+            pybullet.resetJointState(body.uid, axis.index,
+                                     float(self._readout.joints[axis.row, 0]), 0.0)
+        self._forces.disturbed(body)
+        self._spin.moved(body)
+
+    def _in_world(self, pose: Pose, twist: Optional[Twist],
+                  frame: Optional[Frame]) -> Tuple[Pose, Optional[Twist]]:
+        if not pose_is_finite(pose):
+            raise CommandRefusedError("the pose is not finite")
+        if frame is None:
+            return pose, twist
+        if frame.row not in self._rows:
+            raise CommandRefusedError("the reference frame is not there any more")
+        at = compose(self.link_state(frame.row).pose, frame.offset)
+        if twist is not None:
+            twist = Twist(rotate(at.orientation, twist.linear),
+                          rotate(at.orientation, twist.angular))
+        return compose(at, pose), twist
+
+    def _move(self, body: Body, current: Pose, wanted: Pose, twist: Optional[Twist]) -> None:
+        """Move a body as if `current`, a pose fixed to it, became `wanted` with `twist` there."""
+        lead = self.link_state(body.parts[0].row)
+        if body.rigid or body.base is not None:
+            target = compose(wanted, compose(inverse(current), lead.pose))
+            bodies.place(body, target)
+        else:
+            position, turn = pybullet.getBasePositionAndOrientation(body.uid)
+            target = compose(wanted, compose(inverse(current), Pose(position, turn)))
+            pybullet.resetBasePositionAndOrientation(body.uid, target.position,
+                                                     target.orientation)
+        for axis in body.axes:
+            position_rate = pybullet.getJointState(body.uid, axis.index)[:2]
+            rate = position_rate[1] if twist is None else 0.0
+            pybullet.resetJointState(body.uid, axis.index, position_rate[0], rate)
+        self._forces.disturbed(body)
+        if body.moves and (body.rigid or body.base is not None):
+            bodies.launch(body, target, _carried(lead, target, wanted, twist))
+        self._holds.moved(body)
+        self._spin.moved(body)
+        self._readout.touch(body)
+
+
+def _carried(lead: LinkState, target: Pose, wanted: Pose, twist: Optional[Twist]) -> Twist:
+    """The twist at `target` of a body that moves with `twist` at `wanted`; None: keep, turned."""
+    if twist is None:
+        turn = multiply(target.orientation, conjugate(lead.pose.orientation))
+        return Twist(rotate(turn, lead.twist.linear), rotate(turn, lead.twist.angular))
+    lever = subtract(target.position, wanted.position)
+    return Twist(add(twist.linear, cross(twist.angular, lever)), twist.angular)

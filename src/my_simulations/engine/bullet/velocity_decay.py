@@ -1,0 +1,68 @@
+"""SDF's velocity_decay of links of articulated bodies.
+
+Gazebo's ODE takes the share off a link's velocities in every step, and the joints then have their
+say. Here the force and torque that would take it off a free link act on each of them.
+"""
+from __future__ import annotations
+
+from typing import Dict, Tuple
+
+import pybullet
+
+from ...description.model import Link
+from ...geometry import Vec3, conjugate, rotate, scale
+from ..body_plan import BASE
+from .bodies import Body, Part
+
+
+class VelocityDecay:
+    """Slows links down in every step."""
+
+    def __init__(self) -> None:
+        self._links: Dict[int, Tuple[Body, Part, float, float]] = {}
+
+    def add(self, body: Body, part: Part, link: Link) -> None:
+        """Know a link of a body; rigid bodies have Bullet's own damping."""
+        shares = min(1.0, link.linear_decay), min(1.0, link.angular_decay)
+        if not body.rigid and body.moves and any(shares):
+            self._links[part.row] = (body, part, *shares)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        for part in body.parts:
+            self._links.pop(part.row, None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self._links.clear()
+
+    @property
+    def idle(self) -> bool:
+        """True when no link is slowed down."""
+        return not self._links
+
+    def apply(self, dt: float) -> None:
+        """Act in the next step, of `dt` s."""
+        for body, part, linear_share, angular_share in self._links.values():
+            at, turn, linear, angular = _motion(body, part)
+            if linear_share:
+                pybullet.applyExternalForce(
+                    body.uid, part.index, scale(linear, -linear_share * part.mass / dt), at,
+                    pybullet.WORLD_FRAME)
+            if angular_share:
+                own = rotate(conjugate(turn), angular)
+                torque = tuple(i * w for i, w in zip(part.moments, own))
+                pybullet.applyExternalTorque(
+                    body.uid, part.index,
+                    scale(rotate(turn, (torque[0], torque[1], torque[2])), -angular_share / dt),
+                    pybullet.WORLD_FRAME)
+
+
+def _motion(body: Body, part: Part) -> "Tuple[Vec3, Tuple[float, float, float, float], Vec3, Vec3]":
+    """Place, attitude and velocities of a link's centre of mass."""
+    if part.index == BASE:
+        return (*pybullet.getBasePositionAndOrientation(body.uid),
+                *pybullet.getBaseVelocity(body.uid))
+    state = pybullet.getLinkState(body.uid, part.index, computeLinkVelocity=1,
+                                  computeForwardKinematics=1)
+    return state[0], state[1], state[6], state[7]

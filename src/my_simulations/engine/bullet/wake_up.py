@@ -1,0 +1,63 @@
+"""Wakes sleepers before something happens to what they rest on.
+
+PyBullet wakes a sleeper only when an awake body hits it; a sleeper stays in mid-air when its
+support is deleted or moved, and ignores velocities and forces (measured). So the target of a
+command and its contact island are woken first.
+"""
+from __future__ import annotations
+
+from typing import Callable, Dict, Iterable, List, Set
+
+import pybullet
+
+from ..body_plan import BASE
+from .bodies import Body
+
+_REACH = 0.02  # m: contacts exist a little before surfaces meet
+_WORLD_SIZE = 1e9
+
+
+class WakeUp:
+    """Knows the bodies by number and wakes islands."""
+
+    def __init__(self, bodies: Dict[int, Body], touch: Callable[[Body], None]) -> None:
+        self._bodies = bodies
+        self._touch = touch
+
+    def everything(self) -> None:
+        """Wake all that can move."""
+        for body in self._bodies.values():
+            self._rouse(body)
+
+    def around(self, targets: Iterable[Body]) -> None:
+        """Wake the targets, whatever overlaps them, and so on through moving bodies."""
+        queue: List[Body] = list(targets)
+        seen: Set[int] = {body.uid for body in queue}
+        while queue:
+            body = queue.pop()
+            self._rouse(body)
+            for uid in self._overlapping(body):
+                near = self._bodies.get(uid)
+                if near is None or near.uid in seen or not near.moves:
+                    continue
+                seen.add(near.uid)
+                queue.append(near)
+
+    def _rouse(self, body: Body) -> None:
+        if body.moves and body.rigid and body.may_sleep and not body.ties:
+            pybullet.changeDynamics(body.uid, BASE,
+                                    activationState=pybullet.ACTIVATION_STATE_WAKE_UP)
+        self._touch(body)
+
+    @staticmethod
+    def _overlapping(body: Body) -> Set[int]:
+        found: Set[int] = set()
+        for uid in body.uids:
+            for index in sorted({BASE, *(part.index for part in body.parts)}):
+                low, high = pybullet.getAABB(uid, index)
+                if high[0] < low[0]:
+                    continue
+                reach = 0.0 if high[0] - low[0] > _WORLD_SIZE else _REACH
+                found.update(pair[0] for pair in pybullet.getOverlappingObjects(
+                    [c - reach for c in low], [c + reach for c in high]) or ())
+        return found

@@ -1,0 +1,1 @@
+"""Convex parts of concave meshes, for bodies that move."""

@@ -1,0 +1,124 @@
+"""The meshes of a whole world divided into convex parts, a few at a time, with word of it."""
+from __future__ import annotations
+
+import functools
+import os
+import queue
+import threading
+import time
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
+
+from ...description.shapes import MeshData
+from .cache import Decomposition, content_key
+from .decomposition import divided, kept_in, ready_parts, undivided
+
+AT_A_TIME = 2
+WORD_EVERY_S = 5.0
+"""Longest time without a word while meshes are divided."""
+
+Progress = Callable[[str], None]
+Named = Tuple[str, MeshData]
+
+
+def divide_all(meshes: Sequence[Named], progress: Progress, *,
+               cache_dir: Optional[str] = None, gently: bool = False) -> List[Decomposition]:
+    """The convex parts of each mesh, in order.
+
+    Blocks until all are there: a world begins with the same shapes whether they were known before
+    or not. What must be divided is told first, then each mesh that is begun or done, and every few
+    seconds what the work is at. The threads are daemons and their processes end with them, so a
+    program that ends does not wait for the work.
+
+    Args:
+        meshes: name for the messages, and mesh.
+        progress: called from this thread.
+        cache_dir: where parts are kept; None for the user's cache folder (XDG).
+        gently: let physics that runs meanwhile come first.
+    """
+    found: Dict[int, Decomposition] = {}
+    hard: Dict[str, List[int]] = {}  # the same mesh in two files is divided once
+    for n, (_, mesh) in enumerate(meshes):
+        ready = ready_parts(mesh, cache_dir=cache_dir)
+        if ready is None:
+            hard.setdefault(content_key(mesh, ""), []).append(n)
+        else:
+            found[n] = ready
+    if hard:
+        work = _Work([meshes[same[0]] for same in hard.values()], progress, cache_dir, gently)
+        for same, made in zip(hard.values(), work.done()):
+            found.update((n, made) for n in same)
+    return [found[n] for n in range(len(meshes))]
+
+
+class _Work:
+    """Meshes that are being divided."""
+
+    def __init__(self, meshes: Sequence[Named], progress: Progress,
+                 cache_dir: Optional[str], gently: bool) -> None:
+        self._meshes = meshes
+        self._progress = progress
+        self._cache_dir = cache_dir
+        self._gently = gently
+        self._began = time.monotonic()
+        self._waiting: "queue.Queue[int]" = queue.Queue()
+        self._told: "queue.Queue[Tuple[int, Optional[Decomposition]]]" = queue.Queue()
+        self._busy: Dict[int, float] = {}
+        self._percent: Dict[int, int] = {}
+        self._made: Dict[int, Decomposition] = {}
+
+    def done(self) -> List[Decomposition]:
+        """Divide them all; returns when the last one is done."""
+        count = len(self._meshes)
+        several = f"{count} meshes are" if count > 1 else "a mesh is"
+        self._progress(f"{several} divided into convex parts before the world goes on; the parts "
+                       f"are kept in {kept_in(self._cache_dir)}")
+        for n in range(count):
+            self._waiting.put(n)
+        for _ in range(min(count, AT_A_TIME, os.cpu_count() or 1)):
+            threading.Thread(target=self._divide, name="convex parts", daemon=True).start()
+        while len(self._made) < count:
+            self._hear()
+        self._progress(f"convex parts are ready after {self._seconds(self._began)}")
+        return [self._made[n] for n in range(count)]
+
+    def _divide(self) -> None:
+        while True:
+            try:
+                n = self._waiting.get_nowait()
+            except queue.Empty:
+                return
+            self._told.put((n, None))
+            made = undivided(self._meshes[n][1])
+            try:
+                made = divided(self._meshes[n][1], cache_dir=self._cache_dir, gently=self._gently,
+                               progress=functools.partial(self._percent.__setitem__, n))
+            finally:  # whoever waits must not wait for ever, whatever is raised
+                self._told.put((n, made))
+
+    def _hear(self) -> None:
+        try:
+            n, made = self._told.get(timeout=WORD_EVERY_S)
+        except queue.Empty:
+            at = "; ".join(f"{self._name(n)}, {self._percent.get(n, 0)} % in "
+                           f"{self._seconds(since)}"
+                           for n, since in sorted(self._busy.items()))
+            self._progress(f"{len(self._made)} of {len(self._meshes)} meshes divided after "
+                           f"{self._seconds(self._began)}; at work: {at}")
+            return
+        if made is None:
+            self._busy[n] = time.monotonic()
+            triangles = len(self._meshes[n][1].triangles)
+            self._progress(f"dividing {self._name(n)}, {triangles} triangles")
+            return
+        took = self._seconds(self._busy.pop(n))
+        self._made[n] = made
+        parts = len(made.parts)
+        said = f"{parts} convex parts in" if parts > 1 else "its hull after"
+        self._progress(f"{self._name(n)}: {said} {took}")
+
+    def _name(self, n: int) -> str:
+        return f"mesh {n + 1} of {len(self._meshes)} ({self._meshes[n][0]})"
+
+    @staticmethod
+    def _seconds(since: float) -> str:
+        return f"{time.monotonic() - since:.1f} s"

@@ -1,0 +1,57 @@
+"""Convex shapes as points whose hull they are."""
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from ...description.shapes import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Sphere
+
+_ROUND = 32     # points on a circle
+_SPHERE = 256   # points on a sphere
+
+
+def hull_points(geometry: Geometry) -> np.ndarray:
+    """Points (n, 3) in metres, in the shape's frame, whose hull is the shape.
+
+    Curved surfaces are touched from inside: a sphere of 256 points loses 1 % of its radius.
+
+    Raises:
+        ValueError: a shape without a hull, such as a plane.
+    """
+    if isinstance(geometry, Box):
+        return np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * geometry.size
+    if isinstance(geometry, Sphere):
+        return geometry.radius * _unit_sphere()
+    if isinstance(geometry, Ellipsoid):
+        return _unit_sphere() * geometry.radii
+    if isinstance(geometry, Cylinder):
+        return np.concatenate([_circle(geometry.radius, z * geometry.length) for z in (-0.5, 0.5)])
+    if isinstance(geometry, Cone):
+        return np.concatenate([_circle(geometry.radius, -0.5 * geometry.length),
+                               [[0.0, 0.0, 0.5 * geometry.length]]])
+    if isinstance(geometry, Capsule):
+        ball = geometry.radius * _unit_sphere()
+        shift = np.array([0.0, 0.0, 0.5 * geometry.length])
+        return np.concatenate([ball + shift, ball - shift])
+    raise ValueError(f"a {type(geometry).__name__.lower()} has no hull")
+
+
+def naming_triangles(count: int) -> np.ndarray:
+    """Triangles (count, 3) that name every point: a reader of meshes skips points without one."""
+    ring = np.arange(count)
+    return np.stack([ring, (ring + 1) % count, (ring + 2) % count], axis=1)
+
+
+def _circle(radius: float, z: float) -> np.ndarray:
+    turns = np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)
+    return np.stack([radius * np.cos(turns), radius * np.sin(turns), np.full(_ROUND, z)], axis=1)
+
+
+def _unit_sphere() -> np.ndarray:
+    """Evenly spread points (Fibonacci lattice), the poles and the axes among them."""
+    steps = np.arange(_SPHERE) + 0.5
+    polar, turn = np.arccos(1.0 - 2.0 * steps / _SPHERE), np.pi * (1.0 + 5.0**0.5) * steps
+    lattice = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar),
+                        np.cos(polar)], axis=1)
+    return np.concatenate([lattice, np.eye(3), -np.eye(3)])

@@ -1,0 +1,136 @@
+"""An engine in a thread of this process: for tests, and for tools that need no crash safety."""
+from __future__ import annotations
+
+import queue
+import threading
+from concurrent.futures import Future
+from typing import Callable, Dict, List, Tuple
+
+from .api import Backend, EngineGoneError, Event, Reply
+from .commands import Command
+from .ring import Memory, RingReader, RingWriter
+from .runner import Runner
+
+
+class _Queues:
+    """The channel of a thread."""
+
+    def __init__(self, engine: "InlineEngine") -> None:
+        self._engine = engine
+        self.commands: "queue.Queue[Tuple[int, Command]]" = queue.Queue()
+
+    def receive(self, timeout: float) -> List[Tuple[int, Command]]:
+        found = []
+        try:
+            found.append(self.commands.get(timeout=timeout) if timeout > 0.0
+                         else self.commands.get_nowait())
+            while True:
+                found.append(self.commands.get_nowait())
+        except queue.Empty:
+            pass
+        if any(number < 0 for number, _ in found):
+            raise EOFError
+        return found
+
+    def reply(self, number: int, reply: Reply) -> None:
+        self._engine.answer(number, reply)
+
+    def event(self, event: Event) -> None:
+        self._engine.report(event)
+
+    def bell(self) -> None:
+        self._engine.rung.set()
+
+
+class InlineEngine:
+    """Runs `backend_factory`'s backend. `kill` drops it and every unanswered command."""
+
+    def __init__(self, backend_factory: Callable[[], Backend]) -> None:
+        self._factory = backend_factory
+        self._memory = Memory(None)
+        self._ring = RingReader(memory=self._memory)
+        self.rung = threading.Event()
+        self._lock = threading.Lock()
+        self._waiting: Dict[int, Tuple[Command, Future[Reply]]] = {}
+        self._numbers = 0
+        self._on_event: Callable[[Event], None] = lambda event: None
+        self._on_death: Callable[[str, List[Command]], None] = lambda reason, commands: None
+        self._alive = False
+        self.restart()
+
+    @property
+    def ring(self) -> RingReader:
+        """Where the states are read."""
+        return self._ring
+
+    @property
+    def pid(self) -> int:
+        """There is no process."""
+        return 0
+
+    def on_event(self, listener: Callable[[Event], None]) -> None:
+        """Set who hears of events."""
+        self._on_event = listener
+
+    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
+        """Set who hears of deaths."""
+        self._on_death = listener
+
+    def restart(self) -> None:
+        """Start a new backend on the same ring."""
+        self.backend = self._factory()
+        self._channel = _Queues(self)
+        runner = Runner(self.backend, RingWriter(memory=self._memory), self._channel)
+        self._thread = threading.Thread(target=runner.run, name="engine", daemon=True)
+        self._alive = True
+        self._thread.start()
+
+    def submit(self, command: Command) -> "Future[Reply]":
+        """Queue a command."""
+        future: "Future[Reply]" = Future()
+        with self._lock:
+            if not self._alive:
+                future.set_exception(EngineGoneError("the engine is not running"))
+                return future
+            self._numbers += 1
+            self._waiting[self._numbers] = (command, future)
+            self._channel.commands.put((self._numbers, command))
+        return future
+
+    def answer(self, number: int, reply: Reply) -> None:
+        """The engine's side: a command is done."""
+        with self._lock:
+            waiting = self._waiting.pop(number, None)
+        if waiting is not None:
+            waiting[1].set_result(reply)
+
+    def report(self, event: Event) -> None:
+        """The engine's side: something happened."""
+        self._on_event(event)
+
+    def wait_bell(self, timeout: float) -> bool:
+        """Wait for the bell and take it."""
+        rung = self.rung.wait(timeout)
+        self.rung.clear()
+        return rung
+
+    def kill(self, reason: str = "") -> None:
+        """Drop the backend as a crash would, with what has no answer yet."""
+        reason = reason or "the engine was killed"
+        self._stop()
+        with self._lock:
+            waiting, self._waiting = self._waiting, {}
+        self._on_death(reason, [command for command, _ in waiting.values()])
+        for _, future in waiting.values():
+            future.set_exception(EngineGoneError(reason))
+
+    def close(self) -> None:
+        """End it."""
+        self._stop()
+        self.backend.close()
+
+    def _stop(self) -> None:
+        with self._lock:
+            self._alive = False
+        self._channel.commands.put((-1, Command()))
+        self._thread.join()

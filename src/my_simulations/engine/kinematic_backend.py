@@ -1,0 +1,180 @@
+"""A backend that moves nothing by itself but what has a velocity: for tests without PyBullet."""
+from __future__ import annotations
+
+import struct
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Tuple
+
+from ..description.model import Model
+from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
+from .api import CommandRefusedError, Event
+from .commands import (
+    AddTimedForces,
+    Clear,
+    ClearTimedForces,
+    Command,
+    ConnectModels,
+    LinkState,
+    LoadModel,
+    PhysicsSettings,
+    PinModels,
+    ReadContacts,
+    RemoveModel,
+    Restart,
+    SetAxes,
+    SetJoints,
+    SetLinkState,
+    SetModelState,
+)
+from .ring import JOINT_WIDTH, LINK_WIDTH
+from .ring_rows import axis_rows
+
+_LINK = struct.Struct(f"={LINK_WIDTH}d")
+
+
+class KinematicBackend:
+    """Links fly straight on with their twists; no gravity or contacts. Timed forces are kept."""
+
+    def __init__(self) -> None:
+        self.settings = PhysicsSettings()
+        self.links: Dict[int, LinkState] = {}
+        self.joints: Dict[int, Tuple[float, float]] = {}
+        self.models: Dict[int, Tuple[Model, int, int, bool]] = {}
+        self.timed_forces: Dict[int, object] = {}
+        self.held: Tuple[int, ...] = ()
+        self._dirty = True
+        self._appliers: Dict[type, Callable[[Any], object]] = {
+            LoadModel: self._load,
+            RemoveModel: lambda c: self._remove(c.model_id),
+            Clear: self._clear,
+            Restart: self._restart,
+            SetModelState: self._set_model,
+            SetLinkState: self._set_link,
+            SetJoints: lambda c: self.joints.update(
+                {row: (at, rate) for row, at, rate in c.joints}
+            ),
+            SetAxes: self._set_axes,
+            PinModels: self._hold,
+            ReadContacts: lambda _: (),
+            ConnectModels: lambda _: None,
+            AddTimedForces: lambda c: self.timed_forces.update(
+                {force.force_id: force for force in c.forces}
+            ),
+            ClearTimedForces: lambda c: [
+                self.timed_forces.pop(number, None) for number in c.force_ids
+            ],
+        }
+
+    def apply(self, command: Command) -> object:
+        """Carry out a command; raises `CommandRefusedError`."""
+        self._dirty = True
+        handler = self._appliers.get(type(command))
+        if handler is None:
+            raise CommandRefusedError(f"a kinematic world knows no {type(command).__name__}")
+        return handler(command)
+
+    def configure(self, settings: PhysicsSettings) -> None:
+        """Only the step size matters."""
+        self.settings = settings
+
+    def step(self, first: int, count: int) -> None:
+        """Move every link along its twist."""
+        span = self.settings.step_size * count
+        for row, state in self.links.items():
+            pose, twist = state.pose, state.twist
+            spin: Quat = (*scale(twist.angular, span / 2.0), 1.0)
+            self.links[row] = LinkState(
+                Pose(add(pose.position, scale(twist.linear, span)),
+                     normalised(multiply(spin, pose.orientation))), twist)
+            self._dirty = self._dirty or any(twist.linear) or any(twist.angular)
+
+    def read(self) -> bool:
+        """Whether something may have changed."""
+        dirty, self._dirty = self._dirty, False
+        return dirty
+
+    def read_poses(self) -> bool:
+        """Whether something may have changed; the next `read` says it again."""
+        return self._dirty
+
+    def tables(self) -> Tuple[memoryview, memoryview]:
+        """The used rows."""
+        links = bytearray(_LINK.size * (max(self.links, default=-1) + 1))
+        for row, state in self.links.items():
+            _LINK.pack_into(links, row * _LINK.size, *state.pose.position,
+                            *state.pose.orientation, *state.twist.linear, *state.twist.angular)
+        joints = bytearray(8 * JOINT_WIDTH * (max(self.joints, default=-1) + 1))
+        for row, values in self.joints.items():
+            struct.pack_into("=2d", joints, row * 8 * JOINT_WIDTH, *values)
+        return memoryview(links), memoryview(joints)
+
+    def events(self) -> List[Event]:
+        """Nothing ever happens by itself."""
+        return []
+
+    def close(self) -> None:
+        """Nothing to give back."""
+
+    def _clear(self, _: Clear) -> None:
+        for model_id in list(self.models):
+            self._remove(model_id)
+        self.timed_forces.clear()
+
+    def _restart(self, command: Restart) -> None:
+        before = {number: self.models[number] for number, _ in command.models}
+        self._clear(Clear())
+        for number, pose in command.models:
+            model, first_link, first_joint, _ = before[number]
+            self._load(LoadModel(number, model, pose, first_link, first_joint))
+
+    def _set_link(self, command: SetLinkState) -> None:
+        self.links[command.row] = LinkState(
+            command.pose, command.twist or self.links[command.row].twist)
+
+    def _set_axes(self, command: SetAxes) -> None:
+        model, *rows = self.models[command.model_id]
+        self.models[command.model_id] = (replace(model, joints=list(command.joints)),
+                                         rows[0], rows[1], bool(rows[2]))
+
+    def _hold(self, command: PinModels) -> None:
+        self.held = command.model_ids
+
+    def _load(self, command: LoadModel) -> None:
+        model, inherited = command.model, {}
+        if command.inherit:
+            before, first, _, _ = self.models[command.inherit]
+            inherited = {link.name: compose(self.links[first + n].pose, inverse(link.pose))
+                         for n, link in enumerate(before.links)}
+        self.models[command.model_id] = (model, command.first_link_row, command.first_joint_row,
+                                         model.static)
+        for n, link in enumerate(model.links):
+            state = LinkState(compose(inherited.get(link.name, command.pose), link.pose))
+            self.links[command.first_link_row + n] = (
+                command.state.links[n] if command.state else state)
+        for n, _ in enumerate(axis_rows(model)):
+            self.joints[command.first_joint_row + n] = (
+                command.state.joints[n] if command.state else (0.0, 0.0))
+
+    def _remove(self, model_id: int) -> None:
+        if model_id not in self.models:
+            raise CommandRefusedError("the model is not there any more")
+        model, first_link, first_joint, _ = self.models.pop(model_id)
+        for n in range(len(model.links)):
+            del self.links[first_link + n]
+        for n in range(len(axis_rows(model))):
+            del self.joints[first_joint + n]
+
+    def _set_model(self, command: SetModelState) -> None:
+        if command.model_id not in self.models:
+            raise CommandRefusedError("the model is not there any more")
+        model, first, _, static = self.models[command.model_id]
+        wanted = command.pose
+        if command.frame is not None:
+            at = compose(self.links[command.frame.row].pose, command.frame.offset)
+            wanted = compose(at, wanted)
+        current = compose(self.links[first].pose, inverse(model.links[0].pose))
+        for n in range(len(model.links)):
+            old = self.links[first + n]
+            twist = old.twist if command.twist is None or static else command.twist
+            self.links[first + n] = LinkState(
+                compose(wanted, compose(inverse(current), old.pose)), twist)

@@ -1,0 +1,202 @@
+"""The engine as a child process, seen from the parent."""
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import select
+import signal
+import socket
+import subprocess
+import threading
+from collections import OrderedDict
+from concurrent.futures import Future
+from typing import Callable, Dict, List, Optional, Tuple
+
+from . import child_process
+from . import ring as ring_module
+from .api import EngineGoneError, Event, Reply
+from .commands import Command, SetJoints, SetLinkState, SetModelState
+from .message_pipe import Wire
+from .ring import RingReader
+from .scratch_folder import sweep
+
+_log = logging.getLogger(__name__)
+_END_S = 3.0  # how long a child may take to end by itself
+
+
+class ProcessEngine:
+    """A PyBullet child. The constructor returns at once; commands queue while it still imports.
+
+    After its death `restart` starts another child on the same ring, so that the last whole snapshot
+    stays readable until the new one has been told what to restore.
+    """
+
+    def __init__(self) -> None:
+        self._ring_fd = ring_module.create()
+        self._ring = RingReader(self._ring_fd)
+        self._bell_out, self._bell_in = os.pipe()
+        os.set_blocking(self._bell_out, False)
+        self._lock = threading.Lock()
+        self._waiting: "OrderedDict[int, Tuple[Command, Future[Reply]]]" = OrderedDict()
+        self._numbers = 0
+        self._closing = False
+        self._verdict = ""
+        self._event_listener: Callable[[Event], None] = _ignore_event
+        self._death_listener: Callable[[str, List[Command]], None] = _ignore_death
+        self._child: Optional[subprocess.Popen[bytes]] = None
+        self._wire: Optional[Wire] = None
+        self._reader: Optional[threading.Thread] = None
+        sweep()  # what was left behind when a whole node was killed
+        self.restart()
+
+    @property
+    def ring(self) -> RingReader:
+        """Where the states are read; the same for every child."""
+        return self._ring
+
+    @property
+    def pid(self) -> int:
+        """The child's process number."""
+        return self._child.pid if self._child else 0
+
+    def on_event(self, listener: Callable[[Event], None]) -> None:
+        """Set who hears of events."""
+        self._event_listener = listener
+
+    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
+        """Set who hears of a child's death; called from its reader thread, once a child."""
+        self._death_listener = listener
+
+    def restart(self) -> None:
+        """Start a child. Call it from a thread that lives as long as the child is wanted.
+
+        The kernel ends the child when the thread that started it ends (PR_SET_PDEATHSIG).
+        """
+        ours, theirs = socket.socketpair()
+        descriptors = (theirs.fileno(), self._ring_fd, self._bell_in)
+        with self._lock, child_process.shielded():
+            self._child = subprocess.Popen(
+                child_process.command("engine", *map(str, descriptors)),
+                pass_fds=descriptors, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                env=child_process.environment(),
+            )
+            self._wire = Wire(ours)
+        theirs.close()
+        self._reader = threading.Thread(
+            target=self._read, args=(self._child, self._wire), name="engine replies", daemon=True)
+        self._reader.start()
+
+    def submit(self, command: Command) -> "Future[Reply]":
+        """Queue a command; the future fails with `EngineGoneError` when the child dies first."""
+        future: "Future[Reply]" = Future()
+        with self._lock:
+            if self._wire is None:
+                future.set_exception(EngineGoneError("the physics engine is not running"))
+                return future
+            self._numbers += 1
+            self._waiting[self._numbers] = (command, future)
+            try:
+                self._wire.send((self._numbers, command))
+            except OSError as fault:
+                # The reader thread sees the same end, and fails this future with the others.
+                _log.debug("the engine does not listen: %s", fault)
+        return future
+
+    def wait_bell(self, timeout: float) -> bool:
+        """Wait for the bell and empty it; False after `timeout` s."""
+        if not select.select([self._bell_out], [], [], timeout)[0]:
+            return False
+        try:
+            os.read(self._bell_out, 4096)
+        except BlockingIOError:
+            return False
+        return True
+
+    def kill(self, reason: str = "") -> None:
+        """End the child at once, as a crash would; `reason` is told instead of the signal."""
+        if self._child is not None and self._child.poll() is None:
+            self._verdict = reason
+            self._child.kill()
+
+    def close(self) -> None:
+        """End the child and wait for the end."""
+        self._closing = True
+        with self._lock:
+            wire, self._wire = self._wire, None
+        if wire is not None:
+            with contextlib.suppress(OSError):  # it may have hung up already
+                wire.sock.shutdown(socket.SHUT_RDWR)
+        if self._child is not None:
+            try:
+                self._child.wait(_END_S)
+            except subprocess.TimeoutExpired:
+                self._child.kill()
+                self._child.wait()
+        if self._reader is not None and self._reader is not threading.current_thread():
+            self._reader.join(_END_S)
+
+    def _read(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
+        while True:
+            try:
+                messages = wire.receive(60.0)
+            except (EOFError, OSError):
+                break
+            for number, message in messages:
+                if number < 0:
+                    self._event_listener(message)
+                    continue
+                with self._lock:
+                    waiting = self._waiting.pop(number, None)
+                if waiting is not None:
+                    waiting[1].set_result(message)
+        process.wait()
+        sweep()  # what a killed child could not take along
+        self._bury(process, wire)
+
+    def _bury(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
+        with self._lock:
+            if self._wire is wire:
+                self._wire = None
+            waiting, self._waiting = self._waiting, OrderedDict()
+            wire.sock.close()
+        shown = answer_shown(self._ring, waiting)
+        reason = self._verdict or _reason(process.returncode)
+        self._verdict = ""
+        if not self._closing:
+            self._death_listener(reason, [c for c, _ in waiting.values()])
+        for future, reply in shown:
+            future.set_result(reply)
+        for _, future in waiting.values():
+            future.set_exception(EngineGoneError(reason))
+
+
+def answer_shown(ring: RingReader, waiting: "Dict[int, Tuple[Command, Future[Reply]]]"
+                 ) -> "List[Tuple[Future[Reply], Reply]]":
+    """Take those out of `waiting` whose effect the last whole snapshot shows, with their replies.
+
+    An engine may die after it has carried a command out and before it has said so. The world is
+    put back as in that snapshot, so what changes only states did take effect, and must not be done
+    again. What changes more than states is not in a snapshot.
+    """
+    applied, found = ring.applied, []
+    for number in [n for n in waiting if n <= applied]:
+        command, future = waiting[number]
+        if isinstance(command, (SetModelState, SetLinkState, SetJoints)):
+            del waiting[number]
+            found.append((future, Reply(ring.step, ring.latest)))
+    return found
+
+
+def _reason(code: int) -> str:
+    if code < 0:
+        return f"the physics engine was killed by {signal.Signals(-code).name}"
+    return f"the physics engine ended with code {code}"
+
+
+def _ignore_event(_: Event) -> None:
+    return None
+
+
+def _ignore_death(_: str, __: List[Command]) -> None:
+    return None

@@ -1,0 +1,108 @@
+"""An inertia for links whose file gives none that a body can have.
+
+Gazebo loads such links: ODE, which cannot invert the tensor, goes on with 1 kg m^2 about each axis
+(`dBodySetMass`), and so do we. Only what is merely left out, by zeros, is filled in better: from
+the shapes, or with as little as a body can have. Care-O-bot's furniture has tensors of zeros, and
+files that care about one axis only give its moment and zeros for the others.
+"""
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, List, Optional, Tuple
+
+from ..description.model import Inertial, Link
+from ..description.shapes import Box, Collision, Cylinder, Geometry, Sphere
+from ..description.validate import is_positive_definite, tensor_text
+from .urdf.fixed_joint_lumping import merged
+from .xml.source import Source
+
+_LEAST = 1e-3
+"""The least moment, of the largest one: a rod a hundred times as long as it is wide."""
+
+
+def usable(link: Link, source: Source, element: Any) -> Inertial:
+    """The inertia of a link that can move, or one that can be simulated, with a warning."""
+    inertial = link.inertial
+    better = completed(inertial, link.collisions)
+    if better is not None:
+        source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}", element)
+        return better[0]
+    if is_positive_definite(inertial) or inertial.mass <= 0:
+        return inertial
+    source.tolerate("inertia-not-positive", f"the inertia of link {link.name!r} is not positive"
+                    " definite; 1 kg m^2 about each axis is used, as by ODE:"
+                    f" {tensor_text(inertial)}", element,
+                    "a body's principal moments of inertia are all above 0")
+    return replace(inertial, ixx=1.0, iyy=1.0, izz=1.0, ixy=0.0, ixz=0.0, iyz=0.0)
+
+
+def completed(inertial: Inertial,
+              collisions: List[Collision]) -> Optional[Tuple[Inertial, str]]:
+    """The inertia with what was left out, and words that end "the inertia of link 'x' …".
+
+    Returns:
+        None where nothing is left out, or nothing can be said about it.
+    """
+    if is_zero(inertial):
+        better = of_shapes(inertial, collisions)
+        return None if better is None else (better, "is zero; that of its shapes is used")
+    return _raised(inertial)
+
+
+def _raised(i: Inertial) -> Optional[Tuple[Inertial, str]]:
+    """Moments of 0 beside others, about the given axes, as small as a body of the others has.
+
+    No principal moment is larger than the sum of the two others.
+    """
+    moments = (i.ixx, i.iyy, i.izz)
+    least, middle, largest = sorted(moments)
+    if least != 0 or largest <= 0 or i.mass <= 0 or any((i.ixy, i.ixz, i.iyz)):
+        return None
+    value = largest / 2 if middle == 0 else max(largest - middle, _LEAST * largest)
+    x, y, z = (moment or value for moment in moments)
+    names = " and ".join(name for name, was in zip(("ixx", "iyy", "izz"), moments) if was == 0)
+    return replace(i, ixx=x, iyy=y, izz=z), (
+        f"has {names} 0, which no body has; {value:g} kg m^2 is used")
+
+
+def is_zero(inertial: Inertial) -> bool:
+    """True for a body with a mass and nothing but zeros in its tensor."""
+    i = inertial
+    return i.mass > 0 and not any((i.ixx, i.iyy, i.izz, i.ixy, i.ixz, i.iyz))
+
+
+def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inertial]:
+    """The same mass and centre, with the tensor of the shapes at one density.
+
+    Returns:
+        None where there is no box, sphere or cylinder among the collisions.
+    """
+    solids = [(collision, solid) for collision in collisions
+              for solid in [_solid(collision.geometry)] if solid is not None]
+    volume = sum(solid[0] for _, solid in solids)
+    if not volume > 0:
+        return None
+    total: Optional[Inertial] = None
+    for collision, (own, (x, y, z)) in solids:
+        mass = inertial.mass * own / volume
+        part = Inertial(mass, ixx=mass * x, iyy=mass * y, izz=mass * z)
+        total = merged(total, part, collision.pose)
+    assert total is not None
+    total.pose = inertial.pose._replace(orientation=total.pose.orientation)
+    return total
+
+
+def _solid(geometry: Geometry) -> Optional[Tuple[float, Tuple[float, float, float]]]:
+    """(volume, principal moments of 1 kg) of a solid shape about its centre."""
+    if isinstance(geometry, Box):
+        x, y, z = geometry.size
+        return x * y * z, ((y * y + z * z) / 12, (x * x + z * z) / 12, (x * x + y * y) / 12)
+    if isinstance(geometry, Sphere):
+        moment = 0.4 * geometry.radius ** 2
+        return 4 / 3 * math.pi * geometry.radius ** 3, (moment, moment, moment)
+    if isinstance(geometry, Cylinder):
+        r, h = geometry.radius, geometry.length
+        side = (3 * r * r + h * h) / 12
+        return math.pi * r * r * h, (side, side, r * r / 2)
+    return None

@@ -1,0 +1,165 @@
+"""Image files as grey levels, and GeoTIFF files as heights."""
+from __future__ import annotations
+
+import math
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Iterator, Optional, Tuple
+
+from ...errors import InputError, error
+
+MOST_PIXELS = 64 << 20
+"""Pillow holds up to four bytes a pixel."""
+_BAND = 256
+_EARTH_M = 6371000.0
+# TIFF tags of GeoTIFF and GDAL.
+_PIXEL_SCALE, _TIE_POINT, _GEO_KEYS, _NO_DATA = 33550, 33922, 34735, 42113
+_MODEL_TYPE, _GEOGRAPHIC = 1024, 2
+
+
+@dataclass
+class Levels:
+    """Grey levels of an image.
+
+    Attributes:
+        values: array of whole numbers, rows from the top, of the pixels that were asked for.
+        white: the number that stands for 1.
+    """
+
+    values: Any
+    white: float
+
+
+@dataclass
+class Elevations:
+    """A digital elevation model.
+
+    Attributes:
+        heights: array of metres, rows from the north, of the pixels that were asked for.
+        shape: rows and columns of the file.
+        lowest: metres, of all its pixels.
+        highest: metres, of all its pixels.
+        extent: metres from west to east and from south to north; None where the file does not say.
+    """
+
+    heights: Any
+    shape: Tuple[int, int]
+    lowest: float
+    highest: float
+    extent: Optional[Tuple[float, float]]
+
+
+def grey_levels(path: str, widest: int = 0, step: int = 1) -> Levels:
+    """The brightest channel of each pixel.
+
+    An image of 100 KB may have 60 million pixels: no more of them than wanted are held.
+
+    Args:
+        path: of the image.
+        widest: take every n-th row and column, so that no side has more; 0 for any.
+        step: take every `step`-th row and column, rows counted from the bottom.
+
+    Raises:
+        InputError: with one issue, `image-unreadable`.
+    """
+    import numpy as np
+
+    with _opened(path) as image:
+        step = max(step, _step(image, widest))
+        # Pillow opens 16-bit grey images as I or I;16.
+        deep = image.mode.startswith("I")
+        first = 0 if widest else (image.height - 1) % step
+        bands = [np.asarray(band if deep else _brightest(band))[::step, ::step]
+                 for band in _bands(image, first, step)]
+    return Levels(np.concatenate(bands), 65535.0 if deep else 255.0)
+
+
+def elevations(path: str, widest: int) -> Optional[Elevations]:
+    """The heights in a GeoTIFF, or another image of real numbers; None for other images.
+
+    Where the file says that a pixel has no height, it has the lowest of the others. `widest` as in
+    `grey_levels`.
+
+    Raises:
+        InputError: with one issue, `image-unreadable`.
+    """
+    import numpy as np
+
+    with _opened(path) as image:
+        tags = getattr(image, "tag_v2", {})
+        if image.mode != "F" and _GEO_KEYS not in tags:
+            return None
+        if len(image.getbands()) > 1:
+            return None  # a georeferenced photograph
+        step, lowest, highest, bands = _step(image, widest), math.inf, -math.inf, []
+        extent = _extent(tags, image.width, image.height)
+        try:
+            nothing = float(tags.get(_NO_DATA, "nan"))
+        except ValueError:
+            nothing = math.nan  # some other words; every number is a height then
+        for band in _bands(image, 0, step):
+            heights = np.asarray(band, dtype=np.float64)
+            known = np.isfinite(heights) & (heights != nothing)
+            lowest = float(min(lowest, heights.min(where=known, initial=math.inf)))
+            highest = float(max(highest, heights.max(where=known, initial=-math.inf)))
+            bands.append(np.where(known, heights, np.nan)[::step, ::step])
+        shape = image.height, image.width
+    if lowest > highest:
+        raise _fault(path, "it holds no height")
+    heights = np.concatenate(bands)
+    return Elevations(np.where(np.isnan(heights), lowest, heights), shape, lowest, highest, extent)
+
+
+def _brightest(image: Any) -> Any:
+    from PIL import ImageChops
+
+    if image.mode == "L":
+        return image
+    red, green, blue = image.convert("RGB").split()
+    return ImageChops.lighter(ImageChops.lighter(red, green), blue)
+
+
+def _step(image: Any, widest: int) -> int:
+    """Every how many-th row and column to take."""
+    return max(1, -(-(max(image.size) - 1) // (widest - 1))) if widest else 1
+
+
+def _bands(image: Any, first: int, step: int) -> Iterator[Any]:
+    """The image in pieces of some rows from `first` on; each begins with a row to be taken."""
+    rows = max(1, _BAND // step) * step
+    for top in range(first, image.height, rows):
+        yield image.crop((0, top, image.width, min(top + rows, image.height)))
+
+
+def _extent(tags: Any, columns: int, rows: int) -> Optional[Tuple[float, float]]:
+    scale = tags.get(_PIXEL_SCALE, ())
+    if len(scale) < 2 or not (scale[0] > 0 and scale[1] > 0):
+        return None
+    x, y = float(scale[0]) * columns, float(scale[1]) * rows
+    keys = tags.get(_GEO_KEYS, ())
+    kinds = {keys[n]: keys[n + 3] for n in range(4, len(keys) - 3, 4)}
+    if kinds.get(_MODEL_TYPE) != _GEOGRAPHIC:
+        return x, y
+    tie = tags.get(_TIE_POINT, ())
+    north = float(tie[4]) if len(tie) > 4 else 0.0  # degrees
+    metres = math.radians(1.0) * _EARTH_M
+    return x * metres * max(math.cos(math.radians(north)), 1e-6), y * metres
+
+
+@contextmanager
+def _opened(path: str) -> Iterator[Any]:
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with Image.open(path) as image:
+            if image.width * image.height > MOST_PIXELS:
+                raise _fault(path, f"it has {image.width} x {image.height} pixels")
+            yield image
+    except UnidentifiedImageError:
+        raise _fault(path, "it is of no known format") from None
+    except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as fault:
+        raise _fault(path, str(fault)) from None
+
+
+def _fault(path: str, why: str) -> InputError:
+    return InputError([error("image-unreadable", f"the image cannot be read: {why}", file=path)])

@@ -1,0 +1,1 @@
+"""Mesh files, and shapes that become meshes, as triangles in metres."""

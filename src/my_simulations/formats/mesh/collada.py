@@ -1,0 +1,140 @@
+"""COLLADA, read by pycollada: the triangles of the visual scene, every instance in its place.
+
+The file's unit is applied to everything, translations of nodes included; `up_axis` is not, as in
+Gazebo, whose users have turned their models accordingly.
+"""
+from __future__ import annotations
+
+import io
+import math
+from typing import Any, Iterator, List, Tuple
+
+from .collada_cleanup import tidied
+from .part import MeshError, MeshPart, bounded
+
+_MOST_INSTANCES = 100000
+_DEEPEST = 100
+
+
+def read_collada(data: bytes) -> List[MeshPart]:
+    """The pieces of a .dae file.
+
+    Raises:
+        MeshFault: not COLLADA, or numbers that do not fit each other.
+    """
+    import numpy as np
+    from lxml import etree
+
+    root = tidied(data)
+    try:
+        document = _loaded(etree.tostring(root))
+        unit = _unit(document, root)
+        with np.errstate(all="ignore"):  # what is not finite is reported later
+            made = (_part(names, geometry, unit) for names, geometry in _instances(document))
+            return bounded(part for part in made if part is not None)
+    except RecursionError:
+        raise MeshError("its nodes are nested without end") from None
+    except (LookupError, TypeError, ValueError, OverflowError, AttributeError) as fault:
+        # pycollada takes for granted that what it has not checked is there.
+        raise MeshError(str(fault), _line_of_fault(root)) from None
+
+
+def _loaded(text: bytes) -> Any:
+    import collada
+
+    try:
+        return collada.Collada(io.BytesIO(text))
+    except collada.DaeError as fault:
+        raise ValueError(fault.msg) from None
+
+
+def _line_of_fault(root: Any) -> int:
+    """Where the geometry is that pycollada cannot read; 0 when they all are readable."""
+    import collada
+    from collada.common import tagger
+    from lxml import etree
+
+    document = collada.Collada()
+    document.tag = tagger(etree.QName(root).namespace)
+    for geometry in root.iterfind("{*}library_geometries/{*}geometry"):
+        try:
+            collada.geometry.Geometry.load(document, {}, geometry)
+        except (collada.DaeError, LookupError, TypeError, ValueError, AttributeError):
+            line: int = geometry.sourceline
+            return line
+    return 0
+
+
+def _unit(document: Any, root: Any) -> float:
+    element = root.find("{*}asset/{*}unit")
+    text = element.get("meter") if element is not None else None
+    if text is None:
+        return 1.0
+    # What is not a number is None to pycollada, as if it were not there.
+    unit = document.assetInfo.unitmeter
+    if unit is None or not (unit > 0 and math.isfinite(unit)):
+        raise MeshError(f"the unit {text!r} is not a length in metres", element.sourceline)
+    return float(unit)
+
+
+def _instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
+    """(names, bound geometry) of every piece of the scene."""
+    import numpy as np
+    from collada.scene import GeometryNode
+
+    scene = document.scene or (document.scenes[0] if len(document.scenes) else None)
+    if scene is None:
+        for geometry in document.geometries:
+            yield _names(geometry), geometry.bind(np.eye(4), {})
+        return
+    # Not scene.objects("geometry"): that tells nothing of the nodes, whose names are wanted.
+    waiting: List[Tuple[Any, Any, Tuple[str, ...], int]] = [
+        (node, np.eye(4), (), 0) for node in reversed(scene.nodes)]
+    count = 0
+    while waiting:
+        node, above, names, depth = waiting.pop()
+        count += 1
+        if count > _MOST_INSTANCES or depth > _DEEPEST:
+            raise MeshError("its nodes are nested without end")
+        if isinstance(node, GeometryNode):
+            for bound in node.objects("geometry", above):
+                yield (*_names(bound.original), *names), bound
+        else:
+            names = (*_names(getattr(node, "node", node)), *names)
+            matrix = above @ node.matrix
+            waiting += [(c, matrix, names, depth + 1) for c in reversed(node.children)]
+
+
+def _names(element: Any) -> Tuple[str, ...]:
+    return tuple(dict.fromkeys(name for name in (element.name, element.id) if name))
+
+
+def _part(names: Tuple[str, ...], geometry: Any, unit: float) -> Any:
+    import numpy as np
+
+    vertices: List[Any] = []
+    triangles: List[Any] = []
+    first = 0
+    for primitive in geometry.primitives():
+        if not len(primitive) or primitive.vertex is None:
+            continue
+        faces = _triangles(primitive)
+        vertices.append(primitive.vertex)
+        triangles.append(faces.astype(np.int64) + first)
+        first += len(primitive.vertex)
+    if not triangles:
+        return None
+    joined = np.concatenate(triangles)
+    if np.linalg.det(geometry.matrix[:3, :3]) < 0:
+        joined = joined[:, ::-1]  # a mirrored piece is inside out
+    return MeshPart(names, np.concatenate(vertices).astype(np.float64) * unit, joined)
+
+
+def _triangles(primitive: Any) -> Any:
+    from collada.polylist import BoundPolylist
+
+    if not isinstance(primitive, BoundPolylist):
+        return primitive.vertex_index
+    if primitive.nvertices != len(primitive.index):  # pycollada does not look
+        raise ValueError("<vcount> and <p> do not fit each other")
+    return primitive.triangleset().vertex_index

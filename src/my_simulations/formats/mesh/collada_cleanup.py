@@ -1,0 +1,245 @@
+"""What of a COLLADA file reaches pycollada: nodes and positions, in the form it expects.
+
+pycollada gives up on a node whose material is missing, reads a number up to the first letter and
+a NaN as 0. Whatever has no part in the shape is therefore taken out (images, effects, normals,
+texture coordinates, cameras, animations), skins become what they are bound to, and the numbers of
+the shape are checked where the line is still known.
+"""
+from __future__ import annotations
+
+import copy
+import re
+from typing import Any, Dict, List, Optional, Set
+
+from .part import MeshError
+
+_LIBRARIES = {"asset", "library_geometries", "library_nodes", "library_visual_scenes", "scene"}
+_PLACES = {"translate", "rotate", "scale", "matrix"}
+_NODE = _PLACES | {"node", "instance_geometry", "instance_node"}
+_PRIMITIVES = {"triangles", "trifans", "tristrips", "polylist", "polygons"}
+_NO_INDEX = re.compile(r"[^\s\d+]+")
+_LARGE_INDEX = re.compile(r"0*[1-9]\d{9,}")  # of a thousand million and more
+_NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
+
+
+def tidied(data: bytes) -> Any:
+    """The `<COLLADA>` element of a file, reduced to the geometry of its scene.
+
+    Elements keep the line numbers of the file.
+
+    Raises:
+        MeshFault: not COLLADA, or numbers that are none.
+    """
+    root = _parsed(data)
+    document = _Document(root)
+    document.replace_controllers()
+    for child in list(root):
+        if _local(child) not in _LIBRARIES:
+            root.remove(child)
+    document.tidy_nodes()
+    document.share_nodes()
+    document.tidy_geometries()
+    return root
+
+
+def _parsed(data: bytes) -> Any:
+    from lxml import etree
+
+    if b"<!ENTITY" in data:
+        raise MeshError("it declares entities, which are not read")
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False,
+                             huge_tree=True, remove_comments=True, remove_pis=True)
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as fault:
+        raise MeshError(f"not well formed: {fault.msg}", fault.position[0]) from None
+    name = etree.QName(root)
+    if name.localname != "COLLADA":
+        raise MeshError(f"expected <COLLADA>, found <{name.localname}>", 1)
+    if not name.namespace:
+        for element in root.iter():
+            element.tag = f"{{{_NAMESPACE}}}{_local(element)}"
+    return root
+
+
+class _Document:
+    def __init__(self, root: Any) -> None:
+        self._root = root
+        self._by_id: Dict[str, Any] = {e.get("id"): e for e in root.iter() if e.get("id")}
+        self._used: List[Any] = []
+
+    def replace_controllers(self) -> None:
+        """Put the geometry of a skin or morph, in its bind shape, in the place of its instance."""
+        for instance in list(self._root.iter("{*}instance_controller")):
+            matrices, source = [], self._target(instance)
+            for _ in range(3):  # a skin may refer to a morph, and that to a geometry
+                inner = _first(source, "skin", "morph") if source is not None else None
+                if inner is None:
+                    break
+                matrices += inner.findall("{*}bind_shape_matrix")
+                source = self._target(inner, "source")
+            node = _made(instance, "node")
+            for shape in matrices:
+                matrix = _made(instance, "matrix")
+                matrix.text, matrix.sourceline = shape.text, shape.sourceline
+                node.append(matrix)
+            geometry = _made(instance, "instance_geometry")
+            geometry.set("url", "#" + (source.get("id") or "" if source is not None else ""))
+            node.append(geometry)
+            instance.getparent().replace(instance, node)
+
+    def tidy_nodes(self) -> None:
+        """Leave of each node its transforms and what it places, where that is to be had."""
+        scene = self._root.find("{*}scene/{*}instance_visual_scene")
+        if scene is not None and self._target(scene) is None:
+            scene.getparent().remove(scene)
+        for node in list(self._root.iter("{*}node")):
+            for child in list(node):
+                kind = _local(child)
+                if kind in _PLACES:
+                    _check_numbers(child)
+                elif kind == "instance_geometry":
+                    child[:] = []
+                if kind not in _NODE or not self._is_there(child, kind):
+                    node.remove(child)
+
+    def _is_there(self, instance: Any, kind: str) -> bool:
+        if not kind.startswith("instance_"):
+            return True
+        target = self._target(instance)
+        if kind == "instance_node":
+            return target is not None and _local(target) == "node"
+        if target is None or target.find("{*}mesh") is None:
+            return False
+        self._used.append(target)
+        return True
+
+    def share_nodes(self) -> None:
+        """Put a copy of each node that is used twice where pycollada looks for such nodes."""
+        library = _made(self._root, "library_nodes")
+        wanted: Set[str] = {i.get("url")[1:] for i in self._root.iter("{*}instance_node")}
+        for name in sorted(wanted):
+            if _local(self._by_id[name].getparent()) != "library_nodes":
+                library.append(copy.deepcopy(self._by_id[name]))
+        if len(library):
+            self._root.append(library)
+
+    def tidy_geometries(self) -> None:
+        """Leave of each geometry in use its positions and faces; leave out the others."""
+        used = {id(geometry) for geometry in self._used}
+        placed = next(self._root.iter("{*}visual_scene"), None) is not None
+        for geometry in list(self._root.iterfind("{*}library_geometries/{*}geometry")):
+            mesh = geometry.find("{*}mesh")
+            if mesh is None or (placed and id(geometry) not in used):
+                geometry.getparent().remove(geometry)
+                continue
+            geometry[:] = [mesh]
+            self._tidy_mesh(mesh)
+
+    def _tidy_mesh(self, mesh: Any) -> None:
+        positions: Dict[str, Any] = {}  # the source of positions, by the id of its <vertices>
+        for vertices in mesh.iterfind("{*}vertices"):
+            vertices[:] = [i for i in vertices if i.get("semantic") == "POSITION"][:1]
+            for entry in vertices:
+                positions[vertices.get("id")] = self._positions(entry)
+        for child in list(mesh):
+            if _local(child) == "source":
+                keep = any(child is source for source in positions.values())
+            elif _local(child) in _PRIMITIVES:
+                keep = _tidy_primitive(child, positions)
+            else:
+                keep = _local(child) == "vertices"
+            if not keep:
+                mesh.remove(child)
+
+    def _positions(self, entry: Any) -> Any:
+        """The source of an input, as plain x y z numbers."""
+        source = self._target(entry, "source")
+        accessor = source.find("{*}technique_common/{*}accessor") if source is not None else None
+        array = self._target(accessor, "source") if accessor is not None else None
+        if array is None and source is not None:
+            array = source.find("{*}float_array")
+        if source is None or accessor is None or array is None:
+            raise MeshError("the positions of its vertices are missing", entry.sourceline)
+        _set_xyz(array, accessor)
+        if array.getparent() is not source:
+            source.append(copy.deepcopy(array))
+        return source
+
+    def _target(self, instance: Any, attribute: str = "url") -> Optional[Any]:
+        """What a reference within the file names; None for nothing, and for other files."""
+        url = instance.get(attribute) or ""
+        return self._by_id.get(url[1:]) if url.startswith("#") else None
+
+
+def _set_xyz(array: Any, accessor: Any) -> None:
+    """Check the numbers of an array, and give it and its accessor the form x y z, x y z."""
+    numbers = _check_numbers(array, finite=True)
+    stride, offset = int(accessor.get("stride") or 3), int(accessor.get("offset") or 0)
+    if stride < 3 or (len(numbers) - offset) % stride:
+        raise MeshError(f"{len(numbers) - offset} numbers are not positions of {stride} each",
+                        array.sourceline)
+    if stride > 3 or offset:
+        rows = numbers[offset:].reshape(-1, stride)[:, :3]
+        array.text = " ".join(map(repr, rows.ravel().tolist()))
+        accessor.set("stride", "3")
+        accessor.attrib.pop("offset", None)
+    accessor[:] = [_made(accessor, "param", name=axis, type="float") for axis in "XYZ"]
+
+
+def _tidy_primitive(primitive: Any, positions: Dict[str, Any]) -> bool:
+    """Check the indices of a primitive; False when it has no faces."""
+    for holed in list(primitive.iterfind("{*}ph")):  # holes are not cut
+        primitive.replace(holed, holed.find("{*}p"))
+    lists = primitive.findall("{*}p") + primitive.findall("{*}vcount")
+    for element in lists:
+        bad = _NO_INDEX.search(element.text or "")
+        if bad:
+            raise MeshError(f"<{_local(element)}>: {bad.group()!r} is not part of an index",
+                            element.sourceline)
+        large = _LARGE_INDEX.search(element.text or "")
+        if large:  # pycollada makes a negative one of it
+            raise MeshError(f"<{_local(element)}>: there is no vertex {large.group()}",
+                            element.sourceline)
+    for entry in primitive.iterfind("{*}input"):
+        entry.set("offset", entry.get("offset") or "0")
+        source = positions.get((entry.get("source") or "")[1:])
+        if entry.get("semantic") != "VERTEX":
+            # Its offset counts, its values do not: they may be missing.
+            other = next(iter(positions.values()), None)
+            if other is not None:
+                entry.set("semantic", "COLOR")
+                entry.set("source", "#" + other.get("id"))
+        elif source is None:
+            raise MeshError("the positions of its vertices are missing", entry.sourceline)
+    counted = _local(primitive) != "polylist" or primitive.find("{*}vcount") is not None
+    return counted and any((p.text or "").strip() for p in primitive.iterfind("{*}p"))
+
+
+def _check_numbers(element: Any, finite: bool = False) -> Any:
+    import numpy as np
+
+    try:
+        numbers = np.array((element.text or "").split(), dtype=np.float64)
+    except ValueError as fault:
+        raise MeshError(f"<{_local(element)}>: {fault}", element.sourceline) from None
+    if finite and not np.isfinite(numbers).all():
+        raise MeshError("the mesh has vertices that are not finite numbers", element.sourceline,
+                        "mesh-not-finite")
+    return numbers
+
+
+def _first(element: Any, *kinds: str) -> Optional[Any]:
+    return next((child for child in element if _local(child) in kinds), None)
+
+
+def _made(like: Any, kind: str, **attributes: str) -> Any:
+    """A new element with the namespace of another."""
+    from lxml import etree
+
+    return etree.Element(f"{{{etree.QName(like).namespace}}}{kind}", attributes)
+
+
+def _local(element: Any) -> str:
+    tag: str = element.tag if isinstance(element.tag, str) else ""
+    return tag.rpartition("}")[2]

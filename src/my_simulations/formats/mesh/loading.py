@@ -1,0 +1,201 @@
+"""Mesh files: DAE, STL, OBJ and what else trimesh reads, as triangles in metres."""
+from __future__ import annotations
+
+import functools
+import os
+from dataclasses import replace
+from typing import Any, Callable, Iterator, List, Optional, Tuple
+
+from ...description.model import Link, Model
+from ...description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
+from ...errors import InputError, Issue, Severity, error
+from ..xml.binding import closest
+from .part import MeshError, MeshPart
+from .suspicious_units import odd_size
+from .terrain import solid_mesh
+
+Reader = Callable[[bytes], List[MeshPart]]
+
+
+def load_mesh(mesh: Mesh) -> MeshData:
+    """The triangles of a mesh file, with its unit and the mesh's scale, part and centring applied.
+
+    The up axis of the file is not (Gazebo behaviour). The arrays are shared between calls and
+    cannot be written to.
+
+    Raises:
+        InputError: with one issue: `mesh-not-found`, `mesh-unreadable`, `mesh-empty` (no faces, or
+            no such part) or `mesh-not-finite`.
+    """
+    try:
+        status = os.stat(mesh.path) if mesh.path else None
+    except OSError:
+        status = None
+    if os.path.isdir(mesh.path):
+        raise _fault("mesh-unreadable", f"the mesh {mesh.uri!r} names a folder", mesh.path)
+    if status is None or not os.path.isfile(mesh.path):
+        raise _fault("mesh-not-found", f"the mesh {mesh.uri!r} was not found", mesh.path)
+    return _loaded(mesh.path, status.st_mtime_ns, status.st_size, mesh.scale, mesh.submesh,
+                   mesh.center)
+
+
+def load_solid(solid: Solid) -> MeshData:
+    """The triangles of a mesh, a terrain, a map image or a polygon.
+
+    Whatever its file holds, the fault is that file's: a reader's own exception is one, too.
+
+    Raises:
+        InputError: with one issue; see `load_mesh` and `solids.solid_mesh`.
+    """
+    try:
+        return load_mesh(solid) if isinstance(solid, Mesh) else solid_mesh(solid)
+    except InputError:
+        raise
+    except Exception as fault:
+        raise _fault("mesh-unreadable", "the shape cannot be read: "
+                     f"{type(fault).__name__}: {fault}", getattr(solid, "path", "")) from fault
+
+
+def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
+    """What the collisions of a model need, by `mesh_key`, and a warning for each that is not had.
+
+    A collision whose mesh is not in the table cannot be simulated; `without_missing_meshes` leaves
+    such ones out, as Gazebo does. Nested models are included. A mesh whose size looks like a lost
+    unit gets a warning, `mesh-size-odd`.
+    """
+    table: MeshTable = {}
+    issues: List[Issue] = []
+    for scope, link, collision in _collisions(model, ""):
+        mesh = collision.geometry
+        if not isinstance(mesh, SOLIDS) or mesh_key(mesh) in table:
+            continue
+        found: List[Issue] = []
+        try:
+            data = load_solid(mesh)
+            table[mesh_key(mesh)] = data
+            if isinstance(mesh, Mesh):
+                found = odd_size(mesh, data, moves=not model.static)
+        except InputError as fault:
+            found = [replace(issue, message=f"{issue.message}; it is left out", tolerated=True,
+                             severity=Severity.WARNING) for issue in fault.issues]
+        where = f"collision {collision.name!r} of link {scope + link.name!r}"
+        issues += [replace(issue, message=f"{where}: {issue.message}") for issue in found]
+    return table, issues
+
+
+def without_missing_meshes(model: Model, table: MeshTable) -> Model:
+    """The model without the collisions whose mesh is not in `table`; the links stay."""
+
+    def usable(collision: Collision) -> bool:
+        mesh = collision.geometry
+        return not isinstance(mesh, SOLIDS) or mesh_key(mesh) in table
+
+    if all(usable(collision) for _, _, collision in _collisions(model, "")):
+        return model
+    links = [replace(link, collisions=[c for c in link.collisions if usable(c)])
+             for link in model.links]
+    return replace(model, links=links,
+                   models=[without_missing_meshes(inner, table) for inner in model.models])
+
+
+def _collisions(model: Model, scope: str) -> Iterator[Tuple[str, Link, Collision]]:
+    for link in model.links:
+        for collision in link.collisions:
+            yield scope, link, collision
+    for inner in model.models:
+        yield from _collisions(inner, f"{scope}{inner.name}::")
+
+
+def _fault(code: str, message: str, path: str, line: int = 0, hint: str = "") -> InputError:
+    return InputError([error(code, message, file=path, line=line, hint=hint)])
+
+
+@functools.lru_cache(maxsize=32)
+def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float], submesh: str,
+            center: bool) -> MeshData:
+    """Kept by the file's time and size, so that an object spawned again costs nothing."""
+    return _to_data(_chosen(_parts(path), submesh, path), path, scale, bool(submesh and center))
+
+
+def _reader(path: str, extension: str) -> Optional[Reader]:
+    # Imported with the first mesh: start-up time counts.
+    if extension == ".dae":
+        from .collada import read_collada
+
+        return read_collada
+    from .trimesh_formats import extensions, read_obj, read_other, read_stl
+
+    if extension in (".stl", ".stla", ".stlb"):
+        return read_stl
+    if extension == ".obj":
+        return read_obj
+    if extension in extensions():
+        return functools.partial(read_other, path=path)
+    return None
+
+
+def _parts(path: str) -> List[MeshPart]:
+    extension = os.path.splitext(path)[1].lower()
+    reader = _reader(path, extension)
+    if reader is None:
+        raise _fault("mesh-unreadable", f"{extension or 'a file without extension'} is not a mesh"
+                     " format that is read", path, hint="use .dae, .stl or .obj")
+    try:
+        with open(path, "rb") as stream:
+            return reader(stream.read())
+    except OSError as fault:
+        raise _fault("mesh-unreadable", f"cannot be read: {fault.strerror}", path) from None
+    except MeshError as fault:
+        said = "" if fault.code == "mesh-not-finite" else "the mesh cannot be read: "
+        raise _fault(fault.code, f"{said}{fault}", path, fault.line) from None
+    except (ValueError, OverflowError) as fault:  # an attribute that should be a number
+        raise _fault("mesh-unreadable", f"the mesh cannot be read: {fault}", path) from None
+
+
+def _chosen(parts: List[MeshPart], submesh: str, path: str) -> List[MeshPart]:
+    if not submesh:
+        return parts
+    chosen = [part for part in parts if submesh in part.names]
+    if not chosen:
+        known = [name for part in parts for name in part.names]
+        raise _fault("mesh-empty", f"the mesh has no part {submesh!r}", path,
+                     hint=closest(submesh, known))
+    return chosen
+
+
+def _to_data(parts: List[MeshPart], path: str, scale: Tuple[float, float, float],
+             center: bool) -> MeshData:
+    import numpy as np
+
+    if not sum(len(part.triangles) for part in parts):
+        raise _fault("mesh-empty", "the mesh has no faces", path)
+    try:
+        vertices, triangles = _joined(parts)
+    except MeshError as fault:
+        raise _fault(fault.code, f"the mesh cannot be read: {fault}", path) from None
+    if not np.isfinite(vertices).all():
+        raise _fault("mesh-not-finite", "the mesh has vertices that are not finite numbers", path)
+    if center:
+        vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    vertices = vertices * np.array(scale)
+    if scale[0] * scale[1] * scale[2] < 0:
+        triangles = triangles[:, ::-1]  # a mirrored mesh is inside out
+    vertices = np.ascontiguousarray(vertices)
+    triangles = np.ascontiguousarray(triangles, dtype=np.int32)
+    vertices.flags.writeable = triangles.flags.writeable = False
+    return MeshData(vertices, triangles)
+
+
+def _joined(parts: List[MeshPart]) -> Tuple[Any, Any]:
+    """One array of the vertices in use, and the triangles over it."""
+    import numpy as np
+
+    vertices, triangles, first = [], [], 0
+    for part in parts:
+        used, inverse = np.unique(part.triangles, return_inverse=True)
+        if len(used) and (used[0] < 0 or used[-1] >= len(part.vertices)):
+            raise MeshError("a triangle names a vertex that does not exist")
+        vertices.append(part.vertices[used])
+        triangles.append(inverse.reshape(-1, 3) + first)
+        first += len(used)
+    return np.concatenate(vertices), np.concatenate(triangles)

@@ -1,0 +1,170 @@
+"""STL, OBJ and whatever else trimesh reads. STL and OBJ know no unit: their numbers are metres.
+
+trimesh reads as much of a damaged file as it understands and takes OBJ's negative indices from
+the end of the file; so the text of both is checked and put into plain form first.
+"""
+from __future__ import annotations
+
+import io
+import os
+from typing import Any, Dict, Iterator, List, Set, Tuple
+
+from .gltf import check_gltf
+from .part import MeshError, MeshPart, bounded
+
+_HEADER = 84
+_RECORD = 50
+_METRES = {"millimeter": 0.001, "millimeters": 0.001, "centimeter": 0.01, "micron": 1e-6,
+           "inch": 0.0254, "foot": 0.3048}
+
+
+def extensions() -> Set[str]:
+    """What trimesh reads as meshes here, e.g. `.ply`; some only with libraries of their own."""
+    from trimesh.exchange.load import mesh_formats
+
+    # Archives could hold anything of any size.
+    return {f".{name}" for name in mesh_formats()} - {".bz2", ".zip", ".zae", ".tar.gz", ".tar.bz2"}
+
+
+def read_stl(data: bytes) -> List[MeshPart]:
+    """The triangles of an STL file, binary or ASCII.
+
+    Raises:
+        MeshFault: neither binary nor ASCII STL.
+    """
+    # A binary file may begin with `solid` too; its length gives it away.
+    if len(data) >= _HEADER:
+        count = int.from_bytes(data[80:_HEADER], "little")
+        end = _HEADER + _RECORD * count
+        if len(data) >= end and not (count == 0 and data[:5].lower() == b"solid"):
+            return [_welded(part) for part in _read(data[:end], "stl")]
+    if data.lstrip()[:5].lower() != b"solid":
+        raise MeshError("neither a binary STL of that length nor an ASCII one")
+    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
+    rows: List[str] = []
+    for line, row in enumerate(text.split("\n"), 1):
+        words = row.split()
+        if words and words[0].lower() == "vertex":
+            _three(words[1:4], line)
+            rows.append("vertex " + " ".join(words[1:4]))
+    if len(rows) % 3:
+        raise MeshError(f"{len(rows)} corners are not triangles; the file may be cut off")
+    # The name of a solid may hold the word vertex, and its end may be missing.
+    plain = "\n".join(["solid", *rows, "endsolid", ""])
+    return [_welded(part) for part in _read(plain.encode(), "stl")]
+
+
+def read_obj(data: bytes) -> List[MeshPart]:
+    """The pieces of an OBJ file, by its `o` and `g` lines.
+
+    Raises:
+        MeshFault: a number that is none, or an index out of range.
+    """
+    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
+    plain, names = _plain_obj(text.replace("\\\n", " "))
+    return [MeshPart(names[int(part.names[0])], part.vertices, part.triangles)
+            for part in _read(plain.encode(), "obj", split_groups=True)]
+
+
+def read_other(data: bytes, path: str) -> List[MeshPart]:
+    """The pieces of a file of another format, in the unit that it declares, else in metres.
+
+    `path` gives the format by its extension and is where a .gltf finds its buffers.
+
+    Raises:
+        MeshFault: trimesh cannot read it, or lacks a library for it.
+    """
+    from trimesh.resolvers import FilePathResolver
+
+    kind = os.path.splitext(path)[1].lower().lstrip(".")
+    if kind in ("gltf", "glb"):
+        check_gltf(data, path)
+    return _read(data, kind, resolver=FilePathResolver(path))
+
+
+def _read(data: bytes, kind: str, **options: Any) -> List[MeshPart]:
+    import trimesh
+
+    try:
+        scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, **options)
+    except ImportError as fault:
+        raise MeshError(f"reading .{kind} needs a library that is not there: {fault}") from None
+    except Exception as fault:  # each format of trimesh fails in its own way
+        raise MeshError(str(fault) or type(fault).__name__) from None
+    return bounded(_scene_parts(scene))
+
+
+def _scene_parts(scene: Any) -> Iterator[MeshPart]:
+    import numpy as np
+    import trimesh
+
+    unit = _METRES.get(scene.units or "", 1.0)
+    for node in scene.graph.nodes_geometry:
+        matrix, name = scene.graph[node]
+        mesh = scene.geometry[name]
+        if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
+            continue
+        vertices = (np.asarray(mesh.vertices) @ matrix[:3, :3].T + matrix[:3, 3]) * unit
+        triangles = np.asarray(mesh.faces, dtype=np.int64)
+        if triangles.min() < 0 or triangles.max() >= len(vertices):
+            raise MeshError("a face names a vertex that does not exist")
+        if np.linalg.det(matrix[:3, :3]) < 0:
+            triangles = triangles[:, ::-1]  # a mirrored piece is inside out
+        yield MeshPart(tuple(dict.fromkeys((name, node))), vertices, triangles)
+
+
+def _welded(part: MeshPart) -> MeshPart:
+    """Corners at the same place made one vertex; STL has three of its own for each triangle."""
+    import numpy as np
+
+    rows = np.ascontiguousarray(part.vertices + 0.0)  # -0.0 and 0.0 are one place
+    keys = rows.view([("", rows.dtype)] * 3).ravel()
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    return MeshPart(part.names, rows[first], inverse.reshape(-1)[part.triangles])
+
+
+def _plain_obj(text: str) -> Tuple[str, List[Tuple[str, ...]]]:
+    """Positions and faces alone, with positive indices, in groups 0, 1, …; their names."""
+    rows: List[str] = []
+    groups: Dict[Tuple[str, ...], int] = {}
+    shape, group, count, current = "", "", 0, -1
+    for line, row in enumerate(text.split("\n"), 1):
+        words = row.partition("#")[0].split()
+        key = words[0] if words else ""
+        if key == "v":
+            _three(words[1:4], line)
+            rows.append("v " + " ".join(words[1:4]))
+            count += 1
+        elif key == "f" and len(words) > 3:
+            names = tuple(name for name in (group, shape) if name)
+            number = groups.setdefault(names, len(groups))
+            if number != current:
+                rows.append(f"g {number}")
+                current = number
+            corners = [_index(word, count, line) for word in words[1:]]
+            rows += [f"f {corners[0]} {corners[k]} {corners[k + 1]}"
+                     for k in range(1, len(corners) - 1)]
+        elif key == "o":
+            shape, group = " ".join(words[1:]), ""
+        elif key == "g":
+            group = " ".join(words[1:])
+    return "\n".join(rows) + "\n", list(groups)
+
+
+def _three(words: List[str], line: int) -> None:
+    try:
+        _, _, _ = (float(word) for word in words)
+    except ValueError:
+        raise MeshError(f"expected 3 numbers, found {' '.join(words)!r}", line) from None
+
+
+def _index(word: str, count: int, line: int) -> int:
+    """The vertex of `7/1/3`, from 1; negative ones count from the last vertex so far."""
+    try:
+        index = int(word.partition("/")[0])
+    except ValueError:
+        raise MeshError(f"expected a vertex number, found {word!r}", line) from None
+    found = index if index > 0 else count + 1 + index
+    if index == 0 or not 1 <= found <= count:
+        raise MeshError(f"there is no vertex {index}", line)
+    return found

@@ -1,0 +1,200 @@
+"""Reading whole files and texts: worlds, models, lights, of SDF or URDF."""
+from __future__ import annotations
+
+import os
+from typing import Any, List, Sequence, Tuple, Union
+
+from ..description.model import Model
+from ..description.world import Actor, Light, World
+from ..errors import InputError, Issue, error, errors_of
+from ..resources.resolver import Resolver
+from .sdf.include import read_include
+from .sdf.light import LightPlacement, read_light
+from .sdf.model import IncludeOverrides, ParsedModel, read_model
+from .sdf.upgrade import upgrade
+from .sdf.world import read_world_element
+from .sdf.world_scene import read_actor
+from .xml.binding import closest
+from .xml.parsing import content, parse
+from .xml.source import Level, Log, Source
+
+Text = Union[str, bytes]
+Entity = Union[Model, Light]
+
+_UNNAMED = "unnamed"
+_SDF_ROOTS = ("sdf", "gazebo")  # `<gazebo version="1.x">` is SDF from before it had its name
+
+
+def read_world(path: str, resolver: Resolver, *, seed: int = 0,
+               profile: str = "") -> Tuple[World, List[Issue]]:
+    """The first world of a file, with every issue met on the way.
+
+    A model that cannot be used is left out whole, with its errors among the issues.
+
+    Args:
+        path: the file.
+        resolver: finds what it names.
+        seed: of what the world draws at random.
+        profile: name of the physics preset to use; "" for the world's own choice.
+
+    Raises:
+        InputError: nothing usable: no such file, cut-off XML, no `<world>`.
+    """
+    return read_world_text(_content(path), resolver, path, seed=seed, profile=profile)
+
+
+def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
+                    profile: str = "") -> Tuple[World, List[Issue]]:
+    """As `read_world`, from text; `file` names it and, where it is a path, anchors relative URIs.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    source, root = _open(text, resolver, file)
+    if root.tag not in _SDF_ROOTS:
+        raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root,
+                        _meant(root, ("sdf", "gazebo", "world")))
+    element = root.find("world")
+    if element is None:
+        raise _unusable(source, "world-missing", "the file holds no <world>", root,
+                        _child_meant(root, ("world",)))
+    world = read_world_element(element, source, seed, profile)
+    if len(root.findall("world")) > 1:
+        source.warn("world-many", "the file holds several worlds; the first is used", root)
+    return world, source.log.issues
+
+
+def read_file(path: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
+    """The model or light of a file; see `read_entity`.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    return read_entity(_content(path), resolver, path)
+
+
+def read_entity(text: Text, resolver: Resolver,
+                file: str = "<model_xml>") -> Tuple[Entity, List[Issue]]:
+    """The first model or light of a document: `<robot>`, or `<sdf>` with one, also in a world.
+
+    With an issue of severity ERROR the result is not what the document describes.
+
+    Args:
+        text: the document; bytes in any declared encoding.
+        resolver: finds what it names.
+        file: for the issues; where it is a path, relative URIs start from its folder.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    source, root = _open(text, resolver, file)
+    if root.tag == "robot":
+        from .urdf.robot import read_robot
+
+        _refuse_xacro(root, source)
+        entity: Entity = read_robot(root, source, _name_if_missing(root, source))
+    elif root.tag in _SDF_ROOTS:
+        entity = _first_entity(root, source)
+    else:
+        hint = ("put it into <sdf version='1.7'>…</sdf>"
+                if root.tag in ("model", "light", "world") else
+                _meant(root, ("sdf", "robot", "world", "model", "light")))
+        raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
+                        root, hint)
+    return entity, source.log.issues
+
+
+def read_any(text: Text, resolver: Resolver,
+             file: str) -> Tuple[Union[World, Model, Light, Actor], List[Issue]]:
+    """Whatever a document holds: its first world, else its first model or light, else an actor.
+
+    Raises:
+        InputError: nothing usable.
+    """
+    source, root = _open(text, resolver, file)
+    if root.find("world") is not None:
+        return read_world_text(text, resolver, file)
+    actor = root.find("actor")
+    if actor is None or any(root.find(tag) is not None for tag in ("model", "light", "include")):
+        return read_entity(text, resolver, file)
+    source.tell_unused(actor)
+    return read_actor(actor, source), source.log.issues
+
+
+def _first_entity(root: Any, source: Source) -> Entity:
+    for child in root:
+        holders = child if child.tag == "world" else (child,)
+        for element in holders:
+            found: Any = None
+            if element.tag == "model":
+                found = read_model(element, source, _name_if_missing(element, source))
+            elif element.tag == "light":
+                found = read_light(element, source)
+            elif element.tag == "include":
+                found = read_include(element, source)
+                if found is None:
+                    raise InputError(source.log.issues)
+            if isinstance(found, ParsedModel):
+                return found.model
+            if isinstance(found, LightPlacement):
+                return found.light
+    raise _unusable(source, "model-missing", "the document holds no world, no model and no light",
+                    root, _child_meant(root, ("world", "model", "light", "include", "actor")))
+
+
+def _meant(element: Any, known: Sequence[str]) -> str:
+    """A hint about an element whose name is unknown: the one it may be a misspelling of."""
+    return closest(element.tag.lower() if isinstance(element.tag, str) else "", list(known))
+
+
+def _child_meant(root: Any, known: Sequence[str]) -> str:
+    """The same for the children of the root, with the line of the first that looks like one."""
+    for child in root:
+        hint = _meant(child, known)
+        if hint:
+            return f"line {child.sourceline} has <{child.tag}>; {hint}"
+    return ""
+
+
+def _name_if_missing(element: Any, source: Source) -> IncludeOverrides:
+    """A spawn request brings a name of its own; a document without one will do for it."""
+    if (element.get("name") or "").strip():
+        return IncludeOverrides()
+    source.warn("name-missing", f"<{element.tag}> has no name; it is called {_UNNAMED!r}", element)
+    return IncludeOverrides(name=_UNNAMED)
+
+
+def _refuse_xacro(root: Any, source: Source) -> None:
+    for element in root.iter("{http://www.ros.org/wiki/xacro}*", "{http://wiki.ros.org/xacro}*",
+                             "{http://ros.org/wiki/xacro}*"):
+        source.report(Level.FATAL, "xacro-unexpanded", "the text is xacro, not URDF", element,
+                      "expand it with the xacro command first")
+        return
+
+
+def _content(path: str) -> bytes:
+    try:
+        return content(path)
+    except OSError as fault:
+        code = "file-not-found" if isinstance(fault, FileNotFoundError) else "file-unreadable"
+        raise InputError(
+            [error(code, f"cannot be read: {fault.strerror or fault}", file=path)]
+        ) from None
+
+
+def _open(text: Text, resolver: Resolver, file: str) -> Tuple[Source, Any]:
+    resolver.begin()
+    log = Log()
+    base_dir = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""
+    trail = (os.path.abspath(file),) if base_dir else ()
+    source = Source(file, base_dir, resolver, log, trail)
+    try:
+        root = parse(text, file, log)
+    except InputError as fault:
+        raise InputError([*fault.issues, *log.issues]) from None
+    return source, upgrade(root, source) if root.tag in _SDF_ROOTS else root
+
+
+def _unusable(source: Source, code: str, message: str, element: Any, hint: str = "") -> InputError:
+    issue = error(code, message, hint=hint, **source.where(element))
+    return InputError([issue, *errors_of(source.log.issues)])

@@ -1,0 +1,187 @@
+"""SDF collisions and visuals: geometry, surface, material."""
+from __future__ import annotations
+
+import os
+from typing import Any, List, Optional, Sequence, Tuple, Union
+
+from ...description.shapes import (
+    Collision,
+    Empty,
+    Geometry,
+    Heightmap,
+    ImageMap,
+    Material,
+    Mesh,
+    Polyline,
+    Visual,
+)
+from ...description.validate import geometry_fault, has_zero_size
+from ...resources.resolver import ResourceNotFoundError
+from ..xml.binding import BAD, REFUSED, Found, closest, fill, read_text, to_xml
+from ..xml.source import Level, Source
+from ..xml.values import VECTOR2
+from .model_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
+
+
+def read_collision(
+    element: Any, source: Source, kept: List[str]
+) -> Optional[Tuple[Collision, Found]]:
+    """A collision; None where it is left out: its XML is then in `kept`.
+
+    Source: SDF spec 1.7, link/collision.
+    """
+    collision = Collision(element.get("name", ""), Empty())
+    found = fill(collision, element, COLLISION, source, collision.extra)
+    geometry = _geometry(found.get("geometry", ()), element, source, True, collision.extra)
+    if geometry is None:
+        kept.append(to_xml(element))
+        return None
+    collision.geometry = geometry
+    return collision, found
+
+
+def read_visual(element: Any, source: Source, kept: List[str]) -> Optional[Tuple[Visual, Found]]:
+    """A visual; None where it is left out: its XML is then in `kept`.
+
+    Source: SDF spec 1.7, link/visual.
+    """
+    visual = Visual(element.get("name", ""), Empty())
+    found = fill(visual, element, VISUAL, source, visual.extra)
+    geometry = _geometry(found.get("geometry", ()), element, source, False, visual.extra)
+    if geometry is None:
+        kept.append(to_xml(element))
+        return None
+    visual.geometry = geometry
+    for child in found.get("material", ()):
+        visual.material = fill_material(child, source, visual.extra)
+    return visual, found
+
+
+def fill_material(element: Any, source: Source, extra: List[str]) -> Material:
+    """A `<material>`; what is not simulated of it goes to `extra`. Source: SDF spec, material."""
+    material = Material()
+    kept: List[str] = []
+    fill(material, element, MATERIAL, source, kept)
+    extra += [f"<material>{xml}</material>" for xml in kept]
+    material.script_uris = [_anchored(uri, source.base_dir) for uri in material.script_uris]
+    return material
+
+
+def _anchored(uri: str, base_dir: str) -> str:
+    """A relative URI made absolute while the folder it starts from is still known."""
+    if base_dir and "://" not in uri and not os.path.isabs(uri):
+        path = os.path.join(base_dir, uri)
+        return path if os.path.exists(path) else uri
+    return uri
+
+
+def _geometry(
+    elements: Sequence[Any], owner: Any, source: Source, collides: bool, kept: List[str],
+) -> Optional[Geometry]:
+    level = Level.ERROR if collides else Level.WARNING
+    shapes = [child for element in elements for child in element if isinstance(child.tag, str)]
+    if not elements:
+        source.report(level, "geometry-missing", f"<{owner.tag}> has no <geometry>", owner)
+        return None
+    if not shapes:
+        return Empty()
+    shape = shapes[0]
+    if len(shapes) > 1 and shape.tag != "polyline":
+        source.warn("geometry-many", f"<geometry> holds several shapes; <{shape.tag}> is used",
+                    shapes[1])
+    table = GEOMETRIES.get(shape.tag)
+    if table is None:
+        unknown_shape(shape, owner.tag, level, source, list(GEOMETRIES))
+        return None
+    geometry: Geometry = table.of()
+    extra: List[str] = geometry.extra if isinstance(geometry, Heightmap) else []
+    found = fill(geometry, shape, table, source, extra, level)
+    if BAD in found:
+        return None
+    if extra and not isinstance(geometry, Heightmap):
+        kept += [f"<geometry><{shape.tag}>{xml}</{shape.tag}></geometry>" for xml in extra]
+    if isinstance(geometry, Polyline) and not _loops(geometry, shapes, source, level):
+        return None
+    return checked(geometry, shape, owner.tag, source)
+
+
+def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: Level) -> bool:
+    """The points of all sibling polylines: the first is the outline, the others are holes."""
+    for shape in shapes:
+        loop: List[Tuple[float, float]] = []
+        for point in shape.iterfind("point") if shape.tag == "polyline" else ():
+            found = read_text(VECTOR2, point.text or "", "<point>", point, source, level)
+            if found is REFUSED:
+                return False
+            loop.append(found)
+        if len(loop) > 1 and max(abs(loop[0][0] - loop[-1][0]), abs(loop[0][1] - loop[-1][1])
+                                 ) < _CLOSED:
+            loop.pop()
+        if shape.tag == "polyline":
+            polyline.loops.append(loop)
+    return True
+
+
+_CLOSED = 1e-4
+"""Metres between the first and the last point of a loop that was closed by hand (Gazebo)."""
+
+
+def unknown_shape(shape: Any, owner: str, level: Level, source: Source,
+                  known: Sequence[str]) -> None:
+    """Report a shape that is left out."""
+    source.report(level, "geometry-unknown",
+                  f"<{shape.tag}> is not a known shape; this {owner} is left out", shape,
+                  closest(shape.tag, list(known)))
+
+
+def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optional[Geometry]:
+    """The shape where it can be used, its mesh found; None, with an issue, where it cannot."""
+    collides = owner == "collision"
+    if isinstance(geometry, (Mesh, Heightmap, ImageMap)) and not find_mesh(
+            geometry, shape, source, collides):
+        return None
+    if isinstance(geometry, Mesh):
+        _thicken(geometry, shape, owner, source)
+    problem = geometry_fault(geometry)
+    if problem:
+        # ODE never lets a geometry of size 0 touch anything: files use them as place-holders.
+        mild = not collides or has_zero_size(geometry)
+        say = source.warn if mild else source.tolerate
+        say("bad-shape", f"{problem}; this {owner} is left out", shape)
+        return None
+    return geometry
+
+
+THINNEST_SCALE = 1e-3
+"""What a mesh without thickness keeps of it; Gazebo's triangles collide when they lie flat, too."""
+
+
+def _thicken(mesh: Mesh, shape: Any, owner: str, source: Source) -> None:
+    """A mesh scaled flat stays a thin one, on which things can lie; one scaled to a point goes."""
+    if 0.0 not in mesh.scale or not any(mesh.scale):
+        return
+    shown = " ".join(f"{value:g}" for value in mesh.scale)
+    x, y, z = (value or THINNEST_SCALE for value in mesh.scale)
+    mesh.scale = (x, y, z)
+    source.tolerate("scale-zero", f"the scale {shown} makes the mesh of this {owner} flat;"
+                    f" {THINNEST_SCALE:g} is used for 0", shape)
+
+
+def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Source,
+              collides: bool) -> bool:
+    """Set the path of the mesh or image; False where its owner must be left out.
+
+    A visual whose file is missing stays, without a path, so that saving loses nothing.
+    """
+    try:
+        mesh.path = source.resolver.resolve(mesh.uri, source.base_dir)
+    except ResourceNotFoundError as missing:
+        owner = "collision" if collides else "visual"
+        kind = "mesh" if isinstance(mesh, Mesh) else "image"
+        say = source.tolerate if collides else source.warn
+        without = "; this collision is left out" if collides else ""
+        say(f"{kind}-not-found", f"the {kind} of this {owner} {missing}{without}", element,
+            hint=source.resolver.meant(missing) + "check the path, GAZEBO_MODEL_PATH and"
+                 " ROS_PACKAGE_PATH")
+        return not collides
+    return True

@@ -1,0 +1,244 @@
+"""SDF joints: their links, their axes, and the frames both are given in."""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Callable, List, Optional, Tuple
+
+from ...description.model import INFINITE, Joint, JointAxis, Mimic
+from ...description.validate import JOINT_TYPES
+from ...geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
+from ..xml.binding import REFUSED, Found, Table, Value, closest, fill, read_text, to_xml
+from ..xml.source import Level, Source
+from ..xml.values import FLOAT, TEXT, VECTOR3
+from .frame_graph import FrameError
+from .model_tables import AXIS, AXIS2, JOINT
+from .upgrade import WORLD_AXES
+
+
+@dataclass
+class UnresolvedJoint:
+    """A joint on its way to the model that holds both its links.
+
+    Attributes:
+        joint: with its pose as written, and the names of its links as written or found.
+        found: what `read_joint` returned.
+        element: where it stands.
+        scope: what names of its own model begin with in the model that is asked now, "" there.
+    """
+
+    joint: Joint
+    found: Found
+    element: Any
+    scope: str = ""
+
+    def scoped(self, name: str) -> str:
+        """A name of its own model, as the model that is asked now knows it."""
+        return f"{self.scope}{name}" if name and self.scope else name
+
+    def moved_out(self, model: str) -> "UnresolvedJoint":
+        """The same joint, for the model around `model`."""
+        self.joint.name = f"{model}::{self.joint.name}"
+        return UnresolvedJoint(self.joint, self.found, self.element, f"{model}::{self.scope}")
+
+
+PoseOf = Callable[[str], Pose]
+"""From the name of a frame to its pose in the model; raises `FrameError`."""
+
+
+def read_joint(element: Any, source: Source) -> Tuple[Joint, Found]:
+    """A joint with its pose as written; `place_axes` completes it once all frames are known.
+
+    Source: SDF spec 1.7, joint.
+    """
+    joint = Joint(element.get("name", ""), _type(element, source), "", "")
+    found = fill(joint, element, JOINT, source, joint.extra)
+    joint.axis = _axis("axis", AXIS, found, source, joint)
+    joint.axis2 = _axis("axis2", AXIS2, found, source, joint)
+    _default_axes(joint, element, source)
+    for child in found.get("screw_thread_pitch", ()):
+        _thread(joint, child, source)
+    if joint.type == "continuous":
+        joint.type = "revolute"
+        if joint.axis is not None:
+            joint.axis.lower, joint.axis.upper = -INFINITE, INFINITE
+    return joint, found
+
+
+def _axis(tag: str, table: Table, found: Found, source: Source,
+          joint: Joint) -> Optional[JointAxis]:
+    """The axis without its direction, whose elements go to `found` as `<tag>/xyz`."""
+    elements = found.get(tag)
+    if not elements:
+        return None
+    axis = JointAxis()
+    kept: List[str] = []
+    inside = fill(axis, elements[0], table, source, kept)
+    for child in inside.get("mimic", ()):
+        axis.mimic = _mimic(child, source)
+        kept.append(to_xml(child))
+    joint.extra += [f"<{tag}>{xml}</{tag}>" for xml in kept]
+    found[f"{tag}/xyz"] = inside.get("xyz", [])
+    return axis
+
+
+def _mimic(element: Any, source: Source) -> Mimic:
+    """q = multiplier (q_joint - reference) + offset. Source: SDF spec 1.11, axis/mimic."""
+    values = _Follow()
+    fill(values, element, MIMIC, source, [])
+    if not values.joint:
+        source.report(Level.FATAL, "mimic-joint-missing", "<mimic> names no joint", element)
+    if element.get("axis") not in (None, "", "axis"):
+        source.warn("mimic-axis", "<mimic> follows the second axis of a joint, which is not known"
+                    " here; its first is followed", element)
+    return Mimic(values.joint, values.multiplier,
+                 values.offset - values.multiplier * values.reference)
+
+
+@dataclass
+class _Follow:
+    joint: str = ""
+    multiplier: float = 1.0
+    offset: float = 0.0
+    reference: float = 0.0
+
+
+MIMIC = Table("mimic", _Follow, {
+    name: Value(name, FLOAT) for name in ("multiplier", "offset", "reference")
+}, attributes={"joint": Value("joint", TEXT)}, level=Level.FATAL, known_attributes=("axis",))
+
+
+def _thread(joint: Joint, element: Any, source: Source) -> None:
+    """Metres a turn, right-handed, as rad/m, left-handed. Source: SDF spec 1.10, joint."""
+    try:
+        pitch = FLOAT.parse(element.text or "")
+    except ValueError as fault:
+        source.report(Level.FATAL, "bad-value", f"<screw_thread_pitch>: {fault}", element)
+        return
+    if pitch == 0:
+        source.report(Level.FATAL, "bad-value", "<screw_thread_pitch> must not be 0", element)
+        return
+    joint.thread_pitch = -2.0 * math.pi / pitch
+
+
+_TWO_AXES = ("universal", "revolute2", "gearbox")
+
+
+def _default_axes(joint: Joint, element: Any, source: Source) -> None:
+    """Axes of a joint with two that the file leaves out; those of others must be given."""
+    if joint.type == "universal" and joint.axis is None:
+        source.warn("joint-axis-missing", f"universal joint {joint.name!r} has no axis; x and y are"
+                    " used", element)
+        joint.axis = JointAxis((1.0, 0.0, 0.0))
+        joint.axis2 = joint.axis2 or JointAxis((0.0, 1.0, 0.0))
+    elif joint.type in _TWO_AXES and joint.axis is not None and joint.axis2 is None:
+        joint.axis2 = JointAxis()
+    elif joint.axis is None and joint.type in ("revolute", "continuous", "prismatic", "screw",
+                                               "revolute2", "gearbox"):
+        source.tolerate("joint-axis-missing", f"joint {joint.name!r} of type {joint.type} has no"
+                        " axis; the x axis of its child link is used, as by ODE", element)
+
+
+def _type(element: Any, source: Source) -> str:
+    name = element.get("name", "")
+    joint_type: str = (element.get("type") or "").strip()
+    if not joint_type:
+        source.report(Level.ERROR, "joint-type-missing", f"joint {name!r} has no type; it is left"
+                      " out", element)
+    elif joint_type == "piston":
+        source.warn("joint-unsupported", f"joint {name!r}: the type piston is not moved", element,
+                    "it was dropped from the format; use prismatic")
+    elif joint_type not in JOINT_TYPES:
+        source.tolerate("joint-type-unknown", f"joint {name!r} has the unknown type"
+                        f" {joint_type!r}; it is left out", element,
+                        closest(joint_type, list(JOINT_TYPES)))
+    return joint_type
+
+
+def is_whole(one: UnresolvedJoint, source: Source) -> bool:
+    """False for a joint that Gazebo does not make, either, for what it says itself."""
+    joint = one.joint
+    if joint.type not in (*JOINT_TYPES, "piston"):
+        return False  # `read_joint` has said so
+    missing = [role for role in ("parent", "child") if not getattr(joint, role)]
+    if missing:
+        source.report(Level.ERROR, "joint-link-missing", f"joint {joint.name!r} has no"
+                      f" {' and no '.join(missing)} link; it is left out", one.element)
+    elif joint.parent == joint.child:
+        source.tolerate("joint-link-repeated", f"joint {joint.name!r} connects {joint.child!r} with"
+                        " itself; it is left out", one.element)
+    else:
+        return True
+    return False
+
+
+def place_axes(
+    joint: Joint, found: Found, source: Source, pose_of: PoseOf, model_turn: Optional[Quat]
+) -> None:
+    """Bring the axes into the joint frame, as unit vectors.
+
+    Args:
+        joint: its `pose` already in the child link's frame.
+        found: what `read_joint` returned.
+        source: where faults go.
+        pose_of: poses of links and frames in the model.
+        model_turn: orientation of the model in the world.
+    """
+    if joint.type == "fixed":
+        joint.axis = joint.axis2 = None  # files often keep an axis there; it means nothing
+        return
+    if joint.axis is None and joint.type != "ball":
+        joint.axis = JointAxis(rotate(conjugate(joint.pose.orientation), (1.0, 0.0, 0.0)))
+        joint.axis2 = JointAxis() if joint.type in _TWO_AXES else None
+    for which, axis in (("axis", joint.axis), ("axis2", joint.axis2)):
+        for xyz in found.get(f"{which}/xyz", ()) if axis is not None else ():
+            vector = _vector(xyz, source)
+            expressed_in = xyz.get("expressed_in") or ""
+            if norm(vector) < 1e-12:
+                source.tolerate("joint-axis-zero", f"the {which} of joint {joint.name!r} has no"
+                                " direction; the x axis of the world is used, as by ODE", xyz)
+                vector, expressed_in = (1.0, 0.0, 0.0), WORLD_AXES
+            if expressed_in:
+                try:
+                    vector = _in_joint(vector, expressed_in, joint, pose_of, model_turn)
+                except FrameError as fault:
+                    source.tolerate("frame-unknown", f"joint {joint.name!r}: {fault}; the {which}"
+                                    " is taken in the joint's own frame", xyz)
+            assert axis is not None
+            axis.xyz = _unit(vector)
+
+
+def _unit(vector: Vec3) -> Vec3:
+    """The direction; a unit vector as it was written stays the same numbers."""
+    length = norm(vector)
+    return vector if abs(length - 1.0) < 1e-13 else scale(vector, 1.0 / length)
+
+
+def _vector(xyz: Any, source: Source) -> Vec3:
+    text = (xyz.text or "").strip()
+    if not text:
+        return (0.0, 0.0, 1.0)
+    vector = read_text(VECTOR3, text, "<xyz>", xyz, source, Level.FATAL)
+    return (0.0, 0.0, 1.0) if vector is REFUSED else vector
+
+
+def _in_joint(vector: Vec3, expressed_in: str, joint: Joint, pose_of: PoseOf,
+              model_turn: Optional[Quat]) -> Vec3:
+    if expressed_in == WORLD_AXES:
+        if model_turn is not None:
+            vector = rotate(conjugate(model_turn), vector)
+    else:
+        vector = rotate(pose_of(expressed_in).orientation, vector)
+    in_child = rotate(conjugate(pose_of(joint.child).orientation), vector)
+    return rotate(conjugate(joint.pose.orientation), in_child)
+
+
+def reverse_axes(joint: Joint) -> None:
+    """Turn the axes of a joint whose parent and child were exchanged.
+
+    The position keeps its sign: what turned the child against the parent by an angle about the axis
+    turns the parent against the child by it about the opposite axis.
+    """
+    for axis in (joint.axis, joint.axis2):
+        if axis is not None:
+            axis.xyz = scale(axis.xyz, -1.0)

@@ -1,0 +1,413 @@
+"""SDF models: links, joints, nested models, and the frames that place them."""
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field, replace
+from typing import Any, List, Optional, Sequence, Set, Tuple
+
+from ...description.model import WORLD, Link, Model, PluginSpec
+from ...description.validate import link_names, own_faults, place_faults
+from ...errors import Issue, Severity
+from ...geometry import IDENTITY, Pose, compose, inverse
+from ..xml.binding import closest, fill, to_xml
+from ..xml.source import Level, Source
+from .flags import Said, first_link, says, settle
+from .frame_graph import FrameError, FrameTree
+from .joint import UnresolvedJoint, is_whole, place_axes, read_joint, reverse_axes
+from .link import LinkReader, free_name, must_stand, relative_to
+from .model_tables import FRAME, MODEL
+
+ROOT = "__model__"
+DEEPEST = 50
+"""Models inside models; what the files of Gazebo and of robots have is 2 or 3."""
+
+
+@dataclass
+class IncludeOverrides:
+    """What an include says about the model it brings; None where it is silent."""
+
+    name: Optional[str] = None
+    pose: Optional[Pose] = None
+    relative_to: str = ""
+    static: Optional[bool] = None
+    plugins: List[PluginSpec] = field(default_factory=list)
+    placement_frame: str = ""
+
+
+@dataclass
+class ParsedModel:
+    """A model that was read.
+
+    Attributes:
+        model: it.
+        relative_to: the frame its pose is given in, "" for the parent's.
+        frames: those inside it; None for one from a URDF file.
+        pending: joints with a link that is not its own, for the outer model to look for.
+        said: what it says of itself as a whole, for a model that includes it.
+    """
+
+    model: Model
+    relative_to: str = ""
+    frames: Optional[FrameTree] = None
+    pending: List[UnresolvedJoint] = field(default_factory=list)
+    said: Said = Said()
+
+
+def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides] = None,
+               static: bool = False, outer: Sequence[str] = (), alone: bool = True) -> ParsedModel:
+    """A model; faults that make it unusable are counted as fatal in the source's log.
+
+    Args:
+        element: `<model>`, of a document of version 1.7 (see `sdf_versions`).
+        source: the file.
+        changes: by an `<include>`.
+        static: True when an outer model is static.
+        outer: names of the models around it, outermost first.
+        alone: False where links of other models may be named by joints.
+    """
+    return _ModelReader(
+        element, source, changes or IncludeOverrides(), static, tuple(outer), alone
+    ).read()
+
+
+def read_plugin(element: Any) -> PluginSpec:
+    """A `<plugin>`, kept whole."""
+    return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element))
+
+
+class _End(enum.Enum):
+    """Where the links of a joint are: in this model, perhaps in one around it, or nowhere."""
+
+    HERE = 1
+    ELSEWHERE = 2
+    NOWHERE = 3
+
+
+class _ModelReader:
+    def __init__(self, element: Any, source: Source, changes: IncludeOverrides, static: bool,
+                 outer: Tuple[str, ...], alone: bool) -> None:
+        self._element = element
+        self._source = source
+        self._changes = changes
+        self._outer_static = static
+        self._outer = outer
+        self._alone = alone
+        self._frames = FrameTree(ROOT)
+        self._links = LinkReader(source, self._frames)
+        self._elements = self._links.elements
+        self._declared: List[Tuple[str, Any]] = []  # <frame>s
+
+    def read(self) -> ParsedModel:
+        element, source, changes = self._element, self._source, self._changes
+        model = Model(element.get("name", ""))
+        self._elements[id(model)] = element
+        found = fill(model, element, MODEL, source, model.extra)
+        placement = ParsedModel(model, relative_to(found), self._frames)
+        self._apply(changes, placement)
+        included = self._read_includes(self._within_depth(found.get("include", ()), model), model,
+                                       placement)
+        static = model.static or self._outer_static
+        model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+        model.plugins += changes.plugins
+        model.links = self._links.read_all(found.get("link", ()), static)
+        self._stand_still(model, static)
+        for child in found.get("frame", ()):
+            self._frame(child)
+        nested = self._within_depth(found.get("model", ()), model)
+        waiting = self._nested(nested, included, model, static)
+        joints = self._read_joints(found.get("joint", ()))
+        model.canonical_link = model.canonical_link or first_link(
+            element, {child: inner.model for child, inner in included})
+        self._frames.body = model.canonical_link or next(link_names(model), "")
+        names = set(link_names(model))
+        for one in (*joints, *waiting):
+            self._elements[id(one.joint)] = one.element
+            self._look_up(one, names)
+            self._frames.add(one.joint.name, one.joint.pose,
+                             one.scoped(relative_to(one.found)) or self._joint_base(one.joint),
+                             one.element, self._joint_base(one.joint))
+        self._place(model)
+        ends = [(one, self._place_joint(one, model, names)) for one in (*joints, *waiting)]
+        model.joints = [one.joint for one, end in ends if end is _End.HERE] + model.joints
+        placement.pending = [one for one, end in ends if end is _End.ELSEWHERE]
+        self._put_by(element.get("placement_frame") or "", model)
+        self._check(model)
+        return placement
+
+    def _apply(self, changes: IncludeOverrides, placement: ParsedModel) -> None:
+        model = placement.model
+        if changes.name is not None:
+            model.name = changes.name
+        if changes.pose is not None:
+            model.pose, placement.relative_to = changes.pose, changes.relative_to
+
+    def _stand_still(self, model: Model, static: bool) -> None:
+        for link in model.links:
+            if not static and must_stand(link):
+                self._source.warn("static-forced", f"model {model.name!r} is made static: its link"
+                                  f" {link.name!r} collides as a terrain or a map",
+                                  self._elements[id(link)])
+                model.static = True
+                return
+
+    def _frame(self, element: Any) -> None:
+        probe = Link(element.get("name", ""))
+        found = fill(probe, element, FRAME, self._source, [])
+        attached = element.get("attached_to") or ""
+        # The frame of reference is what it is attached to, where the pose does not say.
+        self._frames.add(probe.name, probe.pose, relative_to(found) or attached, element, attached)
+        self._declared.append((probe.name, element))
+
+    def _within_depth(self, elements: Sequence[Any], model: Model) -> Sequence[Any]:
+        """The models in this one, or none where it is `DEEPEST` levels down already."""
+        if len((*self._outer, model.name)) < DEEPEST:
+            return elements
+        for child in elements:
+            self._source.report(Level.ERROR, "models-too-deep", "models are nested deeper than"
+                                f" {DEEPEST} levels; this one is left out", child)
+        return ()
+
+    def _read_includes(self, elements: Sequence[Any], model: Model,
+                       placement: ParsedModel) -> List[Tuple[Any, ParsedModel]]:
+        """The models that are included in this one; settles what they say of the whole."""
+        from .include import read_include
+
+        included: List[Tuple[Any, ParsedModel]] = []
+        placement.said = says(model, self._element)
+        for child in elements:
+            static = model.static or self._outer_static
+            inner = read_include(child, self._source, static, (*self._outer, model.name))
+            if isinstance(inner, ParsedModel):
+                included.append((child, inner))
+                placement.said = settle(model, self._element,
+                                        [(one, other.said) for one, other in included],
+                                        self._source)
+                self._obey(placement)
+        self._obey(placement)
+        return included
+
+    def _obey(self, placement: ParsedModel) -> None:
+        """What an include says of this model counts before all that the model says."""
+        if self._changes.static is not None:
+            placement.model.static = self._changes.static
+            placement.said = replace(placement.said, static=self._changes.static)
+
+    def _nested(self, elements: Sequence[Any], included: Sequence[Tuple[Any, ParsedModel]],
+                model: Model, static: bool) -> List[UnresolvedJoint]:
+        """Put models into this one; returns their joints that want links of this one."""
+        path = (*self._outer, model.name)
+        waiting: List[UnresolvedJoint] = []
+        for child in elements:
+            placement = read_model(child, self._source, static=static, outer=path, alone=False)
+            waiting += self._adopt(placement, child, model)
+        for child, placement in included:
+            if (child.get("merge") or "").strip().lower() in ("true", "1"):
+                self._merge(placement, child, model)
+            else:
+                placement.model.static = model.static  # as `sdf_flags` settled it
+                waiting += self._adopt(placement, child, model)
+        return waiting
+
+    def _adopt(self, placement: ParsedModel, element: Any, model: Model) -> List[UnresolvedJoint]:
+        inner = placement.model
+        self._elements[id(inner)] = element
+        taken = {one.name for one in model.models}
+        if inner.name in taken:
+            free = free_name(inner.name, taken)
+            self._source.tolerate("name-repeated", f"there are two models named {inner.name!r} in"
+                                  f" {model.name!r}; the second is called {free!r}", element,
+                                  "names are unique within a model")
+            inner.name = free
+        model.models.append(inner)
+        body = inner.canonical_link or next(link_names(inner), "")
+        self._frames.add(inner.name, inner.pose, placement.relative_to, element,
+                         f"{inner.name}::{body}" if body else "")
+        if placement.relative_to:
+            self._links.given_in.append((inner, inner.name, ""))
+        add_frames_inside(self._frames, placement, element)
+        return [one.moved_out(inner.name) for one in placement.pending]
+
+    def _merge(self, placement: ParsedModel, element: Any, model: Model) -> None:
+        """Put what a model holds into this one, where it stands. Source: SDF spec 1.9, include."""
+        inner = placement.model
+        proxy = f"_merged__{inner.name}__{ROOT}"
+        self._frames.add(proxy, inner.pose, placement.relative_to, element)
+        items: List[Any] = [*inner.links, *inner.models]
+        for item in items:
+            self._elements[id(item)] = element
+            self._frames.add(item.name, item.pose, proxy, element,
+                             item.name if isinstance(item, Link) else "")
+            self._links.given_in.append((item, item.name, ""))
+        if placement.frames is not None:
+            self._frames.merge(proxy, placement.frames, element)
+        for joint in inner.joints:
+            self._elements[id(joint)] = element
+        model.links += inner.links
+        model.joints += inner.joints
+        model.models += inner.models
+        model.plugins += inner.plugins
+        model.extra += [xml for xml in inner.extra if not xml.startswith("<frame")]
+
+    def _read_joints(self, elements: Sequence[Any]) -> List[UnresolvedJoint]:
+        """Those that Gazebo makes, too: of two with one name the first."""
+        joints: List[UnresolvedJoint] = []
+        taken: Set[str] = set()
+        for element in elements:
+            one = UnresolvedJoint(*read_joint(element, self._source), element)
+            joint = one.joint
+            if self._links.world:
+                for role in ("parent", "child"):
+                    if getattr(joint, role) == WORLD:
+                        setattr(joint, role, self._links.world)
+            if joint.name and joint.name in taken:
+                self._source.tolerate("name-repeated", f"there are two joints named {joint.name!r};"
+                                      " the second is left out", element,
+                                      "names are unique within a model")
+            elif is_whole(one, self._source):
+                taken.add(joint.name)
+                joints.append(one)
+        return joints
+
+    def _joint_base(self, joint: Any) -> str:
+        return joint.child if joint.child in self._frames and joint.child != WORLD else ROOT
+
+    def _look_up(self, one: UnresolvedJoint, names: Set[str]) -> None:
+        """Names with the model's own scope in front, and those of a nested model's joint."""
+        joint = one.joint
+        for role in ("parent", "child"):
+            name = getattr(joint, role)
+            for candidate in self._spellings(name, one.scope):
+                if candidate in names or candidate in self._frames:
+                    setattr(joint, role, candidate)
+                    break
+
+    def _spellings(self, name: str, scope: str) -> List[str]:
+        found = [f"{scope}{name}"] if scope and name != WORLD else []
+        found.append(name)
+        path = (*self._outer, self._element.get("name", ""))
+        for start in range(len(path)):
+            prefix = "::".join(path[start:]) + "::"
+            if name.startswith(prefix):
+                found.append(name[len(prefix):])
+        return found
+
+    def _place(self, model: Model) -> None:
+        """Bring every pose given in a named frame to the frame the description uses."""
+        for thing, frame, link in self._links.given_in:
+            element = self._elements[id(thing)]
+            pose = self._pose_of(frame, element)
+            if pose is None:
+                continue  # as it is written
+            if link:
+                base = self._pose_of(link, element) or IDENTITY
+                pose = compose(inverse(base), compose(pose, thing.pose))
+            thing.pose = pose
+        for name, element in self._declared:
+            self._pose_of(name, element)
+            self._body_of(name, element)
+
+    def _pose_of(self, frame: str, element: Any) -> Optional[Pose]:
+        """None, with an issue, for a frame without a pose: Gazebo takes what is written then."""
+        try:
+            return self._frames.pose(frame)
+        except FrameError as fault:
+            self._source.tolerate("frame-unknown", f"{fault}; the pose of this <{element.tag}> is"
+                                  " taken without it", element)
+            return None
+
+    def _body_of(self, name: str, element: Any) -> str:
+        try:
+            return self._frames.body_of(name)
+        except FrameError as fault:
+            self._source.tolerate("frame-unknown", f"{fault}; this <{element.tag}> is attached to"
+                                  " the model", element)
+            return name
+
+    def _place_joint(self, one: UnresolvedJoint, model: Model, names: Set[str]) -> "_End":
+        """Bring a joint to its child link's frame, where both its links are known."""
+        joint, element = one.joint, one.element
+        at: Optional[Pose] = IDENTITY
+        if joint.child in self._frames or joint.child == WORLD:
+            at = self._pose_of(joint.name, element)
+        moved = bool(relative_to(one.found)) and at is not None
+        for role in ("parent", "child"):
+            name = getattr(joint, role)
+            if name not in names and name != WORLD and name in self._frames:
+                setattr(joint, role, self._body_of(name, element))
+                moved = moved or role == "child"
+        ends = (joint.parent, joint.child)
+        strangers = [name for name in ends if name and name != WORLD and name not in names]
+        if strangers:
+            if not self._alone and (self._outer or any("::" in name for name in strangers)):
+                return _End.ELSEWHERE
+            self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} names"
+                                  f" {' and '.join(map(repr, strangers))}, which the model does not"
+                                  " have; the joint is left out", element,
+                                  closest(strangers[0], sorted(names)))
+            return _End.NOWHERE
+        if joint.child == WORLD and joint.parent in names:
+            # The description knows the world as a parent only.
+            joint.parent, joint.child = WORLD, joint.parent
+            joint.pose = self._from(joint.child, at or IDENTITY, element)
+            place_axes(joint, one.found, self._source, self._pose_in(one), model.pose.orientation)
+            reverse_axes(joint)
+        elif joint.child in names:
+            if moved:
+                joint.pose = self._from(joint.child, at or IDENTITY, element)
+            place_axes(joint, one.found, self._source, self._pose_in(one), model.pose.orientation)
+        return _End.HERE
+
+    def _from(self, frame: str, at: Pose, element: Any) -> Pose:
+        return compose(inverse(self._pose_of(frame, element) or IDENTITY), at)
+
+    def _pose_in(self, one: UnresolvedJoint) -> Any:
+        """Poses by the names used where the joint was written, and by full names."""
+        def pose(name: str) -> Pose:
+            scoped = one.scoped(name)
+            return self._frames.pose(scoped if scoped in self._frames else name)
+
+        return pose
+
+    def _put_by(self, frame: str, model: Model) -> None:
+        """The pose of the model is that of its placement frame. Source: SDF spec 1.8."""
+        frame = self._changes.placement_frame or frame
+        if frame:
+            model.pose = compose(model.pose,
+                                 inverse(self._pose_of(frame, self._element) or IDENTITY))
+
+    def _check(self, model: Model) -> None:
+        """The faults of the finished model, at the places they come from."""
+        found = [*own_faults(model, self._outer_static),
+                 *(fault for nested in model.models for fault in place_faults(nested))]
+        for fault in found:
+            element = self._elements.get(id(fault.subject))
+            if element is None:
+                continue  # inside a nested model, which has said so itself
+            self._source.log.add(
+                Issue(fault.severity, fault.code, fault.message, hint=fault.hint,
+                      **self._source.where(element)),
+                fatal=fault.severity is Severity.ERROR,
+            )
+
+
+def add_frames_inside(frames: FrameTree, placement: ParsedModel, element: Any) -> None:
+    """Declare what is inside a model that is declared itself, under scoped names."""
+    model = placement.model
+    if placement.frames is not None:
+        frames.include(model.name, placement.frames, element)
+    else:
+        _add_inner_frames(frames, model, model.name, element)
+
+
+def _add_inner_frames(frames: FrameTree, model: Model, scope: str, element: Any) -> None:
+    for link in model.links:
+        name = f"{scope}::{link.name}"
+        frames.add(name, link.pose, scope, element, name)
+    for nested in model.models:
+        inner = f"{scope}::{nested.name}"
+        frames.add(inner, nested.pose, scope, element)
+        _add_inner_frames(frames, nested, inner, element)
+
+
+__all__ = ["IncludeOverrides", "ParsedModel", "add_frames_inside", "read_model", "read_plugin",
+           "relative_to"]

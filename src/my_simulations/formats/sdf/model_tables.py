@@ -1,0 +1,287 @@
+"""The elements of SDF 1.7 that are simulated, as tables. Source: SDF specification, 1.2 to 1.7."""
+from __future__ import annotations
+
+from typing import Dict, Mapping
+
+from ...description.model import Inertial, Joint, JointAxis, Link, Model
+from ...description.shapes import (
+    Box,
+    Capsule,
+    Collision,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Empty,
+    Heightmap,
+    ImageMap,
+    Material,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+    Surface,
+    Visual,
+)
+from ...description.world import Light, Physics, World
+from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.source import Level
+from ..xml.values import (
+    BOOL,
+    COLOR,
+    FLOAT,
+    FRICTION,
+    INT,
+    LIMIT,
+    PLANE_SIZE,
+    POSE,
+    SCALE,
+    TEXT,
+    VECTOR3,
+)
+
+FATAL, ERROR, WARNING = Level.FATAL, Level.ERROR, Level.WARNING
+
+
+SHOWN, KEPT = Use.SHOWN, Use.KEPT
+
+
+def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
+    return {name: Kept(since) for name in names}
+
+
+def _told(*names: str, since: str = "") -> Dict[str, Entry]:
+    """Kept, and it is said: whoever wrote them expects something to happen."""
+    return {name: Kept(since, told=True) for name in names}
+
+
+GEOMETRIES: Mapping[str, Table] = {
+    "box": Table("box", Box, {"size": Value("size", VECTOR3)}),
+    "sphere": Table("sphere", Sphere, {"radius": Value("radius", FLOAT)}),
+    "cylinder": Table("cylinder", Cylinder, {
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }),
+    "plane": Table("plane", Plane, {
+        "normal": Value("normal", VECTOR3), "size": Value("size", PLANE_SIZE),
+    }),
+    "mesh": Table("mesh", Mesh, {
+        "uri": Value("uri", TEXT),
+        "filename": Value("uri", TEXT),  # SDF 1.0 to 1.2
+        "scale": Value("scale", SCALE),
+        "submesh": Group({"name": Value("submesh", TEXT), "center": Value("center", BOOL)}),
+        "convex_decomposition": Kept("1.11"),
+    }),
+    "capsule": Table("capsule", Capsule, {
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }),
+    "ellipsoid": Table("ellipsoid", Ellipsoid, {"radii": Value("radii", VECTOR3)}),
+    "cone": Table("cone", Cone, {
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }),
+    "heightmap": Table("heightmap", Heightmap, {
+        "uri": Value("uri", TEXT),
+        "filename": Value("uri", TEXT),  # SDF 1.0 to 1.2
+        "size": Value("size", VECTOR3),
+        "pos": Value("position", VECTOR3),
+        "offset": Value("position", VECTOR3),  # SDF 1.0 to 1.2
+        "sampling": Value("sampling", INT),
+        **_kept("texture", "blend", "use_terrain_paging"),
+    }),
+    "image": Table("image", ImageMap, {
+        "uri": Value("uri", TEXT),
+        "filename": Value("uri", TEXT),  # SDF 1.0 to 1.2
+        "scale": Value("scale", FLOAT),
+        "threshold": Value("threshold", INT),
+        "height": Value("height", FLOAT),
+        "granularity": Value("granularity", INT),
+    }),
+    "polyline": Table("polyline", Polyline, {
+        "point": Part(), "height": Value("height", FLOAT),
+    }),
+    "empty": Table("empty", Empty),
+}
+
+_ODE_FRICTION = Group({
+    "mu": Value("mu", FRICTION), "mu2": Value("mu2", FRICTION, use=KEPT),
+    "fdir1": Value("fdir1", VECTOR3, use=KEPT),
+    "slip1": Value("slip1", FLOAT, use=KEPT), "slip2": Value("slip2", FLOAT, use=KEPT),
+})
+_ODE_CONTACT = Group({
+    **{name: Value(name, FLOAT, use=KEPT) for name in ("kp", "kd", "max_vel", "min_depth")},
+    **_kept("soft_cfm", "soft_erp"),
+})
+SURFACE_CHILDREN: Mapping[str, Entry] = {
+    "bounce": Group({
+        "restitution_coefficient": Value("restitution", FLOAT),
+        "threshold": Value("bounce_threshold", FLOAT),
+    }),
+    "friction": Group({"ode": _ODE_FRICTION, **_kept("bullet", "torsional")}),
+    "contact": Group({
+        "ode": _ODE_CONTACT,
+        "collide_without_contact": Value("collide_without_contact", BOOL, use=KEPT),
+        "collide_bitmask": Value("collide_bitmask", INT, use=KEPT),
+        **_kept("bullet", "collide_without_contact_bitmask", "category_bitmask", "poissons_ratio",
+                "elastic_modulus"),
+    }),
+    **_kept("soft_contact"),
+}
+SURFACE = Table("surface", Surface, SURFACE_CHILDREN)
+
+COLLISION = Table("collision", Collision, {
+    "pose": Value("pose", POSE, FATAL),
+    "geometry": Part(),
+    "surface": Group(SURFACE_CHILDREN, part="surface"),
+    "max_contacts": Value("max_contacts", INT, use=KEPT),
+    "laser_retro": Value("laser_retro", FLOAT, use=KEPT),
+    **_kept("frame", "density", "mass"),
+}, known_attributes=("name",))
+
+VISUAL = Table("visual", Visual, {
+    "pose": Value("pose", POSE),
+    "geometry": Part(),
+    "material": Part(),
+    "cast_shadows": Value("cast_shadows", BOOL),
+    "transparency": Value("transparency", FLOAT),
+    "laser_retro": Value("laser_retro", FLOAT, use=KEPT),
+    **_kept("frame", "visibility_flags", "meta"), **_told("plugin"),
+}, level=WARNING, known_attributes=("name",), use=SHOWN)
+
+MATERIAL = Table("material", Material, {
+    "ambient": Value("ambient", COLOR), "diffuse": Value("diffuse", COLOR),
+    "specular": Value("specular", COLOR), "emissive": Value("emissive", COLOR),
+    "script": Group({
+        "uri": Value("script_uris", TEXT, repeated=True), "name": Value("script_name", TEXT),
+    }),
+    **_kept("shader", "lighting", "shininess", "double_sided", "pbr", "render_order"),
+}, level=WARNING, use=SHOWN)
+
+INERTIAL = Table("inertial", Inertial, {
+    "mass": Value("mass", FLOAT),
+    "pose": Value("pose", POSE),
+    "inertia": Group({
+        name: Value(name, FLOAT) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    }),
+    **_kept("frame", "density", "fluid_added_mass"),
+}, level=FATAL, known_attributes=("auto",))
+
+LINK = Table("link", Link, {
+    "pose": Value("pose", POSE, FATAL),
+    "inertial": Part(),
+    "collision": Part(),
+    "visual": Part(),
+    "gravity": Value("gravity", BOOL),
+    "kinematic": Value("kinematic", BOOL),
+    "self_collide": Value("self_collide", BOOL),
+    "velocity_decay": Group({
+        "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
+    }),
+    **_kept("frame", "light", "must_be_base_link", "enable_wind"),
+    **_told("sensor", "projector", "audio_source", "audio_sink", "battery", "particle_emitter",
+            "plugin"),
+}, known_attributes=("name",))
+
+_AXIS_CHILDREN: Mapping[str, Entry] = {
+    "xyz": Part(),
+    "limit": Group({
+        "lower": Value("lower", LIMIT), "upper": Value("upper", LIMIT),
+        "effort": Value("effort", LIMIT), "velocity": Value("velocity", LIMIT),
+        **_kept("stiffness", "dissipation"),
+    }),
+    "dynamics": Group({
+        "damping": Value("damping", FLOAT), "friction": Value("friction", FLOAT),
+        "spring_reference": Value("spring_reference", FLOAT),
+        "spring_stiffness": Value("spring_stiffness", FLOAT),
+    }),
+    "mimic": Part("1.11"),
+    **_kept("initial_position"),
+}
+AXIS = Table("axis", JointAxis, _AXIS_CHILDREN, level=FATAL)
+AXIS2 = Table("axis2", JointAxis, _AXIS_CHILDREN, level=FATAL)
+
+JOINT = Table("joint", Joint, {
+    "parent": Value("parent", TEXT), "child": Value("child", TEXT),
+    "pose": Value("pose", POSE, FATAL),
+    "axis": Part(),
+    "axis2": Part(),
+    "thread_pitch": Value("thread_pitch", FLOAT),
+    "screw_thread_pitch": Part("1.10"),
+    "gearbox_ratio": Value("gearbox_ratio", FLOAT),
+    "gearbox_reference_body": Value("gearbox_reference", TEXT),
+    **_kept("frame", "physics"), **_told("sensor"),
+}, known_attributes=("name", "type"))
+
+FRAME = Table("frame", Link, {"pose": Value("pose", POSE, FATAL)},
+              known_attributes=("name", "attached_to"))
+
+MODEL = Table("model", Model, {
+    "pose": Value("pose", POSE, FATAL),
+    "static": Value("static", BOOL),
+    "self_collide": Value("self_collide", BOOL),
+    "allow_auto_disable": Value("allow_auto_disable", BOOL),
+    "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
+    "frame": Part("1.5", kept=True), "plugin": Part(use=KEPT, told=True),
+    **_kept("enable_wind"), **_told("gripper"),
+}, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
+   known_attributes=("name", "placement_frame"))
+
+INCLUDE = Table("include", Model, {
+    "uri": Value("uri", TEXT),
+    "name": Value("name", TEXT),
+    "pose": Value("pose", POSE, FATAL),
+    "static": Value("static", BOOL),
+    "plugin": Part(use=KEPT, told=True),
+    "placement_frame": Part("1.8"),
+}, known_attributes=("merge",))
+
+LIGHT = Table("light", Light, {
+    "pose": Value("pose", POSE),
+    "cast_shadows": Value("cast_shadows", BOOL),
+    "diffuse": Value("diffuse", COLOR), "specular": Value("specular", COLOR),
+    "attenuation": Group({
+        name: Value(name, FLOAT) for name in ("range", "constant", "linear", "quadratic")
+    }),
+    "direction": Value("direction", VECTOR3),
+    "spot": Group({
+        "inner_angle": Value("inner_angle", FLOAT), "outer_angle": Value("outer_angle", FLOAT),
+        "falloff": Value("falloff", FLOAT),
+    }),
+    **_kept("frame", "intensity", "light_on", "visualize", "plugin"),
+}, attributes={"type": Value("type", TEXT)}, level=WARNING, known_attributes=("name",), use=SHOWN)
+
+PHYSICS = Table("physics", Physics, {
+    "max_step_size": Value("max_step_size", FLOAT),
+    "real_time_factor": Value("real_time_factor", FLOAT, use=KEPT),
+    "real_time_update_rate": Value("real_time_update_rate", FLOAT),
+    "max_contacts": Value("max_contacts", INT, use=KEPT, part="ode"),
+    "ode": Group({
+        "solver": Group({
+            "iters": Value("iters", INT),
+            "precon_iters": Value("precon_iters", INT, use=KEPT),
+            "sor": Value("sor", FLOAT, use=KEPT),
+            **_kept("type", "min_step_size", "island_threads", "thread_position_correction",
+                    "use_dynamic_moi_rescaling", "friction_model"),
+        }),
+        "constraints": Group({
+            **{name: Value(name, FLOAT, use=KEPT) for name in (
+                "cfm", "erp", "contact_max_correcting_vel", "contact_surface_layer")},
+        }),
+        "max_contacts": Value("max_contacts", INT, use=KEPT),
+        **_kept("provide_feedback"),
+    }, part="ode"),
+    **_kept("bullet", "simbody", "dart"),
+}, attributes={"name": Value("name", TEXT, use=KEPT), "type": Value("type", TEXT, use=KEPT)},
+   known_attributes=("default",))
+
+WORLD = Table("world", World, {
+    "gravity": Value("gravity", VECTOR3, since="1.6"),
+    "physics": Part(), "light": Part(use=SHOWN), "model": Part(), "include": Part(),
+    "plugin": Part(use=KEPT, told=True),
+    "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
+    "state": Part(kept=True), "joint": Part("1.10"),
+    "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),
+    "gui": Part(use=SHOWN, kept=True), "scene": Part(use=SHOWN, kept=True),
+    "actor": Part(use=SHOWN, told=True, kept=True),
+    "road": Part(use=KEPT, told=True, kept=True),
+    "wind": Part(use=KEPT, told=True, kept=True), "atmosphere": Part(use=KEPT, kept=True),
+    "spherical_coordinates": Part(use=KEPT, kept=True),
+    **_told("audio"),
+}, known_attributes=("name",))

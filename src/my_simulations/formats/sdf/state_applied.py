@@ -1,0 +1,121 @@
+"""A saved state, applied to the world it was saved from.
+
+Source: Gazebo behaviour. Insertions come first, then poses, scales and velocities, then deletions.
+Names that the world does not have are passed over.
+"""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Dict, List, Optional, Set, Tuple
+
+from ...description.flatten import flattened
+from ...description.model import Joint, Link, Model
+from ...description.world import InitialState, Light, ModelState, SavedState, World
+from ...errors import Issue, warning
+from ...geometry import Pose, Twist, compose, inverse
+from .state_joint_positions import joint_position
+from .state_scale import scaled
+
+
+def apply_state(world: World) -> World:
+    """The world as it was saved; the same world where it holds no state.
+
+    A model without joints has its links moved. One with joints is moved by its canonical link, and
+    its joints get positions, since a joint is at 0 in the configuration of the description. The
+    result has no state any more, neither as a field nor in `extra`.
+    """
+    state = world.state
+    if state is None:
+        return world
+    models = [*world.models, *_new(state.inserted_models, world.models)]
+    lights: List[Light] = [*world.lights, *_new(state.inserted_lights, world.lights)]
+    initial = dict(world.initial)
+    states = {one.name: one for one in state.models}
+    models = [_restored(model, states[model.name], initial) if model.name in states else model
+              for model in models]
+    poses = {one.name: one.pose for one in state.lights}
+    lights = [replace(light, pose=poses.get(light.name, light.pose)) for light in lights]
+    gone = set(state.deletions)
+    return replace(
+        world, state=None, initial_ns=state.sim_time_ns,
+        models=[model for model in models if model.name not in gone],
+        lights=[light for light in lights if light.name not in gone],
+        initial={name: start for name, start in initial.items() if name not in gone},
+        extra=[xml for xml in world.extra if not xml.lstrip().startswith("<state")],
+    )
+
+
+def state_issues(world: World) -> List[Issue]:
+    """A warning for each name in the state that the world does not have, as in Gazebo."""
+    state = world.state
+    if state is None:
+        return []
+    models = {model.name for model in (*world.models, *state.inserted_models)}
+    lights = {light.name for light in (*world.lights, *state.inserted_lights)}
+    named = [*_unknown("model", [one.name for one in state.models], models),
+             *_unknown("light", [one.name for one in state.lights], lights),
+             *_unknown("model or light", state.deletions, models | lights)]
+    return [warning("state-unknown", f"the saved state names a {kind} {name!r}, which the world"
+                    " does not hold", file=world.file) for kind, name in named]
+
+
+def _unknown(kind: str, names: List[str], known: Set[str]) -> List[Tuple[str, str]]:
+    return [(kind, name) for name in names if name not in known]
+
+
+def _new(inserted: List[Any], present: List[Any]) -> List[Any]:
+    names = {one.name for one in present}
+    return [one for one in inserted if one.name not in names]
+
+
+def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState]) -> Model:
+    model = scaled(model, state.scale)
+    links = {link.name: link for link in state.links}
+    twists: Dict[str, Twist] = {name: link.twist for name, link in links.items()
+                                if any(link.twist.linear) or any(link.twist.angular)}
+    poses = {name: link.pose for name, link in links.items()}
+    flat = flattened(model)
+    if not flat.joints:
+        model = _links_moved(replace(model, pose=state.pose or model.pose), poses, Pose())
+        positions: Dict[str, float] = {}
+    else:
+        positions = _positions(flat.joints, flat.links, poses, state)
+        model = replace(model, pose=_base_pose(flat, poses, state) or model.pose)
+    if twists or positions:
+        initial[model.name] = InitialState(twists, positions)
+    return model
+
+
+def _base_pose(flat: Model, poses: Dict[str, Pose], state: ModelState) -> Optional[Pose]:
+    """Where the model stands by its canonical link, which it moves with."""
+    name = flat.canonical_link or (flat.links[0].name if flat.links else "")
+    for link in flat.links:
+        if link.name == name and name in poses:
+            return compose(poses[name], inverse(link.pose))
+    return state.pose
+
+
+def _links_moved(model: Model, poses: Dict[str, Pose], above: Pose, scope: str = "") -> Model:
+    base = compose(above, model.pose)
+    links = [replace(link, pose=compose(inverse(base), poses[scope + link.name]))
+             if scope + link.name in poses else link for link in model.links]
+    return replace(model, links=links, models=[
+        _links_moved(inner, poses, base, f"{scope}{inner.name}::") for inner in model.models
+    ])
+
+
+def _positions(joints: List[Joint], links: List[Link], poses: Dict[str, Pose],
+               state: ModelState) -> Dict[str, float]:
+    """Of revolute, prismatic and like joints: from the links' poses, else from the angles."""
+    at_zero = {link.name: link.pose for link in links}
+    found: Dict[str, float] = {}
+    for joint in joints:
+        position = joint_position(joint, at_zero, poses)
+        if position is None and len(state.joints.get(joint.name, ())) == 1:
+            position = state.joints[joint.name][0]
+        if position:
+            found[joint.name] = position
+    return found
+
+
+__all__ = ["apply_state", "state_issues", "SavedState"]

@@ -1,0 +1,183 @@
+"""Older SDF documents, brought up to 1.7 one version at a time, in place.
+
+Source: the conversions of the SDF specification. The reader knows 1.7 only.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, List, Tuple
+
+from ...geometry import normalised, rpy_from_quat
+from ...resources.model_config import NEWEST, version_of
+from ..xml.source import Level, Source
+from ..xml.values import numbers
+from .pre_1_2 import includes_by_uri, values_to_elements
+
+WORLD_AXES = "__world__"
+"""`expressed_in` of an axis that old files gave in world coordinates (no name of the format)."""
+
+
+def upgrade(root: Any, source: Source) -> Any:
+    """The root of a document of any known version, as 1.7."""
+    version = _version(root, source)
+    if version > NEWEST:
+        source.warn(
+            "sdf-newer", f"SDF {root.get('version')} is newer than 1.7; what is not known is"
+            " kept, without effect", root,
+        )
+        _from_1_9(root, source)
+    for before, step in _STEPS:
+        if version < before:
+            step(root)
+    return root
+
+
+def _version(root: Any, source: Source) -> Tuple[int, ...]:
+    text = root.get("version")
+    if text is None:
+        source.warn("sdf-version", "the version is missing; read as SDF 1.7", root)
+        return NEWEST
+    version = version_of(text)
+    if not version:
+        source.warn("sdf-version", f"{text!r} is not a version; read as SDF 1.7", root)
+        return NEWEST
+    return version
+
+
+def _rename(parent: Any, old: str, new: str) -> None:
+    for element in parent.findall(old):
+        element.tag = new
+
+
+def _to_1_4(root: Any) -> None:
+    from lxml import etree
+
+    includes_by_uri(root)
+    for physics in root.iter("physics"):
+        _rename(physics, "update_rate", "real_time_update_rate")
+        for path in ("ode/solver/dt", "bullet/dt"):
+            old = physics.find(path)
+            if old is not None and physics.find("max_step_size") is None:
+                etree.SubElement(physics, "max_step_size").text = old.text
+            if old is not None:
+                old.getparent().remove(old)
+    for origin in list(root.iter("origin")):
+        if origin.get("pose") is not None:
+            origin.tag = "pose"
+            origin.text = origin.attrib.pop("pose")
+
+
+def _to_1_5(root: Any) -> None:
+    from lxml import etree
+
+    for axis in root.iter("axis", "axis2"):
+        if axis.getparent().tag == "joint" and axis.find("use_parent_model_frame") is None:
+            etree.SubElement(axis, "use_parent_model_frame").text = "true"
+    # Defaults that were others before 1.5.
+    if next(root.iter("collide_bitmask"), None) is not None:
+        for collision in root.iter("collision"):
+            if collision.find("geometry") is not None:
+                _default(collision, "surface/contact/collide_bitmask", "1")
+    for sensor in root.iter("force_torque"):
+        _default(sensor, "frame", "parent")
+    for actor in root.iter("actor"):
+        if actor.get("static") is not None:
+            _default(actor, "static", actor.attrib.pop("static"))
+
+
+def _default(element: Any, path: str, text: str) -> None:
+    """Write a value out where the document leaves it open."""
+    from lxml import etree
+
+    for tag in path.split("/"):
+        child = element.find(tag)
+        if child is None:
+            child = etree.SubElement(element, tag)
+            child.text = text if path.endswith(tag) else None
+        element = child
+
+
+def _to_1_6(root: Any) -> None:
+    for physics in list(root.iter("physics")):
+        world = physics.getparent()
+        if world is None or world.tag != "world":
+            continue  # the physics of a joint
+        for name in ("gravity", "magnetic_field"):
+            for element in physics.findall(name):
+                physics.remove(element)
+                if world.find(name) is None:
+                    world.append(element)
+    for imu in root.iter("imu"):
+        for noise in imu.findall("noise"):
+            imu.remove(noise)
+            _imu_noise(imu, noise)
+
+
+_IMU = (("rate", "angular_velocity"), ("accel", "linear_acceleration"))
+_NOISE = ("mean", "stddev", "bias_mean", "bias_stddev")
+
+
+def _imu_noise(imu: Any, noise: Any) -> None:
+    """One noise for all axes, as 1.6 has it: one for each."""
+    from lxml import etree
+
+    for old, new in _IMU:
+        given = noise.find(old)
+        if given is None or imu.find(new) is not None:
+            continue
+        parent = etree.SubElement(imu, new)
+        for axis in "xyz":
+            one = etree.SubElement(etree.SubElement(parent, axis), "noise")
+            one.set("type", (noise.findtext("type") or noise.get("type") or "none").strip())
+            for name in _NOISE:
+                if given.find(name) is not None:
+                    etree.SubElement(one, name).text = given.findtext(name)
+
+
+def _to_1_7(root: Any) -> None:
+    from lxml import etree
+
+    for pose in root.iter("pose"):
+        frame = pose.attrib.pop("frame", None) if pose.attrib else None
+        if frame:
+            pose.set("relative_to", frame)
+    for flag in list(root.iter("use_parent_model_frame")):
+        axis = flag.getparent()
+        axis.remove(flag)
+        if (flag.text or "").strip().lower() in ("true", "1"):
+            xyz = axis.find("xyz")
+            if xyz is None:
+                xyz = etree.SubElement(axis, "xyz")
+                xyz.text = "0 0 1"
+            parent = axis.getparent().findtext("parent") or ""
+            # Gazebo takes such an axis in world coordinates when the parent is the world.
+            xyz.set("expressed_in", WORLD_AXES if parent.strip() == "world" else "__model__")
+
+
+def _from_1_9(root: Any, source: Source) -> None:
+    """Poses in degrees, or with a quaternion, as 1.7 writes them; others are left alone."""
+    for pose in root.iter("pose"):
+        if not pose.attrib:
+            continue
+        degrees = (pose.attrib.pop("degrees", "") or "").strip().lower() in ("true", "1")
+        quaternion = pose.attrib.pop("rotation_format", "") == "quat_xyzw"
+        if not (degrees or quaternion) or not (pose.text or "").strip():
+            continue
+        try:
+            if quaternion:
+                x, y, z, *q = numbers(pose.text, 7)
+                angles = rpy_from_quat(normalised((q[0], q[1], q[2], q[3])))
+            else:
+                x, y, z, *rpy = numbers(pose.text, 6)
+                angles = (math.radians(rpy[0]), math.radians(rpy[1]), math.radians(rpy[2]))
+        except ValueError as fault:
+            source.report(Level.FATAL, "bad-value", f"<pose>: {fault}", pose)
+            pose.text = ""
+            continue
+        pose.text = " ".join(repr(value) for value in (x, y, z, *angles))
+
+
+_STEPS: List[Tuple[Tuple[int, ...], Callable[[Any], None]]] = [
+    ((1, 2), values_to_elements), ((1, 4), _to_1_4), ((1, 5), _to_1_5), ((1, 6), _to_1_6),
+    ((1, 7), _to_1_7),
+]

@@ -1,0 +1,199 @@
+"""SDF worlds: models, lights, physics, and what is kept."""
+from __future__ import annotations
+
+import copy
+from typing import Any, Callable, Dict, List, Sequence, Set, Tuple
+
+from ...description.model import Link, Model
+from ...description.validate import link_names
+from ...description.world import Actor, Light, Physics, World
+from ...geometry import is_finite
+from ..xml.binding import Found, fill, to_xml
+from ..xml.source import Source
+from ..xml.values import BOOL
+from .frame_graph import FrameError, FrameTree
+from .include import read_include
+from .inter_model_joint import Between
+from .joint import UnresolvedJoint, is_whole, read_joint
+from .light import LightPlacement, read_light
+from .model import ParsedModel, add_frames_inside, read_model, read_plugin, relative_to
+from .model_tables import FRAME, PHYSICS, WORLD
+from .population import read_population
+from .saved_state import read_state
+from .state_applied import state_issues
+from .world_scene import read_surroundings
+
+
+def read_world_element(element: Any, source: Source, seed: int = 0, profile: str = "") -> World:
+    """A world; models with a fatal fault are left out whole. Source: SDF spec 1.7, world.
+
+    `seed` and `profile` are as for `load.read_world`.
+    """
+    world = World(element.get("name") or "default", file=source.file, seed=seed)
+    found = fill(world, element, WORLD, source, world.extra)
+    world.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+    _read_physics(found.get("physics", ()), world, source, profile)
+    read_surroundings(found, world, source)
+    _Entities(world, source, found).read(element)
+    for state in found.get("state", ())[:1]:
+        world.state = read_state(state, source)
+        for issue in state_issues(world):
+            source.log.add(issue)
+    return world
+
+
+class _Entities:
+    """The models and lights of a world, in the order of the file."""
+
+    def __init__(self, world: World, source: Source, found: Found) -> None:
+        self._world = world
+        self._source = source
+        self._models: Set[str] = set()
+        self._lights: Set[str] = set()
+        self._frames = FrameTree("world")
+        self._waiting: List[Any] = []  # (model or light, element)
+        self._found = found
+        self._inner: List[Tuple[ParsedModel, Any]] = []
+        self._pending: List[UnresolvedJoint] = []
+
+    def read(self, element: Any) -> None:
+        readers: Dict[str, Callable[[Any], Any]] = {
+            "model": lambda child: read_model(child, self._source, alone=False),
+            "include": lambda child: read_include(child, self._source, alone=False),
+            "light": lambda child: read_light(child, self._source),
+            "population": lambda child: read_population(child, self._source, self._world.seed),
+        }
+        for child in element:
+            reader = readers.get(child.tag)
+            if reader is None:
+                continue
+            before = self._source.log.fatal
+            entity = reader(child)
+            if entity is not None and self._source.log.fatal == before:
+                self._add(entity, child)
+        self._declare_frames()
+        self._place()
+        self._connect()
+
+    def _add(self, entity: Any, element: Any) -> None:
+        if isinstance(entity, list):  # of a population
+            for model in entity:
+                self._add(ParsedModel(model), element)
+        elif isinstance(entity, Actor):
+            self._world.actors.append(entity)
+            self._world.extra.append(to_xml(element))
+        elif isinstance(entity, ParsedModel):
+            model = entity.model
+            if self._is_new(model.name, self._models, "model", element):
+                self._world.models.append(model)
+                self._frames.add(model.name, model.pose, entity.relative_to, element)
+                self._inner.append((entity, element))
+                self._pending += [one.moved_out(model.name) for one in entity.pending]
+                if entity.relative_to:
+                    self._waiting.append((model, element))
+        elif isinstance(entity, LightPlacement):
+            light: Light = entity.light
+            if self._is_new(light.name, self._lights, "light", element):
+                self._world.lights.append(light)
+                if entity.relative_to:
+                    self._frames.add(f"(light) {light.name}", light.pose, entity.relative_to,
+                                     element)
+                    self._waiting.append((light, element))
+
+    def _is_new(self, name: str, names: Set[str], kind: str, element: Any) -> bool:
+        if name in names:
+            self._source.warn("name-repeated", f"there are two {kind}s named {name!r}; the second"
+                              " is left out", element)
+            return False
+        names.add(name)
+        return True
+
+    def _declare_frames(self) -> None:
+        """Frames of the world, and those inside models where anything may name them."""
+        for element in self._found.get("frame", ()):
+            probe = Link(element.get("name", ""))
+            inside = fill(probe, element, FRAME, self._source, [])
+            attached = element.get("attached_to") or ""
+            self._frames.add(probe.name, probe.pose, relative_to(inside) or attached, element,
+                             attached)
+        if self._waiting or self._pending or self._found.get("frame") or self._found.get("joint"):
+            for placement, element in self._inner:
+                add_frames_inside(self._frames, placement, element)
+
+    def _connect(self) -> None:
+        """Joints between models: the world keeps those whose links there are."""
+        joints = self._found.get("joint", ())  # of SDF 1.10
+        if not (self._pending or joints):
+            return
+        links = {f"{model.name}::{name}" for model in self._world.models
+                 for name in link_names(model)}
+        between = Between(links, self._frames, self._source)
+        for element in joints:
+            one = UnresolvedJoint(*read_joint(element, self._source), element)
+            if is_whole(one, self._source) and between.connect(one):
+                self._world.joints.append(one.joint)
+        for one in self._pending:
+            if between.connect(one):
+                self._world.joints.append(one.joint)
+
+    def _place(self) -> None:
+        for entity, element in self._waiting:
+            name = entity.name if isinstance(entity, Model) else f"(light) {entity.name}"
+            try:
+                entity.pose = self._frames.pose(name)
+            except FrameError as fault:
+                self._source.tolerate("frame-unknown", f"{fault}; the pose of {entity.name!r} is"
+                                      " taken in the world", element)
+
+
+def _read_physics(elements: Sequence[Any], world: World, source: Source, profile: str) -> None:
+    """The preset `profile`, else the first with default="true", else the first; others are kept."""
+    chosen = next((e for e in elements if _is_default(e)), elements[0] if elements else None)
+    if profile:
+        named = {e.get("name"): e for e in reversed(elements) if e.get("name")}
+        if profile not in named:
+            source.warn("physics-profile", f"the world has no physics preset {profile!r}",
+                        elements[0].getparent() if elements else None,
+                        hint=f"it has: {', '.join(sorted(named)) or 'none with a name'}")
+        chosen = named.get(profile, chosen)
+    for element in elements:
+        if element is not chosen:
+            # Only one is the default, so that writing and reading again chooses the same.
+            world.extra.append(to_xml(_without_default(element)))
+    if chosen is None:
+        return
+    kept: List[str] = []
+    physics = Physics()
+    fill(physics, chosen, PHYSICS, source, kept)
+    world.extra += [f"<physics>{xml}</physics>" for xml in kept]
+    _check_physics(physics, chosen, source)
+    world.physics = physics
+
+
+def _without_default(element: Any) -> Any:
+    spare = copy.deepcopy(element)
+    spare.attrib.pop("default", None)
+    return spare
+
+
+def _is_default(element: Any) -> bool:
+    try:
+        return BOOL.parse(element.get("default") or "false")
+    except ValueError:
+        return False
+
+
+def _check_physics(physics: Physics, element: Any, source: Source) -> None:
+    usual = Physics()
+    instead: List[str] = []
+    if not is_finite(physics.max_step_size) or physics.max_step_size <= 0:
+        physics.max_step_size = usual.max_step_size
+        instead.append(f"max_step_size is out of range; {usual.max_step_size:g} s is used")
+    if physics.real_time_update_rate < 0:
+        physics.real_time_update_rate = 0.0
+        instead.append("real_time_update_rate is below 0; time goes on as fast as it can")
+    if physics.ode.iters < 1:
+        physics.ode.iters = usual.ode.iters
+        instead.append(f"ode/solver/iters is out of range; {usual.ode.iters} is used")
+    for message in instead:
+        source.tolerate("physics-range", message, element)

@@ -1,0 +1,194 @@
+"""The elements of an SDF world besides models, as tables. Source: SDF specification, 1.2 to 1.7."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Mapping, Optional
+
+from ...description.world import (
+    Actor,
+    Animation,
+    Atmosphere,
+    Fog,
+    GuiCamera,
+    LightState,
+    LinkState,
+    ModelState,
+    Road,
+    SavedState,
+    Scene,
+    Sky,
+    SphericalCoordinates,
+    Trajectory,
+    Waypoint,
+    Wind,
+)
+from ...geometry import IDENTITY, Pose, Twist, Vec3
+from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.source import Level
+from ..xml.values import BOOL, COLOR, FLOAT, INT, POSE, SCALE, SECONDS, TEXT, VECTOR3, numbers
+
+WARNING, SHOWN, KEPT = Level.WARNING, Use.SHOWN, Use.KEPT
+
+SKY = Table("sky", Sky, {
+    "time": Value("time", FLOAT), "sunrise": Value("sunrise", FLOAT),
+    "sunset": Value("sunset", FLOAT),
+    "clouds": Group({
+        "speed": Value("cloud_speed", FLOAT), "direction": Value("cloud_direction", FLOAT),
+        "humidity": Value("cloud_humidity", FLOAT), "mean_size": Value("cloud_mean_size", FLOAT),
+        "ambient": Value("cloud_ambient", COLOR),
+    }),
+    "material": Kept(),
+}, level=WARNING, use=SHOWN)
+
+FOG = Table("fog", Fog, {
+    "type": Value("type", TEXT), "color": Value("color", COLOR), "start": Value("start", FLOAT),
+    "end": Value("end", FLOAT), "density": Value("density", FLOAT),
+}, level=WARNING, use=SHOWN)
+
+SCENE = Table("scene", Scene, {
+    "ambient": Value("ambient", COLOR), "background": Value("background", COLOR),
+    "shadows": Value("shadows", BOOL), "grid": Value("grid", BOOL),
+    "origin_visual": Value("origin_visual", BOOL), "sky": Part(), "fog": Part(),
+}, level=WARNING, use=SHOWN)
+
+GUI = Table("gui", GuiCamera, {
+    "camera": Part(), "plugin": Kept(told=True),
+}, level=WARNING, known_attributes=("fullscreen",), use=SHOWN)
+
+GUI_CAMERA = Table("camera", GuiCamera, {
+    "pose": Value("pose", POSE), "view_controller": Value("view_controller", TEXT),
+    "projection_type": Value("projection_type", TEXT),
+    "track_visual": Group({
+        "name": Value("track", TEXT), "min_dist": Value("track_min_dist", FLOAT),
+        "max_dist": Value("track_max_dist", FLOAT), "static": Value("track_static", BOOL),
+        "use_model_frame": Value("track_use_model_frame", BOOL),
+        "xyz": Value("track_xyz", VECTOR3), "inherit_yaw": Value("track_inherit_yaw", BOOL),
+    }),
+}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=SHOWN)
+
+WIND = Table("wind", Wind, {"linear_velocity": Value("linear_velocity", VECTOR3)},
+             level=WARNING, use=KEPT)
+
+ATMOSPHERE = Table("atmosphere", Atmosphere, {
+    name: Value(name, FLOAT) for name in ("temperature", "pressure", "temperature_gradient")
+}, attributes={"type": Value("type", TEXT)}, level=WARNING, use=KEPT)
+
+SPHERICAL = Table("spherical_coordinates", SphericalCoordinates, {
+    "surface_model": Value("surface_model", TEXT),
+    "world_frame_orientation": Value("world_frame_orientation", TEXT),
+    **{name: Value(name, FLOAT)
+       for name in ("latitude_deg", "longitude_deg", "elevation", "heading_deg")},
+}, level=WARNING, use=KEPT)
+
+ROAD = Table("road", Road, {
+    "width": Value("width", FLOAT), "point": Value("points", VECTOR3, repeated=True),
+    "material": Part(use=SHOWN),
+}, level=WARNING, known_attributes=("name",), use=SHOWN)
+
+ANIMATION = Table("animation", Animation, {
+    "filename": Value("filename", TEXT), "scale": Value("scale", FLOAT),
+    "interpolate_x": Value("interpolate_x", BOOL),
+}, level=WARNING, known_attributes=("name",), use=KEPT)
+
+WAYPOINT = Table("waypoint", Waypoint, {
+    "time": Value("time", FLOAT), "pose": Value("pose", POSE),
+}, level=WARNING, use=SHOWN)
+
+TRAJECTORY = Table("trajectory", Trajectory, {"waypoint": Part()}, attributes={
+    "id": Value("id", INT), "type": Value("type", TEXT),
+    "tension": Value("tension", FLOAT, use=KEPT),
+}, level=WARNING, use=SHOWN)
+
+ACTOR = Table("actor", Actor, {
+    "pose": Value("pose", POSE),
+    "skin": Group({"filename": Value("skin", TEXT), "scale": Value("skin_scale", FLOAT)}),
+    "animation": Part(),
+    "script": Group({
+        "loop": Value("loop", BOOL), "delay_start": Value("delay_start", FLOAT),
+        "auto_start": Value("auto_start", BOOL), "trajectory": Part(),
+    }),
+    "plugin": Part(use=KEPT),
+    **{name: Kept() for name in ("link", "joint", "frame", "static", "origin", "enable_wind",
+                                 "allow_auto_disable", "self_collide")},
+}, level=WARNING, known_attributes=("name", "static"), use=SHOWN)
+
+
+@dataclass
+class Population:
+    """`<population>`: how often a model stands where."""
+
+    name: str = ""
+    pose: Pose = IDENTITY
+    model_count: int = 1
+    box: Optional[Vec3] = None
+    radius: Optional[float] = None
+    length: float = 1.0
+    distribution: str = "random"
+    rows: int = 1
+    cols: int = 1
+    step: Vec3 = (0.5, 0.5, 0.0)
+
+
+POPULATION = Table("population", Population, {
+    "pose": Value("pose", POSE), "model": Part(), "include": Part(),
+    "model_count": Value("model_count", INT),
+    "box": Group({"size": Value("box", VECTOR3)}),
+    "cylinder": Group({"radius": Value("radius", FLOAT), "length": Value("length", FLOAT)}),
+    "distribution": Group({
+        "type": Value("distribution", TEXT), "rows": Value("rows", INT),
+        "cols": Value("cols", INT), "step": Value("step", VECTOR3),
+    }),
+    "frame": Kept(),
+}, attributes={"name": Value("name", TEXT)})
+
+
+class TwistKind:
+    """Six numbers: linear m/s, angular rad/s."""
+
+    def parse(self, text: str) -> Twist:
+        x, y, z, roll, pitch, yaw = numbers(text, 6)
+        return Twist((x, y, z), (roll, pitch, yaw))
+
+    def format(self, value: Twist) -> str:
+        return f"{VECTOR3.format(value.linear)} {VECTOR3.format(value.angular)}"
+
+    def salvage(self, text: str) -> Twist:
+        raise ValueError("not a twist")
+
+
+class Nanoseconds:
+    """`sec nsec`, or plain seconds, as whole nanoseconds."""
+
+    def parse(self, text: str) -> int:
+        parts = text.split()
+        if len(parts) == 2:
+            return INT.parse(parts[0]) * 10 ** 9 + INT.parse(parts[1])
+        return round(SECONDS.parse(text) * 1e9)
+
+    def format(self, value: int) -> str:
+        return f"{value // 10 ** 9} {value % 10 ** 9}"
+
+    def salvage(self, text: str) -> int:
+        return round(SECONDS.salvage(text) * 1e9)
+
+
+_NS: Any = Nanoseconds()
+_LINK: Mapping[str, Entry] = {
+    "pose": Value("pose", POSE), "velocity": Value("twist", TwistKind()),
+    "acceleration": Kept(use=Use.IGNORED), "wrench": Kept(use=Use.IGNORED),
+    "collision": Kept(use=Use.IGNORED),
+}
+LINK_STATE = Table("link", LinkState, _LINK, level=WARNING, known_attributes=("name",))
+MODEL_STATE = Table("model", ModelState, {
+    "pose": Value("pose", POSE), "scale": Value("scale", SCALE),
+    "link": Part(), "model": Part(), "joint": Part(), "frame": Kept(use=Use.IGNORED),
+}, level=WARNING, known_attributes=("name",))
+LIGHT_STATE = Table("light", LightState, {"pose": Value("pose", POSE)}, level=WARNING,
+                    known_attributes=("name",))
+STATE = Table("state", SavedState, {
+    "sim_time": Value("sim_time_ns", _NS), "real_time": Value("real_time_ns", _NS),
+    "wall_time": Value("wall_time_ns", _NS), "iterations": Value("iterations", INT),
+    "insertions": Part(), "model": Part(), "light": Part(),
+    "deletions": Group({"name": Value("deletions", TEXT, repeated=True)}),
+    **{name: Kept(use=Use.IGNORED) for name in ("road",)},
+}, attributes={"world_name": Value("world_name", TEXT)}, level=WARNING)

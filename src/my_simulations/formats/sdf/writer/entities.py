@@ -1,0 +1,250 @@
+"""SDF 1.7 text of a description, by the tables that read it.
+
+Only what differs from the format's defaults is written, besides what the format requires. Numbers
+are the shortest text that reads back as the same double. What was kept as XML goes back to where
+it stood. The same description gives the same bytes. Source: SDF specification 1.7.
+"""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Callable, Iterable, List, Optional, Union
+
+from ....description.compare import BUILT_IN, differences
+from ....description.model import Joint, JointAxis, Link, Mimic, Model, PluginSpec
+from ....description.shapes import Collision, Visual
+from ....description.world import Light, SavedState, World
+from ....geometry import Vec3
+from ...xml.binding import Table
+from ...xml.values import FLOAT, TEXT, VECTOR3
+from ..model_tables import (
+    AXIS,
+    COLLISION,
+    INCLUDE,
+    INERTIAL,
+    JOINT,
+    LIGHT,
+    LINK,
+    MATERIAL,
+    MODEL,
+    PHYSICS,
+    VISUAL,
+    WORLD,
+)
+from .fields import fill_element
+from .geometry_element import write_geometry
+from .state_element import write_state
+from .xml_text import append_fragment, document, write_value
+
+VERSION = "1.7"
+_OLDER = "1.6"
+
+IsPlainInclude = Callable[[Model], Optional[Model]]
+"""From a model that came from an `<include>` to what its URI brings now; None where it cannot be
+said. A model that equals it, but for name, pose, static and more plugins, is an include still."""
+
+
+def write_world(world: World, state: Optional[SavedState] = None,
+                included: Optional[IsPlainInclude] = None) -> bytes:
+    """A whole document with one world.
+
+    Args:
+        world: what is written.
+        state: a `<state>` to add.
+        included: asked for each model that came from an include, to write it as one again; None
+            writes every model in full.
+
+    Returns:
+        UTF-8 text with an XML declaration.
+    """
+    writer = _Writer(included)
+    return document(_version(world.models), lambda root: writer.world(root, world, state))
+
+
+def write_entity(entity: Union[Model, Light]) -> bytes:
+    """A whole document with one model or light, in full; UTF-8, with an XML declaration.
+
+    `formats.load.read_entity` reads it as an equal object; relative URIs have become paths, so that
+    the text means the same wherever it is put.
+    """
+    writer = _Writer(None)
+    if isinstance(entity, Light):
+        return document(VERSION, lambda root: writer.light(root, entity))
+    return document(_version([entity]), lambda root: writer.model(root, entity))
+
+
+def _version(models: Iterable[Model]) -> str:
+    """The newest version that allows the names in use.
+
+    From 1.7 on a joint may not be called as a link beside it is; what is written means the same in
+    1.6, where joint axes are in the joint frame, too.
+    """
+    return _OLDER if any(_has_namesakes(model) for model in models) else VERSION
+
+
+def _has_namesakes(model: Model) -> bool:
+    others = {link.name for link in model.links} | {inner.name for inner in model.models}
+    return any(joint.name in others for joint in model.joints) or any(
+        map(_has_namesakes, model.models))
+
+
+class _Writer:
+    """Writes elements below lxml elements, one method for each element with a reader of its own."""
+
+    def __init__(self, included: Optional[IsPlainInclude]) -> None:
+        self._included = included
+
+    def world(self, parent: Any, world: World, state: Optional[SavedState]) -> None:
+        """`<world>`; a `<state>` that was read gives way to the present one."""
+        extra = [xml for xml in world.extra
+                 if not (state is not None and xml.lstrip().startswith("<state"))]
+        element = _element(parent, "world", world)
+        fill_element(element, world, WORLD, {
+            "physics": lambda at: self.physics(at, world.physics),
+            "light": lambda at: _each(self.light, at, world.lights),
+            "model": lambda at: _each(self.model_or_include, at, world.models),
+            "plugin": lambda at: _plugins(at, world.plugins, WORLD),
+            "joint": lambda at: _each(self.joint, at, world.joints),
+        }, extra, required=("gravity",))
+        if state is not None:
+            write_state(element, state)
+
+    def physics(self, parent: Any, physics: Any) -> None:
+        """`<physics>`, the preset in use."""
+        element = _element(parent, "physics", physics)
+        fill_element(element, physics, PHYSICS, {}, [],
+                     required=("@name", "@type", "max_step_size", "real_time_factor",
+                               "real_time_update_rate"))
+
+    def light(self, parent: Any, light: Light) -> None:
+        """`<light>`."""
+        element = _element(parent, "light", light)
+        fill_element(element, light, LIGHT, {}, light.extra, required=("@type",))
+
+    def model_or_include(self, parent: Any, model: Model) -> None:
+        """`<model>`, or the `<include>` that brings it."""
+        bare = self._included(model) if self._included is not None and model.uri else None
+        added = _added_plugins(model, bare) if bare is not None else None
+        if bare is None or added is None:
+            self.model(parent, model)
+            return
+        plugins = added
+        element = _element(parent, "include", None)
+        fill_element(element, model, INCLUDE, {
+            "plugin": lambda at: _plugins(at, plugins, INCLUDE),
+        }, [], required=("uri", "name", "pose", *(
+            ("static",) if model.static != bare.static else ())),
+            leave_out=() if model.static != bare.static else ("static",))
+
+    def model(self, parent: Any, model: Model) -> None:
+        """`<model>`, in full."""
+        element = _element(parent, "model", model)
+        fill_element(element, model, MODEL, {
+            "link": lambda at: _each(self.link, at, model.links),
+            "joint": lambda at: _each(self.joint, at, model.joints),
+            "model": lambda at: _each(self.model_or_include, at, model.models),
+            "plugin": lambda at: _plugins(at, model.plugins, MODEL),
+        }, model.extra)
+
+    def link(self, parent: Any, link: Link) -> None:
+        """`<link>`."""
+        element = _element(parent, "link", link)
+        fill_element(element, link, LINK, {
+            "inertial": lambda at: self.inertial(at, link),
+            "collision": lambda at: _each(self.collision, at, link.collisions),
+            "visual": lambda at: _each(self.visual, at, link.visuals),
+        }, link.extra)
+
+    def inertial(self, parent: Any, link: Link) -> None:
+        """`<inertial>`; left out where it is that of a link without one."""
+        from lxml import etree
+
+        element = etree.SubElement(parent, "inertial")
+        fill_element(element, link.inertial, INERTIAL, {}, [])
+        if not len(element):
+            parent.remove(element)
+
+    def collision(self, parent: Any, collision: Collision) -> None:
+        """`<collision>`."""
+        element = _element(parent, "collision", collision)
+        fill_element(element, collision, COLLISION, {
+            "geometry": lambda at: write_geometry(at, collision.geometry),
+        }, collision.extra)
+
+    def visual(self, parent: Any, visual: Visual) -> None:
+        """`<visual>`."""
+        element = _element(parent, "visual", visual)
+        fill_element(element, visual, VISUAL, {
+            "geometry": lambda at: write_geometry(at, visual.geometry),
+            "material": lambda at: self.material(at, visual),
+        }, visual.extra)
+
+    def material(self, parent: Any, visual: Visual) -> None:
+        """`<material>`, where there is one."""
+        if visual.material is not None:
+            element = _element(parent, "material", None)
+            fill_element(element, visual.material, MATERIAL, {}, [])
+            script = element.find("script")
+            if script is not None and script.find("uri") is None:
+                write_value(script, "uri", TEXT, BUILT_IN)  # the format wants one
+                script.insert(0, script[-1])
+
+    def joint(self, parent: Any, joint: Joint) -> None:
+        """`<joint>`."""
+        element = _element(parent, "joint", joint)
+        element.set("type", joint.type)
+        fill_element(element, joint, JOINT, {
+            "axis": lambda at: self.axis(at, "axis", joint.axis),
+            "axis2": lambda at: self.axis(at, "axis2", joint.axis2),
+        }, joint.extra, required=("parent", "child"))
+
+    def axis(self, parent: Any, tag: str, axis: Optional[JointAxis]) -> None:
+        """`<axis>` or `<axis2>`; the direction is in the joint frame."""
+        if axis is not None:
+            element = _element(parent, tag, None)
+            fill_element(element, axis, AXIS, {
+                "xyz": lambda at: write_value(at, "xyz", VECTOR3, _direction(axis.xyz)),
+                "mimic": lambda at: self.mimic(at, axis.mimic),
+            }, [])
+
+    def mimic(self, parent: Any, mimic: Optional[Mimic]) -> None:
+        """`<mimic>` (SDF 1.11; older readers pass over it)."""
+        from lxml import etree
+
+        if mimic is not None:
+            element = etree.SubElement(parent, "mimic", joint=mimic.joint)
+            write_value(element, "multiplier", FLOAT, mimic.multiplier)
+            write_value(element, "offset", FLOAT, mimic.offset)
+
+
+def _element(parent: Any, tag: str, named: Any) -> Any:
+    from lxml import etree
+
+    element = etree.SubElement(parent, tag)
+    if named is not None and hasattr(named, "name"):
+        element.set("name", named.name)
+    return element
+
+
+def _direction(xyz: Vec3) -> Vec3:
+    """A unit vector that stays the same text when it is read and made a unit vector again."""
+    return (round(xyz[0], 14), round(xyz[1], 14), round(xyz[2], 14))
+
+
+def _each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[Any]) -> None:
+    for item in items:
+        write(parent, item)
+
+
+def _plugins(parent: Any, plugins: Iterable[PluginSpec], table: Table) -> None:
+    for plugin in plugins:
+        append_fragment(parent, plugin.xml, table)
+
+
+def _added_plugins(model: Model, bare: Model) -> Optional[List[PluginSpec]]:
+    """The plugins an include adds to what it brings; None where more than that was changed."""
+    kept = model.plugins[:len(bare.plugins)]
+    as_bare = replace(model, name=bare.name, pose=bare.pose, static=bare.static, uri=bare.uri,
+                      plugins=kept)
+    if differences(as_bare, bare):
+        return None
+    return model.plugins[len(bare.plugins):]

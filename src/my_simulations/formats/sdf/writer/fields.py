@@ -1,0 +1,98 @@
+"""The fields of an object as children and attributes of an element, by the table of the reader."""
+from __future__ import annotations
+
+from typing import Any, Callable, Mapping, Optional, Sequence, Set, Tuple
+
+from ...xml.binding import Entry, Group, Kept, Part, Table, Value, default_of
+from .xml_text import append_fragment, write_value
+
+WriteParts = Mapping[str, Callable[[Any], object]]
+"""By tag: writes the children that have a reader of their own."""
+
+
+def fill_element(element: Any, source: Any, table: Table, parts: WriteParts,
+                 extra: Sequence[str], required: Tuple[str, ...] = (),
+                 leave_out: Tuple[str, ...] = ()) -> None:
+    """Write the fields of an object as children and attributes, as its table reads them.
+
+    Args:
+        element: where to.
+        source: an object of the table's dataclass.
+        table: what is known about it.
+        parts: writers of children that have readers of their own; a tag without one is read
+            elsewhere and has nothing to be written.
+        extra: XML that was kept.
+        required: paths written even where they hold the default.
+        leave_out: paths never written.
+    """
+    _Filler(parts, required, leave_out).fill(element, source, table.of, table.children,
+                                             table.attributes, "")
+    for xml in extra:
+        append_fragment(element, xml, table)
+
+
+class _Filler:
+    def __init__(self, parts: WriteParts, required: Tuple[str, ...],
+                 leave_out: Tuple[str, ...]) -> None:
+        self._parts = parts
+        self._required = required
+        self._leave_out = leave_out
+        # Old and new names of one thing stand side by side in a table; the first is written.
+        self._written: Set[Tuple[int, str]] = set()
+
+    def fill(self, element: Any, source: Any, of: Any, children: Mapping[str, Entry],
+             attributes: Mapping[str, Value], path: str) -> None:
+        for name, value in attributes.items():
+            text = self._text(value, source, of, f"{path}@{name}")
+            if text is not None:
+                element.set(name, text)
+        for name, entry in children.items():
+            here = f"{path}{name}"
+            if isinstance(entry, Value):
+                self._value(element, source, of, name, entry, here)
+            elif isinstance(entry, Group):
+                self._group(element, source, of, name, entry, here)
+            elif isinstance(entry, Part) and not path and name in self._parts:
+                self._parts[name](element)
+            else:
+                assert isinstance(entry, (Part, Kept))
+
+    def _group(self, element: Any, source: Any, of: Any, name: str, entry: Group,
+               path: str) -> None:
+        from lxml import etree
+
+        inner = getattr(source, entry.part) if entry.part else source
+        inner_of = type(inner) if entry.part else of
+        child = etree.SubElement(element, name)
+        self.fill(child, inner, inner_of, entry.children, entry.attributes, f"{path}/")
+        if not len(child) and not child.attrib:
+            element.remove(child)
+
+    def _value(self, element: Any, source: Any, of: Any, name: str, value: Value,
+               path: str) -> None:
+        if value.repeated:
+            for item in getattr(source, value.field) if self._first(value, source) else ():
+                write_value(element, name, value.kind, item)
+            return
+        text = self._text(value, source, of, path)
+        if text is not None:
+            write_value(element, name, value.kind, text=text)
+
+    def _text(self, value: Value, source: Any, of: Any, path: str) -> Optional[str]:
+        """The text of a value that must be written, else None."""
+        if path in self._leave_out or not self._first(value, source):
+            return None
+        if value.part:
+            source, of = getattr(source, value.part), type(getattr(source, value.part))
+        now, usual = getattr(source, value.field), default_of(of, value.field)
+        if now is None or (now == usual and path not in self._required):
+            return None
+        return value.kind.format(now)
+
+    def _first(self, value: Value, source: Any) -> bool:
+        owner = getattr(source, value.part) if value.part else source
+        key = (id(owner), value.field)
+        if key in self._written:
+            return False
+        self._written.add(key)
+        return True

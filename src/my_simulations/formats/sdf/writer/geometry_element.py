@@ -1,0 +1,61 @@
+"""`<geometry>` of a shape."""
+from __future__ import annotations
+
+from typing import Any, Dict
+
+from ....description.shapes import Geometry, Polyline
+from ...xml.binding import Table
+from ...xml.values import FLOAT, TEXT, VECTOR2
+from ..model_tables import GEOMETRIES
+from .fields import fill_element
+from .xml_text import write_value
+
+
+def write_geometry(parent: Any, geometry: Geometry) -> None:
+    """`<geometry>` with one shape; its sizes are always written.
+
+    A relative URI, which means nothing outside of its own file, is replaced by the path it
+    resolved to; `model://`, `package://` and `file://` stay (Gazebo behaviour).
+    """
+    from lxml import etree
+
+    holder = etree.SubElement(parent, "geometry")
+    if isinstance(geometry, Polyline):
+        _write_polyline(holder, geometry)
+        return
+    table = tables_by_shape()[type(geometry)]
+    element = etree.SubElement(holder, table.name)
+    needed = tuple(path for path, value, _ in table.values() if path in _ALWAYS)
+    fill_element(element, geometry, table, {}, getattr(geometry, "extra", []), required=needed,
+                 leave_out=("uri", "filename"))
+    if hasattr(geometry, "uri"):
+        write_value(element, "uri", TEXT, uri_of(geometry))
+        element.insert(0, element[-1])
+
+
+_ALWAYS = ("size", "radius", "length", "normal", "radii")
+
+
+def tables_by_shape() -> Dict[Any, Table]:
+    """The table of each class of shape."""
+    return {table.of: table for table in GEOMETRIES.values()}
+
+
+def uri_of(geometry: Any) -> str:
+    """The URI that means the same wherever the file lies."""
+    uri: str = geometry.uri
+    if "://" in uri or not geometry.path:
+        return uri
+    return str(geometry.path)
+
+
+def _write_polyline(holder: Any, polyline: Polyline) -> None:
+    from lxml import etree
+
+    for loop in polyline.loops:
+        element = etree.SubElement(holder, "polyline")
+        for point in loop:
+            write_value(element, "point", VECTOR2, point)
+        write_value(element, "height", FLOAT, polyline.height)
+
+

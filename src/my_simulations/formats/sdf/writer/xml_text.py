@@ -1,0 +1,146 @@
+"""XML of written SDF: values, kept fragments put back where they stood, and the whole document."""
+from __future__ import annotations
+
+import math
+import re
+from typing import Any, Callable, Dict, List, Mapping, Optional
+
+from ....geometry import Pose, Vec3, quat_from_rpy, rpy_from_quat
+from ...xml.binding import Entry, Group, Kept, Part, Table
+from ...xml.values import Kind, PoseKind
+
+_PREFIX = re.compile(r"[<\s/]([A-Za-z_][\w.-]*):[A-Za-z_][\w.-]*[\s=/>]")
+_DECLARED = re.compile(r"\bxmlns:([A-Za-z_][\w.-]*)\s*=")
+_SETTLED = 16
+
+
+def write_value(parent: Any, tag: str, kind: Kind, value: Any = None,
+                text: Optional[str] = None) -> None:
+    """A child element with a value, or with its text."""
+    from lxml import etree
+
+    if text is None:
+        text = kind.format(value)
+    if isinstance(kind, PoseKind):
+        text = settled_pose(kind.parse(text))
+    etree.SubElement(parent, tag).text = text
+
+
+def settled_pose(pose: Pose) -> str:
+    """The text of a pose whose angles, read and written again, stay what they are.
+
+    From angles to a quaternion and back the last digits are noise, so that they are rounded to
+    1e-14 rad: 0.4 stays 0.4, and saving what was loaded gives the same text.
+    """
+    angles = _rounded(rpy_from_quat(pose.orientation))
+    if _read_again(angles) != angles:
+        angles = _rounded(_locked(angles))
+    seen: List[Vec3] = []
+    # Near a pitch of 90 degrees the noise is larger; it comes to rest after a few turns.
+    while angles not in seen and len(seen) < _SETTLED:
+        seen.append(angles)
+        angles = _read_again(angles)
+    if angles in seen:
+        angles = min(seen[seen.index(angles):])
+    return " ".join(_plain(value) for value in (*pose.position, *angles))
+
+
+def _read_again(angles: Vec3) -> Vec3:
+    return _rounded(rpy_from_quat(quat_from_rpy(*angles)))
+
+
+def _locked(angles: Vec3) -> Vec3:
+    """Within 2e-9 rad of a pitch of 90 degrees, exactly there and without a roll.
+
+    There yaw and roll are told apart by the noise alone, which would never come to rest.
+    """
+    roll, pitch, yaw = angles
+    if math.cos(pitch) > 2e-9:
+        return angles
+    turn = yaw - roll if pitch > 0 else yaw + roll
+    return (0.0, math.copysign(math.pi / 2, pitch), math.remainder(turn, 2.0 * math.pi))
+
+
+def _rounded(angles: Vec3) -> Vec3:
+    """To 1e-14 rad; roll and yaw to less near a pitch of 90 degrees, where they share the noise."""
+    lost = -math.log10(max(math.cos(angles[1]), 1e-5))
+    digits = 14 - math.floor(lost)
+    return (round(angles[0], digits), round(angles[1], 14), round(angles[2], digits))
+
+
+def _plain(value: float) -> str:
+    return repr(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
+
+
+def append_fragment(element: Any, xml: str, table: Table) -> None:
+    """Put a fragment that was kept back below `element`.
+
+    A fragment that stood deeper is wrapped in the tags of its parents: each is found again, or
+    made, as long as the table reads it in parts.
+    """
+    _merge(element, parsed_fragment(xml), table.children)
+
+
+def _merge(parent: Any, fragment: Any, children: Mapping[str, Entry]) -> None:
+    entry = children.get(fragment.tag)
+    if isinstance(entry, (Group, Part)) and not fragment.attrib and len(fragment) == 1:
+        inside = entry.children if isinstance(entry, Group) else _part_children(fragment.tag)
+        if inside is not None and _is_kept(fragment[0], inside):
+            there = parent.find(fragment.tag)
+            if there is None:
+                from lxml import etree
+
+                there = etree.SubElement(parent, fragment.tag)
+            _merge(there, fragment[0], inside)
+            return
+    parent.append(fragment)
+
+
+def _part_children(tag: str) -> Optional[Mapping[str, Entry]]:
+    from ..model_tables import AXIS, INERTIAL, MATERIAL, PHYSICS
+
+    tables = {"axis": AXIS, "axis2": AXIS, "inertial": INERTIAL, "material": MATERIAL,
+              "physics": PHYSICS}
+    found = tables.get(tag)
+    return found.children if found is not None else None
+
+
+def _is_kept(fragment: Any, children: Mapping[str, Entry]) -> bool:
+    """Whether a fragment's innermost part is something that is only kept."""
+    entry = children.get(fragment.tag)
+    if isinstance(entry, Group) and not fragment.attrib and len(fragment) == 1:
+        return _is_kept(fragment[0], entry.children)
+    return entry is None or isinstance(entry, Kept)
+
+
+def parsed_fragment(xml: str) -> Any:
+    """A fragment as an element, without the blanks between tags; undeclared prefixes declared."""
+    from lxml import etree
+
+    missing = sorted(set(_PREFIX.findall(xml)) - set(_DECLARED.findall(xml)) - {"xml", "xmlns"})
+    declared = "".join(f' xmlns:{prefix}="urn:{prefix}"' for prefix in missing)
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, recover=True,
+        remove_blank_text=True, remove_comments=True, remove_pis=True, encoding="utf-8",
+    )
+    root = etree.fromstring(f"<all{declared}>{xml}</all>".encode(), parser)
+    fragment = root[0]
+    root.remove(fragment)
+    fragment.tail = None
+    return fragment
+
+
+def document(version: str, write: Callable[[Any], None]) -> bytes:
+    """The bytes of an SDF document; `write` fills its root."""
+    from lxml import etree
+
+    root = etree.Element("sdf", version=version)
+    write(root)
+    prefixes: Dict[str, str] = {}
+    for element in root.iter():
+        prefixes.update({prefix: uri for prefix, uri in element.nsmap.items() if prefix})
+    if prefixes:
+        etree.cleanup_namespaces(root, top_nsmap=dict(sorted(prefixes.items())))
+    etree.indent(root, space="  ")
+    text: bytes = etree.tostring(root, encoding="utf-8", xml_declaration=False)
+    return b'<?xml version="1.0" encoding="utf-8"?>\n' + text + b"\n"

@@ -1,0 +1,100 @@
+"""What is read, and what becomes of it: a table for people, from the readers' own tables."""
+from __future__ import annotations
+
+from typing import Iterator, List, Mapping, NamedTuple, Optional, Tuple
+
+from .sdf import model_tables, world_tables
+from .urdf import urdf_tables
+from .xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+
+
+class Supported(NamedTuple):
+    """One element or attribute (as `@name`) of a format."""
+
+    path: str
+    use: Use
+    since: str
+
+
+_SDF: Tuple[Table, ...] = (
+    model_tables.WORLD,
+    model_tables.PHYSICS,
+    model_tables.LIGHT,
+    world_tables.SCENE,
+    world_tables.SKY,
+    world_tables.FOG,
+    world_tables.GUI_CAMERA,
+    world_tables.ROAD,
+    world_tables.ACTOR,
+    world_tables.POPULATION,
+    world_tables.STATE,
+    model_tables.INCLUDE,
+    model_tables.MODEL,
+    model_tables.FRAME,
+    model_tables.LINK,
+    model_tables.INERTIAL,
+    model_tables.COLLISION,
+    model_tables.VISUAL,
+    model_tables.MATERIAL,
+    *model_tables.GEOMETRIES.values(),
+    model_tables.JOINT,
+    model_tables.AXIS,
+)
+_URDF: Tuple[Table, ...] = (
+    urdf_tables.ROBOT, urdf_tables.LINK, urdf_tables.INERTIAL, urdf_tables.COLLISION,
+    urdf_tables.VISUAL, urdf_tables.MATERIAL, *(t[0] for t in urdf_tables.GEOMETRIES.values()),
+    urdf_tables.JOINT, urdf_tables.GAZEBO_MODEL,
+)
+
+
+def supported(table: Table) -> Iterator[Supported]:
+    """The rows of one table; groups give way to what they hold."""
+    for name in table.attributes:
+        yield Supported(f"@{name}", table.attributes[name].use or table.use,
+                        table.attributes[name].since)
+    yield from _rows(table.children, table.use, "", "")
+
+
+def _rows(children: Mapping[str, Entry], usual: Use, path: str, since: str) -> Iterator[Supported]:
+    for name, entry in children.items():
+        here = f"{path}{name}"
+        if isinstance(entry, Group):
+            for attribute, value in entry.attributes.items():
+                yield Supported(f"{here}@{attribute}", value.use or usual, value.since)
+            yield from _rows(entry.children, usual, f"{here}/", entry.since or since)
+        else:
+            yield Supported(here, _use(entry, usual), entry.since or since)
+
+
+def _use(entry: Entry, usual: Use) -> Use:
+    if isinstance(entry, Kept):
+        return entry.use
+    assert isinstance(entry, (Value, Part))
+    return entry.use or usual
+
+
+def markdown() -> str:
+    """Two tables, of SDF and of URDF, one row for each element with a table of its own."""
+    lines: List[str] = []
+    for title, tables in (("SDF", _SDF), ("URDF", _URDF)):
+        lines += [f"| {title} element | {' | '.join(use.value for use in Use)} |",
+                  "|---|" + "---|" * len(Use)]
+        lines += [_row(table) for table in tables]
+        lines.append("")
+    return "\n".join(lines)
+
+
+def _row(table: Table) -> str:
+    rows = list(supported(table))
+    cells = [", ".join(_shown(row) for row in rows if row.use is use) for use in Use]
+    if not rows:
+        cells[list(Use).index(table.use)] = "yes"
+    return f"| `{table.name}` | " + " | ".join(cells) + " |"
+
+
+def _shown(row: Supported) -> str:
+    since: Optional[str] = row.since if row.since > "1.7" or len(row.since) > 3 else ""
+    return f"`{row.path}`" + (f" (SDF {since})" if since else "")
+
+
+__all__ = ["Supported", "markdown", "supported"]

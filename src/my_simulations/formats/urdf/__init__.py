@@ -1,0 +1,1 @@
+"""URDF robots, read as Gazebo's converter reads them."""

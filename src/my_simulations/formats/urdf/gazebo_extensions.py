@@ -1,0 +1,197 @@
+"""`<gazebo>` in URDF: what SDF has and URDF lacks. Source: Gazebo's converter."""
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import Any, DefaultDict, List, Sequence, Set
+
+from ...description.model import Model, PluginSpec
+from ...description.shapes import Material
+from ...geometry import Pose, compose
+from ..sdf.collision_visual import fill_material
+from ..sdf.model_tables import COLLISION as SDF_COLLISION
+from ..sdf.model_tables import VISUAL as SDF_VISUAL
+from ..xml.binding import Value, closest, fill, set_value, to_xml
+from ..xml.source import Level, Source
+from ..xml.values import BOOL, FLOAT, POSE
+from .kinematic_tree import Body, Connection
+from .urdf_tables import (
+    GAZEBO_COLLISION,
+    GAZEBO_JOINT,
+    GAZEBO_JOINT_AXIS,
+    GAZEBO_LINK,
+    GAZEBO_LINK_KEPT,
+    GAZEBO_MODEL,
+)
+
+
+class Extensions:
+    """The `<gazebo>` elements of a robot, by what they refer to ("" for the model)."""
+
+    def __init__(self, elements: Sequence[Any], source: Source) -> None:
+        self._source = source
+        self._by_reference: DefaultDict[str, List[Any]] = defaultdict(list)
+        self._used: Set[str] = {""}
+        self.joints: List[Any] = []  # SDF's, of the model
+        for element in elements:
+            for child in element:
+                value = child.get("value")
+                if value is not None and not (child.text or "").strip() and not len(child):
+                    child.text = value  # both spellings are in use
+                    del child.attrib["value"]
+            self._by_reference[element.get("reference") or ""].append(element)
+
+    def to_model(self, model: Model) -> None:
+        """Static, plugins and what else belongs to the model; must come first."""
+        for block in self._by_reference.get("", ()):
+            found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
+            self.joints += found.get("joint", [])
+            for child in found.get("plugin", ()):
+                self._source.tell_unused(child)
+            model.plugins += [
+                PluginSpec(child.get("name", ""), child.get("filename", ""), to_xml(child))
+                for child in found.get("plugin", ())
+            ]
+
+    def to_link(self, body: Body) -> None:
+        """Settings of a link and of its own collisions and visuals, before any lumping."""
+        for block in self._blocks(body.link.name):
+            for child in block:
+                self._to_link(child, body)
+
+    def to_connection(self, connection: Connection) -> None:
+        """Settings of a joint."""
+        for block in self._blocks(connection.joint.name):
+            for child in block:
+                self._to_joint(child, connection)
+
+    def report_unused(self) -> None:
+        """Warn about references to nothing."""
+        for reference, blocks in self._by_reference.items():
+            if reference not in self._used:
+                self._source.warn("reference-unknown", f"there is no link and no joint"
+                                  f" {reference!r}; this <gazebo> has no effect", blocks[0])
+
+    def _blocks(self, reference: str) -> List[Any]:
+        self._used.add(reference)
+        return self._by_reference.get(reference, []) if reference else []
+
+    def _to_link(self, child: Any, body: Body) -> None:
+        if not self._set_values(child, body) and not self._merge(child, body):
+            self._keep(child, body)
+
+    def _set_values(self, child: Any, body: Body) -> bool:
+        """Tags with one value."""
+        tag, link = child.tag, body.link
+        if tag in GAZEBO_COLLISION:
+            for _, collision in body.collisions:
+                self._set(collision, GAZEBO_COLLISION[tag], child)
+        elif tag in GAZEBO_LINK:
+            for value in GAZEBO_LINK[tag]:
+                self._set(link, value, child)
+        elif tag == "material":
+            for _, visual in body.visuals:
+                visual.material = Material(script_name=(child.text or "").strip(),
+                                           script_uris=[BUILT_IN_MATERIALS])
+        else:
+            return False
+        return True
+
+    def _merge(self, child: Any, body: Body) -> bool:
+        """Tags with SDF elements that go into what the link has."""
+        tag, source = child.tag, self._source
+        if tag == "collision":
+            for _, collision in body.collisions:
+                fill(collision, child, SDF_COLLISION, source, collision.extra)
+        elif tag == "visual":
+            for _, visual in body.visuals:
+                found = fill(visual, child, SDF_VISUAL, source, visual.extra)
+                for element in found.get("material", ()):
+                    visual.material = fill_material(element, source, visual.extra)
+        elif tag == "velocity_decay":
+            for inner in child:
+                decay = _DECAY.get(inner.tag)
+                if decay is not None:
+                    self._set(body.link, decay, inner)
+        else:
+            return False
+        return True
+
+    def _keep(self, child: Any, body: Body) -> None:
+        tag = child.tag
+        if _is_joint_tag(tag):
+            return  # a link and a joint may share their name
+        if tag not in GAZEBO_LINK_KEPT and ":" not in tag and tag[0] != "{":
+            known = [*GAZEBO_COLLISION, *GAZEBO_LINK, *GAZEBO_LINK_KEPT, "material"]
+            self._source.warn("unknown-element", f"element <{tag}> is not known in <gazebo>; it is"
+                              " kept, without effect", child, closest(tag, known))
+        body.link.extra.append(to_xml(child))
+        if tag in _TOLD:
+            self._source.tell_unused(child)
+
+    def _to_joint(self, child: Any, connection: Connection) -> None:
+        tag, joint = child.tag, connection.joint
+        if tag in GAZEBO_JOINT:
+            text = (child.text or "").strip()
+            joint.extra += [_nested(path, text) for path in GAZEBO_JOINT[tag] if text]
+        elif tag in GAZEBO_JOINT_AXIS:
+            if joint.axis is not None:
+                self._set(joint.axis, GAZEBO_JOINT_AXIS[tag], child)
+        elif tag in _KEEP:
+            if _is_true(child.text):
+                # preserveFixedJoint wins over disableFixedJointLumping.
+                connection.keep = max(connection.keep, _KEEP[tag], key=_RANK.index)
+        elif isinstance(tag, str) and tag not in GAZEBO_LINK:
+            joint.extra.append(to_xml(child))
+
+    def _set(self, target: Any, value: Value, child: Any) -> None:
+        set_value(target, value, child.text or "", child, child.tag, self._source, Level.ERROR)
+
+
+BUILT_IN_MATERIALS = "file://media/materials/scripts/gazebo.material"
+_DECAY = {"linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT)}
+_TOLD = ("sensor", "projector", "audio_source", "audio_sink", "battery", "plugin")
+_PLACED = ("<sensor", "<light", "<projector")
+_KEEP = {"preserveFixedJoint": "fixed", "disableFixedJointLumping": "revolute"}
+_RANK = ["", "revolute", "fixed"]
+
+
+def _is_joint_tag(tag: str) -> bool:
+    return tag in GAZEBO_JOINT or tag in GAZEBO_JOINT_AXIS or tag in _KEEP
+
+
+def _is_true(text: Any) -> bool:
+    try:
+        return BOOL.parse(text or "false")
+    except ValueError:
+        return False
+
+
+def _nested(path: str, text: str) -> str:
+    from xml.sax.saxutils import escape
+
+    xml = escape(text)
+    for tag in reversed(path.split("/")):
+        xml = f"<{tag}>{xml}</{tag}>"
+    return xml
+
+
+def moved(xml: str, offset: Pose) -> str:
+    """What a link keeps as XML, for the link it was lumped into: its pose is brought along."""
+    from lxml import etree
+
+    if not xml.startswith(_PLACED):
+        return xml
+    # Prefixes such as `ignition:` are not declared in the fragment.
+    element = etree.fromstring(xml, etree.XMLParser(recover=True, resolve_entities=False))
+    pose = element.find("pose")
+    own = Pose()
+    if pose is None:
+        pose = etree.Element("pose")
+        element.insert(0, pose)
+    elif (pose.text or "").strip():
+        try:
+            own = POSE.parse(pose.text)
+        except ValueError:
+            return xml  # the sensor's own reader says what is wrong with it
+    pose.text = POSE.format(compose(offset, own))
+    return to_xml(element)

@@ -1,0 +1,59 @@
+"""SDF's `<joint>` in a robot's `<gazebo>`: what URDF's tree cannot say, such as loops."""
+from __future__ import annotations
+
+from typing import Any, Dict, Optional
+
+from ...description.model import WORLD, Joint
+from ...geometry import IDENTITY, Pose, compose, inverse
+from ..sdf.frame_graph import FrameError
+from ..sdf.joint import UnresolvedJoint, is_whole, place_axes, read_joint, reverse_axes
+from ..xml.binding import closest
+from ..xml.source import Source
+from .fixed_joint_lumping import standing
+from .kinematic_tree import Body
+
+
+def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
+                   poses: Dict[str, Pose], robot: str) -> Optional[Joint]:
+    """The joint, between the links that stand for the ones it names; None, with an issue.
+
+    Args:
+        element: SDF `<joint>`, as of version 1.7.
+        source: the file.
+        bodies: links of the file by name.
+        poses: of all of them, in the model.
+        robot: the name of the model, which may stand before those of links.
+    """
+    joint, found = read_joint(element, source)
+    if not is_whole(UnresolvedJoint(joint, found, element), source):
+        return None
+    for role in ("parent", "child"):
+        name = getattr(joint, role)
+        own = name[len(robot) + 2:] if name.startswith(f"{robot}::") else name
+        setattr(joint, role, own)
+        if own not in bodies and own != WORLD:
+            source.tolerate("joint-link-unknown", f"joint {joint.name!r} names {name!r}, which is"
+                            " not a link of the robot; it is left out", element,
+                            closest(own, list(bodies)))
+            return None
+    at = compose(poses.get(joint.child, IDENTITY), joint.pose)
+    for role in ("parent", "child"):
+        name = getattr(joint, role)
+        if name in bodies:
+            setattr(joint, role, standing(bodies[name]).link.name)
+    turned = joint.child == WORLD
+    if turned:  # the description knows the world as a parent only
+        joint.parent, joint.child = joint.child, joint.parent
+    joint.pose = compose(inverse(poses.get(joint.child, IDENTITY)), at)
+
+    def pose_of(name: str) -> Pose:
+        if name == "__model__":
+            return IDENTITY
+        if name not in poses:
+            raise FrameError(f"there is no frame {name!r}")
+        return poses[name]
+
+    place_axes(joint, found, source, pose_of, None)
+    if turned:
+        reverse_axes(joint)
+    return joint

@@ -1,0 +1,108 @@
+"""What plugins and sensors of a robot call by name, after its fixed links became part of others.
+
+Source: Gazebo's converter: contact sensors name collisions; plugins name a `bodyName` or
+`frameName`, with an offset that grows by the way between the links; grippers, projectors and joints
+name links.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Mapping
+
+from ...description.model import Model
+from ...geometry import Pose, compose, quat_from_rpy, rpy_from_quat
+from ..xml.binding import to_xml
+from ..xml.values import VECTOR3
+from .kinematic_tree import Body
+
+_PLACED = ("bodyName", "frameName")
+_LINKS = ("gripper_link", "palm_link")
+_OFFSETS = (("xyzOffset", "rpyOffset"), ("xyzOffsets", "rpyOffsets"))
+
+
+@dataclass
+class Renamed:
+    """Names that changed: links that are part of others now, and collisions."""
+
+    links: Dict[str, Body] = field(default_factory=dict)
+    collisions: Dict[str, str] = field(default_factory=dict)
+
+
+def rename(model: Model, names: Renamed) -> None:
+    """Put the new names into everything the model keeps as XML."""
+    if not names.links and not names.collisions:
+        return
+    model.extra = [_in_xml(xml, names) for xml in model.extra]
+    for plugin in model.plugins:
+        plugin.xml = _in_xml(plugin.xml, names)
+    for link in model.links:
+        link.extra = [_in_xml(xml, names) for xml in link.extra]
+
+
+def _in_xml(xml: str, names: Renamed) -> str:
+    from lxml import etree
+
+    if xml.startswith("<frame") or not any(name in xml for name in (*names.links,
+                                                                    *names.collisions)):
+        return xml
+    root = etree.fromstring(xml, etree.XMLParser(recover=True, resolve_entities=False))
+    changed = False
+    for element in list(root.iter()):
+        if isinstance(element.tag, str):
+            changed = _in_element(element, names) or changed
+    return to_xml(root) if changed else xml
+
+
+def _in_element(element: Any, names: Renamed) -> bool:
+    text = (element.text or "").strip()
+    parent = element.getparent()
+    inside = parent.tag if parent is not None else ""
+    if element.tag == "collision" and inside == "contact":
+        return _put(element, names.collisions, text)
+    if element.tag in _PLACED and text.lstrip("/") in names.links:
+        body = names.links[text.lstrip("/")]
+        element.text = _standing(body)
+        if parent is not None:
+            _move_offset(parent, body.offset)
+        return True
+    if element.tag in _LINKS or (element.tag in ("parent", "child") and inside == "joint"):
+        return _put(element, {name: _standing(body) for name, body in names.links.items()}, text)
+    if element.tag == "projector" and "/" in text and text.split("/", 1)[0] in names.links:
+        link, rest = text.split("/", 1)
+        element.text = f"{_standing(names.links[link])}/{rest}"
+        return True
+    return False
+
+
+def _put(element: Any, names: Mapping[str, str], text: str) -> bool:
+    if text not in names:
+        return False
+    element.text = names[text]
+    return True
+
+
+def _standing(body: Body) -> str:
+    assert body.into is not None
+    return body.into.link.name
+
+
+def _move_offset(parent: Any, way: Pose) -> None:
+    """Set the offset beside a name, which was from the link that is gone."""
+    from lxml import etree
+
+    pair = next((pair for pair in _OFFSETS if any(parent.find(tag) is not None for tag in pair)),
+                _OFFSETS[0])
+    numbers: List[Any] = []
+    for tag in pair:
+        try:
+            numbers.append(VECTOR3.parse(parent.findtext(tag) or "0 0 0"))
+        except ValueError:
+            return  # the plugin itself says what is wrong with it
+    offset = compose(way, Pose(numbers[0], quat_from_rpy(*numbers[1])))
+    for tag, value in zip(pair, (offset.position, rpy_from_quat(offset.orientation))):
+        element = parent.find(tag)
+        if element is None:
+            if not any(value):
+                continue
+            element = etree.SubElement(parent, tag)
+        element.text = VECTOR3.format(value)

@@ -1,0 +1,197 @@
+"""URDF's elements, and Gazebo's extensions of them, as tables.
+
+Source: the URDF specification; for `<gazebo>`, what Gazebo's converter reads.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Mapping, Optional, Tuple
+
+from ...description.model import Inertial, JointAxis, Link, Mimic, Model
+from ...description.shapes import Box, Capsule, Collision, Color, Cylinder, Mesh, Sphere, Visual
+from ...geometry import IDENTITY_QUAT, ZERO3, Quat, Vec3
+from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.source import Level
+from ..xml.values import (
+    BOOL,
+    COLOR,
+    FLOAT,
+    FRICTION,
+    INT,
+    LIMIT,
+    NEGATED,
+    RPY,
+    SCALE,
+    TEXT,
+    VECTOR3,
+)
+
+FATAL, WARNING = Level.FATAL, Level.WARNING
+
+
+def _kept(*names: str) -> Dict[str, Entry]:
+    return {name: Kept() for name in names}
+
+
+def _ignored(*names: str) -> Dict[str, Entry]:
+    """Known, but left out: a robot is written back as SDF, which has no place for them."""
+    return {name: Kept(use=Use.IGNORED) for name in names}
+
+
+@dataclass
+class Origin:
+    """`<origin xyz rpy>`."""
+
+    xyz: Vec3 = ZERO3
+    rpy: Quat = IDENTITY_QUAT
+
+
+@dataclass
+class Ends:
+    """What a joint connects, and whether another one drives it."""
+
+    parent: str = ""
+    child: str = ""
+
+
+@dataclass
+class Limits:
+    """`<limit>`: unlike in SDF, the bounds are 0 where they are not given."""
+
+    lower: float = 0.0
+    upper: float = 0.0
+    effort: float = -1.0
+    velocity: float = -1.0
+
+
+@dataclass
+class Axis:
+    """`<axis xyz>`; x where it is not given."""
+
+    xyz: Vec3 = (1.0, 0.0, 0.0)
+
+
+@dataclass
+class Paint:
+    """`<material>`."""
+
+    name: str = ""
+    color: Optional[Color] = None
+    texture: str = ""
+
+
+ORIGIN = Table("origin", Origin, attributes={
+    "xyz": Value("xyz", VECTOR3), "rpy": Value("rpy", RPY),
+}, level=FATAL, strict=True)
+
+ROBOT = Table("robot", Model, {
+    "link": Part(), "joint": Part(), "material": Part(), "gazebo": Part(), "origin": Part(),
+    **_ignored("transmission", "sensor", "verbose", "group_state", "ros2_control"),
+}, known_attributes=("name", "version", "static", "type"), strict=True)
+
+LINK = Table("link", Link, {
+    "inertial": Part(), "visual": Part(), "collision": Part(),
+    **_ignored("sensor", "self_collision_checking", "verbose", "origin", "gravity"),
+}, known_attributes=("name", "type"), strict=True)
+
+INERTIAL = Table("inertial", Inertial, {
+    "origin": Part(),
+    "mass": Group(attributes={"value": Value("mass", FLOAT)}),
+    "inertia": Group(attributes={
+        name: Value(name, FLOAT) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    }),
+}, level=FATAL, strict=True)
+
+COLLISION = Table("collision", Collision, {
+    "origin": Part(), "geometry": Part(), **_ignored("verbose", "contact_coefficients"),
+}, known_attributes=("name", "group"), strict=True)
+
+VISUAL = Table("visual", Visual, {
+    "origin": Part(), "geometry": Part(), "material": Part(), **_ignored("verbose"),
+}, known_attributes=("name", "group"), use=Use.SHOWN, strict=True)
+
+GEOMETRIES: Mapping[str, Tuple[Table, Tuple[str, ...]]] = {
+    "box": (Table("box", Box, attributes={"size": Value("size", VECTOR3)}, strict=True), ("size",)),
+    "sphere": (Table("sphere", Sphere, attributes={"radius": Value("radius", FLOAT)}, strict=True),
+               ("radius",)),
+    "cylinder": (Table("cylinder", Cylinder, attributes={
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }, strict=True), ("radius", "length")),
+    "capsule": (Table("capsule", Capsule, attributes={
+        "radius": Value("radius", FLOAT), "length": Value("length", FLOAT),
+    }, strict=True), ("radius", "length")),
+    "mesh": (Table("mesh", Mesh, attributes={
+        "filename": Value("uri", TEXT), "scale": Value("scale", SCALE),
+    }, strict=True), ("filename",)),
+}
+"""Tables of the shapes, and the attributes each must have."""
+
+MATERIAL = Table("material", Paint, {
+    "color": Group(attributes={"rgba": Value("color", COLOR)}),
+    "texture": Group(attributes={"filename": Value("texture", TEXT)}),
+}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=Use.SHOWN, strict=True)
+
+JOINT = Table("joint", Ends, {
+    "origin": Part(), "axis": Part(), "limit": Part(), "dynamics": Part(), "mimic": Part(),
+    "parent": Group(attributes={"link": Value("parent", TEXT)}),
+    "child": Group(attributes={"link": Value("child", TEXT)}),
+    **_ignored("safety_controller", "calibration"),
+}, known_attributes=("name", "type"), strict=True)
+AXIS = Table("axis", Axis, attributes={"xyz": Value("xyz", VECTOR3)}, level=FATAL, strict=True)
+LIMIT_TABLE = Table("limit", Limits, attributes={
+    name: Value(name, LIMIT) for name in ("lower", "upper", "effort", "velocity")
+}, level=FATAL, strict=True)
+MIMIC = Table("mimic", Mimic, attributes={
+    "joint": Value("joint", TEXT), "multiplier": Value("multiplier", FLOAT),
+    "offset": Value("offset", FLOAT),
+}, level=FATAL, strict=True)
+DYNAMICS = Table("dynamics", JointAxis, attributes={
+    "damping": Value("damping", FLOAT), "friction": Value("friction", FLOAT),
+}, level=FATAL, strict=True)
+
+GAZEBO_MODEL = Table("gazebo", Model, {
+    "static": Value("static", BOOL),
+    "self_collide": Value("self_collide", BOOL),
+    "allow_auto_disable": Value("allow_auto_disable", BOOL),
+    "plugin": Part(use=Use.KEPT), "joint": Part(),
+    "gripper": Kept(told=True),
+    **_kept("enable_wind", "frame", "canonicalBody", "selfCollide", "turnGravityOff"),
+})
+"""`<gazebo>` without a reference."""
+
+GAZEBO_COLLISION: Mapping[str, Value] = {
+    "mu1": Value("mu", FRICTION, part="surface"), "mu2": Value("mu2", FRICTION, part="surface"),
+    "fdir1": Value("fdir1", VECTOR3, part="surface"),
+    "kp": Value("kp", FLOAT, part="surface"), "kd": Value("kd", FLOAT, part="surface"),
+    "minDepth": Value("min_depth", FLOAT, part="surface"),
+    "maxVel": Value("max_vel", FLOAT, part="surface"),
+    "maxContacts": Value("max_contacts", INT), "laserRetro": Value("laser_retro", FLOAT),
+}
+"""Tags of `<gazebo reference="link">` that set every collision of the link."""
+
+GAZEBO_LINK: Mapping[str, Tuple[Value, ...]] = {
+    "selfCollide": (Value("self_collide", BOOL),), "self_collide": (Value("self_collide", BOOL),),
+    "turnGravityOff": (Value("gravity", NEGATED),), "gravity": (Value("gravity", BOOL),),
+    "dampingFactor": (Value("linear_decay", FLOAT), Value("angular_decay", FLOAT)),
+    "kinematic": (Value("kinematic", BOOL),),
+}
+"""Tags of `<gazebo reference="link">` that set the link."""
+
+GAZEBO_LINK_KEPT = (
+    "sensor", "light", "projector", "plugin", "audio_source", "audio_sink", "battery",
+    "enable_wind", "must_be_base_link", "particle_emitter", "genTexCoord", "static",
+)
+
+GAZEBO_JOINT: Mapping[str, Tuple[str, ...]] = {
+    "stopCfm": ("physics/ode/limit/cfm",), "stopErp": ("physics/ode/limit/erp",),
+    "fudgeFactor": ("physics/ode/fudge_factor",),
+    "provideFeedback": ("physics/provide_feedback", "physics/ode/provide_feedback"),
+    "implicitSpringDamper": ("physics/ode/implicit_spring_damper",),
+    "cfmDamping": ("physics/ode/cfm_damping",),
+}
+"""Tags of `<gazebo reference="joint">` and the SDF elements they become."""
+
+GAZEBO_JOINT_AXIS: Mapping[str, Value] = {
+    "springReference": Value("spring_reference", FLOAT),
+    "springStiffness": Value("spring_stiffness", FLOAT),
+}

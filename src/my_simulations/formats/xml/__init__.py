@@ -1,0 +1,1 @@
+"""XML to dataclasses by tables: parsing, repair, values, and the source of each element."""

@@ -1,0 +1,223 @@
+"""From bytes or text to an XML tree, leniently with mistakes and strictly with attacks.
+
+Real model files are often not well formed; Gazebo's reader is lax. What can be completed without
+guessing at content is read with a warning; what is cut off is an error. No entity is expanded, no
+DTD loaded, no network used, and depth is bounded.
+"""
+from __future__ import annotations
+
+import functools
+import os
+import re
+from typing import Any, Union
+
+from ...errors import InputError, error
+from .source import Log
+
+_DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
+_ENCODING = re.compile(rb"""<\?xml[^>]*\bencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
+_BOMS = (
+    (b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe\x00\x00", "utf-32"),
+    (b"\x00\x00\xfe\xff", "utf-32"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"),
+)
+LARGEST = 64 << 20
+"""Bytes of a document."""
+
+_MOST_TAGS = 2000000
+_LONG_TAG = re.compile(rb"<[^<]{8000,}")
+
+
+def content(path: str) -> bytes:
+    """The bytes of a document's file; what is larger than `LARGEST` is not read.
+
+    Raises:
+        InputError: it is too large.
+        OSError: it cannot be read.
+    """
+    with open(path, "rb") as stream:
+        if os.fstat(stream.fileno()).st_size > LARGEST:
+            raise _too_large(path)
+        return stream.read(LARGEST + 1)  # a pipe has no size; `parse` looks again
+
+
+def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
+    """The root element of a document.
+
+    Args:
+        text: the document; a `str` may carry any encoding declaration.
+        file: for the issues.
+        log: takes warnings about what had to be repaired.
+
+    Raises:
+        InputError: nothing usable: empty, cut off, no element, entities, too deep.
+    """
+    from lxml import etree
+
+    if len(text) > LARGEST:
+        raise _too_large(file)
+    data = text.encode("utf-8", "replace") if isinstance(text, str) else text
+    if len(data) > LARGEST:
+        raise _too_large(file)
+    if not data.strip(b" \t\r\n\0"):
+        raise _fault("xml-empty", "the document is empty", file)
+    _refuse_entities(data, file)
+    _refuse_masses(data, file)
+    try:
+        root = etree.fromstring(
+            _declaration_first(data), _strict_parser("utf-8" if isinstance(text, str) else None)
+        )
+        if b"\xe2\x80\xb9" in data:  # a single guillemet, in UTF-8
+            root = _retyped(data, root, file, log)
+    except etree.XMLSyntaxError as fault:
+        root = _recover(_decoded(data, isinstance(text, str), file, log), fault, file, log)
+    if root is None:
+        raise _fault("xml-no-root", "the document holds no element", file)
+    return root
+
+
+def _fault(code: str, message: str, file: str, line: int = 0, column: int = 0,
+           hint: str = "") -> InputError:
+    return InputError([error(code, message, file=file, line=line, column=column, hint=hint)])
+
+
+def _too_large(file: str) -> InputError:
+    return _fault("xml-too-large", f"the document is larger than {LARGEST >> 20} MB", file)
+
+
+def _refuse_entities(data: bytes, file: str) -> None:
+    plain = data.replace(b"\0", b"") if b"\0" in data[:400] else data
+    if b"<!ENTITY" in plain and b"<!DOCTYPE" in plain:
+        line = plain[: plain.index(b"<!ENTITY")].count(b"\n") + 1
+        raise _fault(
+            "xml-entities", "the document declares entities, which are not read", file, line,
+            hint="write the text out instead",
+        )
+
+
+def _refuse_masses(data: bytes, file: str) -> None:
+    """Documents that would fill the memory, or on which the parser would spend minutes."""
+    from .repair import MOST_ATTRIBUTES
+
+    if data.count(b"<") > _MOST_TAGS:
+        raise _fault("xml-too-large", f"the document holds more than {_MOST_TAGS} tags", file)
+    for found in _LONG_TAG.finditer(data):
+        tag = found.group().split(b">", 1)[0]
+        if tag.count(b"=") > MOST_ATTRIBUTES:
+            line = data.count(b"\n", 0, found.start()) + 1
+            raise _fault("xml-too-large", f"an element has more than {MOST_ATTRIBUTES} attributes",
+                         file, line)
+
+
+def _declaration_first(data: bytes) -> bytes:
+    """The XML declaration moved to the front; lines keep their numbers."""
+    if data[:5] == b"<?xml" or data[:2] in (b"\xff\xfe", b"\xfe\xff") or data[:1] == b"\0":
+        return data
+    start = 3 if data[:3] == b"\xef\xbb\xbf" else 0
+    found = _DECLARATION.search(data, start, start + 20000)
+    if found is None or found.start() == start:
+        return data
+    before = data[start:found.start()]
+    if before.strip() and not before.lstrip().startswith(b"<!--"):
+        return data
+    return found.group() + before + data[found.end():]
+
+
+@functools.lru_cache(maxsize=4)
+def _parser(encoding: str, recover: bool) -> Any:
+    from lxml import etree
+
+    return etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, dtd_validation=False,
+        huge_tree=False, remove_comments=True, remove_pis=True, recover=recover,
+        encoding=encoding or None,
+    )
+
+
+def _strict_parser(encoding: Any) -> Any:
+    return _parser(encoding or "", False)
+
+
+def _decoded(data: bytes, was_text: bool, file: str, log: Log) -> str:
+    if was_text:
+        return data.decode("utf-8")
+    encoding = next((name for mark, name in _BOMS if data.startswith(mark)), "")
+    if not encoding:
+        declared = _ENCODING.search(data[:2000])
+        encoding = declared.group(1).decode("ascii") if declared else "utf-8"
+    try:
+        return data.decode(encoding).lstrip("\ufeff")
+    except (UnicodeDecodeError, LookupError):
+        from ...errors import warning
+
+        log.add(warning("xml-encoding", f"the text is not {encoding}; read as Latin-1", file=file))
+        return data.decode("latin-1")
+
+
+def _retyped(data: bytes, root: Any, file: str, log: Log) -> Any:
+    """The root of a well-formed document whose text may hold elements in typographic brackets."""
+    from lxml import etree
+
+    from .typography import is_suspicious
+
+    text = data.decode("utf-8", "replace")
+    if not is_suspicious(text):
+        return root
+    return _recover(text, etree.XMLSyntaxError("text in ‹›", 0, 1, 1), file, log)
+
+
+def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
+    """A second attempt, over text with its tags balanced; raises InputError where cut off."""
+    from lxml import etree
+
+    from ...errors import warning
+    from .repair import balanced
+    from .typography import retyped  # rarely needed, and start-up time counts
+
+    line, column = fault.position
+    if "Excessive depth" in fault.msg:
+        raise _fault("xml-too-deep", "elements are nested too deeply", file, line, column)
+    text, retypings = retyped(text)
+    result = balanced(text)
+    result.repairs[:0] = retypings
+    if result.hopeless:
+        raise _fault("xml-malformed", f"not well formed: {result.hopeless}", file, line, column)
+    if result.elements == 0:
+        raise _fault("xml-no-root", "the document holds no element", file, line, column)
+    if result.cut_off:
+        raise _fault(
+            "xml-truncated", f"the document is cut off: {result.cut_off}", file,
+            result.cut_off_line, hint="the end of the file is missing",
+        )
+    parser = _parser("utf-8", True)
+    # The declaration may name any encoding, or none that there is; the text is UTF-8 by now.
+    plain = _DECLARATION.sub(_only_lines, result.text.encode("utf-8", "replace"), 1)
+    try:
+        root = etree.fromstring(plain.lstrip(b" \t\r"), parser)
+    except etree.XMLSyntaxError:
+        raise _fault("xml-malformed", f"not well formed: {fault.msg}", file, line,
+                     column) from None
+    faults = [
+        entry for entry in parser.error_log
+        if entry.domain_name != "NAMESPACE" and entry.level_name != "WARNING"
+    ]
+    if root is None or _count(root) < result.elements:
+        message = faults[-1].message if faults else fault.msg
+        raise _fault("xml-malformed", f"not well formed: {message}", file, line, column)
+    for repair in result.repairs:
+        log.add(warning("xml-malformed", repair.message, file=file, line=repair.line,
+                        column=repair.column, hint="read as if it were closed there"
+                        if repair.unclosed else ""))
+    if faults:
+        first = faults[0]
+        more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+        log.add(warning("xml-malformed", f"not well formed: {first.message}{more}", file=file,
+                        line=first.line, column=first.column))
+    return root
+
+
+def _only_lines(found: Any) -> bytes:
+    return b"\n" * int(found.group().count(b"\n"))
+
+
+def _count(root: Any) -> int:
+    return sum(1 for _ in root.iter())

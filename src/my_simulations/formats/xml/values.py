@@ -1,0 +1,324 @@
+"""Kinds of values in SDF and URDF text: one class each, reading and writing together.
+
+`parse` raises ValueError with a phrase that says what was expected and what was found; `salvage`
+reads such a text as Gazebo does, and raises it where Gazebo, too, reads nothing.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Optional, Protocol, Sequence, Tuple
+
+from ...geometry import Pose, Quat, Vec3, pose_from_xyzrpy, quat_from_rpy, rpy_from_quat
+from .gazebo_text import leading_integer, leading_number, stream_numbers
+
+UNSET = "__default__"
+"""Text that stands for "not given" (Gazebo behaviour)."""
+
+
+class Kind(Protocol):
+    """A kind of value."""
+
+    def parse(self, text: str) -> Any:
+        """The value of `text`; ValueError where it is none."""
+
+    def format(self, value: Any) -> str:
+        """Text that `parse` reads as the same value."""
+
+    def salvage(self, text: str) -> Any:
+        """What Gazebo makes of a text that `parse` refuses; ValueError where it refuses it too."""
+
+
+def numbers(text: str, count: int) -> Tuple[float, ...]:
+    """Exactly `count` finite numbers, parted by any white space."""
+    parts = text.split()
+    if len(parts) != count:
+        plural = "number" if count == 1 else "numbers"
+        commas = ", parted by blanks, not by commas" if "," in text else ""
+        raise ValueError(f"expected {count} {plural}{commas}, found {_shown(text)}")
+    return tuple([number(part) for part in parts])
+
+
+def number(text: str) -> float:
+    """A finite number."""
+    value = any_number(text)
+    if not math.isfinite(value):
+        raise ValueError(f"expected a finite number, found {_shown(text)}")
+    return value
+
+
+def any_number(text: str) -> float:
+    """A number, which may be infinite or NaN."""
+    try:
+        if "_" in text:  # Python's own spelling of long numbers, nobody else's
+            raise ValueError
+        return float(text)
+    except ValueError:
+        raise ValueError(f"expected a number, found {_shown(text)}") from None
+
+
+def _shown(text: str) -> str:
+    text = " ".join(text.split())
+    return repr(text if len(text) <= 60 else text[:57] + "...")
+
+
+def _formatted(*values: float) -> str:
+    # repr is the shortest text that reads back as the same double.
+    return " ".join(repr(int(v)) if v == int(v) and abs(v) < 1e15 else repr(v) for v in values)
+
+
+def _whole(text: str, count: int) -> Tuple[float, ...]:
+    """All the numbers of a vector, or zeros: Gazebo's vectors are read whole or not at all."""
+    return _all_or_zeros(stream_numbers(text, count))
+
+
+def _all_or_zeros(found: Sequence[Optional[float]]) -> Tuple[float, ...]:
+    whole = tuple([value for value in found if value is not None])
+    return whole if len(whole) == len(found) else (0.0,) * len(found)
+
+
+class Bool:
+    """`true`, `1`, `false`, `0`, any letter case; also `yes` and `no`, which URDF files use."""
+
+    _words = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
+
+    def parse(self, text: str) -> bool:
+        value = self._words.get(text.strip().lower())
+        if value is None:
+            raise ValueError(f"expected true or false, found {_shown(text)}")
+        return value
+
+    def format(self, value: bool) -> str:
+        return "true" if value else "false"
+
+
+    def salvage(self, text: str) -> bool:
+        raise ValueError(f"expected true or false, found {_shown(text)}")
+
+
+class Negated(Bool):
+    """A truth written the other way round."""
+
+    def parse(self, text: str) -> bool:
+        return not super().parse(text)
+
+    def format(self, value: bool) -> str:
+        return super().format(not value)
+
+
+class Float:
+    """A finite number."""
+
+    def parse(self, text: str) -> float:
+        return number(text)
+
+    def format(self, value: float) -> str:
+        return _formatted(value)
+
+
+    def salvage(self, text: str) -> float:
+        return leading_number(_SPELT_OUT.get(text.strip().lower(), text))
+
+
+_SPELT_OUT = {"true": "1", "false": "0"}
+
+
+class Friction(Float):
+    """A friction coefficient; below 0 it stands for one without bound (Gazebo behaviour)."""
+
+    _UNBOUNDED = 1e6
+
+    def parse(self, text: str) -> float:
+        return self._bounded(super().parse(text))
+
+    def salvage(self, text: str) -> float:
+        return self._bounded(super().salvage(text))
+
+    def _bounded(self, value: float) -> float:
+        return self._UNBOUNDED if value < 0 or value == math.inf else value
+
+
+class Limit:
+    """A number that may be infinite, as joint limits may be; never NaN."""
+
+    def parse(self, text: str) -> float:
+        value = any_number(text)
+        if value != value:
+            raise ValueError(f"expected a number, found {_shown(text)}")
+        return value
+
+    def format(self, value: float) -> str:
+        return _formatted(value) if math.isfinite(value) else repr(value)
+
+    def salvage(self, text: str) -> float:
+        return FLOAT.salvage(text)
+
+
+class Int:
+    """A whole number; `10.0` and `0x10` are taken as well."""
+
+    def parse(self, text: str) -> int:
+        try:
+            return int(text)
+        except ValueError:
+            pass
+        stripped = text.strip().lower()
+        try:
+            if stripped.startswith("0x"):
+                return int(stripped, 16)
+        except ValueError:
+            pass
+        value = number(text)
+        if value != int(value):
+            raise ValueError(f"expected a whole number, found {_shown(text)}")
+        return int(value)
+
+    def format(self, value: int) -> str:
+        return str(value)
+
+    def salvage(self, text: str) -> int:
+        return leading_integer(_SPELT_OUT.get(text.strip().lower(), text))
+
+
+class Text:
+    """Words, without blanks around them."""
+
+    def parse(self, text: str) -> str:
+        return text.strip()
+
+    def format(self, value: str) -> str:
+        return value
+
+    def salvage(self, text: str) -> str:
+        return self.parse(text)
+
+
+class Vector2:
+    """Two numbers."""
+
+    def parse(self, text: str) -> Tuple[float, float]:
+        x, y = numbers(text, 2)
+        return (x, y)
+
+    def format(self, value: Tuple[float, float]) -> str:
+        return _formatted(*value)
+
+
+    def salvage(self, text: str) -> Tuple[float, float]:
+        x, y = _whole(text, 2)
+        return (x, y)
+
+
+class PlaneSize(Vector2):
+    """Two numbers; a third, which some files give, is left out (Gazebo behaviour)."""
+
+    def parse(self, text: str) -> Tuple[float, float]:
+        parts = text.split()
+        return super().parse(" ".join(parts[:2]) if len(parts) == 3 else text)
+
+
+class Vector3:
+    """Three numbers."""
+
+    def parse(self, text: str) -> Vec3:
+        x, y, z = numbers(text, 3)
+        return (x, y, z)
+
+    def format(self, value: Vec3) -> str:
+        return _formatted(*value)
+
+
+    def salvage(self, text: str) -> Vec3:
+        x, y, z = _whole(text, 3)
+        return (x, y, z)
+
+
+class UniformScale(Vector3):
+    """Three numbers, or one that counts for all axes."""
+
+    def parse(self, text: str) -> Vec3:
+        if len(text.split()) == 1:
+            one = number(text)
+            return (one, one, one)
+        return super().parse(text)
+
+
+class Color:
+    """Red, green, blue and, where given, alpha (else 1), each 0..1.
+
+    What is above 1 counts as of 255, what is below 0 as 0 (Gazebo behaviour).
+    """
+
+    def parse(self, text: str) -> Tuple[float, float, float, float]:
+        parts = text.split()
+        if len(parts) not in (3, 4):
+            raise ValueError(f"expected 3 or 4 numbers, found {_shown(text)}")
+        r, g, b, a = (self._share(number(part)) for part in (*parts, "1")[:4])
+        return (r, g, b, a)
+
+    def salvage(self, text: str) -> Tuple[float, float, float, float]:
+        r, g, b, a = stream_numbers(text, 4)
+        return (self._share(r or 0.0), self._share(g or 0.0), self._share(b or 0.0),
+                1.0 if a is None else self._share(a))
+
+    @staticmethod
+    def _share(value: float) -> float:
+        return min(value / 255.0, 1.0) if value > 1.0 else max(value, 0.0)
+
+    def format(self, value: Tuple[float, float, float, float]) -> str:
+        return _formatted(*value)
+
+
+class Rpy:
+    """Roll, pitch, yaw in radians, about fixed axes, as a quaternion."""
+
+    def parse(self, text: str) -> Quat:
+        roll, pitch, yaw = numbers(text, 3)
+        return quat_from_rpy(roll, pitch, yaw)
+
+    def format(self, value: Quat) -> str:
+        return _formatted(*rpy_from_quat(value))
+
+    def salvage(self, text: str) -> Quat:
+        roll, pitch, yaw = _whole(text, 3)
+        return quat_from_rpy(roll, pitch, yaw)
+
+
+class PoseKind:
+    """`x y z roll pitch yaw`: metres, and radians about fixed axes."""
+
+    def parse(self, text: str) -> Pose:
+        x, y, z, roll, pitch, yaw = numbers(text, 6)
+        return pose_from_xyzrpy(x, y, z, roll, pitch, yaw)
+
+    def format(self, value: Pose) -> str:
+        return _formatted(*value.position, *rpy_from_quat(value.orientation))
+
+    def salvage(self, text: str) -> Pose:
+        """Position and rotation are each taken whole or not at all (libignition-math 6)."""
+        found = stream_numbers(text, 6)
+        position, angles = _all_or_zeros(found[:3]), _all_or_zeros(found[3:])
+        return pose_from_xyzrpy(*position, *angles)
+
+
+class Seconds:
+    """`sec nsec`, or plain seconds."""
+
+    def parse(self, text: str) -> float:
+        parts = text.split()
+        if len(parts) == 2:
+            return number(parts[0]) + number(parts[1]) * 1e-9
+        return numbers(text, 1)[0]
+
+    def salvage(self, text: str) -> float:
+        seconds, nanoseconds = stream_numbers(text, 2)
+        return (seconds or 0.0) + (nanoseconds or 0.0) * 1e-9
+
+    def format(self, value: float) -> str:
+        whole = math.floor(value)
+        return f"{whole} {round((value - whole) * 1e9)}"
+
+
+BOOL, NEGATED, FLOAT, LIMIT, INT, TEXT = Bool(), Negated(), Float(), Limit(), Int(), Text()
+VECTOR2, VECTOR3, SCALE, COLOR = Vector2(), Vector3(), UniformScale(), Color()
+PLANE_SIZE, FRICTION = PlaneSize(), Friction()
+RPY, POSE, SECONDS = Rpy(), PoseKind(), Seconds()

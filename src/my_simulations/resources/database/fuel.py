@@ -1,0 +1,270 @@
+"""Models of a Fuel server: the cache that Gazebo's tools keep, and downloads into it.
+
+A model lies in `CACHE/HOST/OWNER/models/NAME/VERSION/`. Caches are `~/.ignition/fuel` (or what
+IGN_FUEL_CACHE_PATH names) and `~/.gz/fuel` (GZ_FUEL_CACHE_PATH). A server that is neither a known
+one nor named by `config.yaml` in a cache is never asked. Source: Ignition Fuel Tools 4.
+"""
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Dict, List, Optional, Sequence
+from urllib.parse import quote
+
+from ..resolver import ModelNotProvidedError, Progress
+from .fuel_uri import API, KNOWN_HOSTS, FuelUri
+
+if TYPE_CHECKING:
+    from email.message import Message
+
+_SERVER = re.compile(r"^\s*(?:-\s*)?url:\s*[\"']?(https?://[^\s\"'/]+)/*[\"']?\s*(?:#.*)?$",
+                     re.MULTILINE)
+_URI = re.compile(rb"(<(?:uri|filename|\w+_map)>\s*)model://[^/<]+/([^<]*[^<\s])")
+_INCLUDE = re.compile(rb"(<include\b.*?</include>)", re.DOTALL)  # names other models
+_LARGEST_CONFIG = 1 << 16
+_CONFIG = "model.config"
+
+
+@dataclass(frozen=True)
+class CachedModel:
+    """A model in a cache, in its newest version there.
+
+    Attributes:
+        uri: its address, without a version.
+        name: as its folder is called.
+        folder: where it lies.
+    """
+
+    uri: str
+    name: str
+    folder: str
+
+
+class FuelModels:
+    """Finds models in the caches, and downloads what no cache holds.
+
+    Args:
+        caches: folders, best first; downloads go to the first.
+        servers: scheme and host of those that may be asked.
+        progress: hears how far a download is.
+        seconds: for all downloads in all, from the first one on (wall time); None for the same as
+            the model database has.
+    """
+
+    def __init__(self, caches: Sequence[str], servers: Sequence[str],
+                 progress: Optional[Progress] = None, seconds: Optional[float] = None) -> None:
+        self.caches = list(caches)
+        self._servers = [server.lower() for server in servers]
+        self._progress = progress
+        self._seconds = seconds
+        self._time: Optional[_Downloads] = None
+
+    @classmethod
+    def from_environment(cls, progress: Optional[Progress] = None) -> "FuelModels":
+        """The user's caches, the known servers, and those of the caches' `config.yaml`."""
+        named = [os.environ.get("IGN_FUEL_CACHE_PATH") or "~/.ignition/fuel",
+                 os.environ.get("GZ_FUEL_CACHE_PATH") or "~/.gz/fuel"]
+        caches = [os.path.expanduser(cache) for cache in dict.fromkeys(named)]
+        servers = [f"https://{host}" for host in KNOWN_HOSTS]
+        for cache in caches:
+            servers += _configured(os.path.join(cache, "config.yaml"))
+        return cls(caches, servers, progress)
+
+    def begin(self) -> None:
+        """A new document is being read: what could not be downloaded may be tried again."""
+        if self._time is not None:
+            self._time.begin()
+
+    def give(self, seconds: float) -> None:
+        """Let downloads take so long from the next `begin` on."""
+        self._seconds = seconds
+        if self._time is not None:
+            self._time.give(seconds)
+
+    def folders(self) -> List[str]:
+        """The caches that are there."""
+        return [cache for cache in self.caches if os.path.isdir(cache)]
+
+    def path(self, uri: FuelUri) -> str:
+        """The folder of a model, or a file of it, downloaded when no cache holds the model.
+
+        Raises:
+            NotProvided: the model cannot be had now, or has no such file.
+        """
+        folder = self.cached(uri) or self._download(uri)
+        path = os.path.join(folder, uri.inside) if uri.inside else folder
+        if not os.path.exists(path):
+            raise ModelNotProvidedError(f"{path} is not there")
+        return path
+
+    def cached(self, uri: FuelUri) -> Optional[str]:
+        """The folder of a model in a cache, None where none holds it (in that version)."""
+        hosts = [uri.host, *(host for host in KNOWN_HOSTS if uri.host in KNOWN_HOSTS)]
+        for cache in self.caches:
+            for host in dict.fromkeys(hosts):
+                model = _child(os.path.join(cache, host), uri.owner, "models", uri.name)
+                found = _version(model, uri.version) if model else None
+                if found:
+                    return found
+        return None
+
+    def beside(self, base_dir: str, rest: str) -> List[str]:
+        """Where `model://NAME/…` in a file of a cached model may lie: in that model itself.
+
+        Gazebo's tools write such addresses anew when they unpack a model, and take no notice of
+        the name; a cache that something else filled holds them as they were.
+        """
+        for cache in self.caches:
+            inside = os.path.relpath(base_dir, cache).split(os.sep) if base_dir else []
+            if len(inside) >= 5 and inside[0] != os.pardir and inside[2] == "models":
+                tail = rest.partition("/")[2]
+                return [os.path.join(cache, *inside[:5], tail)] if tail else []
+        return []
+
+    def models(self) -> List[CachedModel]:
+        """What the caches hold, each model once, in its newest version."""
+        found: Dict[str, CachedModel] = {}
+        for cache in self.caches:
+            for host in _folders(cache):
+                for owner in _folders(os.path.join(cache, host)):
+                    above = os.path.join(cache, host, owner, "models")
+                    for name in _folders(above):
+                        folder = _version(os.path.join(above, name), 0)
+                        uri = FuelUri(self._server(host), owner, name).model
+                        if folder and uri not in found:
+                            found[uri] = CachedModel(uri, name, folder)
+        return list(found.values())
+
+    def _server(self, host: str) -> str:
+        """Scheme and host of a cache's folder."""
+        return next((one for one in self._servers if one.partition("://")[2] == host),
+                    f"https://{host}")
+
+    def _download(self, uri: FuelUri) -> str:
+        if uri.server not in self._servers:
+            raise ModelNotProvidedError(
+                f"no cache of {', '.join(self.caches)} holds it, and {uri.server} is"
+                " no server that is asked (config.yaml of the cache names more)"
+            )
+        if self._time is None:
+            self._time = _Downloads(self.caches[0], self._progress, self._seconds)
+        self._time.download(uri)
+        found = self.cached(uri)
+        if found is None:
+            raise ModelNotProvidedError(
+                f"{uri.model} was downloaded and is not in {self.caches[0]}"
+            )
+        return found
+
+
+class _Downloads:
+    """The part of it that needs a network; its modules are loaded with the first download."""
+
+    def __init__(self, cache: str, progress: Optional[Progress],
+                 seconds: Optional[float]) -> None:
+        from .download_time import WORLD_SECONDS, DownloadTime
+
+        self._cache = cache
+        self._time = DownloadTime(progress, WORLD_SECONDS if seconds is None else seconds)
+        self.begin, self.give = self._time.begin, self._time.give
+
+    def download(self, uri: FuelUri) -> None:
+        """Put a model into the cache. Raises NotProvided."""
+        self._time.once(uri.archive, uri.server, lambda: self._fetched(uri))
+
+    def _fetched(self, uri: FuelUri) -> None:
+        from .archive import install, unpack
+        from .http_download import fetch
+
+        limits, until = self._time.limits, self._time.until()
+        above = os.path.join(self._cache, uri.host, uri.owner.lower(), "models", uri.name.lower())
+        os.makedirs(above, exist_ok=True)
+        archive = os.path.join(above, f".{os.getpid()}.zip")
+        try:
+            with open(archive, "w+b") as stream:
+                headers = fetch(uri.archive, stream, limits.archive_bytes, until,
+                                self._time.report(uri.name))
+            exact = replace(uri, version=uri.version or _told_version(headers))
+
+            def make(work: str) -> str:
+                return _with_own_addresses(
+                    unpack("zip", archive, os.path.join(work, "unpacked"), "", limits, until),
+                    exact)
+
+            install(os.path.join(above, str(exact.version)), make)
+        finally:
+            if os.path.exists(archive):
+                os.unlink(archive)
+
+
+def _told_version(headers: "Message[str, str]") -> int:
+    """The version that the server says it sent; 1 where it says none (Gazebo behaviour)."""
+    for name in ("X-Ign-Resource-Version", "X-Gz-Resource-Version"):
+        text = headers.get(name) or ""
+        if text.isdigit() and 0 < int(text) < 10 ** 9:
+            return int(text)
+    return 1
+
+
+def _with_own_addresses(folder: str, uri: FuelUri) -> str:
+    """Name files of the model by their address on the server, as Gazebo's tools do and expect."""
+    files = (f"{uri.server}/{API}/{quote(uri.owner)}/models/{quote(uri.name)}/{uri.version}"
+             "/files/")
+
+    def own(match: "re.Match[bytes]") -> bytes:
+        inside = match.group(2).decode("utf-8", "replace")
+        is_own = os.path.exists(os.path.join(folder, inside))
+        return match.group(1) + (files + inside).encode() if is_own else match.group(0)
+
+    for name in os.listdir(folder):
+        path = os.path.join(folder, name)
+        if not name.lower().endswith(".sdf") or not os.path.isfile(path):
+            continue
+        with open(path, "rb") as stream:
+            pieces = _INCLUDE.split(stream.read())
+        with open(path, "wb") as out:
+            out.write(b"".join(piece if piece.startswith(b"<include") else _URI.sub(own, piece)
+                               for piece in pieces))
+    return folder
+
+
+def _configured(path: str) -> List[str]:
+    """Scheme and host of the servers in a `config.yaml`."""
+    try:
+        with open(path, encoding="utf-8", errors="replace") as stream:
+            return _SERVER.findall(stream.read(_LARGEST_CONFIG))
+    except OSError:
+        return []
+
+
+def _child(folder: str, *names: str) -> Optional[str]:
+    """A folder below, its names in any letter case; None where there is none."""
+    for name in names:
+        exact = os.path.join(folder, name.lower())
+        if not os.path.isdir(exact):
+            same = [one for one in _folders(folder) if one.lower() == name.lower()]
+            if not same:
+                return None
+            exact = os.path.join(folder, same[0])
+        folder = exact
+    return folder
+
+
+def _version(model: str, version: int) -> Optional[str]:
+    """The folder of a version (0: the newest) that holds a model's config; None for none."""
+    numbers = [int(name) for name in _folders(model) if name.isdigit()]
+    for number in sorted(numbers, reverse=True):
+        folder = os.path.join(model, str(number))
+        if version in (0, number) and os.path.isfile(os.path.join(folder, _CONFIG)):
+            return folder
+    return None
+
+
+def _folders(folder: str) -> List[str]:
+    try:
+        names = sorted(os.listdir(folder))
+    except OSError:
+        return []
+    return [name for name in names
+            if not name.startswith(".") and os.path.isdir(os.path.join(folder, name))]

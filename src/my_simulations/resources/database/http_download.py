@@ -1,0 +1,135 @@
+"""Downloads with a deadline for the whole, a largest size, and every check the answer allows."""
+from __future__ import annotations
+
+import base64
+import hashlib
+import http.client
+import re
+import socket
+import time
+import urllib.error
+import urllib.request
+from dataclasses import dataclass
+from email.message import Message
+from typing import IO, Any, Callable, Optional
+
+_CHUNK = 1 << 16
+_TRIES = 4
+_MD5 = re.compile(r'"?([0-9a-f]{32})"?\Z')
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Sizes in bytes of the list of models, an archive, what is in it; and how many files."""
+
+    list_bytes: int = 16 << 20
+    archive_bytes: int = 512 << 20
+    unpacked_bytes: int = 2 << 30
+    files: int = 20000
+
+
+class HttpError(Exception):
+    """A download that failed. `missing`: the server says there is no such thing."""
+
+    def __init__(self, message: str, missing: bool = False) -> None:
+        super().__init__(message)
+        self.missing = missing
+
+
+def fetch(url: str, into: IO[bytes], largest: int, until: float,
+          progress: Optional[Callable[[int, int], None]] = None) -> "Message[str, str]":
+    """Download a file; what fails on the way is tried up to four times (Gazebo behaviour).
+
+    Args:
+        url: http or https.
+        into: a seekable stream; rewritten from its start by each try.
+        largest: bytes.
+        until: `time.monotonic()` at which to give up.
+        progress: hears bytes so far, and those expected, 0 where not known.
+
+    Returns:
+        The headers of the answer.
+
+    Raises:
+        HttpFault: not had; what it would have been is not in `into` as a whole.
+    """
+    if not url.startswith(("http://", "https://")):
+        raise HttpError(f"{url} is no http address")
+    for left in range(_TRIES - 1, -1, -1):
+        into.seek(0)
+        into.truncate()
+        try:
+            return _once(url, into, largest, until, progress)
+        except urllib.error.HTTPError as fault:
+            missing = fault.code in (404, 410)
+            if missing or fault.code < 500 or not left:
+                raise HttpError(f"{url} answers {fault.code} {fault.reason}", missing) from None
+        except (OSError, http.client.HTTPException, _Damaged) as fault:
+            _check_time(url, until)
+            if not left or isinstance(getattr(fault, "reason", None), ConnectionRefusedError):
+                reason = getattr(fault, "reason", None) or fault
+                raise HttpError(f"{url} cannot be had: {reason}") from None
+    raise AssertionError("the last try returns or raises")
+
+
+class _Damaged(Exception):
+    """What came is not what was sent."""
+
+
+def _once(url: str, into: IO[bytes], largest: int, until: float,
+          progress: Optional[Callable[[int, int], None]]) -> "Message[str, str]":
+    request = urllib.request.Request(url, headers={"Accept-Encoding": "identity"})
+    with urllib.request.urlopen(request, timeout=_left(url, until)) as answer:
+        expected = _length(answer.headers.get("Content-Length"))
+        if expected > largest:
+            raise HttpError(f"{url} has {expected} bytes; at most {largest} are taken")
+        sums, done = hashlib.md5(), 0
+        while True:
+            _set_timeout(answer, _left(url, until))
+            # read1 returns what is there, so that a slow server cannot outlast the deadline.
+            chunk = answer.read1(_CHUNK)
+            if not chunk:
+                break
+            done += len(chunk)
+            if done > largest:
+                raise HttpError(f"{url} has more than {largest} bytes, which are not taken")
+            into.write(chunk)
+            sums.update(chunk)
+            if progress is not None:
+                progress(done, expected)
+        _check(answer.headers, expected, done, sums)
+        return answer.headers
+
+
+def _check(headers: Any, expected: int, done: int, sums: Any) -> None:
+    if expected and done != expected:
+        raise _Damaged(f"{done} of {expected} bytes came")
+    given = headers.get("Content-MD5")
+    if given and base64.b64encode(sums.digest()).decode() != given.strip():
+        raise _Damaged("the checksum of the answer (Content-MD5) is wrong")
+    # Object stores give the MD5 as ETag; any other ETag says nothing of the content. Where it has
+    # the form of one and differs, the answer's own Content-MD5 counts.
+    tag = _MD5.match((headers.get("ETag") or "").strip())
+    if tag and not given and tag.group(1) != sums.hexdigest():
+        raise _Damaged("the checksum of the answer (ETag) is wrong")
+
+
+def _length(text: Optional[str]) -> int:
+    return int(text) if text and text.isdigit() else 0
+
+
+def _left(url: str, until: float) -> float:
+    _check_time(url, until)
+    return max(0.01, until - time.monotonic())
+
+
+def _check_time(url: str, until: float) -> None:
+    if time.monotonic() >= until:
+        raise HttpError(f"{url} did not come in time")
+
+
+def _set_timeout(answer: Any, seconds: float) -> None:
+    raw = getattr(getattr(answer, "fp", None), "raw", None)
+    connection = getattr(raw, "_sock", None)
+    if isinstance(connection, socket.socket):
+        connection.settimeout(seconds)

@@ -1,0 +1,331 @@
+"""The life of the server process: engine, world, node, end.
+
+What costs time is done at once and side by side: the engine process starts before anything else is
+imported, the world is read and loaded in a thread, and meanwhile rospy is imported and registered.
+"""
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import sys
+import threading
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
+
+from ...errors import CommandError, InputError, error
+from ...simulator.issue_log import IssueLog
+from . import master_api
+from .abandoned import Abandonment
+from .engine_supply import EngineSupply
+from .launch_info import Launch
+from .light_imports import import_genpy
+from .server_options import ServerOptions
+from .start_profile import StartProfile
+
+if TYPE_CHECKING:
+    from .editor_launcher import EditorLauncher, StartEditor
+    from .log_recorder import RunningRecorder, StartRecording
+
+NODE = "gazebo"
+END_SECONDS = 3.0
+"""Longest orderly end; a thread that is stuck in a network call does not keep the process."""
+
+UPKEEP_SECONDS = 1.0
+POLL_SECONDS = 0.05
+"""How soon a signal ends the wait for a world that is being loaded."""
+
+CLOCK_QUEUE = 1000
+"""Messages a subscriber to `/clock` may be behind by: a second in real time."""
+
+OK, FAILED = 0, 1
+
+Say = Callable[[str], None]
+
+
+class WorldLoader:
+    """Reads the world file and starts its simulator, paused, in a thread of its own.
+
+    Attributes:
+        simulator, resolver: set when it went well.
+        fault: why it did not.
+    """
+
+    def __init__(self, options: ServerOptions, engines: EngineSupply, log: IssueLog,
+                 profile: StartProfile, on_fault: Callable[[], None], caller: str) -> None:
+        self.simulator: Any = None
+        self.resolver: Any = None
+        self.fault: Optional[InputError] = None
+        self.defect: Optional[Exception] = None
+        self._given = (options, engines, log, caller)
+        self._profile = profile
+        self._on_fault = on_fault
+        self._thread = threading.Thread(target=self._run, name="world loader", daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        try:
+            self._load()
+        except InputError as fault:
+            self.fault = fault
+            self._on_fault()
+        except CommandError as fault:
+            self.fault = InputError([error("world-not-started", str(fault))])
+            self._on_fault()
+        except Exception as defect:  # raised again in the main thread, by `wait`
+            self.defect = defect
+            self._on_fault()
+
+    def _load(self) -> None:
+        options, engines, log, caller = self._given
+        from ...engine.commands import FOREVER
+        from ...resources.database.download_notes import DownloadNotes
+        from ...resources.resolver import Resolver
+        from ...simulator.world_loading import start_world
+
+        self._profile.mark("readers imported")
+        self.resolver = Resolver.from_environment(DownloadNotes(log))
+        self.simulator = start_world(
+            options.world, self.resolver, engines, log, seed=options.seed or 0,
+            profile=options.profile, steps=options.iterations or FOREVER, caller=caller,
+            read=lambda: self._profile.mark("world read"))
+        self._profile.mark("world loaded into the engine")
+
+    @property
+    def busy(self) -> bool:
+        """Whether it is still at work."""
+        return self._thread.is_alive()
+
+    def wait(self, stop: threading.Event) -> None:
+        """Wait for the end, or until `stop` is set; a defect of the program is raised here."""
+        while self.busy and not stop.is_set():
+            self._thread.join(POLL_SECONDS)
+        if self.defect is not None:
+            raise self.defect
+
+
+class Server:
+    """Runs the node until a signal, a shutdown request or a fault ends it."""
+
+    def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say,
+                 engines: EngineSupply, profile: StartProfile,
+                 start_editor: "Optional[StartEditor]" = None, gui: bool = False,
+                 start_recording: "Optional[StartRecording]" = None) -> None:
+        """Take over a start that has begun.
+
+        Args:
+            options: the parsed command line.
+            argv: the whole command line, for rospy.
+            say: where words go before rospy can log them.
+            engines: holds the engine that was started first of all.
+            profile: gets the phases.
+            start_editor: starts the world editor, when somebody wants it.
+            gui: want it at once, whatever the parameters say.
+            start_recording: begins the state log that the options ask for.
+        """
+        self._start_recording = start_recording
+        self._recorder: "Optional[RunningRecorder]" = None
+        self._start_editor, self._gui = start_editor, gui
+        self._door: "Optional[EditorLauncher]" = None
+        self._options, self._argv, self._say = options, list(argv), say
+        self._engines, self._profile = engines, profile
+        self._launch = Launch.of(argv)
+        self._ended = threading.Event()
+        self._settled = threading.Event()
+        self._clock: Any = None
+        self._log = IssueLog()
+        self._name = master_api.node_name(argv, NODE)
+        self._master = master_api.uri(argv)
+
+    def run(self) -> int:
+        """Exit status: 0 after a signal, 1 when the node could not start."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._on_signal)
+        import_genpy()
+        self._profile.mark("messages imported")
+        loader = WorldLoader(self._options, self._engines, self._log, self._profile,
+                             self._settled.set, self._launch.folder)
+        node: Any = None
+        try:
+            if not self._may_register(loader):
+                return OK if self._ended.is_set() else FAILED
+            self._init_node()
+            # Already now: loading may take a while, and says what it is at.
+            self._open_log()
+            loader.wait(self._ended)
+            if self._ended.is_set():
+                return OK
+            if loader.fault is not None:
+                return self._refuse(loader.fault)
+            node = self._start_node(loader)
+            abandonment = Abandonment(self._master, self._name, self._launch,
+                                      node.seconds_alone())
+            while not self._ended.wait(UPKEEP_SECONDS):
+                node.keep_up()
+                reason = abandonment.reason()
+                if reason:
+                    self._say(f"{reason}; the simulator ends (~master_timeout sets the time, 0 for "
+                              "never)")
+                    return FAILED
+            return OK
+        except OSError as fault:
+            if not self._ended.is_set():
+                self._say(f"the ROS master at {self._master} stopped answering: {fault}")
+            return OK if self._ended.is_set() else FAILED
+        finally:
+            self._end(node, loader)
+
+    def _on_signal(self, _number: int, _frame: Any) -> None:
+        if self._ended.is_set():
+            os._exit(OK)
+        self._ended.set()
+        self._settled.set()
+
+    def _may_register(self, loader: WorldLoader) -> bool:
+        """True when there is a master without a node of our name; else everything was said."""
+        try:
+            there = master_api.wait(self._master, self._name, self._settled, self._say)
+            if not there:
+                self._say_why_not(loader)
+                return False
+            other = master_api.living_node(self._master, self._name)
+        except OSError as fault:
+            self._say(f"the ROS master at {self._master} stopped answering: {fault}")
+            return False
+        if other is not None:
+            self._say(f"a node {self._name} already runs on {self._master} ({other[0]}, process "
+                      f"{other[1]}); end it first, or give this one another name with "
+                      "__name:=NAME or __ns:=NAMESPACE")
+            return False
+        self._profile.mark("master asked")
+        return True
+
+    def _say_why_not(self, loader: WorldLoader) -> None:
+        loader.wait(self._ended)
+        if self._ended.is_set():
+            return
+        if loader.fault is not None:
+            for issue in loader.fault.issues:
+                self._say(str(issue))
+
+    def _init_node(self) -> None:
+        import rospy
+
+        from ..registration import publisher
+
+        self._profile.mark("rospy imported")
+        threading.Thread(target=self._break_off, daemon=True).start()
+        faces = threading.Thread(target=_import_faces, daemon=True)
+        faces.start()
+        level = rospy.DEBUG if self._options.verbose else rospy.INFO
+        try:
+            rospy.init_node(NODE, argv=self._argv, disable_rostime=True, disable_signals=True,
+                            log_level=level)
+        except rospy.ROSInitException as fault:
+            raise OSError(str(fault)) from fault
+        rospy.on_shutdown(self._ended.set)
+        # Already now: a subscriber takes as long to connect as the rest of the start.
+        self._clock = publisher("/clock", queue_size=CLOCK_QUEUE, tcp_nodelay=True)
+        self._profile.mark("node registered")
+        faces.join()
+        self._profile.mark("interface imported")
+
+    def _break_off(self) -> None:
+        """Make `rospy.init_node` give up when the end comes while it waits for the master."""
+        import rospy
+
+        self._ended.wait()
+        if not rospy.core.is_initialized():
+            rospy.signal_shutdown("ended")
+
+    def _open_log(self) -> None:
+        import rospy
+
+        from ..issue_logging import log_issue
+
+        for notice in self._options.notices:
+            rospy.loginfo("%s", notice)
+        self._log.open(log_issue)
+
+    def _start_node(self, loader: WorldLoader) -> Any:
+        import rospy
+
+        from ..node import Node
+
+        rospy.loginfo("the world file is %s", loader.simulator.world.file)
+        door = self._make_door(loader)
+        node = Node(loader.simulator, loader.resolver, self._clock,
+                    None if door is None else door.open, self._master,
+                    (lambda: None) if door is None else door.announce, self._launch)
+        node.advertise()
+        self._profile.mark("services and topics registered")
+        node.start_publishing()
+        node.spawn_robot()
+        self._record(loader)
+        if not self._options.paused:
+            loader.simulator.clock.unpause()
+        self._profile.mark("running")
+        node.advertise_late()
+        # What the start has made stays; without this every full collection walks through it again.
+        gc.freeze()
+        if door is not None and (self._gui or door.wanted()):
+            door.open_soon()
+        self._profile.mark("all offered")
+        for line in self._profile.lines():
+            self._say(line)
+        return node
+
+    def _record(self, loader: WorldLoader) -> None:
+        """Begin the state log; the clock is published by now, and time still stands."""
+        wanted = self._options.recording
+        if self._start_recording is None or not wanted.on:
+            return
+        from .log_recorder import begin
+
+        self._recorder = begin(self._start_recording, loader.simulator, loader.resolver, wanted)
+        self._profile.mark("state log begun")
+
+    def _make_door(self, loader: WorldLoader) -> "Optional[EditorLauncher]":
+        if self._start_editor is None:
+            return None
+        from .editor_launcher import EditorLauncher
+
+        self._door = EditorLauncher(self._start_editor, loader.simulator, loader.resolver,
+                                self._log.also, self._launch.folder)
+        return self._door
+
+    def _refuse(self, fault: InputError) -> int:
+        from ..node import fail
+
+        fail([str(issue) for issue in fault.issues] or [str(fault)])
+        return FAILED
+
+    def _end(self, node: Any, loader: WorldLoader) -> None:
+        status = OK if self._ended.is_set() else FAILED
+        watchdog = threading.Timer(END_SECONDS, os._exit, (status,))
+        watchdog.daemon = True
+        watchdog.start()
+        self._ended.set()
+        if self._door is not None:
+            self._door.close()
+        if node is not None:
+            node.stop()
+        if self._recorder is not None:
+            from .log_recorder import finish
+
+            finish(self._recorder)
+        if loader.simulator is not None:
+            loader.simulator.close()
+        self._engines.close()
+        rospy = sys.modules.get("rospy")
+        if rospy is not None and rospy.core.is_initialized():
+            rospy.signal_shutdown("the server ends")
+        if loader.busy:  # nobody waits for it; what it has started ends with this process
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(status)
+        watchdog.cancel()
+
+
+def _import_faces() -> None:
+    """Import the services and topics while `rospy.init_node` sleeps on its registration."""
+    from ..topics import state_publishers  # noqa: F401

@@ -1,0 +1,84 @@
+"""get_light_properties, set_light_properties and delete_light."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Dict, Tuple
+
+from ...description.world import Light
+from ...errors import CommandError
+from ...geometry import Pose, norm, scale
+from ...simulator.registry import UnknownEntityError
+from ...simulator.simulator import Simulator
+from ..message_conversion import between, pose_from_message, vector, within
+
+BRIGHTEST = 1e6
+"""The largest number of a colour or attenuation."""
+
+NO_COLOUR = (0.0, 0.0, 0.0, 0.0)
+
+
+class LightServices:
+    """What a light shines like."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
+
+    def get(self, request: Any, response: Any) -> str:
+        """Its colour and attenuation."""
+        light = self._light(request.light_name)
+        colour = response.diffuse
+        colour.r, colour.g, colour.b, colour.a = light.diffuse
+        response.attenuation_constant = light.constant
+        response.attenuation_linear = light.linear
+        response.attenuation_quadratic = light.quadratic
+        return "got properties"
+
+    def set(self, request: Any, _response: Any) -> str:
+        """Other properties; colours, attenuations, direction and pose of zeros stay as they are."""
+        light = self._light(request.light_name)
+        changes: Dict[str, Any] = {"cast_shadows": request.cast_shadows}
+        for field in ("diffuse", "specular"):
+            colour = _colour(getattr(request, field), field)
+            if colour != NO_COLOUR:
+                changes[field] = colour
+        attenuation = {name: between(getattr(request, f"attenuation_{name}"), 0.0, BRIGHTEST,
+                                     f"attenuation_{name}")
+                       for name in ("constant", "linear", "quadratic")}
+        if any(attenuation.values()):
+            changes.update(attenuation)
+        direction = within(vector(request.direction), BRIGHTEST, "", "direction")
+        if norm(direction) > 0.0:
+            changes["direction"] = scale(direction, 1.0 / norm(direction))
+        changes["pose"] = _pose(request.pose, light)
+        self._simulator.lights.set(light.name, replace(light, **changes))
+        return "properties set"
+
+    def delete(self, request: Any, _response: Any) -> str:
+        """Take it out of the world."""
+        name = self._light(request.light_name).name
+        self._simulator.lights.delete(name)
+        return f"{name} successfully deleted"
+
+    def _light(self, name: str) -> Light:
+        try:
+            return self._simulator.lights.get(name)
+        except UnknownEntityError as fault:
+            lights = ", ".join(light.name for light in self._simulator.lights.all())
+            raise CommandError(f"Requested light {name} not found! The world has "
+                               f"{lights or 'no light'}") from fault
+
+
+def _colour(message: Any, field: str) -> Tuple[float, float, float, float]:
+    r, g, b, a = (between(getattr(message, part), 0.0, BRIGHTEST, f"{field}.{part}")
+                  for part in "rgba")
+    return (r, g, b, a)
+
+
+def _pose(message: Any, light: Light) -> Pose:
+    """The pose asked for; where the quaternion is zero, the orientation it has."""
+    pose = pose_from_message(message)
+    q = message.orientation
+    if q.x == q.y == q.z == q.w == 0.0:
+        return light.pose if not any(pose.position) else Pose(pose.position,
+                                                              light.pose.orientation)
+    return pose

@@ -1,0 +1,50 @@
+"""get_link_properties and set_link_properties."""
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+from ...description.model import Inertial
+from ...description.validate import inertial_faults
+from ...errors import CommandError
+from ...simulator.simulator import Simulator
+from ..message_conversion import between, fill_pose, pose_from_message
+from .entity_errors import in_gazebos_words
+
+MOMENTS = tuple(field.name for field in fields(Inertial) if field.name.startswith("i"))
+
+HEAVIEST = 1e12
+"""kg, and kg m^2."""
+
+
+class LinkServices:
+    """What a link weighs."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
+
+    def get(self, request: Any, response: Any) -> str:
+        """Mass (kg), centre of mass and axes of inertia in the link frame, moments (kg m^2)."""
+        with in_gazebos_words("link not found"):
+            link = self._simulator.models.link(request.link_name)
+        fill_pose(response.com, link.inertial.pose)
+        response.gravity_mode, response.mass = link.gravity, link.inertial.mass
+        for name in MOMENTS:
+            setattr(response, name, getattr(link.inertial, name))
+        return "got properties"
+
+    def set(self, request: Any, _response: Any) -> str:
+        """All of them at once; the moments are about the centre of mass, along `com`'s axes."""
+        with in_gazebos_words("link not found"):
+            link = self._simulator.models.link(request.link_name)
+        inertial = replace(
+            link.inertial, mass=between(request.mass, -HEAVIEST, HEAVIEST, "mass", "kg"),
+            pose=pose_from_message(request.com, "com"),
+            **{name: between(getattr(request, name), -HEAVIEST, HEAVIEST, name, "kg m^2")
+               for name in MOMENTS})
+        for fault in inertial_faults(inertial, link.name):
+            raise CommandError(fault.message)
+        with in_gazebos_words("link not found"):
+            self._simulator.models.set_link_inertial(request.link_name, inertial,
+                                                     request.gravity_mode)
+        return "properties set"

@@ -1,0 +1,104 @@
+"""The physics settings that clients may change: names, ranges, and what they are in the world."""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Dict, Mapping, Tuple, Union
+
+from ...errors import CommandError
+from ...geometry import Vec3, is_finite
+from ...simulator.simulator import Simulator
+from ..message_conversion import between
+
+Value = Union[bool, int, float]
+
+SHORTEST_STEP = 1e-6
+"""s; below it a second would be more steps than anybody waits for."""
+
+STRONGEST_GRAVITY = 1000.0
+"""m/s^2, each component; the sun's is 274."""
+
+FASTEST = 1e6
+"""Hz; a larger `max_update_rate` means unthrottled, which is 0."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One of the 15 (Gazebo behaviour: names, types, defaults and ranges).
+
+    Attributes:
+        name: in dynamic_reconfigure; those of `ode` also in gazebo_msgs/ODEPhysics.
+        default: what dynamic_reconfigure calls so; its type is the parameter's.
+        low, high: the range; dynamic_reconfigure clamps to it.
+        meaning: for people.
+        ode: the field of `description.world.OdePhysics`, "" for the others.
+    """
+
+    name: str
+    default: Value
+    low: Value
+    high: Value
+    meaning: str
+    ode: str = ""
+
+    def checked(self, value: Value) -> Value:
+        """The value itself. Raises CommandError when it is not in the range."""
+        if isinstance(value, bool):
+            return value
+        between(value, self.low, self.high, self.name)
+        return value
+
+
+PARAMETERS: Tuple[Parameter, ...] = (
+    Parameter("time_step", 0.001, 0.0, 10.0, "step size in s"),
+    Parameter("max_update_rate", 60.0, 0.0, 1000.0, "steps a second of wall time, 0 unthrottled"),
+    Parameter("gravity_x", 0.0, -100.0, 100.0, "m/s^2"),
+    Parameter("gravity_y", 0.0, -100.0, 100.0, "m/s^2"),
+    Parameter("gravity_z", -9.8, -100.0, 100.0, "m/s^2"),
+    Parameter("auto_disable_bodies", False, False, True, "kept", "auto_disable_bodies"),
+    Parameter("sor_pgs_precon_iters", 0, 0, 10000, "kept", "precon_iters"),
+    Parameter("sor_pgs_iters", 20, 0, 10000, "solver iterations", "iters"),
+    Parameter("sor_pgs_w", 1.3, 0.0, 5.0, "kept", "sor"),
+    Parameter("sor_pgs_rms_error_tol", -1.0, -1.0, 10000.0, "kept", "rms_error_tol"),
+    Parameter("cfm", 0.0, 0.0, 10.0, "kept", "cfm"),
+    Parameter("erp", 0.2, 0.0, 10.0, "kept", "erp"),
+    Parameter("contact_surface_layer", 0.001, 0.0, 10.0, "kept, m", "contact_surface_layer"),
+    Parameter("contact_max_correcting_vel", 100.0, 0.0, 1e7, "kept, m/s",
+              "contact_max_correcting_vel"),
+    Parameter("max_contacts", 100, 0, 10000000, "kept", "max_contacts"),
+)
+
+ODE = tuple(parameter for parameter in PARAMETERS if parameter.ode)
+
+
+def present(simulator: Simulator) -> Dict[str, Value]:
+    """All 15 as they are now, each in its parameter's type."""
+    physics, gravity = simulator.physics.settings, simulator.physics.gravity
+    found: Dict[str, Value] = {
+        "time_step": physics.max_step_size, "max_update_rate": physics.real_time_update_rate,
+        "gravity_x": gravity[0], "gravity_y": gravity[1], "gravity_z": gravity[2],
+        **{parameter.name: getattr(physics.ode, parameter.ode) for parameter in ODE}}
+    return {parameter.name: type(parameter.default)(found[parameter.name])
+            for parameter in PARAMETERS}
+
+
+def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
+    """Give the world these values of the 15; the others stay.
+
+    Raises:
+        CommandError: one is out of range; nothing has changed.
+    """
+    wanted = {**present(simulator), **values}
+    step = wanted["time_step"]
+    if not is_finite(step) or not SHORTEST_STEP <= step <= 10.0:
+        raise CommandError(f"time_step must be in {SHORTEST_STEP:g} to 10 s, it is {step:g}")
+    rate = between(wanted["max_update_rate"], -FASTEST, FASTEST, "max_update_rate", "Hz")
+    gravity: Vec3 = tuple(  # type: ignore[assignment]
+        between(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
+                f"gravity.{axis}", "m/s^2") for axis in "xyz")
+    # What is not changed is not judged: a world file may hold other numbers.
+    ode: Dict[str, Any] = {parameter.ode: parameter.checked(values[parameter.name])
+                           for parameter in ODE if parameter.name in values}
+    physics = simulator.physics.settings
+    simulator.physics.set(
+        replace(physics, max_step_size=step, real_time_update_rate=max(rate, 0.0),
+                ode=replace(physics.ode, **ode)), gravity)

@@ -1,0 +1,113 @@
+"""get_model_state, set_model_state, get_link_state, set_link_state, as services and as topics."""
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from typing import Any
+
+import rospy
+from gazebo_msgs import srv
+
+from ...errors import CommandError
+from ...simulator.simulator import Simulator
+from ..message_conversion import (
+    fill_pose,
+    fill_twist,
+    pose_from_message,
+    seconds_and_nanoseconds,
+    twist_from_message,
+)
+from .entity_errors import in_gazebos_words
+
+NO_FRAME = "specified reference frame entity does not exist"
+
+
+class _CountedResponse(srv.GetModelStateResponse):
+    """Keeps our `header.seq`; in a class that says it has a header, rospy puts its own there."""
+
+    _has_header = False
+
+
+class StateServices:
+    """Where models and links are, and putting them elsewhere."""
+
+    responses = {"get_model": _CountedResponse}
+
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
+        self._calls: "Counter[str]" = Counter()
+        self._lock = threading.Lock()
+
+    def get_model(self, request: Any, response: Any) -> str:
+        """Pose and twist of a model in a frame; `seq` counts the calls for this model (Gazebo)."""
+        name, frame = request.model_name, request.relative_entity_name
+        with in_gazebos_words("model does not exist"):
+            self._simulator.models.get(name)
+        with self._lock:
+            self._calls[name] += 1
+            response.header.seq = self._calls[name]
+        response.header.frame_id = frame
+        stamp = response.header.stamp
+        stamp.secs, stamp.nsecs = seconds_and_nanoseconds(self._simulator.clock.sim_ns)
+        with in_gazebos_words("model does not exist", "reference relative_entity_name not found"):
+            pose, twist = self._simulator.states.model_state(name, frame)
+        fill_pose(response.pose, pose)
+        fill_twist(response.twist, twist)
+        return "got properties"
+
+    def get_link(self, request: Any, response: Any) -> str:
+        """Pose and twist of a link, named scoped or not, in a frame."""
+        with in_gazebos_words("link not found", "reference reference_frame not found"):
+            pose, twist = self._simulator.states.link_state(request.link_name,
+                                                            request.reference_frame)
+        state = response.link_state
+        state.link_name, state.reference_frame = request.link_name, request.reference_frame
+        fill_pose(state.pose, pose)
+        fill_twist(state.twist, twist)
+        return "got state"
+
+    def set_model(self, request: Any, _response: Any) -> str:
+        """Move a model; its next state shows it."""
+        self.move_model(request.model_state)
+        return "set model state done"
+
+    def set_link(self, request: Any, _response: Any) -> str:
+        """Move one link."""
+        self.move_link(request.link_state)
+        return "success"
+
+    def move_model(self, state: Any) -> None:
+        """Apply a gazebo_msgs/ModelState.
+
+        Raises:
+            CommandError: unknown model or frame, or a number that is not finite.
+        """
+        pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
+        with in_gazebos_words("model does not exist", NO_FRAME):
+            self._simulator.states.set_model_state(state.model_name, pose, twist,
+                                                   state.reference_frame)
+
+    def move_link(self, state: Any) -> None:
+        """Apply a gazebo_msgs/LinkState.
+
+        Raises:
+            CommandError: unknown link or frame, or a number that is not finite.
+        """
+        pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
+        with in_gazebos_words("link does not exist", NO_FRAME):
+            self._simulator.states.set_link_state(state.link_name, pose, twist,
+                                                  state.reference_frame)
+
+    def on_model_state(self, state: Any) -> None:
+        """What `move_model` does, faults to the log."""
+        try:
+            self.move_model(state)
+        except CommandError as fault:
+            rospy.logerr_throttle_identical(1.0, f"SetModelState (topic): {fault}")
+
+    def on_link_state(self, state: Any) -> None:
+        """What `move_link` does, faults to the log."""
+        try:
+            self.move_link(state)
+        except CommandError as fault:
+            rospy.logerr_throttle_identical(1.0, f"SetLinkState (topic): {fault}")

@@ -1,0 +1,1 @@
+"""Published topics, and the threads behind them."""

@@ -1,0 +1,22 @@
+"""Hearing of subscribers that come and go."""
+from __future__ import annotations
+
+from typing import Any, Callable
+
+import rospy
+
+
+class SubscriberEvents(rospy.SubscribeListener):
+    """Tells of every subscriber that comes or goes."""
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        super().__init__()
+        self._tell = tell
+
+    def peer_subscribe(self, _topic: str, _publish: Any, _peer_publish: Any) -> None:
+        """Called by rospy."""
+        self._tell()
+
+    def peer_unsubscribe(self, _topic: str, _peers: int) -> None:
+        """Called by rospy."""
+        self._tell()

@@ -1,0 +1,147 @@
+"""The joints between models: what an engine must be told of them, and what is saved."""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import List, Optional, Sequence, Tuple
+
+from ..description.model import WORLD, Joint
+from ..engine.body_plan import TIE_TYPES
+from ..engine.commands import ConnectModels
+from ..errors import Issue, warning
+from ..geometry import IDENTITY, Pose, compose, inverse
+from .order_slot import OrderSlot
+from .registry import Entity, Registry, UnknownEntityError
+
+_WORLD_ROW = -1
+
+
+@dataclass(frozen=True)
+class _Connection:
+    """`parent_from_joint`: the joint frame in the parent link's frame, in the world as loaded."""
+
+    joint: Joint
+    parent_from_joint: Pose = IDENTITY
+
+
+class InterModelJoints:
+    """Joints whose ends are scoped link names of several models. Never changes."""
+
+    def __init__(self, joints: Sequence[Joint] = ()) -> None:
+        self._all = [_Connection(joint) for joint in joints]
+
+    @property
+    def joints(self) -> List[Joint]:
+        """Those that hold."""
+        return [one.joint for one in self._all]
+
+    def slides(self, model: str) -> bool:
+        """Whether a sliding joint ends at a link of that model."""
+        return any(one.joint.type == "prismatic" and _touches(one.joint, model)
+                   for one in self._all)
+
+    def without(self, model: str) -> "InterModelJoints":
+        """What is left when a model goes."""
+        return self._of([one for one in self._all if not _touches(one.joint, model)])
+
+    def of(self, model: str) -> "InterModelJoints":
+        """Those that go when a model does."""
+        return self._of([one for one in self._all if _touches(one.joint, model)])
+
+    def joined(self, others: "InterModelJoints") -> "InterModelJoints":
+        """These and others."""
+        return self._of(self._all + others._all)
+
+    def renamed(self, old: str, new: str) -> "InterModelJoints":
+        """The same when a model is named otherwise."""
+        return self._of([replace(one, joint=replace(
+            one.joint, name=_rescoped(one.joint.name, old, new),
+            parent=_rescoped(one.joint.parent, old, new),
+            child=_rescoped(one.joint.child, old, new))) for one in self._all])
+
+    def present(self, registry: Registry) -> "InterModelJoints":
+        """Those whose links are there."""
+        return self._of([one for one in self._all if all(
+            _row(registry, end, "", None) is not None
+            for end in (one.joint.parent, one.joint.child))])
+
+    def located(self, registry: Registry) -> Tuple["InterModelJoints", List[Issue]]:
+        """With their places in the world as loaded, and warnings about those that cannot hold."""
+        found, issues = [], []
+        for joint in self.joints:
+            child, parent = (_initial(registry, name) for name in (joint.child, joint.parent))
+            if joint.type not in TIE_TYPES:
+                issues.append(warning("joint-not-held", f"joint '{joint.name}' of type "
+                                      f"{joint.type} connects two models; it holds nothing",
+                                      hint="put both into one model"))
+            elif child is not None and parent is not None:
+                at = compose(child, joint.pose)
+                found.append(_Connection(joint, compose(inverse(parent), at)))
+        return self._of(found), issues
+
+    def commands(self, registry: Registry, model: str = "",
+                 instead: Optional[Entity] = None) -> List[ConnectModels]:
+        """What connects the models of the registry; with `model`, only that one with others.
+
+        `instead`: what is going to take the place of `model`.
+        """
+        made = []
+        for one in self._all:
+            joint = one.joint
+            if model and not _touches(joint, model):
+                continue
+            parent, child = (_row(registry, name, model, instead)
+                             for name in (joint.parent, joint.child))
+            if parent is not None and child is not None:
+                made.append(ConnectModels(joint, parent, one.parent_from_joint, child, joint.pose))
+        return made
+
+    @staticmethod
+    def _of(connections: List[_Connection]) -> "InterModelJoints":
+        made = InterModelJoints()
+        made._all = connections
+        return made
+
+
+@dataclass(frozen=True)
+class DeletedModel:
+    """What a deleted model needs to come back: its place in the order, its joints to others.
+
+    `launched`: see `Entity`.
+    """
+
+    slot: OrderSlot
+    joints: InterModelJoints
+    launched: bool = False
+
+
+def _touches(joint: Joint, model: str) -> bool:
+    return any(end.startswith(model + "::") for end in (joint.parent, joint.child))
+
+
+def _rescoped(name: str, old: str, new: str) -> str:
+    return new + name[len(old):] if name.startswith(old + "::") else name
+
+
+def _initial(registry: Registry, name: str) -> Optional[Pose]:
+    """World pose of a link as loaded; the origin for the world; None for no such link."""
+    if name == WORLD:
+        return IDENTITY
+    try:
+        entity, index = registry.link(name)
+    except UnknownEntityError:
+        return None
+    return compose(entity.initial_pose, entity.model.links[index].pose)
+
+
+def _row(registry: Registry, name: str, model: str, instead: Optional[Entity]) -> Optional[int]:
+    if name == WORLD:
+        return _WORLD_ROW
+    if instead is not None and name.startswith(model + "::"):
+        plain = name[len(model) + 2:]
+        return (instead.first_link_row + instead.link_names.index(plain)
+                if plain in instead.link_names else None)
+    try:
+        entity, index = registry.link(name)
+    except UnknownEntityError:
+        return None
+    return entity.first_link_row + index

@@ -1,0 +1,68 @@
+"""What moves, remembered: states of models at one moment, to be put back later."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Sequence, Tuple
+
+from ..engine.commands import Command, ModelState, SetJoints, SetLinkState, SetModelState
+from ..engine.ring import Clock, Snapshot
+from ..geometry import Pose, Twist
+from .registry import Entity
+
+
+@dataclass(frozen=True)
+class RememberedState:
+    """A model: world pose of its frame, twist of its canonical link, and all there is below."""
+
+    pose: Pose
+    twist: Twist
+    links: Tuple[str, ...]
+    state: ModelState
+
+
+@dataclass(frozen=True)
+class WorldState:
+    """States by model name, and the clock."""
+
+    step: int
+    sim_ns: int
+    models: Dict[str, RememberedState]
+
+    @classmethod
+    def of(cls, entities: Sequence[Entity], snapshot: Snapshot,
+           now: Tuple[int, Clock]) -> "WorldState":
+        """The moment of a snapshot; `now`: the step count, since when nothing may have moved."""
+        step, clock = now
+        return cls(step, clock.sim_ns(step), {
+            entity.model.name: RememberedState(*entity.state(snapshot), tuple(entity.link_names),
+                                          entity.saved(snapshot))
+            for entity in entities})
+
+    def commands(self, entities: Sequence[Entity]) -> List[Command]:
+        """What puts these models back, as far as they are the same ones still."""
+        commands: List[Command] = []
+        for entity in entities:
+            was = self.models.get(entity.model.name)
+            if was is None or was.links != tuple(entity.link_names):
+                continue
+            if not entity.link_names:
+                entity.pose = was.pose
+            else:
+                commands += _commands(entity, was)
+        return commands
+
+
+def _commands(entity: Entity, was: RememberedState) -> List[Command]:
+    """An articulated model goes back by its frame and its joints, others link by link."""
+    model = entity.model
+    if model.static or len(entity.link_names) == 1:
+        return [SetModelState(entity.model_id, was.pose, None if model.static else was.twist)]
+    if not model.joints:
+        return [SetLinkState(entity.first_link_row + n, link.pose, link.twist)
+                for n, link in enumerate(was.state.links)]
+    found: List[Command] = [SetModelState(entity.model_id, was.pose, was.twist)]
+    if was.state.joints:
+        found.append(SetJoints(tuple(
+            (entity.first_joint_row + n, position, rate)
+            for n, (position, rate) in enumerate(was.state.joints))))
+    return found
