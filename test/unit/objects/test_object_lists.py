@@ -10,7 +10,7 @@ from my_simulations.objects.object_list import ObjectFile, parse_objects
 from my_simulations.objects.selection import closest, parse_groups, select
 from my_simulations.objects.yaml_source import Source, read_yaml
 
-DATA = Path(__file__).resolve().parents[1] / "data"
+DATA = Path(__file__).resolve().parents[2] / "data"
 INVALID = DATA / "invalid" / "objects"
 VALID = DATA / "valid" / "objects"
 

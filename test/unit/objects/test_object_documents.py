@@ -8,7 +8,7 @@ import pytest
 from my_simulations.errors import InputError
 from my_simulations.objects.object_document import FILE, REPLACE, marked, read_document, root_tag
 
-TUTORIAL = Path(__file__).resolve().parents[1] / "data" / "tutorial"
+TUTORIAL = Path(__file__).resolve().parents[2] / "data" / "tutorial"
 
 
 @pytest.mark.parametrize("prologue", [

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from reading import sdf
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "test/corpus"))
 from workers import Worker
 

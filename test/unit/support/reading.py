@@ -7,7 +7,8 @@ from my_simulations.errors import InputError, Severity
 from my_simulations.formats.reading import read_entity, read_world_text
 from my_simulations.resources.resolver import Resolver
 
-DATA = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "data")
+DATA = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                     "..", "..", "data"))
 VALID = os.path.join(DATA, "valid")
 INVALID = os.path.join(DATA, "invalid")
 

@@ -236,7 +236,7 @@ def test_the_editor_lists_and_plays_the_log_that_is_being_recorded(tmp_path, mon
 def test_recording_imports_nothing_that_serves_pages(tmp_path):
     program = ("import sys; sys.path[:0] = sys.argv[1:]\n"
                "from my_simulations.editor.logs.recorder import Recorder, path_of\n"
-               "from my_simulations.cli.front_ends import Faces\n"
+               "from my_simulations.cli.front_ends import FrontEnds\n"
                "assert not {'aiohttp', 'asyncio', 'numpy', 'trimesh', 'lxml'} & set(sys.modules), "
                "sorted(sys.modules)")
     subprocess.run([sys.executable, "-B", "-c", program, *sys.path], timeout=60, check=True)

@@ -9,7 +9,7 @@ from my_simulations.cli.roslaunch_underlay import separate_first_path, with_own_
 from my_simulations.resources import package_files
 from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ import numpy as np
 
 from my_simulations.geometry import IDENTITY, Pose, compose, pose_from_xyzrpy, transform
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 COLLADA = "{http://www.collada.org/2005/11/COLLADASchema}"
 
 

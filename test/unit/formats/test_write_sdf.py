@@ -23,7 +23,7 @@ from my_simulations.formats.xml.values import BOOL, FLOAT, FRICTION, INT, LIMIT,
 from my_simulations.geometry import Pose, quat_from_rpy, rpy_from_quat
 from my_simulations.resources.resolver import Resolver
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 WORLDS = sorted(ROOT.glob("world/**/*.world"))
 MODELS = [*sorted(ROOT.glob("models/*/model.sdf")), *sorted(ROOT.glob("objects/*.urdf")),
           *sorted(ROOT.glob("objects/*.sdf")), Path(VALID) / "everything.sdf"]

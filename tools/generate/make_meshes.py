@@ -1,6 +1,6 @@
 """Writes the project's own Collada meshes and textures into Media/models.
 
-    python3 test/content/make_meshes.py [FOLDER]
+    python3 tools/generate/make_meshes.py [FOLDER]
 
 A test compares the committed files with what this writes, so a mesh is changed here.
 """

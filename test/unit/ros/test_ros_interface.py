@@ -10,9 +10,9 @@ import pytest
 from my_simulations.ros import interface
 from my_simulations.ros.interface import BY_ROSPY, HEARS, PUBLISHES, SERVES, TABLE
 
-REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 ROS = REPOSITORY / "src" / "my_simulations" / "ros"
-sys.path.insert(0, str(REPOSITORY / "test" / "content"))
+sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
 
 from interface_table import with_interface
 
@@ -60,7 +60,7 @@ def test_names_move_with_the_node():
 
 
 def test_every_handler_of_the_table_is_a_method_and_every_service_has_a_title():
-    methods = {node.name for path in ROS.glob("*.py")
+    methods = {node.name for path in ROS.rglob("*.py")
                for made in ast.parse(path.read_text()).body if isinstance(made, ast.ClassDef)
                for node in made.body if isinstance(node, ast.FunctionDef)}
     for row in TABLE:
@@ -72,4 +72,4 @@ def test_every_handler_of_the_table_is_a_method_and_every_service_has_a_title():
 
 def test_the_readme_has_the_present_table():
     readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    assert with_interface(readme) == readme, "run test/content/interface_table.py"
+    assert with_interface(readme) == readme, "run tools/generate/interface_table.py"

@@ -8,7 +8,7 @@ import pytest
 from my_simulations.cli import gz_command
 from my_simulations.editor.logs.state_log import LogWriter
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 
 
 def test_no_command_lists_them_all(capsys):

@@ -12,7 +12,7 @@ from my_simulations.cli.check_model_command import check, main
 from my_simulations.errors import Severity
 from my_simulations.resources.resolver import Resolver
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 SHIPPED = [*sorted(ROOT.glob("world/**/*.world")), *sorted((ROOT / "models").iterdir()),
            *sorted(p for p in (ROOT / "objects").iterdir() if p.suffix != ".xacro"),
            ROOT / "urdf" / "robo.urdf"]

@@ -17,7 +17,7 @@ from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.saving import save_world
 from my_simulations.simulator.simulator import Simulator
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 WORLDS = sorted(ROOT.glob("world/**/*.world"))
 MODELS = [*sorted(ROOT.glob("models/*/model.sdf")), *sorted(ROOT.glob("objects/*.urdf")),
           *sorted(ROOT.glob("objects/*.sdf")), ROOT / "urdf/robo.urdf",
@@ -33,7 +33,7 @@ def faults(tmp_path_factory):
     (package,) = (name for name in known if name.startswith("sdformat"))
     flags = subprocess.run(["pkg-config", "--cflags", "--libs", package], capture_output=True,
                            text=True, check=True, timeout=60).stdout.split()
-    built = subprocess.run(["g++", "-std=c++17", str(ROOT / "test/content/parse_sdf.cc"), "-o",
+    built = subprocess.run(["g++", "-std=c++17", str(ROOT / "tools/generate/parse_sdf.cc"), "-o",
                             str(program), *flags], capture_output=True, text=True, timeout=300)
     assert built.returncode == 0, built.stderr
 

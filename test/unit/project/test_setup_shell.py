@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 
 PACKAGE = "<package format='2'>\n  <!-- old -->\n  <name> {name} </name>\n</package>\n"
 

@@ -146,7 +146,7 @@ def test_the_robot_stands_on_its_wheels_and_caster_when_spawned_at_zero():
 
 
 def test_the_meshes_are_what_their_script_writes():
-    script = ROOT / "test" / "content" / "make_meshes.py"
+    script = ROOT / "tools" / "generate" / "make_meshes.py"
     spec = importlib.util.spec_from_file_location("make_meshes", script)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
