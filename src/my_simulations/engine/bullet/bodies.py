@@ -97,6 +97,7 @@ class Body:
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
+        is_ball: its only shape is one sphere.
         lead_row: of its first part.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
         ties: how many joints connect it with other models.
@@ -110,6 +111,7 @@ class Body:
     balls: Tuple[Ball, ...] = ()
     moves: bool = True
     rigid: bool = True
+    is_ball: bool = False
     may_sleep: bool = True
     radius: float = 0.0
     still: int = 0

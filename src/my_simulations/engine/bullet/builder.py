@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import pybullet
 
 from ...description.model import Link, Model
-from ...description.shapes import MeshTable
+from ...description.shapes import MeshTable, Sphere
 from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, multiply
 from ..commands import LoadModel
 from ..inertia import principal
@@ -128,6 +128,7 @@ class Builder:
         part = self._part(rigid.number, BASE, masses)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
+                    is_ball=[type(c.geometry) for c in link.collisions] == [Sphere],
                     may_sleep=self._may_sleep(link))
         for uid in uids:
             set_dynamics(uid, BASE, link, masses.mass, masses.moments,
