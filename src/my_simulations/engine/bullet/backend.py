@@ -29,7 +29,7 @@ from ..commands import (
 )
 from ..plan import PlanError, open_joints
 from ..ring import JOINTS, LINKS
-from . import bodies, joints
+from . import bodies, filters, joints
 from .bodies import Body, Part
 from .builder import Builder
 from .constraints import Constraints
@@ -43,6 +43,8 @@ from .leftovers import Leftovers
 from .moving import Mover
 from .readout import Readout
 from .restore import Entry, inherited, restore
+from .rolling import EVERY as EVERY_ROLL
+from .rolling import Rolling
 from .shapes import ShapeError, ShapeFactory
 from .spin import SpinKeeper
 from .starts import Start, Starts
@@ -63,6 +65,7 @@ class BulletBackend:
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
         self._readout = Readout(self._on_diverged)
         self._leftovers = Leftovers()
+        self._rolling = Rolling()
         self._waker = Waker(self._bodies, self._touched)
         self._forces = Forces(self._waker.around)
         self._friction = FrictionBalance(self._on_misfit)
@@ -74,7 +77,8 @@ class BulletBackend:
                             self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
-                         self._decay, self._leftovers, self._readout)
+                         self._decay, self._leftovers, self._rolling,
+                         self._readout)
         self._events: List[Event] = []
         self._starts = Starts(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -130,6 +134,7 @@ class BulletBackend:
                 self._friction.balance()
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
+            self._rolling.before(step, dt)
             free = self._spin.before(step, dt)
             one()
             self._spin.after(free, self._forces.loaded_links, dt)
@@ -137,13 +142,20 @@ class BulletBackend:
             self._holds.apply()
 
     def _step_freely(self, first: int, count: int, dt: float) -> None:
-        """Make steps before which nothing acts: between two looks at what they left, no calls."""
-        one, leftovers = pybullet.stepSimulation, self._leftovers
+        """Make steps that nothing acts on from outside: between two looks at them, no calls."""
+        one, leftovers, rolling = pybullet.stepSimulation, self._leftovers, self._rolling
         step, end = first, first + count
         while step < end:
+            if not rolling.idle:
+                rolling.before(step, dt)
             ahead = end - step
-            if not leftovers.idle:
-                ahead = 1 if leftovers.busy else min(ahead, -step % EVERY_LOOK + 1)
+            if rolling.busy or leftovers.busy:
+                ahead = 1
+            else:
+                if not leftovers.idle:
+                    ahead = min(ahead, -step % EVERY_LOOK + 1)   # they look after a step
+                if not rolling.idle:
+                    ahead = min(ahead, EVERY_ROLL - step % EVERY_ROLL)   # before one
             for _ in range(ahead):
                 one()
             step += ahead
@@ -179,6 +191,7 @@ class BulletBackend:
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=settings.step_size, numSolverIterations=settings.iterations,
             numSubSteps=0, deterministicOverlappingPairs=1, enableFileCaching=0,
+            collisionFilterMode=filters.BOTH,
             # Overlaps are pushed out at 5 / s whatever the step: Bullet's default throws a body
             # that starts 0.2 m deep to 3 m, and makes bounces erratic (measured).
             contactERP=min(0.2, 5.0 * settings.step_size),
@@ -216,7 +229,9 @@ class BulletBackend:
         for body in built:
             self._register(body)
             for part in body.parts:
-                self._decay.add(body, part, model.links[part.row - first_row])
+                link = model.links[part.row - first_row]
+                self._decay.add(body, part, link)
+                self._rolling.add(body, part, link)
             joints.set_up(body, model, self._forces, dt)
         return entry
 
@@ -288,7 +303,7 @@ class BulletBackend:
                 del self._rows[part.row]
             for axis in body.axes:
                 del self._axes[axis.row]
-            bodies.remove(body)
+        entry.builder.remove(entry.bodies)
 
     def _connect(self, command: Connect) -> None:
         self._ties.connect(command, self._rows)
@@ -304,7 +319,7 @@ class BulletBackend:
         self._models.clear()
         self._forces.clear_all()
         for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
-                       self._leftovers):
+                       self._leftovers, self._rolling):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()

@@ -13,7 +13,7 @@ from ..commands import LoadModel
 from ..inertia import principal
 from ..plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..rows import AXES, axis_rows, row_name
-from . import surfaces
+from . import filters, surfaces
 from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics
 from .implicit import mobility
 from .mass_matrix import MassMatrix
@@ -94,8 +94,7 @@ class Builder:
                              else self._build_tree(each, pose))
             self._ignore_each_other(built)
         except Exception:
-            for body in built:
-                remove(body)
+            self.remove(built)
             raise
         return built
 
@@ -125,6 +124,8 @@ class Builder:
                                      useMaximalCoordinates=int(not self._articulated))
             for shape in ([piece.make() for piece in rigid.pieces] or [-1])
         ]
+        for uid, piece in zip(uids, rigid.pieces):
+            (filters.static(piece.role) if rigid.static else filters.moving(link)).set(uid, BASE)
         part = self._part(rigid.number, BASE, masses)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
@@ -212,6 +213,8 @@ class Builder:
             index = n if tree.plan.fixed_base else n - 1
             link = Link("") if node.index == NO_LINK else self._model.links[node.index]
             set_dynamics(uid, index, link, masses.mass, masses.moments, False)
+            if tree.shapes[n] is not None:
+                filters.moving(link).set(uid, index)
             if node.index != NO_LINK:
                 parts.append(self._part(node.index, index, masses))
             if node.joint is not None and node.number is not None:
@@ -244,7 +247,13 @@ class Builder:
         return Ball(index, child, parent, multiply(conjugate(mine.orientation),
                                                    above.orientation))
 
-    def _ignore_each_other(self, built: Sequence[Body]) -> None:
+    def remove(self, built: Sequence[Body]) -> None:
+        """Take the bodies out of PyBullet."""
+        self._ignore_each_other(built, False)
+        for body in built:
+            remove(body)
+
+    def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:
         """Links of one model collide only when self_collide asks (SDF 1.7, model/self_collide)."""
         if self._model.self_collide or self._model.static:
             return
@@ -252,4 +261,4 @@ class Builder:
             for other in built[n + 1:]:
                 for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
                     for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
-                        pybullet.setCollisionFilterPair(one.uid, other.uid, a, b, 0)
+                        filters.ignore(one.uid, other.uid, a, b, ignored)
