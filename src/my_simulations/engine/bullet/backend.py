@@ -134,7 +134,7 @@ class BulletBackend:
                 self._friction.balance()
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
-            self._rolling.before(step, dt)
+            self._rolling.before(step, gravity)
             free = self._spin.before(step, dt)
             one()
             self._spin.after(free, self._forces.loaded_links, dt)
@@ -147,7 +147,7 @@ class BulletBackend:
         step, end = first, first + count
         while step < end:
             if not rolling.idle:
-                rolling.before(step, dt)
+                rolling.before(step, self._settings.gravity)
             ahead = end - step
             if rolling.busy or leftovers.busy:
                 ahead = 1

@@ -5,20 +5,21 @@ cylinder that turns they lag 0.2 to 0.4 mm behind the axle, and what they carry 
 a can pushed to 0.05 m/s rolled at 0.4 m/s after 20 s, one at rest rolled out of the room. So the
 points of lying cylinders are dropped before each step; the step finds new ones.
 
-New points are a little beside the place as well where they are found by iteration, on boxes and
-meshes. What that pushes a cylinder at rest is less than the least rolling resistance of real ones,
-a ten-thousandth of the weight, so one that hardly moves is stopped.
+A step finds one new point, at one end or the other: a cylinder at rest would rock on them. So one
+that hardly moves, where the floor is level and nothing that moves touches it, keeps its points, and
+is stopped in every step and put back.
 """
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Tuple
+from math import dist
+from typing import Any, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
 from ...description.model import Link
 from ...description.shapes import Capsule, Cylinder, Empty
-from ...geometry import Pose, Vec3, conjugate, dot, rotate
+from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
 from ..plan import BASE
 from . import filters
 from .bodies import Body, Part
@@ -28,21 +29,22 @@ EVERY = 8
 
 _LYING = 0.1      # of the contact normal along the axis: less is a cylinder on its side
 _TURNS = 0.01     # rad/s: joints slower than that need nothing
-_CREEP = 2e-3     # m/s: what is slower, and
-_RESIST = 2e-3    # m/s^2: speeds up less than that, stands
+_CREEP = 5e-3     # m/s: what rolls slower stands
+_TURN = 0.2       # rad/s: the same for its turning
+_LEVEL = 1e-3     # of gravity along the floor: less is a level one
 _ASLEEP = 3       # looks without velocity: it sleeps, and Bullet leaves it alone
+_SHIFT = 1e-5     # m between two looks: less is not its own
 _NONE = (0.0, 0.0, 0.0)
 
 
 @dataclass
 class _Roller:
-    """A round link: its axis in the frame of its principal axes, and its speed when last seen."""
+    """A round link: its axis in the frame of its principal axes; looks without velocity."""
 
     body: Body
     part: Part
     axis: Vec3
     meets: filters.Filter
-    before: float = 0.0
     still: int = 0
 
 
@@ -51,10 +53,14 @@ class Rolling:
 
     def __init__(self) -> None:
         self._rollers: Dict[Tuple[int, int], _Roller] = {}
-        self._lying: Dict[Tuple[int, int], filters.Filter] = {}
+        self._rolling: Dict[Tuple[int, int], filters.Filter] = {}
+        self._standing: Dict[int, Pose] = {}
+        self._moving: Set[int] = set()
 
     def add(self, body: Body, part: Part, link: Link) -> None:
         """Know a link of a body; only moving ones that are cylinders about one axis matter."""
+        if body.moves:
+            self._moving.add(body.uid)
         axis = _axis_of(link)
         if axis is not None and body.moves:
             own = rotate(conjugate(part.link_from_com.orientation), axis)
@@ -62,14 +68,18 @@ class Rolling:
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
+        self._standing.pop(body.uid, None)
+        self._moving.discard(body.uid)
         for part in body.parts:
-            for table in (self._rollers, self._lying):
+            for table in (self._rollers, self._rolling):
                 table.pop((body.uid, part.index), None)
 
     def clear(self) -> None:
         """All bodies are gone."""
         self._rollers.clear()
-        self._lying.clear()
+        self._rolling.clear()
+        self._standing.clear()
+        self._moving.clear()
 
     @property
     def idle(self) -> bool:
@@ -79,27 +89,33 @@ class Rolling:
     @property
     def busy(self) -> bool:
         """True when something must be done before every step."""
-        return bool(self._lying)
+        return bool(self._rolling or self._standing)
 
-    def before(self, step: int, dt: float) -> None:
-        """Act before the step that begins at count `step`, of `dt` s."""
+    def before(self, step: int, gravity: Vec3) -> None:
+        """Act before the step that begins at count `step`."""
+        for uid in self._standing:
+            linear, angular = pybullet.getBaseVelocity(uid)
+            if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
+                pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         if step % EVERY == 0:
             for key, roller in self._rollers.items():
-                if self._lies(roller, dt):
-                    self._lying[key] = roller.meets
+                if self._rolls(roller, gravity):
+                    self._rolling[key] = roller.meets
                 else:
-                    self._lying.pop(key, None)
-        for (uid, index), meets in self._lying.items():
+                    self._rolling.pop(key, None)
+        for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 
-    def _lies(self, roller: _Roller, dt: float) -> bool:
-        """Whether a link lies on its side and may roll; stops it when it creeps."""
+    def _rolls(self, roller: _Roller, gravity: Vec3) -> bool:
+        """Whether a link lies on its side and does not stand; finds out whether it does."""
         uid, index = roller.body.uid, roller.part.index
         if roller.body.rigid:
             linear, angular = pybullet.getBaseVelocity(uid)
             roller.still = roller.still + 1 if linear == angular == _NONE else 0
             if roller.still:
-                return roller.still < _ASLEEP and (uid, index) in self._lying
+                if roller.still >= _ASLEEP:
+                    self._standing.pop(uid, None)
+                return False
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
         elif index == BASE:
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
@@ -110,16 +126,34 @@ class Rolling:
         axis = rotate(turn, roller.axis)
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
         if not contacts:
-            return (uid, index) in self._lying
+            return (uid, index) in self._rolling
         if any(abs(dot(contact[7], axis)) > _LYING for contact in contacts):
             return False
         if roller.body.rigid:
-            speed = (linear[0] ** 2 + linear[1] ** 2 + linear[2] ** 2) ** 0.5
-            if speed < _CREEP and abs(speed - roller.before) < _RESIST * EVERY * dt:
-                pybullet.resetBaseVelocity(uid, _NONE, _NONE)
-                speed = 0.0
-            roller.before = speed
+            before = self._standing.pop(uid, None)
+            if _slow(linear, angular) and self._on_level(contacts, gravity):
+                self._stand(uid, before)
+                return False
         return True
+
+    def _stand(self, uid: int, before: Optional[Pose]) -> None:
+        """Let a body stand where it stood at the last look, if it did and moved since by itself."""
+        at = Pose(*pybullet.getBasePositionAndOrientation(uid))
+        if before is not None and dist(at.position, before.position) < _SHIFT:
+            x, y, _ = before.position
+            at = Pose((x, y, at.position[2]), before.orientation)
+            pybullet.resetBasePositionAndOrientation(uid, at.position, at.orientation)
+        self._standing[uid] = at
+
+    def _on_level(self, contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
+        """Whether a body only touches level floors that do not move."""
+        limit = _LEVEL * norm(gravity)
+        return all(contact[2] not in self._moving and norm(cross(contact[7], gravity)) <= limit
+                   for contact in contacts)
+
+
+def _slow(linear: Vec3, angular: Vec3) -> bool:
+    return norm(linear) < _CREEP and norm(angular) < _TURN
 
 
 def _axis_of(link: Link) -> Optional[Vec3]:
