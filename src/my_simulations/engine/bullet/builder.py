@@ -14,7 +14,7 @@ from ..inertia import principal
 from ..plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..rows import AXES, axis_rows, row_name
 from . import filters, surfaces
-from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics
+from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics, sweep
 from .implicit import mobility
 from .mass_matrix import MassMatrix
 from .shapes import Recipe, ShapeFactory
@@ -137,6 +137,8 @@ class Builder:
             if body.rigid:
                 set_decay(uid, link, dt)
         body.radius = radius_of(uids[0])
+        if body.rigid and body.moves and rigid.pieces:
+            sweep(uids[0])
         return body
 
     def _part(self, number: int, index: int, masses: _Masses) -> Part:
