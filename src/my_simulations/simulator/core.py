@@ -255,7 +255,8 @@ class WorldCore(WorldViews):
                   gravity: Optional[Vec3] = None) -> PhysicsSettings:
         physics = physics or self._physics
         return PhysicsSettings(physics.max_step_size, gravity or self._gravity,
-                               max(0.0, physics.real_time_update_rate), max(1, physics.ode.iters))
+                               max(0.0, physics.real_time_update_rate), max(1, physics.ode.iters),
+                               physics.ode.friction_model == "cone_model")
 
     def _holding(self) -> Hold:
         with self._lock:

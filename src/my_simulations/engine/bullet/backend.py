@@ -199,6 +199,7 @@ class BulletBackend:
             # a tenth of it: a stack of ten then takes four times as long and leans ten times as
             # far; with all of it (1) a heavy body on light ones collapses (measured).
             warmStartingFactor=0.99,
+            enableConeFriction=int(settings.cone),
             allowedCcdPenetration=0.0,   # what flies fast stops at a wall, not in it
         )
 
