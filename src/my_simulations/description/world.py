@@ -34,7 +34,9 @@ class Light:
 class OdePhysics:
     """Settings of Gazebo's ODE engine: stored and read back; two of them also drive ours.
 
-    `iters`, and `friction_model`: "pyramid_model" or "cone_model" (SDF, ode/solver); "" for the default.
+    Attributes:
+        iters: the most iterations of a step.
+        friction_model: "pyramid_model" or "cone_model" (SDF, ode/solver); "" for the default.
     """
 
     auto_disable_bodies: bool = False

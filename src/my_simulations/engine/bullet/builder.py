@@ -126,6 +126,7 @@ class Builder:
         ]
         for uid, piece in zip(uids, rigid.pieces):
             (filters.static(piece.role) if rigid.static else filters.moving(link)).set(uid, BASE)
+            _fit(uid, BASE, piece)
         part = self._part(rigid.number, BASE, masses)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
@@ -215,8 +216,10 @@ class Builder:
             index = n if tree.plan.fixed_base else n - 1
             link = Link("") if node.index == NO_LINK else self._model.links[node.index]
             set_dynamics(uid, index, link, masses.mass, masses.moments, False)
-            if tree.shapes[n] is not None:
+            shape = tree.shapes[n]
+            if shape is not None:
                 filters.moving(link).set(uid, index)
+                _fit(uid, index, shape)
             if node.index != NO_LINK:
                 parts.append(self._part(node.index, index, masses))
             if node.joint is not None and node.number is not None:
@@ -264,3 +267,9 @@ class Builder:
                 for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
                     for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
                         filters.ignore(one.uid, other.uid, a, b, ignored)
+
+
+def _fit(uid: int, index: int, shape: Recipe) -> None:
+    """Take off the 1 mm that Bullet adds around a convex hull; those in compounds keep it."""
+    if shape.is_hull:
+        pybullet.changeDynamics(uid, index, collisionMargin=0.0)

@@ -45,12 +45,15 @@ class ShapeError(ValueError):
 class Recipe:
     """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments.
 
-    `role`: "plane", "floor" for the box that stands below a plane, or "" (see `filters`).
+    Attributes:
+        role: "plane", "floor" for the box that stands below a plane, or "" (see `filters`).
+        is_hull: it is one convex hull of points.
     """
 
     names: str
     arguments: Dict[str, Any]
     role: str = ""
+    is_hull: bool = False
 
     def make(self) -> int:
         """PyBullet's number of a new one, which goes with its body. Raises ShapeError."""
@@ -134,7 +137,7 @@ class ShapeFactory:
             "flags": [c.get("flags", 0) for c in columns],
             "collisionFramePositions": [c["pose"].position for c in columns],
             "collisionFrameOrientations": [c["pose"].orientation for c in columns],
-        })
+        }, is_hull=len(collisions) == 1 and more is None and _is_hull(collisions[0], meshes, static))
 
     def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
                 static: bool) -> Dict[str, Any]:
@@ -233,6 +236,15 @@ def _floor_of(plane: Collision) -> Collision:
     turn = _to_z(plane.geometry)
     below = compose(plane.pose, Pose(rotate(turn, (0.0, 0.0, -_FLOOR)), turn))
     return replace(plane, geometry=Box((2.0 * _FLOOR,) * 3), pose=below)
+
+
+def _is_hull(collision: Collision, meshes: MeshTable, static: bool) -> bool:
+    """Whether a collision becomes one convex hull."""
+    geometry = collision.geometry
+    if isinstance(geometry, (Ellipsoid, Cone)):
+        return True
+    return (not static and isinstance(geometry, SOLIDS)
+            and len(meshes[mesh_key(geometry)].parts or ()) <= 1)
 
 
 def _to_z(plane: Plane) -> "tuple[float, float, float, float]":
