@@ -93,16 +93,16 @@ class Rolling:
 
     def before(self, step: int, gravity: Vec3) -> None:
         """Act before the step that begins at count `step`."""
-        for uid in self._standing:
-            linear, angular = pybullet.getBaseVelocity(uid)
-            if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
-                pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         if step % EVERY == 0:
             for key, roller in self._rollers.items():
                 if self._rolls(roller, gravity):
                     self._rolling[key] = roller.meets
                 else:
                     self._rolling.pop(key, None)
+        for uid in self._standing:
+            linear, angular = pybullet.getBaseVelocity(uid)
+            if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
+                pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 

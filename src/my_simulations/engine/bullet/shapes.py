@@ -124,6 +124,8 @@ class ShapeFactory:
     def _recipe(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                 static: bool, more: Optional[Dict[str, Any]] = None) -> Recipe:
         columns = [self._column(c, meshes, frame, static) for c in collisions]
+        is_hull = (len(collisions) == 1 and more is None
+                   and _is_hull(collisions[0], meshes, static))
         if more is not None:
             columns.append(more)
         return Recipe(", ".join(c.name for c in collisions), {
@@ -137,7 +139,7 @@ class ShapeFactory:
             "flags": [c.get("flags", 0) for c in columns],
             "collisionFramePositions": [c["pose"].position for c in columns],
             "collisionFrameOrientations": [c["pose"].orientation for c in columns],
-        }, is_hull=len(collisions) == 1 and more is None and _is_hull(collisions[0], meshes, static))
+        }, is_hull=is_hull)
 
     def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
                 static: bool) -> Dict[str, Any]:
