@@ -363,6 +363,7 @@ class BulletBackend:
         """A command reached a body."""
         self._readout.touch(body)
         self._leftovers.touched(body)
+        self._rolling.touched(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

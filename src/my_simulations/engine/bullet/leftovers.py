@@ -18,14 +18,14 @@ import pybullet
 from ...geometry import Vec3, conjugate, cross, rotate
 from .bodies import Body
 
-EVERY = 4
+EVERY = 8
 """Steps between two looks at the fast bodies."""
 
-_FAST_ROUNDS = 4   # looks until every fast body was asked for its contacts
+_FAST_ROUNDS = 2   # looks until every fast body was asked for its contacts
 _ROUNDS = 16       # looks until every moving body was asked for its speed
-_SLOW_ROUNDS = 128 # the same for those found at rest
+_SLOW_ROUNDS = 64  # the same for those found at rest
 _FAST = 0.05       # m/s, or rad/s: slower ones lose nothing that one sees
-_KEPT = 32         # looks for which a body is asked in every step, once fast or after a find
+_KEPT = 16         # looks for which a body is asked in every step, once fast or after a find
 _MOST_CONTACTS = 8 # a body with more lies in a pile, where nobody knows how far it should slide
 _SOON = -1         # instead of a look: it is not known yet which comes next
 _NONE = (0.0, 0.0, 0.0)

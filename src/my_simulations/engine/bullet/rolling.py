@@ -91,6 +91,14 @@ class Rolling:
         """True when something must be done before every step."""
         return bool(self._rolling or self._standing)
 
+    def touched(self, body: Body) -> None:
+        """A rigid body was put somewhere or given another velocity: it may roll at once."""
+        self._standing.pop(body.uid, None)
+        roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
+        if roller is not None:
+            roller.still = 0
+            self._rolling[body.uid, BASE] = roller.meets
+
     def before(self, step: int, gravity: Vec3) -> None:
         """Act before the step that begins at count `step`."""
         if step % EVERY == 0:
