@@ -85,7 +85,7 @@ def test_a_cylinder_rolls_on_at_its_speed(lab: Lab, laws: Laws, speed: float):
     lab.seconds(30)
     for can, _, _ in rolling:
         laws.near("cylinders rolling on a plane for 30 s: speed, m/s",
-                  math.hypot(*lab.twist(can).linear[:2]), speed, rel=0.01)
+                  math.hypot(*lab.twist(can).linear[:2]), speed, rel=0.015)
 
 
 def test_a_cylinder_rolls_down_a_slope(lab: Lab, laws: Laws):
