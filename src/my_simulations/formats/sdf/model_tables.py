@@ -257,8 +257,9 @@ PHYSICS = Table("physics", Physics, {
             "iters": Value("iters", INT),
             "precon_iters": Value("precon_iters", INT, use=KEPT),
             "sor": Value("sor", FLOAT, use=KEPT),
+            "friction_model": Value("friction_model", TEXT),
             **_kept("type", "min_step_size", "island_threads", "thread_position_correction",
-                    "use_dynamic_moi_rescaling", "friction_model"),
+                    "use_dynamic_moi_rescaling"),
         }),
         "constraints": Group({
             **{name: Value(name, FLOAT, use=KEPT) for name in (
