@@ -29,18 +29,20 @@ from ..commands import (
 )
 from ..plan import PlanError, open_joints
 from ..ring import JOINTS, LINKS
-from . import bodies, joints
+from . import bodies, extra_surfaces, joints
 from .bodies import Body, Part
 from .builder import Builder
 from .constraints import Constraints
 from .contacts import read_contacts
 from .decay import Decay
+from .filters import Filters
 from .forces import Forces
 from .friction import EVERY, FrictionBalance
 from .holds import Holds
 from .moving import Mover
 from .readout import Readout
 from .restore import Entry, inherited, restore
+from .settling import Settling
 from .shapes import ShapeError, ShapeFactory
 from .spin import SpinKeeper
 from .starts import Start, Starts
@@ -67,11 +69,13 @@ class BulletBackend:
         self._holds = Holds(self._waker.around)
         self._ties = Ties()
         self._decay = Decay()
+        self._settling = Settling()
+        self._filters = Filters()
         self._mover = Mover(self._rows, self._axes, self._readout, self._waker,
                             self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
-                         self._decay, self._readout)
+                         self._decay, self._settling, self._filters, self._readout)
         self._events: List[Event] = []
         self._starts = Starts(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -117,7 +121,7 @@ class BulletBackend:
         self._readout.stepped()
         one = pybullet.stepSimulation
         if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
-                                      self._decay)):
+                                      self._decay, self._settling)):
             for _ in range(count):
                 one()
             self._forces.stepped()
@@ -126,6 +130,7 @@ class BulletBackend:
         for step in range(first, first + count):
             if not self._friction.idle and step % EVERY == 0:
                 self._friction.balance()
+            self._settling.look(step)
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
             free = self._spin.before(step, dt)
@@ -167,6 +172,7 @@ class BulletBackend:
             # that starts 0.2 m deep to 3 m, and makes bounces erratic (measured).
             contactERP=min(0.2, 5.0 * settings.step_size),
         )
+        self._settling.configure(settings.iterations)
 
     # -- models ----------------------------------------------------------------------------------
 
@@ -196,7 +202,10 @@ class BulletBackend:
         for body in built:
             self._register(body)
             for part in body.parts:
-                self._decay.add(body, part, model.links[part.row - first_row])
+                link = model.links[part.row - first_row]
+                self._decay.add(body, part, link)
+                self._filters.add(body, part, link)
+                extra_surfaces.store(body, part, link, dt)
             joints.set_up(body, model, self._forces, dt)
         return entry
 
@@ -251,6 +260,7 @@ class BulletBackend:
         self._forces.add_body(body)
         self._friction.add(body)
         self._spin.add(body)
+        self._settling.add(body)
         self._readout.add(body)
 
     def _remove(self, command: RemoveModel) -> None:
@@ -282,7 +292,8 @@ class BulletBackend:
                 self._forces.forget(body)
         self._models.clear()
         self._forces.clear_all()
-        for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay):
+        for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
+                       self._settling, self._filters):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()

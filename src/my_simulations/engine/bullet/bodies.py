@@ -5,6 +5,7 @@ nowhere else: `link_from_com` of each part converts, both ways.
 """
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import List, Optional, Tuple
 
@@ -64,6 +65,7 @@ class Axis:
     Attributes:
         number: which of its joint's axes it is.
         ease: what acceleration an effort of 1 gives it, all else free, as the file has the body.
+        lower, upper: its stops, rad or m.
     """
 
     row: int
@@ -71,6 +73,8 @@ class Axis:
     name: str
     number: int = 0
     ease: float = 0.0
+    lower: float = -math.inf
+    upper: float = math.inf
 
 
 @dataclass
@@ -99,6 +103,8 @@ class Body:
         rigid: joint-free, so it may sleep when `may_sleep`.
         lead_row: of its first part.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
+        seen_at: its centre of mass at the last read-out; parting an overlap moves it without
+            velocity.
         ties: how many joints connect it with other models.
     """
 
@@ -113,6 +119,7 @@ class Body:
     may_sleep: bool = True
     radius: float = 0.0
     still: int = 0
+    seen_at: Optional[Vec3] = None
     ties: int = 0
     lead_row: int = field(init=False)
 

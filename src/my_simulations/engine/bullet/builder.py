@@ -15,6 +15,7 @@ from ..plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..rows import AXES, axis_rows, row_name
 from . import surfaces
 from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics
+from .extra_surfaces import gives_way
 from .implicit import mobility
 from .mass_matrix import MassMatrix
 from .shapes import Recipe, ShapeFactory
@@ -69,7 +70,8 @@ class Builder:
         self._model: Model = command.model
         self.model_id = command.model_id
         self._first_row = command.first_link_row
-        self._articulated = command.articulated
+        self._articulated = command.articulated or (
+            not command.model.static and any(map(gives_way, command.model.links)))
         self._shapes = shapes
         self._axis_rows = {row.name: command.first_joint_row + n
                            for n, row in enumerate(axis_rows(command.model))}
@@ -141,7 +143,8 @@ class Builder:
         link = self._model.links[number]
         surface = surfaces.of_link(link)
         return Part(self._first_row + number, index, masses.com, masses.mass,
-                    masses.moments, surface.mu, surfaces.friction(surface, masses.mass == 0.0),
+                    masses.moments, surfaces.coefficient(surface),
+                    surfaces.friction(surface, masses.mass == 0.0),
                     link.gravity)
 
     def _may_sleep(self, link: Link) -> bool:
