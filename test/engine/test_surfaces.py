@@ -10,7 +10,8 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Surface
-from my_simulations.geometry import Pose, quat_from_rpy
+from my_simulations.engine.commands import ReadContacts
+from my_simulations.geometry import Pose, quat_from_rpy, rotate
 
 G = 9.8
 
@@ -172,3 +173,24 @@ def test_torsional_friction_stops_a_spinning_ball(lab: Lab, laws: Laws):
     slowing = 3 * math.pi / 16 * 0.02 * 0.8 * G / (0.4 * 0.2 ** 2)
     laws.near("torsional friction: rate after 0.5 s, rad/s", lab.twist(body).angular[2],
               5.0 - slowing * 0.5, rel=0.03)
+
+
+@pytest.mark.parametrize("kind", ["rigid", "articulated"])
+def test_contacts_carry_the_weight_and_what_holds_a_body_on_a_slope(lab: Lab, laws: Laws,
+                                                                    kind: str):
+    tilt = quat_from_rpy(0.0, math.radians(15), 0.0)
+    floor = lab.load(slab("floor", (6, 6, 1)), orientation=tilt)
+    model = _plate("p", Surface())
+    x, _, z = rotate(tilt, (0.0, 0.0, 0.55))
+    body = lab.load(_jointed(model) if kind == "articulated" else model, (x, 0, z), tilt)
+    lab.seconds(1)
+    total = [0.0, 0.0, 0.0]
+    for contact in lab.apply(ReadContacts()):
+        assert {contact.row_a, contact.row_b} == {lab.rows[body, "link"], lab.rows[floor, "link"]}
+        sign = 1.0 if contact.row_a == lab.rows[body, "link"] else -1.0
+        assert abs(contact.depth) < 1e-3
+        for n in range(3):
+            total[n] += sign * (contact.normal[n] * contact.force + contact.friction[n])
+    for name, found, expected in zip("xyz", total, (0.0, 0.0, G)):
+        laws.near(f"sum of the contact forces on a plate of 1 kg, {name}, N", found, expected,
+                  abs=0.05)

@@ -5,6 +5,7 @@ from typing import Dict, List, Tuple
 
 import pybullet
 
+from ...geometry import add, scale
 from ..commands import Contact
 from ..plan import BASE
 from .bodies import Body
@@ -22,7 +23,8 @@ def read_contacts(bodies: Dict[int, Body], limit: int) -> Tuple[Contact, ...]:
                 if part.index == index or (body.rigid and part.index == BASE)][:1]
         if len(rows) == 2:
             found.append(Contact(rows[0], rows[1], contact[6], contact[7],
-                                 -contact[8], contact[9]))
+                                 -contact[8], contact[9], add(scale(contact[11], contact[10]),
+                                                              scale(contact[13], contact[12]))))
         if len(found) >= limit:
             break
     return tuple(found)

@@ -57,7 +57,7 @@ def gives_way(link: Link) -> bool:
 
 
 def _shares(collision: Collision, part: Part) -> Vec3:
-    """Of the larger coefficient, along the axes of the body that PyBullet knows, the principal ones.
+    """Shares of the larger coefficient along the principal axes, which are PyBullet's.
 
     Exact where the first direction is one of them; else the diagonal of the tensor.
     """

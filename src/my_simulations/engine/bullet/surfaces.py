@@ -34,5 +34,5 @@ def restitution(surface: Surface) -> float:
 
 
 def directed(surface: Surface) -> bool:
-    """Without a first direction Gazebo's solver takes one from the world's axes; mu is used then."""
+    """Whether mu and mu2 differ by direction; without fdir1 mu holds in all of them."""
     return surface.mu != surface.mu2 and any(surface.fdir1)
