@@ -172,7 +172,7 @@ class BulletBackend:
             # that starts 0.2 m deep to 3 m, and makes bounces erratic (measured).
             contactERP=min(0.2, 5.0 * settings.step_size),
         )
-        self._settling.configure(settings.iterations)
+        self._settling.configure(settings.iterations, settings.step_size)
 
     # -- models ----------------------------------------------------------------------------------
 

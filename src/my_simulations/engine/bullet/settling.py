@@ -1,11 +1,13 @@
 """What keeps standing things where they stand.
 
-Overlaps are parted without giving velocity: with split impulses Bullet moves rigid bodies apart and
+In the first second after something was put into the world overlaps are parted without giving
+velocity: with split impulses Bullet moves rigid bodies apart and
 leaves their momentum alone, so that a body that starts in a shelf does not jump out of it, and one
 with a large moment of inertia does not turn on for ever. Their price is that Bullet forgets to put
 joints back that went past their stops, so that is done here, without velocity too.
 
-With that, contacts may begin with 0.99 of the impulse that they had in the step before.
+With that, contacts may begin with 0.99 of the impulse that they had in the step before. Later the
+split impulses end: with them a stack of ten boxes leans by 1 mm a second (measured).
 
 Bullet ends its iterations once no row changes a velocity by more than sqrt(1e-7) m/s, at which a
 thing that stands may drift. Contacts of articulated bodies start from nothing in each step (there
@@ -17,7 +19,7 @@ stands on the level costs nothing.
 """
 from __future__ import annotations
 
-from typing import Any, Dict, Sequence
+from typing import Any, Dict, Optional, Sequence
 
 import pybullet
 
@@ -32,6 +34,7 @@ _LEANS = 0.02         # friction by normal force
 _RESIDUALS = (1e-7, 1e-11, 1e-15)  # PyBullet's own; for leaning bodies; for standing robots
 _MORE_ITERATIONS = 4
 _WARM = 0.99
+_PARTING = 1.0        # s
 _PAST_STOP = 1e-6     # rad or m past a stop that do not matter
 _PUT_BACK = 0.5       # share of the way back to the stop at each look
 
@@ -45,16 +48,25 @@ class Settling:
         self._level = 0
         self._leaning = False
         self._iterations = 50
+        self._parting_steps = 1000
+        self._new = False                     # something was put in since the last look
+        self._until: Optional[int] = None     # the step at which split impulses end
 
-    def configure(self, iterations: int) -> None:
-        """Tell PyBullet, also after its world was reset; `iterations` are those of the file."""
+    def configure(self, iterations: int, dt: float) -> None:
+        """Tell PyBullet, also after its world was reset; `iterations` are those of the file.
+
+        `dt`: the step size, s.
+        """
         self._iterations = iterations
-        pybullet.setPhysicsEngineParameter(useSplitImpulse=1, splitImpulsePenetrationThreshold=0.0,
+        self._parting_steps = round(_PARTING / dt)
+        pybullet.setPhysicsEngineParameter(splitImpulsePenetrationThreshold=0.0,
                                            warmStartingFactor=_WARM)
+        self._split(self._new or self._until is not None)
         self._use(self._level)
 
     def add(self, body: Body) -> None:
         """Know a body; only articulated ones and those that may not sleep matter."""
+        self._new = True
         if body.moves and not body.rigid:
             self._trees[body.uid] = body
         elif body.moves and not body.may_sleep:
@@ -64,7 +76,7 @@ class Settling:
         """A body is gone."""
         self._trees.pop(body.uid, None)
         self._rigid.pop(body.uid, None)
-        if self.idle:
+        if not self._trees and not self._rigid:
             self._leaning = False
             self._change(0)
 
@@ -73,16 +85,23 @@ class Settling:
         self._trees.clear()
         self._rigid.clear()
         self._level, self._leaning = 0, False
+        self._new, self._until = False, None
 
     @property
     def idle(self) -> bool:
         """True when no body can need it."""
-        return not self._trees and not self._rigid
+        return not (self._trees or self._rigid or self._new or self._until is not None)
 
     def look(self, step: int) -> None:
         """Before the step that begins at count `step`: whether something stands."""
+        if self._new:
+            self._new, self._until = False, step + self._parting_steps
+            self._split(True)
         if step % _EVERY:
             return
+        if self._until is not None and step >= self._until:
+            self._until = None
+            self._split(False)
         if step % _RIGID_EVERY == 0:
             self._leaning = any(_leans(uid) for uid in self._rigid)
         standing = False
@@ -91,6 +110,10 @@ class Settling:
             _put_back(body, states)
             standing = standing or _stands(body, states)
         self._change(2 if standing else int(self._leaning))
+
+    @staticmethod
+    def _split(wanted: bool) -> None:
+        pybullet.setPhysicsEngineParameter(useSplitImpulse=int(wanted))
 
     def _change(self, level: int) -> None:
         if level != self._level:
