@@ -183,10 +183,10 @@ def test_an_empty_friction_and_default_texts_leave_the_defaults():
 
 def test_what_is_known_but_not_simulated_is_kept_with_its_place_and_without_a_warning():
     collision, issues = collision_of(
-        "<geometry><box/></geometry><surface><friction><torsional><coefficient>2</coefficient>"
+        "<geometry><box/></geometry><surface><friction><torsional><ode><slip>2</slip></ode>"
         "</torsional></friction></surface>")
     assert issues == []
-    assert collision.extra == ["<surface><friction><torsional><coefficient>2</coefficient>"
+    assert collision.extra == ["<surface><friction><torsional><ode><slip>2</slip></ode>"
                                "</torsional></friction></surface>"]
 
 

@@ -121,9 +121,14 @@ class BulletBackend:
         self._readout.stepped()
         one = pybullet.stepSimulation
         if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
-                                      self._decay, self._settling)):
-            for _ in range(count):
-                one()
+                                      self._decay)):
+            if self._settling.idle:
+                for _ in range(count):
+                    one()
+            else:
+                for step in range(first, first + count):
+                    self._settling.look(step)
+                    one()
             self._forces.stepped()
             return
         dt, gravity = self._settings.step_size, self._settings.gravity
