@@ -269,6 +269,7 @@ class Contact:
         normal: unit vector from b to a, world axes.
         depth: m, how far they overlap; negative while apart.
         force: N, along the normal, on a.
+        friction: N, across the normal, on a, world axes.
     """
 
     row_a: int
@@ -277,6 +278,7 @@ class Contact:
     normal: Vec3
     depth: float
     force: float
+    friction: Vec3 = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from ..commands import (
     SetModelState,
 )
 from ..ring import JOINTS, LINKS
-from . import bodies, filters, joint_axes
+from . import bodies, collision_groups, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_builder import Builder
 from .collision_shapes import ShapeError, ShapeFactory
@@ -45,6 +45,8 @@ from .pair_friction import EVERY, FrictionBalance
 from .pinned_bodies import PinnedBodies
 from .rolling import EVERY as EVERY_ROLL
 from .rolling import Rolling
+from .settling import EVERY as EVERY_SETTLE
+from .settling import Settling
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
@@ -73,11 +75,12 @@ class BulletBackend:
         self._holds = PinnedBodies(self._waker.around)
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
+        self._settling = Settling()
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
-                            self._forces, self._spin, self._holds)
+                                  self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
-                         self._decay, self._leftovers, self._rolling,
+                         self._decay, self._leftovers, self._rolling, self._settling,
                          self._readout)
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
@@ -133,6 +136,7 @@ class BulletBackend:
         for step in range(first, first + count):
             if not self._friction.idle and step % EVERY == 0:
                 self._friction.balance()
+            self._settling.look(step)
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
             self._rolling.before(step, gravity)
@@ -145,8 +149,10 @@ class BulletBackend:
     def _step_freely(self, first: int, count: int, dt: float) -> None:
         """Make steps that nothing acts on from outside: between two looks at them, no calls."""
         one, leftovers, rolling = pybullet.stepSimulation, self._leftovers, self._rolling
+        settling = self._settling
         step, end = first, first + count
         while step < end:
+            settling.look(step)
             if not rolling.idle:
                 rolling.before(step, self._settings.gravity)
             ahead = end - step
@@ -157,6 +163,8 @@ class BulletBackend:
                     ahead = min(ahead, -step % EVERY_LOOK + 1)   # they look after a step
                 if not rolling.idle:
                     ahead = min(ahead, EVERY_ROLL - step % EVERY_ROLL)   # before one
+                if not settling.idle:
+                    ahead = min(ahead, EVERY_SETTLE - step % EVERY_SETTLE)
             for _ in range(ahead):
                 one()
             step += ahead
@@ -192,7 +200,7 @@ class BulletBackend:
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=settings.step_size, numSolverIterations=settings.iterations,
             numSubSteps=0, deterministicOverlappingPairs=1, enableFileCaching=0,
-            collisionFilterMode=filters.BOTH,
+            collisionFilterMode=collision_groups.BOTH,
             # Overlaps are pushed out at 5 / s whatever the step: Bullet's default throws a body
             # that starts 0.2 m deep to 3 m, and makes bounces erratic (measured).
             contactERP=min(0.2, 5.0 * settings.step_size),
@@ -203,6 +211,7 @@ class BulletBackend:
             enableConeFriction=int(settings.cone),
             allowedCcdPenetration=0.0,   # what flies fast stops at a wall, not in it
         )
+        self._settling.configure(settings.iterations, settings.step_size)
 
     # -- models ----------------------------------------------------------------------------------
 
@@ -235,6 +244,7 @@ class BulletBackend:
                 link = model.links[part.row - first_row]
                 self._decay.add(body, part, link)
                 self._rolling.add(body, part, link)
+                extra_surfaces.store(body, part, link, dt)
             joint_axes.set_up(body, model, self._forces, dt)
         return entry
 
@@ -295,6 +305,7 @@ class BulletBackend:
         self._friction.add(body)
         self._spin.add(body)
         self._leftovers.add(body)
+        self._settling.add(body)
         self._readout.add(body)
 
     def _remove(self, command: RemoveModel) -> None:
@@ -327,7 +338,7 @@ class BulletBackend:
         self._models.clear()
         self._forces.clear_all()
         for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
-                       self._leftovers, self._rolling):
+                       self._leftovers, self._rolling, self._settling):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()

@@ -5,6 +5,7 @@ nowhere else: `link_from_com` of each part converts, both ways.
 """
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import List, Optional, Tuple
 
@@ -67,6 +68,7 @@ class Axis:
     Attributes:
         number: which of its joint's axes it is.
         ease: what acceleration an effort of 1 gives it, all else free, as the file has the body.
+        lower, upper: its stops, rad or m.
     """
 
     row: int
@@ -74,6 +76,8 @@ class Axis:
     name: str
     number: int = 0
     ease: float = 0.0
+    lower: float = -math.inf
+    upper: float = math.inf
 
 
 @dataclass
@@ -103,6 +107,8 @@ class Body:
         is_ball: its only shape is one sphere.
         lead_row: of its first part.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
+        seen_at: its centre of mass at the last read-out; parting an overlap moves it without
+            velocity.
         ties: how many joints connect it with other models.
     """
 
@@ -118,6 +124,7 @@ class Body:
     may_sleep: bool = True
     radius: float = 0.0
     still: int = 0
+    seen_at: Optional[Vec3] = None
     ties: int = 0
     lead_row: int = field(init=False)
 

@@ -13,9 +13,10 @@ from ..body_plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..commands import LoadModel
 from ..principal_inertia import principal
 from ..ring_rows import AXES, axis_rows, row_name
-from . import filters, surface_coefficients
+from . import collision_groups, surface_coefficients
 from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics, sweep
 from .collision_shapes import Recipe, ShapeFactory
+from .extra_surfaces import gives_way
 from .implicit_axes import mobility
 from .mass_matrix import MassMatrix
 
@@ -69,7 +70,8 @@ class Builder:
         self._model: Model = command.model
         self.model_id = command.model_id
         self._first_row = command.first_link_row
-        self._articulated = command.articulated
+        self._articulated = command.articulated or (
+            not command.model.static and any(map(gives_way, command.model.links)))
         self._shapes = shapes
         self._axis_rows = {row.name: command.first_joint_row + n
                            for n, row in enumerate(axis_rows(command.model))}
@@ -125,7 +127,8 @@ class Builder:
             for shape in ([piece.make() for piece in rigid.pieces] or [-1])
         ]
         for uid, piece in zip(uids, rigid.pieces):
-            (filters.static(piece.role) if rigid.static else filters.moving(link)).set(uid, BASE)
+            (collision_groups.static(link, piece.role) if rigid.static
+             else collision_groups.moving(link)).set(uid, BASE)
             _fit(uid, BASE, piece)
         part = self._part(rigid.number, BASE, masses)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
@@ -145,16 +148,9 @@ class Builder:
     def _part(self, number: int, index: int, masses: _Masses) -> Part:
         link = self._model.links[number]
         surface = surface_coefficients.of_link(link)
-        return Part(
-            self._first_row + number,
-            index,
-            masses.com,
-            masses.mass,
-            masses.moments,
-            surface.mu,
-            surface_coefficients.friction(surface, masses.mass == 0.0),
-            link.gravity,
-        )
+        return Part(self._first_row + number, index, masses.com, masses.mass, masses.moments,
+                    surface_coefficients.coefficient(surface),
+                    surface_coefficients.friction(surface, masses.mass == 0.0), link.gravity)
 
     def _may_sleep(self, link: Link) -> bool:
         return (self._model.allow_auto_disable and link.gravity
@@ -225,7 +221,7 @@ class Builder:
             set_dynamics(uid, index, link, masses.mass, masses.moments, False)
             shape = tree.shapes[n]
             if shape is not None:
-                filters.moving(link).set(uid, index)
+                collision_groups.moving(link).set(uid, index)
                 _fit(uid, index, shape)
             if node.index != NO_LINK:
                 parts.append(self._part(node.index, index, masses))
@@ -273,7 +269,7 @@ class Builder:
             for other in built[n + 1:]:
                 for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
                     for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
-                        filters.ignore(one.uid, other.uid, a, b, ignored)
+                        collision_groups.ignore(one.uid, other.uid, a, b, ignored)
 
 
 def _fit(uid: int, index: int, shape: Recipe) -> None:

@@ -46,7 +46,8 @@ class Recipe:
     """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments.
 
     Attributes:
-        role: "plane", "floor" for the box that stands below a plane, or "" (see `filters`).
+        role: "plane", "floor" for the box that stands below a plane, or "" (see
+            `collision_groups`).
         is_hull: it is one convex hull of points.
     """
 

@@ -21,7 +21,7 @@ from ...description.model import Link
 from ...description.shapes import Capsule, Cylinder, Empty
 from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
 from ..body_plan import BASE
-from . import filters
+from . import collision_groups
 from .bodies import Body, Part
 
 EVERY = 8
@@ -44,7 +44,7 @@ class _Roller:
     body: Body
     part: Part
     axis: Vec3
-    meets: filters.Filter
+    meets: collision_groups.Filter
     still: int = 0
 
 
@@ -53,7 +53,7 @@ class Rolling:
 
     def __init__(self) -> None:
         self._rollers: Dict[Tuple[int, int], _Roller] = {}
-        self._rolling: Dict[Tuple[int, int], filters.Filter] = {}
+        self._rolling: Dict[Tuple[int, int], collision_groups.Filter] = {}
         self._standing: Dict[int, Pose] = {}
         self._moving: Set[int] = set()
 
@@ -64,7 +64,8 @@ class Rolling:
         axis = _axis_of(link)
         if axis is not None and body.moves:
             own = rotate(conjugate(part.link_from_com.orientation), axis)
-            self._rollers[body.uid, part.index] = _Roller(body, part, own, filters.moving(link))
+            self._rollers[body.uid, part.index] = _Roller(body, part, own,
+                                                          collision_groups.moving(link))
 
     def forget(self, body: Body) -> None:
         """A body is gone."""

@@ -37,16 +37,30 @@ class Filter(NamedTuple):
         pybullet.setCollisionFilterGroupMask(uid, index, self.group, self.mask)
 
 
-def moving(link: Link, bits: int = EVERYTHING) -> Filter:
-    """Of a link that moves: it meets what shares `bits` with it."""
+def moving(link: Link) -> Filter:
+    """Of a link that moves: it meets what shares a bit of the collide_bitmask with it."""
+    bits = _bits(link)
     solid = [c.geometry for c in link.collisions if not isinstance(c.geometry, Empty)]
     kind = _BOXES if all(isinstance(geometry, Box) for geometry in solid) else _OTHERS
     return Filter(bits << _SHIFT | kind, bits << _SHIFT)
 
 
-def static(role: str = "", bits: int = EVERYTHING) -> Filter:
+def static(link: Link, role: str = "") -> Filter:
     """Of what never moves by itself; `role`: that of the recipe it was made from."""
+    bits = _bits(link)
     return Filter(bits << _SHIFT, {"plane": _OTHERS, "floor": _BOXES}.get(role, _BOXES | _OTHERS))
+
+
+def _bits(link: Link) -> int:
+    """The collide_bitmask of a link: PyBullet filters by link, so all bits of its collisions.
+
+    A surface that collides without contact gives and takes no forces (Gazebo, ODEPhysics).
+    """
+    bits = 0
+    for collision in link.collisions:
+        if not collision.surface.collide_without_contact:
+            bits |= collision.surface.collide_bitmask & EVERYTHING
+    return bits if link.collisions else EVERYTHING
 
 
 def ignore(one: int, other: int, index: int, other_index: int, ignored: bool = True) -> None:
