@@ -3,8 +3,8 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import * as plans from '../../web/js/building/plan.js';
-import {faultsOf, meeting, openingFault} from '../../web/js/building/check.js';
-import {History} from '../../web/js/building/history.js';
+import {faultsOf, meeting, openingFault} from '../../web/js/building/plan_check.js';
+import {History} from '../../web/js/building/plan_history.js';
 
 const {add, addLevel, emptyPlan, itemOf, moveEnd, moveItems, remove, update} = plans;
 

@@ -5,12 +5,12 @@ import test from 'node:test';
 import {FloorTool, MeasureTool, OpeningTool, StairsTool, WallTool, rescaled, segmentWords,
 } from '../../web/js/building/draw_tools.js';
 import {applied, fieldFault, fieldsOf, levelApplied, levelValues, roofApplied, roofValues, valuesOf,
-} from '../../web/js/building/forms.js';
+} from '../../web/js/building/inspector_fields.js';
 import {placeOf} from '../../web/js/building/plan.js';
-import {placingOps} from '../../web/js/building/preview.js';
+import {placingOps} from '../../web/js/building/building_preview.js';
 import {PaintTool, SelectTool} from '../../web/js/building/select_tool.js';
-import {Session} from '../../web/js/building/session.js';
-import {openingPaths, stairsPaths, wallPath} from '../../web/js/building/svg.js';
+import {Session} from '../../web/js/building/drawing_session.js';
+import {openingPaths, stairsPaths, wallPath} from '../../web/js/building/plan_svg.js';
 
 const mouse = (x, y, keys = {}) =>
   ({point: [x, y], shift: false, alt: false, ctrl: false, tolerance: 0.06, ...keys});

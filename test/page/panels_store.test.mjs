@@ -5,10 +5,10 @@ import {Connection} from '../../web/js/connection.js';
 import {Store} from '../../web/js/store.js';
 import {Watches} from '../../web/js/watches.js';
 import {faultText} from '../../web/js/panels/dialog.js';
-import {withEnding} from '../../web/js/panels/dialogs/files.js';
-import {contextMenu, keysOf, menus} from '../../web/js/panels/menus.js';
-import {numberFault} from '../../web/js/panels/inputs.js';
-import {HOTKEYS} from '../../web/js/keys.js';
+import {withEnding} from '../../web/js/panels/dialogs/world_file_dialogs.js';
+import {contextMenu, keysOf, menus} from '../../web/js/panels/menu_items.js';
+import {numberFault} from '../../web/js/panels/property_inputs.js';
+import {HOTKEYS} from '../../web/js/hotkeys.js';
 import {FakeSimulator, box, light, world} from './fake_simulator.mjs';
 
 /** A page without elements, connected to a fake simulator. */

@@ -1,5 +1,5 @@
 /** A small world's document, and a connection that notes what is asked of it. */
-import {shapeModel, newLight} from '../../web/js/inserts.js';
+import {shapeModel, newLight} from '../../web/js/new_entities.js';
 
 export function model(name, id, pose) {
   const made = shapeModel('box');

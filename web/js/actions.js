@@ -5,7 +5,7 @@
  * refused is also put into the store's issues, unless a dialog that shows it itself asks for `quiet`.
  */
 import {alignMoves} from './align.js';
-import {shapeModel, newLight, SHAPES, LIGHTS} from './inserts.js';
+import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
 
 /** @typedef {{ok: boolean, value?: any, issues: import('./connection.js').Issue[]}} Outcome */
 

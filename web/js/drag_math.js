@@ -5,7 +5,7 @@
 import {
   add, axisAngle, cross, dot, multiply, normalized, orientation, position, scale, subtract,
 } from './pose.js';
-import {magnetic, SMALLEST_SIZE, snapSize, snapTurn} from './snapping.js';
+import {magnetic, SMALLEST_SIZE, snapSize, snapTurn} from './drag_snap.js';
 
 /** @typedef {{origin: number[], direction: number[]}} Ray */
 

@@ -1,7 +1,7 @@
 /** Puts the page together. */
 import {createActions} from './actions.js';
 import {Connection, webSocketUrl} from './connection.js';
-import {mountKeys} from './keys.js';
+import {mountKeys} from './hotkeys.js';
 import {mountPanels} from './panels/panels.js';
 import {Store} from './store.js';
 import {Watches} from './watches.js';

@@ -1,5 +1,5 @@
 /** What the page knows: the world as the simulator last told it, and what the user looks at. */
-import {decodeFrame, LIVE} from './frames.js';
+import {decodeFrame, LIVE} from './pose_frames.js';
 import {compose, inverse} from './pose.js';
 
 /** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'insert'} Mode */

@@ -1,12 +1,12 @@
 /** Tools that put new things into the plan. */
-import {openingTrouble} from './check.js';
-import {direction, distance, inPolygon, isSimple, polar, same, tidyPoint} from './geometry.js';
-import {wallNear} from './hit.js';
+import {openingTrouble} from './plan_check.js';
+import {direction, distance, inPolygon, isSimple, polar, same, tidyPoint} from './plane_geometry.js';
+import {wallNear} from './hit_test.js';
 import {
   DEFAULTS, GROUND_FLOOR_THICKNESS, add, attached, detached, outerLength, withLevel,
 } from './plan.js';
 import {roomsOf} from './rooms.js';
-import {snapEnd, snapPolar, snapStart} from './snap.js';
+import {snapEnd, snapPolar, snapStart} from './wall_snap.js';
 import {Tool} from './tool.js';
 
 export class WallTool extends Tool {

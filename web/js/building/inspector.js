@@ -1,12 +1,12 @@
-/** Inspectors as windows: Cancel, Apply and OK over the fields of `forms.js`. */
+/** Inspectors as windows: Cancel, Apply and OK over the fields of `inspector_fields.js`. */
 import {Dialog, labelled} from '../panels/dialog.js';
 import {h} from '../panels/dom.js';
 import {
   ROOF_FIELDS, applied, fieldFault, fieldsOf, levelApplied, levelFields, levelValues, roofApplied,
   roofValues, valuesOf,
-} from './forms.js';
+} from './inspector_fields.js';
 import {itemOf, linkName} from './plan.js';
-import {NAMES} from './session.js';
+import {NAMES} from './drawing_session.js';
 
 export const SWATCHES = ['#ffffff', '#c2a9a0', '#ebce9d', '#fe7905', '#ffc34e', '#6fcbac'];
 export const TEXTURES = [['Wood', 'Gazebo/Wood'], ['Tiles', 'Gazebo/CeilingTiled'], ['Bricks', 'Gazebo/Bricks']];
@@ -55,7 +55,7 @@ export function inspectRoof(session) {
 }
 
 /**
- * @param {{title: string, fields: import('./forms.js').Field[], values: () => any,
+ * @param {{title: string, fields: import('./inspector_fields.js').Field[], values: () => any,
  *          apply: (values: any, before: any) => string}} form  `apply` says what is wrong, or ''
  */
 function inspect({title, fields, values, apply}) {

@@ -3,7 +3,7 @@ import {fill, h} from '../panels/dom.js';
 import {FloorTool, OpeningTool, StairsTool, WallTool} from './draw_tools.js';
 import {SWATCHES, TEXTURES, inspectRoof} from './inspector.js';
 import {PaintTool} from './select_tool.js';
-import {svg} from './svg.js';
+import {svg} from './plan_svg.js';
 
 const GLYPHS = {
   wall: 'M2 14h16M2 10h16M2 6h16M6 6v4M14 6v4M10 10v4M2 6v8M18 6v8',
@@ -19,7 +19,7 @@ function glyph(name) {
 
 /**
  * @param {HTMLElement} element
- * @param {{session: import('./session.js').Session, importPlan: () => void}} parts
+ * @param {{session: import('./drawing_session.js').Session, importPlan: () => void}} parts
  */
 export function mountPalette(element, {session, importPlan}) {
   const tools = [

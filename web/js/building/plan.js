@@ -5,11 +5,11 @@
  *
  * The shape of a plan is that of the plan file: metres and radians, colours as #rrggbb.
  *
- * @typedef {import('./geometry.js').Point} Point
+ * @typedef {import('./plane_geometry.js').Point} Point
  * @typedef {'walls'|'windows'|'doors'|'stairs'|'floors'} Kind
  * @typedef {{kind: Kind, id: number}} Ref
  */
-import {direction, distance, minus, plus, polar, same, tidy, tidyPoint} from './geometry.js';
+import {direction, distance, minus, plus, polar, same, tidy, tidyPoint} from './plane_geometry.js';
 import {outlineOf} from './rooms.js';
 
 const FORMAT = 1;

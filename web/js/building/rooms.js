@@ -1,13 +1,13 @@
 /** Closed rooms between walls, and the outline of all walls, by the faces of a plane graph. */
-import {crossing, distance, inPolygon, minus, plus, same, side, signedArea} from './geometry.js';
+import {crossing, distance, inPolygon, minus, plus, same, side, signedArea} from './plane_geometry.js';
 
 const known = new WeakMap();
 
 /**
  * @typedef {Object} Room
- * @property {import('./geometry.js').Point[]} outline  middle lines of its walls, counter-clockwise
- * @property {import('./geometry.js').Point[]} inside   the faces of its walls
- * @property {import('./geometry.js').Point[][]} holes  what stands free in it
+ * @property {import('./plane_geometry.js').Point[]} outline  middle lines of its walls, counter-clockwise
+ * @property {import('./plane_geometry.js').Point[]} inside   the faces of its walls
+ * @property {import('./plane_geometry.js').Point[][]} holes  what stands free in it
  * @property {number} area  m2 between the faces of the walls
  *
  * The rooms of a list of walls; the same list gives the same answer without work.

@@ -1,11 +1,11 @@
 /** Scroll bars for a sheet without end: they span what is drawn and what is seen. */
 import {h} from '../panels/dom.js';
-import {extentOf} from './canvas.js';
-import {SCALE} from './svg.js';
+import {extentOf} from './plan_canvas.js';
+import {SCALE} from './plan_svg.js';
 
 /**
  * @param {HTMLElement} element  holds the sheet
- * @param {{session: import('./session.js').Session, canvas: import('./canvas.js').Canvas}} parts
+ * @param {{session: import('./drawing_session.js').Session, canvas: import('./plan_canvas.js').Canvas}} parts
  * @returns {() => void} brings them up to date
  */
 export function mountScrollbars(element, {session, canvas}) {

@@ -1,12 +1,12 @@
 /** Selecting, moving, stretching and turning, and painting. */
-import {openingTrouble} from './check.js';
-import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './geometry.js';
-import {hitOf, itemsWithin, wallNear} from './hit.js';
+import {openingTrouble} from './plan_check.js';
+import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './plane_geometry.js';
+import {hitOf, itemsWithin, wallNear} from './hit_test.js';
 import {
   attached, detached, itemOf, moveEnd, moveItems, placeOf, update, wallYaw,
 } from './plan.js';
-import {NAMES} from './session.js';
-import {SNAP_ANGLE, snapPolar} from './snap.js';
+import {NAMES} from './drawing_session.js';
+import {SNAP_ANGLE, snapPolar} from './wall_snap.js';
 import {Tool} from './tool.js';
 
 const QUARTER = Math.PI / 2;

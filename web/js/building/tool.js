@@ -5,7 +5,7 @@ import {add} from './plan.js';
  * `double`, `typed` (a length) and `cancel` (Esc, right button), and shows what it is about to do in
  * `session.draft`. Here is what it does where a tool has nothing of its own to do.
  *
- * @typedef {{point: import('./geometry.js').Point, shift: boolean, alt: boolean, ctrl: boolean,
+ * @typedef {{point: import('./plane_geometry.js').Point, shift: boolean, alt: boolean, ctrl: boolean,
  *            tolerance: number}} Mouse
  */
 export class Tool {

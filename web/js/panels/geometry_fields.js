@@ -76,7 +76,7 @@ export function unitGeometry(type) {
 
 /**
  * @param {{type: string}} geometry
- * @returns {import('./properties_table.js').Field[]}
+ * @returns {import('./property_fields.js').Field[]}
  */
 export function geometryFields(geometry) {
   const simple = SIMPLE.includes(geometry.type);

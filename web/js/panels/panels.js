@@ -12,18 +12,18 @@
  * @property {ReturnType<typeof mountTheme>} theme
  * @property {any} view  null until it is there, and where there is no WebGL
  */
-import {HOTKEYS} from '../keys.js';
+import {HOTKEYS} from '../hotkeys.js';
 import {ask} from './dialog.js';
-import {aboutDialog, hotkeyDialog} from './dialogs/about.js';
-import {newWorld, openDialog, saveAsDialog} from './dialogs/files.js';
-import {forceDialog} from './dialogs/force.js';
-import {logsDialog} from './dialogs/logs.js';
+import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
+import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
+import {forceDialog} from './dialogs/force_dialog.js';
+import {logsDialog} from './dialogs/log_dialog.js';
 import {fill, h, remembered, roving} from './dom.js';
-import {InsertTab} from './insert.js';
-import {JointsPanel} from './joints.js';
-import {mountLayers} from './layers.js';
+import {InsertTab} from './insert_tab.js';
+import {JointsPanel} from './joints_panel.js';
+import {mountLayers} from './layers_tab.js';
 import {mountMenuBar} from './menubar.js';
-import {contextMenu, menus} from './menus.js';
+import {contextMenu, menus} from './menu_items.js';
 import {Notices} from './notices.js';
 import {Plots} from './plots.js';
 import {openMenu} from './popup.js';
@@ -31,7 +31,7 @@ import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
 import {mountToolBar} from './toolbar.js';
-import {WorldTab} from './world.js';
+import {WorldTab} from './world_tab.js';
 
 /**
  * @param {Document} document
@@ -255,7 +255,7 @@ class Windows {
       document.body.classList.remove('building');
       return;
     }
-    const {mount} = await import('../building/building.js');
+    const {mount} = await import('../building/building_editor.js');
     element.hidden = false;
     document.body.classList.add('building');
     const {store, request, actions} = this.page;

@@ -1,6 +1,6 @@
 /** Draws curves with their axes onto a canvas. */
 import {themeColor} from './dom.js';
-import {numberText} from './format.js';
+import {numberText} from './text_format.js';
 import {extent, ticks} from './plot_data.js';
 
 /** Told apart by eyes that see no red or green as well; readable on dark and light. */

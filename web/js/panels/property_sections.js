@@ -1,13 +1,13 @@
 /**
  * Which sections the property panel shows for a row of the World tab. Pure.
  */
-import * as table from './properties_table.js';
+import * as table from './property_fields.js';
 import {geometryFields} from './geometry_fields.js';
 
 /**
  * @param {any} document
  * @param {import('./world_rows.js').Row|null} row
- * @returns {{title: string, sections: import('./properties_table.js').Section[]}|null} null where
+ * @returns {{title: string, sections: import('./property_fields.js').Section[]}|null} null where
  *   the row has no properties, or what it stood for has gone
  */
 export function sectionsOf(document, row) {

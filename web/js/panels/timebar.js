@@ -3,7 +3,7 @@
  * slider in their place.
  */
 import {fill, h, remembered, roving} from './dom.js';
-import {clockText} from './format.js';
+import {clockText} from './text_format.js';
 import {icon} from './icons.js';
 
 const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];

@@ -2,7 +2,7 @@
 import {fill, h, roving} from './dom.js';
 import {icon} from './icons.js';
 import {openPopup} from './popup.js';
-import {Video} from './video.js';
+import {Video} from './video_recorder.js';
 
 const MODES = [
   ['select', 'select', 'Select (Esc)'],

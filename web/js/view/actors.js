@@ -5,7 +5,7 @@
 import {AnimationClip, AnimationMixer, Group} from 'three';
 import {ActorPath} from '../actor_path.js';
 import {SimClock} from '../sim_clock.js';
-import {place} from './convert.js';
+import {place} from './three_convert.js';
 
 /** Milliseconds between two steps, as between pose frames. */
 const PERIOD = 1000 / 30;

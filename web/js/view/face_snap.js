@@ -1,7 +1,7 @@
 /** The snap tool (N): a face of one model against a face of another, with two clicks. */
 import {BufferAttribute, BufferGeometry, DoubleSide, Mesh} from 'three';
 import {snapped} from '../face_math.js';
-import {through} from './marks.js';
+import {through} from './markers.js';
 
 function triangle(color) {
   const geometry = new BufferGeometry();

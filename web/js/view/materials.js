@@ -3,8 +3,8 @@ import {
   CanvasTexture, DoubleSide, FrontSide, MeshBasicMaterial, MeshLambertMaterial, MeshPhongMaterial,
   RepeatWrapping, SRGBColorSpace, TextureLoader,
 } from 'three';
-import {colorOf} from './convert.js';
-import {patternCanvas} from './textures.js';
+import {colorOf} from './three_convert.js';
+import {patternCanvas} from './builtin_textures.js';
 
 /** Grey of what has no material (Gazebo/Grey and Gazebo/White for meshes look alike with light). */
 const GREY = [0.7, 0.7, 0.7, 1];

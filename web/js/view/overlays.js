@@ -5,10 +5,10 @@ import {
 } from 'three';
 import {equivalentBox} from '../inertia_math.js';
 import {skeletonOf} from '../skeleton.js';
-import {place} from './convert.js';
-import {meshOf, visualParts} from './geometry.js';
-import {arrow, ball, boxLines, empty, segments, through, triad} from './marks.js';
-import {patternCanvas} from './textures.js';
+import {place} from './three_convert.js';
+import {meshOf, visualParts} from './shape_meshes.js';
+import {arrow, ball, boxLines, empty, segments, through, triad} from './markers.js';
+import {patternCanvas} from './builtin_textures.js';
 
 const PER_MODEL = ['collisions', 'joints', 'com', 'inertia', 'frames', 'skeleton'];
 /** Density of lead: a ball of the link's mass is then small enough to see round. */

@@ -1,7 +1,7 @@
 /** White wire boxes round what is selected, aligned with it. */
 import {LineBasicMaterial, Vector3} from 'three';
-import {place} from './convert.js';
-import {boxLines} from './marks.js';
+import {place} from './three_convert.js';
+import {boxLines} from './markers.js';
 
 const material = new LineBasicMaterial({color: 0xffffff, fog: false});
 const LIGHT_SIZE = 0.7;

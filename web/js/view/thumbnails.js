@@ -3,7 +3,7 @@ import {
   Box3, Color, DirectionalLight, HemisphereLight, Matrix4, PerspectiveCamera, Scene, Vector3,
 } from 'three';
 import {forward, framing, lookAt, right, up} from '../camera_math.js';
-import {soloModel} from './solo.js';
+import {soloModel} from './standalone_model.js';
 
 const SIZE = 192;
 const FOV = 0.6;

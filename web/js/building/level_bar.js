@@ -27,7 +27,7 @@ export function dropLevel(session) {
 
 /**
  * @param {HTMLElement} element
- * @param {{session: import('./session.js').Session, canvas: import('./canvas.js').Canvas}} parts
+ * @param {{session: import('./drawing_session.js').Session, canvas: import('./plan_canvas.js').Canvas}} parts
  */
 export function mountLevels(element, {session, canvas}) {
   const choice = h('select', {'aria-label': 'Level', onchange: () => session.goTo(Number(choice.value))});

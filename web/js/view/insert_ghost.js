@@ -1,9 +1,9 @@
 /** The ghost of what is being added: it follows the mouse over the ground, a click puts it down. */
 import {rayPlane, WORLD_AXES} from '../drag_math.js';
-import {magnetic} from '../snapping.js';
-import {place} from './convert.js';
-import {lightIcon} from './lights.js';
-import {soloModel} from './solo.js';
+import {magnetic} from '../drag_snap.js';
+import {place} from './three_convert.js';
+import {lightIcon} from './light_views.js';
+import {soloModel} from './standalone_model.js';
 
 export class Placer {
   #store;

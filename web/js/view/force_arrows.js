@@ -3,7 +3,7 @@ import {Group} from 'three';
 import {
   conjugate, length, normalized, orientation, rotate, scale, subtract, transform,
 } from '../pose.js';
-import {arrow, empty, point, through} from './marks.js';
+import {arrow, empty, point, through} from './markers.js';
 
 const COLOR = {force: 0xff7a00, torque: 0xb5179e};
 const PIXELS = 120;

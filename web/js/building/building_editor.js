@@ -2,18 +2,18 @@
 import {ask} from '../panels/dialog.js';
 import {fill, h, onceAFrame} from '../panels/dom.js';
 import {mountMenuBar} from '../panels/menubar.js';
-import {Canvas} from './canvas.js';
-import {forgetDraft, keepDraft, leftDraft} from './draft.js';
+import {Canvas} from './plan_canvas.js';
+import {forgetDraft, keepDraft, leftDraft} from './unsaved_plan.js';
 import {MeasureTool} from './draw_tools.js';
-import {Files, importImage} from './files.js';
-import {listenToKeys, listenToMouse, listenToView} from './input.js';
+import {Files, importImage} from './building_files.js';
+import {listenToKeys, listenToMouse, listenToView} from './input_events.js';
 import {inspectItem, inspectLevel, inspectRoof} from './inspector.js';
-import {dropLevel, mountLevels, newLevel} from './levels.js';
+import {dropLevel, mountLevels, newLevel} from './level_bar.js';
 import {mountPalette} from './palette.js';
-import {Preview, placingOps} from './preview.js';
+import {Preview, placingOps} from './building_preview.js';
 import {mountScrollbars} from './scrollbars.js';
 import {SelectTool} from './select_tool.js';
-import {Session} from './session.js';
+import {Session} from './drawing_session.js';
 import {isEmpty, withoutImages} from './plan.js';
 
 /**

@@ -3,7 +3,7 @@
  */
 import {Dialog} from '../dialog.js';
 import {h} from '../dom.js';
-import {makeInput} from '../inputs.js';
+import {makeInput} from '../property_inputs.js';
 import {modelOf} from '../world_rows.js';
 
 /** Length of a vector. */

@@ -3,7 +3,7 @@ import {
   Box3, BoxGeometry, BufferGeometry, CapsuleGeometry, ConeGeometry, CylinderGeometry,
   ExtrudeGeometry, Matrix4, Mesh, Path, PlaneGeometry, Quaternion, Shape, SphereGeometry, Vector3,
 } from 'three';
-import {matrixOf} from './convert.js';
+import {matrixOf} from './three_convert.js';
 import {Materials} from './materials.js';
 
 /**
@@ -108,7 +108,7 @@ function basicParts(geometry, meshes) {
 /**
  * The parts of a visual, or of a collision when `material` is given.
  * @param {{pose: number[], geometry: any, material?: any, transparency?: number}} shape
- * @param {{meshes: import('./meshes.js').Meshes, materials: Materials}} stock
+ * @param {{meshes: import('./mesh_files.js').Meshes, materials: Materials}} stock
  * @param {import('./materials.js').Variant & {material?: any}} [look]  material: a three material
  *        in place of the shape's
  * @returns {Part[]|Promise<Part[]>} at once when nothing must be fetched

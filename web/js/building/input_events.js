@@ -1,16 +1,16 @@
 /** Mouse and keyboard on the sheet, handed to the tool in metres of the plan. */
-import {hotkey} from '../keys.js';
+import {hotkey} from '../hotkeys.js';
 import {isTextInput} from '../panels/dom.js';
 import {menuList, openPopup} from '../panels/popup.js';
-import {hitOf} from './hit.js';
+import {hitOf} from './hit_test.js';
 import {inspectItem, inspectLevel} from './inspector.js';
-import {dropLevel, newLevel} from './levels.js';
+import {dropLevel, newLevel} from './level_bar.js';
 import {itemOfLink} from './plan.js';
 import {paintable} from './select_tool.js';
-import {NAMES} from './session.js';
+import {NAMES} from './drawing_session.js';
 
 /**
- * @param {{session: import('./session.js').Session, canvas: import('./canvas.js').Canvas,
+ * @param {{session: import('./drawing_session.js').Session, canvas: import('./plan_canvas.js').Canvas,
  *          draw: () => void}} parts
  */
 export function listenToMouse({session, canvas, draw}) {
@@ -102,7 +102,7 @@ const OF_THE_PAGE = new Set(['building', 'fullScreen', 'hotkeys', 'togglePanels'
 /**
  * Keys of the building editor, as long as the focus is on it or nowhere.
  * @param {HTMLElement} element
- * @param {{session: import('./session.js').Session, files: import('./files.js').Files,
+ * @param {{session: import('./drawing_session.js').Session, files: import('./building_files.js').Files,
  *          exit: () => void, draw: () => void}} parts
  * @returns {() => void} stops listening
  */

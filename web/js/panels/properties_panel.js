@@ -6,7 +6,7 @@ import {compose, inverse} from '../pose.js';
 import {fill, h, onceAFrame, remembered} from './dom.js';
 import {faultText} from './dialog.js';
 import {icon} from './icons.js';
-import {makeInput} from './inputs.js';
+import {makeInput} from './property_inputs.js';
 import {sectionsOf, valueAt} from './property_sections.js';
 import {unitGeometry} from './geometry_fields.js';
 

@@ -1,14 +1,14 @@
 /** What of a level lies under the mouse. */
-import {distance, fromLocal, inPolygon, nearest, toLocal} from './geometry.js';
+import {distance, fromLocal, inPolygon, nearest, toLocal} from './plane_geometry.js';
 import {itemOf, placeOf, wallLength, wallYaw} from './plan.js';
-import {REACH} from './snap.js';
+import {REACH} from './wall_snap.js';
 
 /** How far above stairs their turning handle stands, in metres. */
 const STEM = 0.4;
 
 /**
  * The handles of what is selected.
- * @returns {{part: string, point: import('./geometry.js').Point}[]}
+ * @returns {{part: string, point: import('./plane_geometry.js').Point}[]}
  */
 export function handlesOf(kind, item) {
   if (kind === 'walls') {
@@ -32,7 +32,7 @@ export function handlesOf(kind, item) {
  *
  * @param {any} plan
  * @param {number} at  level
- * @param {import('./geometry.js').Point} point
+ * @param {import('./plane_geometry.js').Point} point
  * @param {{tolerance?: number, selection?: import('./plan.js').Ref[]}} [options]  metres
  * @returns {{ref: import('./plan.js').Ref, part: string}|null}
  */

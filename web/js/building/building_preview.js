@@ -7,7 +7,7 @@ const LONGEST_PAUSE = 2000;
 
 export class Preview {
   /**
-   * @param {{store: any, session: import('./session.js').Session,
+   * @param {{store: any, session: import('./drawing_session.js').Session,
    *          request: (type: string, fields: any) => Promise<any>, onIssues: (issues: any[]) => void}} parts
    */
   constructor({store, session, request, onIssues}) {

@@ -1,6 +1,6 @@
 /** What is being drawn: the plan with its history, the level, the selection, the tool. */
-import {faultsOf} from './check.js';
-import {History} from './history.js';
+import {faultsOf} from './plan_check.js';
+import {History} from './plan_history.js';
 import {clipboardOf, emptyPlan, itemOf, pasted, remove} from './plan.js';
 
 /** Emits `change` after anything that the canvas or the panels show, `tool` when the tool changes. */

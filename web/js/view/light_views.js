@@ -3,7 +3,7 @@ import {
   BufferAttribute, BufferGeometry, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, PointLight, Quaternion, SphereGeometry, SpotLight, Vector3,
 } from 'three';
-import {lightColorOf, place} from './convert.js';
+import {lightColorOf, place} from './three_convert.js';
 
 /** three's lamps are physical: what falls on a white wall is divided by pi there. */
 const STRENGTH = Math.PI;

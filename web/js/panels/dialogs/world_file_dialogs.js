@@ -5,7 +5,7 @@
  */
 import {Dialog, ask, faultText, labelled} from '../dialog.js';
 import {fill, h, roving} from '../dom.js';
-import {bytesText} from '../format.js';
+import {bytesText} from '../text_format.js';
 import {icon} from '../icons.js';
 
 const ENDINGS = /\.(world|sdf|xml)$/i;

@@ -2,8 +2,8 @@
 import {Box3, Matrix4} from 'three';
 import {canonicalLink} from '../store.js';
 import {compose, inverse} from '../pose.js';
-import {matrixOf} from './convert.js';
-import {visualParts} from './geometry.js';
+import {matrixOf} from './three_convert.js';
+import {visualParts} from './shape_meshes.js';
 
 /** @typedef {{model: string, link: string, linkId: number, plane: boolean}} Owner  of an item */
 

@@ -1,6 +1,6 @@
 /** The inspectors: what they ask of each kind of item, and what their answers do to the plan. */
-import {openingFault} from './check.js';
-import {distance} from './geometry.js';
+import {openingFault} from './plan_check.js';
+import {distance} from './plane_geometry.js';
 import {
   attached, itemOf, moveEnd, outerLength, setLevelHeight, setOuterLength, update, wallLength,
   withLevel,

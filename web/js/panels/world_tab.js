@@ -1,7 +1,7 @@
 /** The World tab: a filter, the tree, and the properties of the row that is chosen. */
 import {fill, h, onceAFrame, remembered} from './dom.js';
-import {Properties} from './properties.js';
-import {Tree} from './tree.js';
+import {Properties} from './properties_panel.js';
+import {Tree} from './tree_view.js';
 import {rowOf, worldRows} from './world_rows.js';
 import {lyingBar, splitter} from './splitter.js';
 

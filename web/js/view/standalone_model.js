@@ -1,7 +1,7 @@
 /** A model drawn by itself, outside of the world: ghosts, previews, thumbnails. */
 import {Group} from 'three';
-import {place} from './convert.js';
-import {meshOf, visualParts} from './geometry.js';
+import {place} from './three_convert.js';
+import {meshOf, visualParts} from './shape_meshes.js';
 
 /**
  * @param {any} model  document

@@ -3,9 +3,9 @@
  * Velocity. What a joint does now stands beside what it is asked to do.
  */
 import {fill, h, roving} from './dom.js';
-import {numberText} from './format.js';
+import {numberText} from './text_format.js';
 import {icon} from './icons.js';
-import {makeInput} from './inputs.js';
+import {makeInput} from './property_inputs.js';
 import {modelOf} from './world_rows.js';
 
 const MODES = [

@@ -1,5 +1,5 @@
 /** What is in the menus: titles, hotkeys and actions, out of one place for all of them. */
-import {HOTKEYS} from '../keys.js';
+import {HOTKEYS} from '../hotkeys.js';
 
 /** The hotkey of an action, '' where it has none. */
 export function keysOf(action) {

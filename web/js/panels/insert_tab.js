@@ -4,7 +4,7 @@
  */
 import {Dialog, labelled} from './dialog.js';
 import {fill, h, onActivate, remembered} from './dom.js';
-import {bytesText} from './format.js';
+import {bytesText} from './text_format.js';
 import {icon} from './icons.js';
 
 /**

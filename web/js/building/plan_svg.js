@@ -1,5 +1,5 @@
 /** SVG elements, and the path data of what a plan holds, in pixels of the sheet: 100 a metre, y down. */
-import {fromLocal} from './geometry.js';
+import {fromLocal} from './plane_geometry.js';
 import {placeOf, wallLength, wallYaw} from './plan.js';
 
 export const SCALE = 100;

@@ -6,12 +6,12 @@
  * @property {HTMLElement} element
  * @property {(value: any) => void} show
  */
-import {sevenOf, sixOf} from './angles.js';
+import {sevenOf, sixOf} from './pose_rpy.js';
 import {h} from './dom.js';
-import {colorOf, colorText, numberText, parseNumber} from './format.js';
+import {colorOf, colorText, numberText, parseNumber} from './text_format.js';
 
 /**
- * @param {import('./properties_table.js').Field} field
+ * @param {import('./property_fields.js').Field} field
  * @param {(value: any) => void} commit called with a new value, checked against the field
  * @param {(text: string) => void} refuse called with what is wrong with an input
  * @returns {Input}
@@ -48,7 +48,7 @@ export function numberFault(field, value) {
 /**
  * A field of one line. What is typed counts on Enter or when the focus leaves; Escape drops it.
  *
- * @param {import('./properties_table.js').Field} field
+ * @param {import('./property_fields.js').Field} field
  * @param {Object<string, any>} attributes
  * @param {(value: any) => string} textOf
  * @param {(text: string, shown: any) => boolean} take  gets what was typed; false: the field goes

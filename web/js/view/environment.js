@@ -3,7 +3,7 @@ import {
   BackSide, BufferAttribute, BufferGeometry, Color, Fog, FogExp2, LineBasicMaterial, LineSegments,
   Mesh, ShaderMaterial, SphereGeometry, Vector3,
 } from 'three';
-import {colorOf} from './convert.js';
+import {colorOf} from './three_convert.js';
 
 const GRID_CELLS = 20;
 

@@ -1,5 +1,5 @@
 /** Where the end of a wall goes while it is drawn or dragged. */
-import {crossing, direction, distance, nearest, polar, tidyPoint} from './geometry.js';
+import {crossing, direction, distance, nearest, polar, tidyPoint} from './plane_geometry.js';
 
 export const SNAP_ANGLE = Math.PI / 12;
 const SNAP_LENGTH = 0.25;
@@ -11,7 +11,7 @@ const SPOT = 0.12;
 /**
  * The nearest end of a wall within reach, or null.
  * @param {any[]} walls
- * @param {import('./geometry.js').Point} point
+ * @param {import('./plane_geometry.js').Point} point
  * @param {(wall: any, end: 'start'|'end') => boolean} [wanted]
  */
 function nearEnd(walls, point, wanted = () => true) {
@@ -34,7 +34,7 @@ function nearEnd(walls, point, wanted = () => true) {
  * in the way or with an outer length (thickness and all) of a multiple of 0.25 m; `free` takes the
  * point as it is.
  *
- * @returns {{point: import('./geometry.js').Point, on: 'end'|'wall'|'grid'|'free'}}
+ * @returns {{point: import('./plane_geometry.js').Point, on: 'end'|'wall'|'grid'|'free'}}
  */
 export function snapEnd(from, point, {walls = [], thickness = 0.15, free = false} = {}) {
   if (free) return {point: tidyPoint(point), on: 'free'};

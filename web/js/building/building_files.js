@@ -11,7 +11,7 @@ const LARGEST_IMAGE = 16 * 1024 * 1024;
 const blankAbout = () => ({folder: '', version: '1.0', description: '', author: '', email: ''});
 
 export class Files {
-  /** @param {import('./session.js').Session} session @param {(type: string, fields: any) => Promise<any>} request */
+  /** @param {import('./drawing_session.js').Session} session @param {(type: string, fields: any) => Promise<any>} request */
   constructor(session, request) {
     this.session = session;
     this.request = request;

@@ -2,15 +2,15 @@
  * The sheet on which the plan is drawn. What did not change, told by identity, is not touched, so
  * that an edit costs what it changes and not what the building holds.
  */
-import {metres} from './check.js';
+import {metres} from './plan_check.js';
 import {segmentWords} from './draw_tools.js';
-import {distance, labelPoint, polar} from './geometry.js';
-import {handlesOf, openingDistances} from './hit.js';
+import {distance, labelPoint, polar} from './plane_geometry.js';
+import {handlesOf, openingDistances} from './hit_test.js';
 import {itemOf, outerLength, placeOf, wallLength, wallYaw} from './plan.js';
 import {roomsOf} from './rooms.js';
 import {
   SCALE, floorPath, onSheet, openingPaths, pathOf, set, stairsPaths, svg, wallPath,
-} from './svg.js';
+} from './plan_svg.js';
 
 const ORDER = ['floors', 'stairs', 'walls', 'windows', 'doors'];
 
@@ -32,7 +32,7 @@ function sign(kind, item, level) {
 }
 
 export class Canvas {
-  /** @param {import('./session.js').Session} session */
+  /** @param {import('./drawing_session.js').Session} session */
   constructor(session) {
     this.session = session;
     this.image = svg('image', {class: 'plan-image', preserveAspectRatio: 'none'});

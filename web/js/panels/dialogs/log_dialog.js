@@ -1,7 +1,7 @@
 /** Log data: records the state of the world, lists what was recorded, opens it to be replayed. */
 import {Dialog} from '../dialog.js';
 import {fill, h} from '../dom.js';
-import {bytesText} from '../format.js';
+import {bytesText} from '../text_format.js';
 import {icon} from '../icons.js';
 
 /**

@@ -15,7 +15,7 @@ export const forgetDraft = () => remembered.set(KEY, null);
 
 /**
  * Keeps the plan of a session while it has unsaved changes; pictures are left out, being too large.
- * @param {import('./session.js').Session} session
+ * @param {import('./drawing_session.js').Session} session
  * @returns {() => void} stops, and forgets it
  */
 export function keepDraft(session) {

@@ -1,5 +1,5 @@
 /** What is wrong with a plan, told while it is drawn; the simulator looks again before it builds. */
-import {crossing, isSimple, side} from './geometry.js';
+import {crossing, isSimple, side} from './plane_geometry.js';
 import {linkName, placeOf, wallLength} from './plan.js';
 import {neighbours} from './rooms.js';
 
