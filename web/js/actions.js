@@ -26,7 +26,6 @@ export function createActions({store, connection}) {
   }
   const edit = (op, options) => ask('edit', {op}, options);
   const dialog = (name, fields = {}) => store.emit('dialog', {name, ...fields});
-  const modelOf = (name) => name.split('::')[0];
   const note = (message) => store.addIssue({severity: 'note', code: 'editor', message});
 
   const actions = {
@@ -263,7 +262,7 @@ export function createActions({store, connection}) {
   }
 
   function alignPoses(choice) {
-    const names = [...new Set(store.selection.map(modelOf))].filter((name) => store.model(name));
+    const names = [...new Set(store.selection.flatMap((name) => store.split(name)[0]?.name ?? []))];
     const boxes = names.map((name) => ({name, pose: store.worldPose(name), ...view?.bounds(name)}));
     return alignMoves(boxes.filter((box) => box.min), choice);
   }

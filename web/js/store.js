@@ -1,6 +1,7 @@
 /** What the page knows: the world as the simulator last told it, and what the user looks at. */
 import {decodeFrame, LIVE} from './pose_frames.js';
 import {compose, inverse} from './pose.js';
+import {splitScoped} from './scoped_names.js';
 
 /** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'insert'} Mode */
 
@@ -183,8 +184,7 @@ export class Store extends EventTarget {
   }
 
   /**
-   * What a name means. Links of nested models have scoped names of their own, hence the longest
-   * model name wins.
+   * What a name means.
    * @param {string} name  "model", "model::link" or "light"
    * @returns {{kind: 'model'|'link'|'light', model?: any, link?: any, light?: any}|null}
    */
@@ -193,12 +193,19 @@ export class Store extends EventTarget {
     if (model) return {kind: 'model', model};
     const light = this.light(name);
     if (light) return {kind: 'light', light};
-    for (let at = name.lastIndexOf('::'); at > 0; at = name.lastIndexOf('::', at - 1)) {
-      const owner = this.model(name.slice(0, at));
-      const link = owner?.links.find((one) => one.name === name.slice(at + 2));
-      if (link) return {kind: 'link', model: owner, link};
-    }
-    return null;
+    const [owner, rest] = this.split(name);
+    const link = owner?.links.find((one) => one.name === rest);
+    return owner && link ? {kind: 'link', model: owner, link} : null;
+  }
+
+  /**
+   * The model that a scoped name begins with, and the rest of the name within it.
+   * @param {string} name  `model`, `model::link`, `model::link::visual`, …
+   * @returns {[Model|undefined, string]}
+   */
+  split(name) {
+    const [model, rest] = splitScoped(name, (one) => this.model(one) !== undefined);
+    return [this.model(model), rest];
   }
 
   /**

@@ -7,6 +7,7 @@ from typing import Any, List, Optional, Tuple
 
 from ..description.compare import BUILT_IN
 from ..description.model import Joint, Link, Model
+from ..description.scoped_names import split_scoped
 from ..description.shapes import Collision, Heightmap, ImageMap, Mesh, Visual
 from ..description.world import GuiCamera, SphericalCoordinates
 from ..errors import CommandError
@@ -64,12 +65,8 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
 
 def split_target(world: Simulator, target: str) -> Tuple[Model, str]:
     """The model a scoped name begins with, and what follows. Raises UnknownEntity."""
-    at = target.find("::")
-    while at > 0:
-        if world.has_model(target[:at]):
-            return world.model(target[:at]), target[at + 2:]
-        at = target.find("::", at + 2)
-    return world.model(target), ""
+    model, rest = split_scoped(target, world.has_model)
+    return (world.model(model), rest) if model else (world.model(target), "")
 
 
 def _of_world(world: Simulator, path: str, value: Any) -> Operation:

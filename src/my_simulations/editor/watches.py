@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
+from ..description.scoped_names import split_scoped
 from ..engine.commands import Servo
 from ..engine.ring import Snapshot
 from ..errors import CommandError
@@ -106,12 +107,10 @@ def _owner(names: Dict[str, Entity], name: str) -> Entity:
 
 
 def _split(names: Dict[str, Entity], scoped: str) -> Tuple[Entity, str]:
-    at = scoped.find("::")
-    while at > 0:
-        if scoped[:at] in names:
-            return names[scoped[:at]], scoped[at + 2:]
-        at = scoped.find("::", at + 2)
-    raise Gone(f"there is no {scoped!r}")
+    model, rest = split_scoped(scoped, names.__contains__)
+    if not model:
+        raise Gone(f"there is no {scoped!r}")
+    return names[model], rest
 
 
 def _state(names: Dict[str, Entity], name: str, snapshot: Snapshot) -> Tuple[Pose, Twist]:

@@ -215,7 +215,7 @@ export class JointsPanel {
   #showStates({topic, joints}) {
     if (!this.#model || topic !== `joints:${this.#model.name}`) return;
     for (const {name, axis, position, rate, drive} of joints ?? []) {
-      const row = axis === 0 && (this.#rows.get(name) ?? this.#rows.get(name.split('::').pop()));
+      const row = axis === 0 && this.#rows.get(name);
       if (!row) continue;
       const at = (value) => numberText(Math.round((value / row.factor) * 1e4) / 1e4);
       row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;

@@ -187,7 +187,7 @@ export class Plots {
 
   #showPalette() {
     const word = this.#search.value.trim().toLowerCase();
-    const chosen = new Set(this.page.store.selection.map((name) => name.split('::')[0]));
+    const chosen = new Set(this.page.store.selection.map((name) => this.page.store.split(name)[0]?.name));
     const groups = variablesOf(this.page.store.document).sort(
       (a, b) => chosen.has(b.owner) - chosen.has(a.owner),
     );

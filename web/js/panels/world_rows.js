@@ -16,6 +16,8 @@
  * @property {number} [index]  of a plugin
  */
 
+import {splitScoped} from '../scoped_names.js';
+
 const WORLD_ROWS = [
   ['gui', 'GUI', 'gui'],
   ['scene', 'Scene', 'scene'],
@@ -172,10 +174,7 @@ export function rowOf(document, name) {
 
 /** The model of a name that may be scoped, `model::link::visual`; null when there is none. */
 export function modelOf(document, name) {
-  let best = null;
-  for (const model of document?.models ?? []) {
-    const whole = name === model.name || name.startsWith(`${model.name}::`);
-    if (whole && (!best || model.name.length > best.name.length)) best = model;
-  }
-  return best;
+  const models = document?.models ?? [];
+  const [owner] = splitScoped(name, (one) => models.some((model) => model.name === one));
+  return models.find((model) => model.name === owner) ?? null;
 }

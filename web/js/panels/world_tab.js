@@ -99,9 +99,7 @@ export class WorldTab {
 
   /** A joint's or plugin's row leaves its model selected. */
   #belongs(row, selection) {
-    return (
-      row.model && selection.some((name) => name === row.model || name.startsWith(`${row.model}::`))
-    );
+    return row.model && selection.some((name) => this.store.split(name)[0]?.name === row.model);
   }
 
   #toggle(row, open) {

@@ -223,9 +223,8 @@ export class Overlays {
     if (!contacts.length && !this.#contacts.children.length) return;
     for (const child of this.#contacts.children) if (!child.isMesh) child.geometry.dispose();
     empty(this.#contacts);
-    const modelOf = (name) => this.#store.entity(name)?.model?.name ?? name.split('::')[0];
     const shown = contacts.filter(({a, b}) =>
-      [a, b].some((name) => this.#store.overlay('contacts', modelOf(name))));
+      [a, b].some((name) => this.#store.overlay('contacts', this.#store.split(name)[0]?.name ?? '')));
     const lines = [];
     for (const {position, normal, depth} of shown) {
       const mark = new Mesh(ball, contactMaterial);

@@ -73,7 +73,7 @@ export class Selector {
     const [chosen] = selection;
     const model = this.#store.model(name);
     return mode === 'select' && link && selection.length === 1 && model?.links.length > 1 &&
-      (chosen === name || chosen.startsWith(`${name}::`));
+      this.#store.split(chosen)[0]?.name === name;
   }
 
   menu(event) {
