@@ -1,10 +1,10 @@
-/** Binary pose frames: what moved since the last one. The layout is in protocol.json. */
+/** Binary pose frames: the links that moved since the last frame. */
+import {
+  FRAME_HEAD, FRAME_HEAD_BYTES, FRAME_KINDS, FRAME_RECORD, FRAME_RECORD_BYTES,
+} from './protocol.js';
 
-export const LIVE = 1;
-const REPLAY = 2;
-
-const FRAME_START = 40;
-const RECORD = 32;
+export const LIVE = FRAME_KINDS.poses;
+const REPLAY = FRAME_KINDS.log;
 
 /**
  * @typedef {object} Frame
@@ -26,23 +26,25 @@ const RECORD = 32;
  */
 export function decodeFrame(buffer) {
   const view = new DataView(buffer);
-  const kind = view.getUint32(0, true);
+  const kind = view.getUint32(FRAME_HEAD.kind, true);
   if (kind !== LIVE && kind !== REPLAY) return null;
-  const count = view.getUint32(32, true);
-  if (buffer.byteLength < FRAME_START + count * RECORD) {
+  const count = view.getUint32(FRAME_HEAD.count, true);
+  if (buffer.byteLength < FRAME_HEAD_BYTES + count * FRAME_RECORD_BYTES) {
     throw new RangeError(`a frame of ${count} links in ${buffer.byteLength} bytes`);
   }
   return {
     kind,
-    revision: view.getUint32(4, true),
-    step: Number(view.getBigUint64(8, true)),
-    simTime: view.getFloat64(16, true),
-    realTime: view.getFloat64(24, true),
+    revision: view.getUint32(FRAME_HEAD.revision, true),
+    step: Number(view.getBigUint64(FRAME_HEAD.step, true)),
+    simTime: view.getFloat64(FRAME_HEAD.sim_time, true),
+    realTime: view.getFloat64(FRAME_HEAD.real_time, true),
     count,
-    id: (index) => view.getUint32(FRAME_START + index * RECORD, true),
+    id: (index) => view.getUint32(recordAt(index) + FRAME_RECORD.id, true),
     read: (index, pose) => {
-      const start = FRAME_START + index * RECORD + 4;
+      const start = recordAt(index) + FRAME_RECORD.px;
       for (let part = 0; part < 7; part++) pose[part] = view.getFloat32(start + 4 * part, true);
     },
   };
 }
+
+const recordAt = (/** @type {number} */ index) => FRAME_HEAD_BYTES + index * FRAME_RECORD_BYTES;

@@ -15,7 +15,7 @@ from time import strftime
 from typing import Any, BinaryIO, Dict, List, Optional, Tuple
 
 from ..errors import CommandError
-from .frames import LOG, Poses, SentPoses, record_type
+from .frames import HEAD_BYTES, LOG, Poses, SentPoses, record_type
 
 FILE = "state.log"
 """What a log is called, in a folder that bears its name (Gazebo behaviour)."""
@@ -24,7 +24,6 @@ MAGIC = b"my_simulations state log 1\n"
 DOCUMENT, WHOLE, MOVED = 1, 2, 3
 
 _RECORD = struct.Struct("<BdI")
-_HEAD_BYTES = 40
 _WHOLE_EVERY_S = 5.0
 _LARGEST = 256 << 20
 
@@ -66,7 +65,7 @@ class LogWriter:
             self._whole_at = time
         frame = self._sent.frame(LOG, 0, poses)
         if frame or whole:  # a world without links has states, too
-            self._write(WHOLE if whole else MOVED, time, frame[_HEAD_BYTES:])
+            self._write(WHOLE if whole else MOVED, time, frame[HEAD_BYTES:])
         self.begin = time if self.begin is None else self.begin
         self.end = time
 
