@@ -140,4 +140,4 @@ class Assembly:
             return self._files.text(), name
         if name.endswith(".log"):
             return self._logs.data(name[:-len(".log")]), name
-        raise Refusal("not-found", f"there is nothing to download called {name!r}")
+        raise Refusal("not-found", f"unknown download {name!r}")

@@ -84,7 +84,7 @@ class Autosave:
         """Load what was found; returns the file it belongs to. Raises CommandError."""
         found = self.found
         if found is None:
-            raise CommandError("there are no unsaved changes of an earlier session")
+            raise CommandError("no unsaved changes of an earlier session were found")
         self._files.load(found.world, dirty=True)
         self._files.file = found.file
         self.keep()

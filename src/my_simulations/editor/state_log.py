@@ -89,7 +89,7 @@ class LogWriter:
             try:
                 self._file.close()
             except OSError as fault:
-                raise CommandError(f"{self.path} is not whole: {fault.strerror}") from fault
+                raise CommandError(f"{self.path} is incomplete: {fault.strerror}") from fault
 
     def _write(self, kind: int, time: float, data: bytes) -> None:
         try:
@@ -124,12 +124,12 @@ class LogReader:
             raise CommandError(f"{path} cannot be read: {fault.strerror}") from fault
         if self._file.read(len(MAGIC)) != MAGIC:
             self._file.close()
-            raise CommandError(f"{path} is no state log")
+            raise CommandError(f"{path} is not a state log")
         self._records = self._scan(os.fstat(self._file.fileno()).st_size)
         self._states = [n for n, record in enumerate(self._records) if record.kind != DOCUMENT]
         if not self._states:
             self._file.close()
-            raise CommandError(f"{path} holds no states")
+            raise CommandError(f"{path} contains no states")
         self._times = _rising([self._records[n].time for n in self._states])
         self.begin, self.end = self._times[0], self._times[-1]
         self._poses: Dict[int, Any] = {}
@@ -159,7 +159,7 @@ class LogReader:
     def text(self, number: int) -> bytes:
         """The JSON of the world document of that number."""
         if number < 0:
-            raise CommandError("the log holds no world")
+            raise CommandError("the log contains no world")
         return self._bytes(self._records[number])
 
     def _start(self, target: int) -> int:

@@ -78,7 +78,7 @@ def _of_world(world: Simulator, path: str, value: Any) -> Operation:
         holder = with_value(replace(world.world, gravity=world.gravity), path, value)
         return SetPhysics(world.physics, holder.gravity)
     if name not in SETTERS:
-        raise CommandError(f"{path!r} cannot be set; there are physics, gravity, "
+        raise CommandError(f"unknown world property {path!r}; known: physics, gravity, "
                            + ", ".join(SETTERS))
     holder = world.world
     if rest and getattr(holder, name) is None and name in _NEW:
@@ -178,4 +178,4 @@ def _found(part: Any, resolver: Resolver) -> Any:
 
 def _refuse_name(path: str) -> None:
     if path == "name":
-        raise CommandError("a name is changed by `rename`, and only a model's or a light's")
+        raise CommandError("only models and lights can be renamed, by the operation `rename`")

@@ -34,7 +34,7 @@ def check_topic(topic: str) -> None:
         owner, _, field = rest.rpartition(".")
         if rest in _WORLD or (owner and field in {**_POSE, **_TWIST, **_JOINT}):
             return
-    raise CommandError(f"there is no topic {topic!r}; there are contacts, joints:MODEL,"
+    raise CommandError(f"unknown topic {topic!r}; known: contacts, joints:MODEL,"
                        " plot:sim_time, plot:NAME.x and the like")
 
 
@@ -102,14 +102,14 @@ class Watches:
 def _owner(names: Dict[str, Entity], name: str) -> Entity:
     found = names.get(name)
     if found is None:
-        raise Gone(f"there is no model {name!r}")
+        raise Gone(f"unknown model {name!r}")
     return found
 
 
 def _split(names: Dict[str, Entity], scoped: str) -> Tuple[Entity, str]:
     model, rest = split_scoped(scoped, names.__contains__)
     if not model:
-        raise Gone(f"there is no {scoped!r}")
+        raise Gone(f"unknown name {scoped!r}")
     return names[model], rest
 
 
@@ -118,7 +118,7 @@ def _state(names: Dict[str, Entity], name: str, snapshot: Snapshot) -> Tuple[Pos
         return names[name].state(snapshot)
     entity, link = _split(names, name)
     if link not in entity.link_names:
-        raise Gone(f"there is no link {name!r}")
+        raise Gone(f"unknown link {name!r}")
     return snapshot.link(entity.first_link_row + entity.link_names.index(link))
 
 
@@ -128,7 +128,7 @@ def _joint_value(names: Dict[str, Entity], name: str, axis: int, which: int,
     for state in _joints(entity, snapshot):
         if state["name"] == joint and state["axis"] == axis:
             return float(state["rate" if which else "position"])
-    raise Gone(f"there is no axis {axis} of a joint {name!r}")
+    raise Gone(f"joint {name!r} does not exist or has no axis {axis}")
 
 
 def _drive(efforts: Sequence[Effort]) -> Optional[Dict[str, Any]]:

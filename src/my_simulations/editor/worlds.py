@@ -42,13 +42,13 @@ class WorldFiles:
             path, overwrite = message.get("path") or "", bool(message.get("overwrite"))
             if not path:
                 if self.file not in self._ours:
-                    raise Refusal("path-needed", "the world was not saved yet; give it a name")
+                    raise Refusal("path-needed", "the world has no file yet; give a file name")
                 path, overwrite = self.file, True
             if not os.path.splitext(path)[1]:
                 path += EXTENSIONS[0]
             target = allowed_path(path, self._roots)
             if os.path.lexists(target) and not overwrite:
-                raise Refusal("exists", f"{target} exists already", "replace it, or choose"
+                raise Refusal("exists", f"{target} already exists", "overwrite it, or choose"
                               " another name")
             inline = message.get("format") != "includes"
             self.file = save_world(self._world, target, roots=self._roots, inline=inline,
@@ -88,7 +88,7 @@ class WorldFiles:
                                              roots[0] if roots else "")
         folder = os.path.realpath(os.path.expanduser(wanted))
         if not any(_is_in(folder, root) for root in roots):
-            raise Refusal("not-allowed", f"{folder} is not among the folders that may be used: "
+            raise Refusal("not-allowed", f"{folder} is not an allowed folder; allowed: "
                           + ", ".join(roots))
         parent = os.path.dirname(folder)
         folders, files = _listed(folder)
@@ -102,7 +102,7 @@ class WorldFiles:
 
     def _check_discard(self, message: Dict[str, Any]) -> None:
         if self._history.dirty and not message.get("discard"):
-            raise Refusal("unsaved", "the world has changes that were not saved",
+            raise Refusal("unsaved", "the world has unsaved changes",
                           "save it first, or discard them")
 
     def _readable(self, name: str) -> str:
@@ -112,9 +112,9 @@ class WorldFiles:
             path = os.path.realpath(os.path.join(os.path.expanduser(self._roots[0]), name))
         roots = [*self._roots, *self._resolver.resource_folders()]
         if not any(_is_in(path, os.path.realpath(os.path.expanduser(root))) for root in roots):
-            raise Refusal("not-allowed", f"{path} lies outside of all folders of worlds")
+            raise Refusal("not-allowed", f"{path} is outside of the allowed folders")
         if not os.path.isfile(path):
-            raise Refusal("file-not-found", f"there is no file {path}")
+            raise Refusal("file-not-found", f"{path} does not exist")
         return path
 
 
