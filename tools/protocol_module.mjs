@@ -47,6 +47,8 @@ function wrapped(members, separator, indent, [open = '', close = ''] = '') {
     if (last && indent.length + longer.length + separator.length > WIDEST) lines.push(member);
     else lines[lines.length - 1] = longer;
   }
+  // TypeScript reads no union that begins or ends with a line break.
+  if (!open) return lines.join(`${separator}\n${indent}`);
   const outer = indent.slice(0, -2);
   return `${open}\n${indent}${lines.join(`${separator.trimEnd()}\n${indent}`)}\n${outer}${close}`;
 }

@@ -1,10 +1,17 @@
 /** Hotkeys: one table for the keyboard and for the chart that explains them. */
+/** @import {Actions} from './actions.js' */
+/** @import {Store} from './store.js' */
 
 /**
- * `action` names a function of actions.js; a row without one tells of a key that is held or of the
- * mouse. Ctrl+N and Ctrl+T belong to the browser: New is Alt+N here.
- * @type {readonly {keys: string, title: string, group: string, action?: string}[]}
+ * @typedef {object} Hotkey
+ * @property {string} keys
+ * @property {string} title
+ * @property {string} group
+ * @property {keyof Actions} [action]  the function of actions.js that it calls; a row without one
+ *   tells of a key that is held, or of the mouse
  */
+
+/** Ctrl+N and Ctrl+T belong to the browser: New is Alt+N here. @type {readonly Hotkey[]} */
 export const HOTKEYS = Object.freeze([
   {keys: 'Alt+N', title: 'New world', group: 'File', action: 'newWorld'},
   {keys: 'Ctrl+O', title: 'Open world', group: 'File', action: 'open'},
@@ -18,42 +25,43 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Ctrl+A', title: 'Select all models', group: 'Edit', action: 'selectAll'},
   {keys: 'Ctrl+F', title: 'Find a model or light', group: 'Edit', action: 'find'},
   {keys: 'F2', title: 'Rename', group: 'Edit', action: 'renameSelected'},
-  {keys: 'Delete', title: 'Delete what is selected', group: 'Edit', action: 'remove'},
+  {keys: 'Delete', title: 'Delete selection', group: 'Edit', action: 'remove'},
   {keys: 'Ctrl+Shift+R', title: 'Reset model poses', group: 'Edit', action: 'resetPoses'},
   {keys: 'Ctrl+R', title: 'Reset world', group: 'Edit', action: 'resetWorld'},
   {keys: 'Ctrl+B', title: 'Building editor', group: 'Edit', action: 'building'},
-  {keys: 'Escape', title: 'Select; cancel; drop the selection', group: 'Tools', action: 'escape'},
+  {keys: 'Escape', title: 'Select mode; cancel; clear selection', group: 'Tools', action: 'escape'},
   {keys: 'T', title: 'Translate', group: 'Tools', action: 'translateMode'},
   {keys: 'R', title: 'Rotate', group: 'Tools', action: 'rotateMode'},
   {keys: 'S', title: 'Scale', group: 'Tools', action: 'scaleMode'},
-  {keys: 'N', title: 'Snap a face to another', group: 'Tools', action: 'snapMode'},
-  {keys: 'X, Y, Z held', title: 'Drag along, or turn about, that axis only', group: 'Tools'},
-  {keys: 'Ctrl held', title: 'Snap to 1 m, 45 degrees, 1 m of size', group: 'Tools'},
-  {keys: 'Shift held', title: 'World axes; all sizes alike when scaling', group: 'Tools'},
-  {keys: 'Ctrl+click', title: 'Select one more, or one less', group: 'Tools'},
+  {keys: 'N', title: 'Snap a face to another face', group: 'Tools', action: 'snapMode'},
+  {keys: 'X, Y, Z held', title: 'Constrain to the X, Y or Z axis', group: 'Tools'},
+  {keys: 'Ctrl held', title: 'Snap to 1 m or 45 degrees', group: 'Tools'},
+  {keys: 'Shift held', title: 'World frame; uniform scale', group: 'Tools'},
+  {keys: 'Ctrl+click', title: 'Add to or remove from selection', group: 'Tools'},
   {keys: 'Space', title: 'Play or pause', group: 'Time', action: 'togglePlay'},
-  {keys: 'Drag', title: 'Move the view (walking: look round)', group: 'Camera'},
-  {keys: 'Shift+drag, middle drag', title: 'Turn about the point under the mouse',
+  {keys: 'Drag', title: 'Pan (FPS control: look around)', group: 'Camera'},
+  {keys: 'Shift+drag, middle drag', title: 'Orbit around the point under the cursor',
     group: 'Camera'},
-  {keys: 'Wheel, right drag', title: 'Zoom to the point under the mouse', group: 'Camera'},
-  {keys: 'Double click', title: 'Fly to what is under the mouse', group: 'Camera'},
-  {keys: 'W A S D', title: 'Walk, with first-person control', group: 'Camera'},
-  {keys: 'Home', title: 'First view', group: 'Camera', action: 'resetView'},
-  {keys: 'Shift held', title: 'No snapping while drawing', group: 'Building editor'},
-  {keys: '0-9, Enter', title: 'Length of the wall being drawn', group: 'Building editor'},
-  {keys: 'Alt held', title: 'Pull one end off its link', group: 'Building editor'},
-  {keys: 'F, G', title: 'Show or hide floor plan, features', group: 'Building editor'},
-  {keys: 'Ctrl+X', title: 'Leave the building editor', group: 'Building editor'},
+  {keys: 'Wheel, right drag', title: 'Zoom to the point under the cursor', group: 'Camera'},
+  {keys: 'Double click', title: 'Move to the object under the cursor', group: 'Camera'},
+  {keys: 'W A S D', title: 'Move, with FPS view control', group: 'Camera'},
+  {keys: 'Home', title: 'Reset view', group: 'Camera', action: 'resetView'},
+  {keys: 'Shift held', title: 'Disable snapping while drawing', group: 'Building editor'},
+  {keys: '0-9, Enter', title: 'Enter the length of the wall', group: 'Building editor'},
+  {keys: 'Alt held', title: 'Detach the end of a wall from linked walls', group: 'Building editor'},
+  {keys: 'F, G', title: 'Show or hide floor plan (F), features (G)', group: 'Building editor'},
+  {keys: 'Ctrl+X', title: 'Exit building editor', group: 'Building editor'},
   {keys: 'Ctrl+D', title: 'Log data', group: 'Window', action: 'logs'},
   {keys: 'Ctrl+P', title: 'Plot', group: 'Window', action: 'plot'},
-  {keys: 'Ctrl+H', title: 'Show or hide the panels', group: 'Window', action: 'togglePanels'},
-  {keys: 'F6', title: 'Next part of the window', group: 'Window', action: 'nextRegion'},
-  {keys: 'Shift+F6', title: 'Part of the window before', group: 'Window',
+  {keys: 'Ctrl+H', title: 'Show or hide panels', group: 'Window', action: 'togglePanels'},
+  {keys: 'F6', title: 'Focus next panel', group: 'Window', action: 'nextRegion'},
+  {keys: 'Shift+F6', title: 'Focus previous panel', group: 'Window',
     action: 'previousRegion'},
   {keys: 'F11', title: 'Full screen', group: 'Window', action: 'fullScreen'},
-  {keys: 'F1', title: 'This chart', group: 'Help', action: 'hotkeys'},
+  {keys: 'F1', title: 'Hotkey chart', group: 'Help', action: 'hotkeys'},
 ]);
 
+/** @type {Record<string, string>} */
 const NAMES = {' ': 'Space', Esc: 'Escape', Del: 'Delete'};
 
 /**
@@ -71,34 +79,45 @@ export function spelled(event) {
 
 const BY_KEYS = new Map(HOTKEYS.filter((row) => row.action).map((row) => [row.keys, row]));
 
-/** The row of the table that a key press means, or undefined. */
+/**
+ * Calls an action without arguments, as keys, menus and buttons do.
+ * @param {Actions} actions
+ * @param {keyof Actions|undefined} name
+ */
+export function run(actions, name) {
+  if (name) /** @type {() => unknown} */ (actions[name])();
+}
+
+/** The row of the table that a key press means, or undefined. @param {KeyboardEvent} event */
 export const hotkey = (event) => BY_KEYS.get(spelled(event));
 
-/** Keys that a focused control needs for itself. */
+/** Keys that a focused control needs for itself. @param {KeyboardEvent} event */
 function belongsToControl(event) {
   const {target} = event;
-  if (!target?.closest) return false;
+  if (!(target instanceof Element)) return false;
   if (target.closest('dialog, [role="dialog"]')) return true;
   if (target.closest('input, textarea, select, [contenteditable="true"]')) {
     return !(event.ctrlKey || event.metaKey) || 'acvxyz'.includes(event.key.toLowerCase());
   }
-  return event.key === ' ' && target.closest('button, [role="button"], [role="menuitem"], summary');
+  return event.key === ' ' &&
+    target.closest('button, [role="button"], [role="menuitem"], summary') !== null;
 }
 
 /**
  * Listens to the keyboard.
  * @param {Window} target
- * @param {{store: any, actions: any}} parts
+ * @param {{store: Store, actions: Actions}} parts
  * @returns {() => void} stops listening
  */
 export function mountKeys(target, {store, actions}) {
+  /** @param {KeyboardEvent} event */
   const pressed = (event) => {
     const row = hotkey(event);
     // Walking has the keys W, A, S and D.
     if (row?.keys === 'S' && store.camera.controller === 'fps') return;
     if (!row || event.defaultPrevented || belongsToControl(event)) return;
     event.preventDefault();
-    if (!event.repeat || row.action === 'undo' || row.action === 'redo') actions[row.action]();
+    if (!event.repeat || row.action === 'undo' || row.action === 'redo') run(actions, row.action);
   };
   target.addEventListener('keydown', pressed);
   return () => target.removeEventListener('keydown', pressed);

@@ -99,9 +99,7 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{type: 'empty'}} Empty */
 
-/** @typedef {
- *  Box|Sphere|Cylinder|Capsule|Cone|Ellipsoid|Plane|Mesh|Heightmap|Polyline|ImageMap|Empty
- *} Geometry */
+/** @typedef {Box|Sphere|Cylinder|Capsule|Cone|Ellipsoid|Plane|Mesh|Heightmap|Polyline|ImageMap|Empty} Geometry */
 
 /** @typedef {{
  *  mass: number, pose: pose, ixx: number, ixy: number, ixz: number, iyy: number, iyz: number,
@@ -332,11 +330,9 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{kind: 'group', ops: Operation[], label?: string|null}} GroupOperation */
 
-/** @typedef {
- *  InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
+/** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
- *  GroupOperation
- *} Operation */
+ *  GroupOperation} Operation */
 
 /** @typedef {{
  *  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null
@@ -382,10 +378,8 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{type: 'shutdown', reason: string}} ShutdownPush */
 
-/** @typedef {
- *  ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|IssuePush|LibraryPush|DownloadPush|
- *  WatchPush|AutosavePush|LogPush|ShutdownPush
- *} Push */
+/** @typedef {ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|IssuePush|LibraryPush|DownloadPush|
+ *  WatchPush|AutosavePush|LogPush|ShutdownPush} Push */
 
 /** @typedef {{
  *  hello: {fields: {version: number, session?: string|null},

@@ -1,6 +1,6 @@
 /** The building editor: a plan beside the 3D view. */
-import {ask} from '../panels/dialog.js';
-import {fill, h, onceAFrame} from '../panels/dom.js';
+import {ask, faultText} from '../panels/dialog.js';
+import {byId, fill, h, onceAFrame} from '../panels/dom.js';
 import {mountMenuBar} from '../panels/menubar.js';
 import {Canvas} from './plan_canvas.js';
 import {forgetDraft, keepDraft, leftDraft} from './unsaved_plan.js';
@@ -15,13 +15,32 @@ import {mountScrollbars} from './scrollbars.js';
 import {SelectTool} from './select_tool.js';
 import {Session} from './drawing_session.js';
 import {isEmpty, withoutImages} from './plan.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {Fault} from './plan_check.js' */
+/** @import {Plan} from '../protocol.js' */
+/** @import {Pose7} from '../pose.js' */
+/** @import {RequestFunction} from '../connection.js' */
+/** @import {Store} from '../store.js' */
+
+/**
+ * The model of a building that was opened, at its pose as drawn.
+ * @typedef {{name: string, pose: Pose7, plan: Plan}} OpenedModel
+ */
+
+/**
+ * @typedef {object} FileCommands
+ * @property {() => Promise<boolean>} save
+ * @property {() => Promise<boolean>} saveAs
+ * @property {() => Promise<unknown>} open
+ * @property {() => Promise<unknown>} fresh  an empty plan
+ */
 
 /**
  * Opens the building editor in an element; time stands still meanwhile.
  *
  * @param {HTMLElement} element
- * @param {{store: any, request: (type: string, fields: any) => Promise<any>, actions: any}} page
- * @returns {Promise<{close: () => Promise<boolean>, session: Session}>} `close` asks first, and
+ * @param {{store: Store, request: RequestFunction, actions: Actions}} page
+ * @returns {Promise<{close: () => Promise<boolean>, session: Session, canvas: Canvas}>} `close` asks first, and
  *   answers false when the user stays; leaving by the editor's own menu emits `exit` on the element
  */
 export async function mount(element, {store, request, actions}) {
@@ -33,7 +52,7 @@ export async function mount(element, {store, request, actions}) {
   const files = new Files(session, request);
   const sheet = h('div', {class: 'building-sheet'}, canvas.element);
   const hint = h('div', {class: 'building-hint', role: 'status'});
-  const faults = h('ul', {class: 'building-faults', 'aria-label': 'Faults of the plan'});
+  const faults = h('ul', {class: 'building-faults', 'aria-label': 'Plan errors'});
   const scale = h('div', {class: 'building-scale'}, h('span'));
   const palette = h('div', {class: 'building-palette'});
   const levels = h('div', {class: 'building-levels', role: 'toolbar', 'aria-label': 'Levels'});
@@ -43,6 +62,7 @@ export async function mount(element, {store, request, actions}) {
     palette, sheet));
 
   const scrolled = mountScrollbars(sheet, {session, canvas});
+  /** @type {Fault[]} */
   let issues = [];
   const draw = () => {
     canvas.draw();
@@ -55,16 +75,18 @@ export async function mount(element, {store, request, actions}) {
     showScale(scale, canvas.view.zoom);
     scrolled();
   };
-  session.addEventListener('change', drawSoon);
+  const unlisten = session.listen('change', drawSoon);
   session.endTool();
 
   /** The model that was opened, where the world holds one: it gives way on leaving. */
+  /** @type {OpenedModel|null} */
   let opened = null;
+  /** @param {() => Promise<boolean>} load */
   const open = async (load) => {
     if (!await load()) return;
     canvas.fit();
     opened = session.file ? await modelOf(session, store, request) : null;
-    if (opened) actions.setOverlay?.('transparent', true, opened.name);
+    if (opened) actions.setOverlay('transparent', true, opened.name);
   };
   const importPlan = () => importImage(session, (done) => {
     session.tool = new MeasureTool(session, (drawn) => {
@@ -83,16 +105,17 @@ export async function mount(element, {store, request, actions}) {
   const preview = new Preview({store, session, request, onIssues: (found) => { issues = found; drawSoon(); }});
   const ends = [
     listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon}),
-    listenToView(document.getElementById('view'), {session, actions}), () => preview.end(),
+    listenToView(byId('view'), {session, actions}), () => preview.end(),
     watchSize(sheet, canvas), askBeforeUnload(session), keepDraft(session),
-    () => session.removeEventListener('change', drawSoon),
+    unlisten,
   ];
-  const wasRunning = !store.stats?.paused;
-  if (wasRunning) await actions.pause?.();
+  const wasRunning = !store.stats.paused;
+  if (wasRunning) await actions.pause();
   canvas.fit();
   canvas.element.focus();
   if (draft) restore(session, draft).then(() => canvas.fit());
 
+  /** @type {Promise<boolean>|null} */
   let closing = null;
   const close = () => closing ??= finish().finally(() => { closing = null; });
 
@@ -101,9 +124,9 @@ export async function mount(element, {store, request, actions}) {
     if (how === 'cancel') return false;
     if (how === 'saved' && !await place()) return false;
     for (const end of ends.splice(0)) end();
-    if (opened) actions.setOverlay?.('transparent', false, opened.name);
+    if (opened) actions.setOverlay('transparent', false, opened.name);
     element.replaceChildren();
-    if (wasRunning) await actions.play?.();
+    if (wasRunning) await actions.play();
     return true;
   }
 
@@ -114,10 +137,10 @@ export async function mount(element, {store, request, actions}) {
     try {
       const building = await request('building_sdf', {plan: withoutImages(plan)});
       const ops = placingOps(store, building, opened);
-      await request('edit', {op: {kind: 'group', ops, label: `building ${plan.name}`}});
+      await request('edit', {op: {kind: 'group', ops, label: `Insert building ${plan.name}`}});
       return true;
     } catch (fault) {
-      session.say(`The building was saved, but not put into the world: ${fault.message}`);
+      session.say(`The building was saved, but could not be added to the world: ${faultText(fault)}`);
       return false;
     }
   }
@@ -125,12 +148,19 @@ export async function mount(element, {store, request, actions}) {
   return {close, session, canvas};
 }
 
-const bound = (files) => Object.fromEntries(['save', 'saveAs', 'open', 'fresh']
-  .map((name) => [name, (...given) => files[name](...given)]));
+/** @param {Files} files */
+const bound = (files) => ({
+  save: () => files.save(), saveAs: () => files.saveAs(), open: () => files.open(),
+  fresh: () => files.fresh(),
+});
 
-/** Offers what an earlier page left unsaved; it stays unsaved. */
+/**
+ * Offers what an earlier page left unsaved; it stays unsaved.
+ * @param {Session} session
+ * @param {{plan: Plan, file: Session['file']}} draft
+ */
 async function restore(session, {plan, file}) {
-  const answer = await ask('Restore the building?', `There are changes to the plan ${plan.name} that were not saved.`,
+  const answer = await ask('Restore unsaved building?', `The building ${plan.name} has unsaved changes from an earlier session.`,
     [{title: 'Discard', value: 'drop', danger: true}, {title: 'Restore', value: 'restore', primary: true}]);
   if (answer === 'restore') {
     session.file = file;
@@ -140,19 +170,34 @@ async function restore(session, {plan, file}) {
   }
 }
 
-/** The model of an opened building: {name, pose as drawn, plan}, null where the world has none. */
+/**
+ * The model of an opened building: {name, pose as drawn, plan}, null where the world has none.
+ * @param {Session} session
+ * @param {Store} store
+ * @param {RequestFunction} request
+ */
 async function modelOf(session, store, request) {
   const {plan} = session.history;
   try {
     const {model} = await request('building_sdf', {plan: withoutImages(plan), text: false});
     return store.model(model.name) ? {name: model.name, pose: model.pose, plan} : null;
   } catch (fault) {
-    session.say(fault.message);
+    session.say(faultText(fault));
     return null;
   }
 }
 
+/**
+ * @param {Session} session
+ * @param {FileCommands} files
+ * @param {{importPlan: () => void, leave: () => void}} actions
+ */
 function menus(session, files, {importPlan, leave}) {
+  /**
+   * @param {string} title
+   * @param {string} keys
+   * @param {() => void} run
+   */
   const item = (title, keys, run, more = {}) => ({title, keys, run, ...more});
   return [
     {title: 'File', items: () => [
@@ -168,7 +213,7 @@ function menus(session, files, {importPlan, leave}) {
       item('Paste', 'Ctrl+V', () => session.paste(), {enabled: () => session.clipboard.length > 0}),
       item('Delete', 'Delete', () => session.removeSelected(), {enabled: () => session.selection.length > 0}),
       item('Select All', 'Ctrl+A', () => session.selectAll()),
-      item('Inspector', 'double click', () => inspectItem(session, session.selection[0]),
+      item('Inspector', 'double-click', () => inspectItem(session, session.selection[0]),
         {enabled: () => session.selection.length === 1})]},
     {title: 'Building', items: () => [
       item('Add Level', '', () => newLevel(session)), item('Delete Level', '', () => dropLevel(session)),
@@ -177,6 +222,11 @@ function menus(session, files, {importPlan, leave}) {
   ];
 }
 
+/**
+ * @param {HTMLElement} element
+ * @param {Session} session
+ * @param {Fault[]} issues
+ */
 function showFaults(element, session, issues) {
   const own = session.faults();
   const told = own.length ? own : issues;
@@ -185,27 +235,34 @@ function showFaults(element, session, issues) {
     onclick: () => {
       if (fault.at === undefined) return;
       session.goTo(fault.at);
-      session.select(fault.refs);
+      session.select(fault.refs ?? []);
     },
   }));
   if (told.length > 4) rows.push(h('li', {text: `and ${told.length - 4} more`}));
   fill(element, ...rows);
 }
 
-/** A bar as long as a round number of metres. */
+/**
+ * A bar as long as a round number of metres.
+ * @param {HTMLElement} element
+ * @param {number} zoom
+ */
 function showScale(element, zoom) {
   const round = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50].find((value) => value * 100 * zoom >= 60) ?? 100;
   element.style.width = `${round * 100 * zoom}px`;
-  element.firstChild.textContent = `${round} m`;
+  if (element.firstChild) element.firstChild.textContent = `${round} m`;
 }
 
+/** @param {HTMLElement} sheet @param {Canvas} canvas */
 function watchSize(sheet, canvas) {
   const observer = new ResizeObserver(() => canvas.place());
   observer.observe(sheet);
   return () => observer.disconnect();
 }
 
+/** @param {Session} session */
 function askBeforeUnload(session) {
+  /** @param {Event} event */
   const asked = (event) => { if (session.dirty) event.preventDefault(); };
   window.addEventListener('beforeunload', asked);
   return () => window.removeEventListener('beforeunload', asked);

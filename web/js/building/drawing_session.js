@@ -1,11 +1,31 @@
 /** What is being drawn: the plan with its history, the level, the selection, the tool. */
+import {Emitter} from '../emitter.js';
 import {faultsOf} from './plan_check.js';
 import {History} from './plan_history.js';
-import {clipboardOf, emptyPlan, itemOf, pasted, remove} from './plan.js';
+import {Tool} from './tool.js';
+import {clipboardOf, emptyPlan, itemOf, KINDS, pasted, remove} from './plan.js';
+/** @import {Clip, Kind, OpeningKind, Ref} from './plan.js' */
+/** @import {Opening, Plan, Stairs} from '../protocol.js' */
+/** @import {Point} from './plane_geometry.js' */
 
-/** Emits `change` after anything that the canvas or the panels show, `tool` when the tool changes. */
-export class Session extends EventTarget {
-  /** @type {import('./plan.js').Ref[]} */
+/**
+ * What the canvas draws besides the plan.
+ * @typedef {object} Sketch
+ * @property {{start: Point, end: Point, thickness: number, on?: string}} [segment]  a wall
+ * @property {Point|null} [mark]
+ * @property {{kind: OpeningKind, item: Opening, fault: string}} [opening]
+ * @property {Omit<Stairs, 'id'>} [stairs]
+ * @property {{points: Point[], closed?: boolean}} [polygon]
+ * @property {[Point, Point]} [box]
+ * @property {[Point, Point]} [measure]
+ */
+
+/**
+ * `change` comes after anything that the canvas or the panels show, `tool` when the tool changes.
+ * @extends {Emitter<{change: undefined, tool: undefined}>}
+ */
+export class Session extends Emitter {
+  /** @type {Ref[]} */
   selection = [];
   /** The level being drawn. */
   at = 0;
@@ -13,11 +33,14 @@ export class Session extends EventTarget {
   shown = {image: true, features: true};
   /** @type {{path: string, name: string}|null} where the building was saved or opened */
   file = null;
+  /** @type {Clip[]} */
   clipboard = [];
-  /** What the canvas draws besides the plan: {segment, ghost, polygon, box, measure}. */
+  /** @type {Sketch} */
   draft = {};
   hint = '';
-  #tool = null;
+  /** @type {Tool} */
+  #tool = new Tool(this);
+  /** @type {Plan|null} */
   #preview = null;
 
   constructor(plan = emptyPlan()) {
@@ -30,27 +53,31 @@ export class Session extends EventTarget {
   get level() { return this.plan.levels[this.at]; }
   get dirty() { return this.history.dirty; }
 
-  /** @type {any} */
+  /** The tool in the hand. */
   get tool() { return this.#tool; }
   set tool(tool) {
-    this.#tool?.cancel();
+    this.#tool.cancel();
     this.#tool = tool;
     this.draft = {};
     this.hint = tool.hint;
-    this.dispatchEvent(new Event('tool'));
+    this.emit('tool');
     this.changed();
   }
 
   /** Back to selecting; set by whoever makes the tools. */
   endTool = () => {};
 
-  /** Shows a plan that is not done yet; null shows the real one again. */
+  /** Shows a plan that is not done yet; null shows the real one again. @param {Plan|null} plan */
   preview(plan) {
     this.#preview = plan;
     this.changed();
   }
 
-  /** Makes a plan the present one. */
+  /**
+   * Makes a plan the present one.
+   * @param {Plan} plan
+   * @param {string} label
+   */
   commit(plan, label) {
     this.#preview = null;
     this.history.commit(plan, label);
@@ -61,22 +88,27 @@ export class Session extends EventTarget {
   undo() { this.#step(() => this.history.undo()); }
   redo() { this.#step(() => this.history.redo()); }
 
+  /** @param {() => void} step */
   #step(step) {
-    this.#tool?.cancel();
+    this.#tool.cancel();
     this.#preview = null;
     step();
     this.#settle();
     this.changed();
   }
 
-  /** Starts over with another plan. */
+  /**
+   * Starts over with another plan.
+   * @param {Plan} plan
+   * @param {Session['file']} [file]
+   */
   open(plan, file = null) {
     this.#preview = null;
     this.history = new History(plan);
     this.at = 0;
     this.selection = [];
     this.file = file;
-    this.#tool?.cancel();
+    this.#tool.cancel();
     this.changed();
   }
 
@@ -86,17 +118,20 @@ export class Session extends EventTarget {
     this.selection = this.selection.filter((ref) => itemOf(this.plan, this.at, ref));
   }
 
+  /** @param {Ref[]} refs */
   select(refs) {
     this.selection = refs;
     this.changed();
   }
 
+  /** @param {Ref} ref */
   isSelected = ({kind, id}) => this.selection.some((ref) => ref.kind === kind && ref.id === id);
 
+  /** @param {number} at */
   goTo(at) {
     this.at = Math.min(Math.max(at, 0), this.plan.levels.length - 1);
     this.selection = [];
-    this.#tool?.cancel();
+    this.#tool.cancel();
     this.changed();
   }
 
@@ -121,7 +156,7 @@ export class Session extends EventTarget {
 
   selectAll() {
     const {level} = this;
-    this.select(Object.keys(NAMES).flatMap((kind) => level[kind].map(({id}) => ({kind, id}))));
+    this.select(KINDS.flatMap((kind) => level[kind].map(({id}) => ({kind, id}))));
   }
 
   /** Faults of all levels, with the level's number. */
@@ -129,19 +164,24 @@ export class Session extends EventTarget {
     return this.plan.levels.flatMap((level, at) => faultsOf(level).map((fault) => ({...fault, at})));
   }
 
-  /** Says something at the foot of the canvas; the tool's own words come back with ''. */
+  /**
+   * Says something at the foot of the canvas; the tool's own words come back with ''.
+   * @param {string} hint
+   */
   say(hint) {
-    this.hint = hint || this.#tool?.hint || '';
+    this.hint = hint || this.#tool.hint || '';
     this.changed();
   }
 
+  /** @param {keyof Session['shown']} what */
   show(what, on = !this.shown[what]) {
     this.shown = {...this.shown, [what]: on};
     this.changed();
   }
 
-  changed() { this.dispatchEvent(new Event('change')); }
+  changed() { this.emit('change'); }
 }
 
+/** What items are called in texts. @type {Record<Kind, string>} */
 export const NAMES = Object.freeze(
   {walls: 'wall', windows: 'window', doors: 'door', stairs: 'stairs', floors: 'floor'});

@@ -2,25 +2,29 @@
 import {distance, fromLocal, inPolygon, nearest, toLocal} from './plane_geometry.js';
 import {itemOf, placeOf, wallLength, wallYaw} from './plan.js';
 import {REACH} from './wall_snap.js';
+/** @import {AnyItem, ItemOf, Kind, Ref} from './plan.js' */
+/** @import {Level, Opening, Plan, Stairs, Wall} from '../protocol.js' */
+/** @import {Point} from './plane_geometry.js' */
 
 /** How far above stairs their turning handle stands, in metres. */
 const STEM = 0.4;
 
 /**
  * The handles of what is selected.
+ * @param {AnyItem} item
  * @returns {{part: string, point: import('./plane_geometry.js').Point}[]}
  */
-export function handlesOf(kind, item) {
-  if (kind === 'walls') {
+export function handlesOf(item) {
+  if ('start' in item) {
     return [{part: 'start', point: item.start}, {part: 'end', point: item.end}];
   }
-  if (kind === 'stairs') {
+  if ('steps' in item) {
     const [x, y] = [item.width / 2, item.depth / 2];
     const corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map((corner, at) =>
       ({part: `corner${at}`, point: fromLocal(corner, item.position, item.yaw)}));
     return [...corners, {part: 'rotate', point: fromLocal([0, y + STEM], item.position, item.yaw)}];
   }
-  if (kind === 'floors') {
+  if ('outline' in item) {
     return item.outline.map((point, at) => ({part: `vertex${at}`, point}));
   }
   return item.wall === null
@@ -30,7 +34,7 @@ export function handlesOf(kind, item) {
 /**
  * The item under a point: handles of the selection first, then openings, stairs, walls, floors.
  *
- * @param {any} plan
+ * @param {Plan} plan
  * @param {number} at  level
  * @param {import('./plane_geometry.js').Point} point
  * @param {{tolerance?: number, selection?: import('./plan.js').Ref[]}} [options]  metres
@@ -39,13 +43,14 @@ export function handlesOf(kind, item) {
 export function hitOf(plan, at, point, {tolerance = 0.05, selection = []} = {}) {
   for (const ref of selection) {
     const item = itemOf(plan, at, ref);
-    const handle = item && handlesOf(ref.kind, item)
+    const handle = item && handlesOf(item)
       .find((one) => distance(one.point, point) <= tolerance * 1.6);
     if (handle) return {ref, part: handle.part};
   }
   const level = plan.levels[at];
+  /** @param {Kind} kind @param {{id: number}} item */
   const body = (kind, item) => ({ref: {kind, id: item.id}, part: 'body'});
-  for (const kind of ['doors', 'windows']) {
+  for (const kind of /** @type {const} */ (['doors', 'windows'])) {
     const found = level[kind].findLast((item) => onOpening(item, level, point, tolerance));
     if (found) return body(kind, found);
   }
@@ -58,7 +63,13 @@ export function hitOf(plan, at, point, {tolerance = 0.05, selection = []} = {}) 
   return floor ? body('floors', floor) : null;
 }
 
+/**
+ * @param {Level} level
+ * @param {Point} point
+ * @param {number} tolerance
+ */
 function wallUnder(level, point, tolerance) {
+  /** @type {Wall|null} */
   let best = null;
   let least = Infinity;
   for (const wall of level.walls) {
@@ -72,6 +83,12 @@ function wallUnder(level, point, tolerance) {
   return best;
 }
 
+/**
+ * @param {Opening} opening
+ * @param {Level} level
+ * @param {Point} point
+ * @param {number} tolerance
+ */
 function onOpening(opening, level, point, tolerance) {
   const {point: middle, yaw, wall} = placeOf(opening, level);
   const [x, y] = toLocal(point, middle, yaw);
@@ -79,6 +96,7 @@ function onOpening(opening, level, point, tolerance) {
   return Math.abs(x) <= opening.width / 2 && Math.abs(y) <= depth / 2 + tolerance;
 }
 
+/** @param {Stairs} stairs @param {Point} point */
 function onStairs(stairs, point) {
   const [x, y] = toLocal(point, stairs.position, stairs.yaw);
   return Math.abs(x) <= stairs.width / 2 && Math.abs(y) <= stairs.depth / 2;
@@ -86,7 +104,9 @@ function onStairs(stairs, point) {
 
 /**
  * The wall an opening at this point would stick to: within 0.3 m.
- * @returns {{wall: any, along: number}|null}
+ * @param {Level} level
+ * @param {Point} point
+ * @returns {{wall: Wall, along: number}|null}
  */
 export function wallNear(level, point, reach = REACH) {
   let best = null;
@@ -101,21 +121,35 @@ export function wallNear(level, point, reach = REACH) {
   return best;
 }
 
-/** The items with something inside a box that was drawn with the mouse. */
+/**
+ * The items with something inside a box that was drawn with the mouse.
+ * @param {Level} level
+ * @param {Point} a
+ * @param {Point} b
+ */
 export function itemsWithin(level, a, b) {
+  /** @param {Point} point */
   const inside = ([x, y]) => x >= Math.min(a[0], b[0]) && x <= Math.max(a[0], b[0]) &&
     y >= Math.min(a[1], b[1]) && y <= Math.max(a[1], b[1]);
-  const refs = (kind, wanted) => level[kind].filter(wanted).map(({id}) => ({kind, id}));
+  /**
+   * @type {<K extends Kind>(kind: K, items: ItemOf[K][], wanted: (item: ItemOf[K]) => boolean) =>
+   *   Ref[]}
+   */
+  const refs = (kind, items, wanted) => items.filter(wanted).map(({id}) => ({kind, id}));
   return [
-    ...refs('walls', (wall) => inside(wall.start) && inside(wall.end)),
-    ...refs('windows', (item) => inside(placeOf(item, level).point)),
-    ...refs('doors', (item) => inside(placeOf(item, level).point)),
-    ...refs('stairs', (item) => inside(item.position)),
-    ...refs('floors', (item) => item.outline.every(inside)),
+    ...refs('walls', level.walls, (wall) => inside(wall.start) && inside(wall.end)),
+    ...refs('windows', level.windows, (item) => inside(placeOf(item, level).point)),
+    ...refs('doors', level.doors, (item) => inside(placeOf(item, level).point)),
+    ...refs('stairs', level.stairs, (item) => inside(item.position)),
+    ...refs('floors', level.floors, (item) => item.outline.every(inside)),
   ];
 }
 
-/** Clear distances from an opening's edges to both ends of its wall. */
+/**
+ * Clear distances from an opening's edges to both ends of its wall.
+ * @param {Opening} opening
+ * @param {Wall} wall
+ */
 export function openingDistances(opening, wall) {
   return {
     start: opening.along - opening.width / 2,

@@ -6,8 +6,11 @@ import {hitOf} from './hit_test.js';
 import {inspectItem, inspectLevel} from './inspector.js';
 import {dropLevel, newLevel} from './level_bar.js';
 import {itemOfLink} from './plan.js';
-import {paintable} from './select_tool.js';
+import {paintable, PaintTool} from './select_tool.js';
 import {NAMES} from './drawing_session.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {Ref} from './plan.js' */
+/** @import {Session} from './drawing_session.js' */
 
 /**
  * @param {{session: import('./drawing_session.js').Session, canvas: import('./plan_canvas.js').Canvas,
@@ -15,10 +18,12 @@ import {NAMES} from './drawing_session.js';
  */
 export function listenToMouse({session, canvas, draw}) {
   const sheet = canvas.element;
+  /** @param {MouseEvent} event */
   const mouseOf = (event) => ({
     point: canvas.toPlan(event.clientX, event.clientY), shift: event.shiftKey, alt: event.altKey,
     ctrl: event.ctrlKey || event.metaKey, tolerance: canvas.tolerance,
   });
+  /** @type {[number, number]|null} */
   let panning = null;
   sheet.addEventListener('pointerdown', (event) => {
     sheet.focus({preventScroll: true});
@@ -72,11 +77,13 @@ export function listenToMouse({session, canvas, draw}) {
     openMenu(event);
   });
 
+  /** @param {MouseEvent} event */
   function hitAt(event) {
     return hitOf(session.plan, session.at, canvas.toPlan(event.clientX, event.clientY),
       {tolerance: canvas.tolerance});
   }
 
+  /** @param {MouseEvent} event */
   function openMenu(event) {
     const hit = hitAt(event);
     if (hit && !session.isSelected(hit.ref)) session.select([hit.ref]);
@@ -94,6 +101,7 @@ export function listenToMouse({session, canvas, draw}) {
   }
 }
 
+/** @param {string} word */
 const title = (word) => word[0].toUpperCase() + word.slice(1);
 
 /** Keys of the page that mean the same while a building is drawn. */
@@ -102,12 +110,13 @@ const OF_THE_PAGE = new Set(['building', 'fullScreen', 'hotkeys', 'togglePanels'
 /**
  * Keys of the building editor, as long as the focus is on it or nowhere.
  * @param {HTMLElement} element
- * @param {{session: import('./drawing_session.js').Session, files: import('./building_files.js').Files,
+ * @param {{session: Session, files: import('./building_editor.js').FileCommands,
  *          exit: () => void, draw: () => void}} parts
  * @returns {() => void} stops listening
  */
 export function listenToKeys(element, {session, files, exit, draw}) {
   let typed = '';
+  /** @type {Record<string, () => unknown>} */
   const run = {
     'Ctrl+S': () => files.save(), 'Ctrl+Shift+S': () => files.saveAs(), 'Ctrl+O': () => files.open(),
     'Alt+N': () => files.fresh(), 'Ctrl+X': exit,
@@ -121,6 +130,7 @@ export function listenToKeys(element, {session, files, exit, draw}) {
       else session.select([]);
     },
   };
+  /** @param {KeyboardEvent} event */
   const pressed = (event) => {
     const at = document.activeElement;
     const here = !at || at === document.body || element.contains(at);
@@ -134,12 +144,15 @@ export function listenToKeys(element, {session, files, exit, draw}) {
       event.preventDefault();
       action();
       draw();
-    } else if (hotkey(event) && !OF_THE_PAGE.has(hotkey(event).action)) {
+    } else if (hotkey(event) && !OF_THE_PAGE.has(hotkey(event)?.action ?? '')) {
       event.preventDefault();
     }
   };
 
-  /** Digits become a length for the tool that draws; true when the key was taken. */
+  /**
+   * Digits become a length for the tool that draws; true when the key was taken.
+   * @param {KeyboardEvent} event
+   */
   function type(event) {
     if (session.tool.name === 'select' || event.ctrlKey || event.metaKey || event.altKey) return false;
     if (/^[0-9.,]$/.test(event.key)) typed += event.key.replace(',', '.');
@@ -159,6 +172,7 @@ export function listenToKeys(element, {session, files, exit, draw}) {
   return () => window.removeEventListener('keydown', pressed, true);
 }
 
+/** @param {KeyboardEvent} event */
 function spelling(event) {
   const key = event.key.length === 1 ? event.key.toUpperCase() : event.key;
   return [event.ctrlKey || event.metaKey ? 'Ctrl' : '', event.altKey ? 'Alt' : '',
@@ -167,35 +181,48 @@ function spelling(event) {
 
 /**
  * Painting in the 3D view: hovering shows, a click paints.
+ * @param {HTMLElement|null} view
+ * @param {{session: Session, actions: Actions}} parts
  * @returns {() => void} stops listening
  */
 export function listenToView(view, {session, actions}) {
+  /** @param {MouseEvent} event */
   const target = (event) => {
-    const link = actions.previewPick?.(event.clientX, event.clientY)?.link;
+    const link = actions.previewPick(event.clientX, event.clientY)?.link;
     const found = link ? itemOfLink(session.history.plan, link) : null;
     return found && paintable(found.ref) ? found : null;
   };
+  /** @type {[number, number]|null} */
   let down = null;
   /** What is shown painted: between two pictures of the preview nothing can be picked. */
+  /** @type {{level: number, ref: Ref}|null} */
   let shown = null;
+  /** @param {MouseEvent} event */
   const move = (event) => {
-    if (session.tool.name !== 'paint' || event.buttons) return;
+    if (!(session.tool instanceof PaintTool) || event.buttons) return;
     shown = target(event);
     session.tool.hover(shown?.level ?? 0, shown?.ref ?? null);
   };
+  /** @param {MouseEvent} event */
   const press = (event) => { down = [event.clientX, event.clientY]; };
+  /** @param {MouseEvent} event */
   const release = (event) => {
-    if (session.tool.name !== 'paint' || event.button !== 0 || !down) return;
+    if (!(session.tool instanceof PaintTool) || event.button !== 0 || !down) return;
     if (Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
     const found = shown ?? target(event);
     if (found) session.tool.paint(found.level, found.ref);
   };
+  /** @param {MouseEvent} event */
   const away = (event) => {
     if (session.tool.name !== 'paint') return;
     event.preventDefault();
     session.endTool();
   };
-  const listeners = [['pointermove', move], ['pointerdown', press], ['pointerup', release], ['contextmenu', away]];
+  /**
+   * @type {['pointermove'|'pointerdown'|'pointerup'|'contextmenu', (event: MouseEvent) => void][]}
+   */
+  const listeners = [['pointermove', move], ['pointerdown', press], ['pointerup', release],
+    ['contextmenu', away]];
   for (const [name, listener] of listeners) view?.addEventListener(name, listener, true);
   return () => listeners.forEach(([name, listener]) => view?.removeEventListener(name, listener, true));
 }

@@ -11,10 +11,26 @@ import {roomsOf} from './rooms.js';
 import {
   SCALE, floorPath, onSheet, openingPaths, pathOf, set, stairsPaths, svg, wallPath,
 } from './plan_svg.js';
+/** @import {AnyItem, ItemOf, Kind, OpeningKind} from './plan.js' */
+/** @import {FloorImage, Level, Opening, Wall} from '../protocol.js' */
+/** @import {Point} from './plane_geometry.js' */
 
-const ORDER = ['floors', 'stairs', 'walls', 'windows', 'doors'];
+/** From the lowest layer to the highest. @type {readonly Kind[]} */
+const ORDER = Object.freeze(['floors', 'stairs', 'walls', 'windows', 'doors']);
+
+/**
+ * A part of a drawn item: its class, its path data, its fill.
+ * @typedef {[string, string, string?]} Look
+ */
+/** What is drawn of an item, and from what. @typedef {{element: SVGElement, item: AnyItem|null,
+ * state: string|null, wall: Wall|null}} Drawn */
+/**
+ * A text on the sheet: where, what, and its class.
+ * @typedef {[Point, string, string]} SheetLabel
+ */
 
 /** How an item is drawn: attributes of the parts of its group. */
+/** @type {{[K in Kind]: (item: ItemOf[K], level: Level) => Look[]}} */
 const LOOKS = {
   floors: (item) => [['frame', floorPath(item), item.color]],
   walls: (item) => [['frame', wallPath(item), item.color]],
@@ -22,10 +38,18 @@ const LOOKS = {
     const {frame, lines, arrow} = stairsPaths(item);
     return [['frame', frame, item.color], ['lines', lines], ['arrow', arrow]];
   },
+  /** @param {Level} level */
   windows: (item, level) => sign('windows', item, level),
+  /** @param {Level} level */
   doors: (item, level) => sign('doors', item, level),
 };
 
+/**
+ * @param {OpeningKind} kind
+ * @param {Opening} item
+ * @param {Level} level
+ * @returns {Look[]}
+ */
 function sign(kind, item, level) {
   const {frame, lines} = openingPaths(kind, item, level);
   return [['frame', frame], ['lines', lines]];
@@ -37,7 +61,8 @@ export class Canvas {
     this.session = session;
     this.image = svg('image', {class: 'plan-image', preserveAspectRatio: 'none'});
     this.below = svg('g', {class: 'below'});
-    this.layers = Object.fromEntries(ORDER.map((kind) => [kind, svg('g', {class: `layer ${kind}`})]));
+    this.layers = /** @type {Record<Kind, SVGElement>} */ (Object.fromEntries(
+      ORDER.map((kind) => [kind, svg('g', {class: `layer ${kind}`})])));
     this.draft = svg('g', {class: 'draft'});
     this.labels = svg('g', {class: 'labels'});
     this.handles = svg('g', {class: 'handles'});
@@ -57,16 +82,26 @@ export class Canvas {
 
   /** Pixels of the screen for one of the sheet, and where the origin stands on the screen. */
   view = {zoom: 1, x: 300, y: 250};
+  /** @type {Map<string, Drawn>} */
   #drawn = new Map();
   #labelled = '';
+  /** The level below, as it is drawn. @type {Level|null} */
   #under = null;
+  /** The floor plan that is loaded. @type {FloorImage|null} */
+  #picture = null;
+  /** Called when the sheet was panned or zoomed. */
+  onplace = () => {};
 
   axes() {
     return svg('g', {class: 'axes'}, svg('path', {class: 'x', d: 'M0 0H40'}),
       svg('path', {class: 'y', d: 'M0 0V-40'}));
   }
 
-  /** Metres of the plan for a point of the window. */
+  /**
+   * Metres of the plan for a point of the window.
+   * @param {number} clientX
+   * @param {number} clientY
+   */
   toPlan(clientX, clientY) {
     const box = this.element.getBoundingClientRect();
     return [(clientX - box.left - this.view.x) / this.view.zoom / SCALE,
@@ -76,6 +111,11 @@ export class Canvas {
   /** Metres that a few pixels of the screen are. */
   get tolerance() { return 6 / this.view.zoom / SCALE; }
 
+  /**
+   * @param {number} clientX
+   * @param {number} clientY
+   * @param {number} factor
+   */
   zoomAt(clientX, clientY, factor) {
     const box = this.element.getBoundingClientRect();
     const zoom = Math.min(Math.max(this.view.zoom * factor, 0.05), 10);
@@ -85,6 +125,7 @@ export class Canvas {
     this.place();
   }
 
+  /** @param {number} dx @param {number} dy */
   pan(dx, dy) {
     this.view = {...this.view, x: this.view.x + dx, y: this.view.y + dy};
     this.place();
@@ -110,25 +151,27 @@ export class Canvas {
   place() {
     const {zoom, x, y} = this.view;
     set(this.world, {transform: `translate(${x} ${y}) scale(${zoom})`});
-    for (const [pattern, size] of [[this.minor, SCALE / 10], [this.major, SCALE]]) {
+    for (const {pattern, size} of [
+      {pattern: this.minor, size: SCALE / 10}, {pattern: this.major, size: SCALE}]) {
       set(pattern, {patternTransform: `translate(${x} ${y}) scale(${zoom})`});
-      pattern.firstChild.setAttribute('stroke-width', String(1 / zoom));
+      pattern.firstElementChild?.setAttribute('stroke-width', String(1 / zoom));
       pattern.toggleAttribute('data-dense', size * zoom < 5);
     }
     this.element.style.setProperty('--unit', String(1 / zoom));
     this.#labelled = '';
     this.draw();
-    this.onplace?.();
+    this.onplace();
   }
 
   draw() {
     const {session} = this;
     set(this.features, {class: session.shown.features ? null : 'hidden'});
     this.#drawImage();
+    /** @type {Map<string, string>} */
     const faulty = new Map();
     for (const fault of session.faults()) {
       if (fault.at !== session.at) continue;
-      for (const {kind, id} of fault.refs) {
+      for (const {kind, id} of fault.refs ?? []) {
         if (faulty.get(`${kind}${id}`) !== 'error') faulty.set(`${kind}${id}`, fault.severity);
       }
     }
@@ -139,7 +182,7 @@ export class Canvas {
         const key = `${kind}${item.id}`;
         seen.add(key);
         const state = `${session.isSelected({kind, id: item.id}) ? 'selected ' : ''}${faulty.get(key) ?? ''}`;
-        this.#drawItem(key, kind, item, state, walls.get(item.wall) ?? null);
+        this.#drawItem(key, kind, item, state, 'along' in item ? walls.get(item.wall ?? -1) ?? null : null);
       }
     }
     for (const [key, {element}] of this.#drawn) {
@@ -153,6 +196,13 @@ export class Canvas {
     this.#drawLabels();
   }
 
+  /**
+   * @param {string} key
+   * @param {Kind} kind
+   * @param {AnyItem} item
+   * @param {string} state
+   * @param {Wall|null} wall
+   */
   #drawItem(key, kind, item, state, wall) {
     let known = this.#drawn.get(key);
     if (!known) {
@@ -160,11 +210,14 @@ export class Canvas {
       this.layers[kind].append(known.element);
       this.#drawn.set(key, known);
     }
+    const {element} = known;
     if (known.item !== item || known.wall !== wall) {
-      const parts = LOOKS[kind](item, this.session.level);
-      while (known.element.childNodes.length < parts.length) known.element.append(svg('path'));
-      parts.forEach(([name, d, fill], at) => set(known.element.childNodes[at],
-        {class: name, d, fill: fill ?? null, 'data-texture': item.texture || null}));
+      const look = /** @type {(item: AnyItem, level: Level) => Look[]} */ (LOOKS[kind]);
+      const parts = look(item, this.session.level);
+      while (element.children.length < parts.length) element.append(svg('path'));
+      const texture = 'texture' in item ? item.texture : '';
+      parts.forEach(([name, d, fill], at) => set(element.children[at],
+        {class: name, d, fill: fill ?? null, 'data-texture': texture || null}));
     }
     if (known.state !== state) set(known.element, {class: state});
     Object.assign(known, {item, state, wall});
@@ -191,8 +244,8 @@ export class Canvas {
     const shown = image?.data && this.session.shown.image;
     this.image.toggleAttribute('hidden', !shown);
     this.image.style.display = shown ? '' : 'none';
-    if (!shown || (this.imageOf === image)) return;
-    this.imageOf = image;
+    if (!shown || this.#picture === image) return;
+    this.#picture = image;
     const source = new Image();
     source.onload = () => {
       const factor = SCALE / image.resolution;
@@ -204,7 +257,9 @@ export class Canvas {
 
   #drawDraft() {
     const {segment, mark, opening, stairs, polygon, box, measure} = this.session.draft;
+    /** @type {SVGElement[]} */
     const parts = [];
+    /** @param {string} d */
     const line = (d, name = '') => parts.push(svg('path', {d, class: name}));
     if (segment) line(wallPath(segment), 'wall');
     if (opening) {
@@ -226,10 +281,11 @@ export class Canvas {
     const {session} = this;
     const only = session.selection.length === 1 ? session.selection[0] : null;
     const item = only && itemOf(session.plan, session.at, only);
+    /** @type {SVGElement[]} */
     const parts = [];
     if (item) {
-      for (const {part, point} of handlesOf(only.kind, item)) {
-        if (part === 'rotate') {
+      for (const {part, point} of handlesOf(item)) {
+        if (part === 'rotate' && 'position' in item) {
           parts.push(svg('path', {class: 'stem', d: pathOf([item.position, point], false)}));
         }
         parts.push(dot(point, part === 'rotate' ? 'rotate' : 'grip', 5 / this.view.zoom));
@@ -240,25 +296,28 @@ export class Canvas {
 
   #drawLabels() {
     const {session} = this;
+    /** @type {SheetLabel[]} */
     const words = [];
     for (const room of roomsOf(session.level.walls)) {
       words.push([labelPoint(room.outline), `${room.area.toFixed(2)} m²`, 'area']);
     }
     const {segment, measure, opening, polygon} = session.draft;
     if (segment) words.push([polar(segment.end, Math.PI / 4, 0.3), segmentWords(segment), 'live']);
-    if (measure) words.push([measure[1], metres(distance(...measure)), 'live']);
+    if (measure) words.push([measure[1], metres(distance(measure[0], measure[1])), 'live']);
     if (polygon && !polygon.closed && polygon.points.length > 1) {
-      words.push([polygon.points.at(-1), `${distance(...polygon.points.slice(-2)).toFixed(2)} m`, 'live']);
+      const [before, last] = polygon.points.slice(-2);
+      words.push([last, `${distance(before, last).toFixed(2)} m`, 'live']);
     }
-    if (opening?.item.wall !== null && opening) words.push(...openingWords(opening.item, session.level));
+    if (opening && opening.item.wall !== null) words.push(...openingWords(opening.item, session.level));
     for (const ref of session.selection.slice(0, 40)) {
       const item = itemOf(session.plan, session.at, ref);
-      if (ref.kind === 'walls' && item) {
+      if (!item) continue;
+      if ('start' in item) {
         words.push(wallWord(item, session.selection.length === 1 ? segmentWords(item)
           : `${outerLength(item).toFixed(2)} m`));
-      } else if (item && item.wall !== undefined && item.wall !== null) {
+      } else if ('along' in item && item.wall !== null) {
         words.push(...openingWords(item, session.level));
-      } else if (ref.kind === 'stairs' && item) {
+      } else if ('steps' in item) {
         words.push([item.position, `${item.width.toFixed(2)} × ${item.depth.toFixed(2)} m`, '']);
       }
     }
@@ -273,39 +332,56 @@ export class Canvas {
   }
 }
 
+/** @param {Wall} wall @param {string} words @returns {SheetLabel} */
 function wallWord(wall, words) {
   const yaw = wallYaw(wall);
   const middle = polar(wall.start, yaw, wallLength(wall) / 2);
   return [polar(middle, yaw + Math.PI / 2, 0.25), words, 'length'];
 }
 
-/** The distances from an opening to both ends of its wall. */
+/**
+ * The distances from an opening to both ends of its wall.
+ * @param {Opening} item
+ * @param {Level} level
+ * @returns {SheetLabel[]}
+ */
 function openingWords(item, level) {
   const {wall} = placeOf(item, level);
   if (!wall) return [];
   const {start, end, yaw} = openingDistances(item, wall);
-  const word = (along, value) => [polar(polar(wall.start, yaw, along), yaw - Math.PI / 2, 0.25),
-    `${value.toFixed(2)} m`, 'length'];
+  /** @param {number} along @param {number} value */
+  const word = (along, value) => /** @type {SheetLabel} */ ([polar(polar(wall.start, yaw, along), yaw - Math.PI / 2, 0.25),
+    `${value.toFixed(2)} m`, 'length']);
   return [word(start / 2, start), word(wallLength(wall) - end / 2, end)];
 }
 
+/**
+ * @param {Point} point
+ * @param {string} name
+ * @param {number} r
+ */
 function dot(point, name, r) {
   const [cx, cy] = onSheet(point);
   return svg('circle', {cx, cy, r, class: name});
 }
 
+/**
+ * @param {string} id
+ * @param {number} size
+ * @param {string} name
+ */
 function gridPattern(id, size, name) {
   return svg('pattern', {id, width: size, height: size, patternUnits: 'userSpaceOnUse', class: name},
     svg('path', {d: `M${size} 0H0V${size}`}));
 }
 
-/** x from, y from, x to, y to of what a level holds; null for nothing. */
+/** x from, y from, x to, y to of what a level holds; null for nothing. @param {Level} level */
 export function extentOf(level) {
   const points = [
     ...level.walls.flatMap(({start, end}) => [start, end]),
     ...level.floors.flatMap(({outline}) => outline),
-    ...[...level.stairs, ...level.windows, ...level.doors].map((item) =>
-      item.wall === undefined || item.wall === null ? item.position : null).filter(Boolean),
+    ...[...level.stairs, ...level.windows, ...level.doors].flatMap((item) =>
+      'along' in item && item.wall !== null ? [] : [item.position]),
   ];
   if (!points.length) return null;
   const xs = points.map(([x]) => x);

@@ -1,18 +1,28 @@
 /** Undo and redo: plans with the words for what led to them. */
+/** @import {Plan} from '../protocol.js' */
 
 const MOST = 200;
 
+/** @typedef {{plan: Plan, label: string}} Step */
+
 export class History {
+  /** @type {Step[]} */
   #past = [];
+  /** @type {Step[]} */
   #future = [];
   #saved;
 
+  /** @param {Plan} plan */
   constructor(plan) {
     this.plan = plan;
     this.#saved = plan;
   }
 
-  /** Takes a new plan; `label` says in words what was done. */
+  /**
+   * Takes a new plan; `label` says in words what was done.
+   * @param {Plan} plan
+   * @param {string} label
+   */
   commit(plan, label) {
     if (plan === this.plan) return;
     this.#past.push({plan: this.plan, label});
@@ -31,6 +41,7 @@ export class History {
     return this.#step(this.#future, this.#past);
   }
 
+  /** @param {Step[]} from @param {Step[]} to */
   #step(from, to) {
     const step = from.pop();
     if (!step) return null;

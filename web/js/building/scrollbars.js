@@ -9,7 +9,7 @@ import {SCALE} from './plan_svg.js';
  * @returns {() => void} brings them up to date
  */
 export function mountScrollbars(element, {session, canvas}) {
-  const bars = ['across', 'down'].map((way) => {
+  const bars = /** @type {const} */ (['across', 'down']).map((way) => {
     const thumb = h('div', {class: 'thumb'});
     const track = h('div', {class: `scroll ${way}`, 'aria-hidden': 'true'}, thumb);
     element.append(track);
@@ -20,6 +20,7 @@ export function mountScrollbars(element, {session, canvas}) {
       event.preventDefault();
       bar.thumb.setPointerCapture(event.pointerId);
       let last = [event.clientX, event.clientY];
+      /** @param {PointerEvent} moved */
       const move = (moved) => {
         const by = bar.way === 'across' ? moved.clientX - last[0] : moved.clientY - last[1];
         last = [moved.clientX, moved.clientY];

@@ -1,13 +1,15 @@
 /** The plan that was never saved, kept in this browser: a crash or a closed tab loses nothing. */
 import {remembered} from '../panels/dom.js';
 import {isEmpty, withoutImages} from './plan.js';
+/** @import {Plan} from '../protocol.js' */
+/** @import {Session} from './drawing_session.js' */
 
 const KEY = 'building-draft';
 const PAUSE = 500;
 
-/** What was left unsaved: {plan, file}, or null. */
+/** What was left unsaved. @returns {{plan: Plan, file: Session['file']}|null} */
 export function leftDraft() {
-  const draft = remembered.get(KEY, null);
+  const draft = remembered.get(KEY, /** @type {{plan: Plan, file: Session['file']}|null} */ (null));
   return draft?.plan?.format === 1 && !isEmpty(draft.plan) ? draft : null;
 }
 
@@ -15,11 +17,13 @@ export const forgetDraft = () => remembered.set(KEY, null);
 
 /**
  * Keeps the plan of a session while it has unsaved changes; pictures are left out, being too large.
- * @param {import('./drawing_session.js').Session} session
+ * @param {Session} session
  * @returns {() => void} stops, and forgets it
  */
 export function keepDraft(session) {
+  /** @type {ReturnType<typeof setTimeout>|0} */
   let timer = 0;
+  /** @type {Plan|null} */
   let kept = null;
   const keep = () => {
     timer = 0;
@@ -30,12 +34,12 @@ export function keepDraft(session) {
     else forgetDraft();
   };
   const changed = () => { timer ||= setTimeout(keep, PAUSE); };
-  session.addEventListener('change', changed);
+  const unlisten = session.listen('change', changed);
   window.addEventListener('pagehide', keep);
   return () => {
     clearTimeout(timer);
     window.removeEventListener('pagehide', keep);
-    session.removeEventListener('change', changed);
+    unlisten();
     forgetDraft();
   };
 }

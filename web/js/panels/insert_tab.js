@@ -3,19 +3,21 @@
  * A click takes the model in hand: it then follows the mouse over the view until it is placed.
  */
 import {Dialog, labelled} from './dialog.js';
-import {fill, h, onActivate, remembered} from './dom.js';
+import {elementsOf, fill, h, onActivate, remembered} from './dom.js';
 import {bytesText} from './text_format.js';
 import {icon} from './icons.js';
+/** @import {DownloadPush, LibraryModel, Location} from '../protocol.js' */
 
 /**
  * The locations with the models that a search leaves. Pure.
  *
- * @param {any[]} locations as the protocol's Location
+ * @param {Location[]} locations
  * @param {string} wanted
  */
 export function searched(locations, wanted) {
   const word = wanted.trim().toLowerCase();
   if (!word) return locations;
+  /** @param {LibraryModel} libraryModel */
   const fits = ({title, name, description}) =>
     [title, name, description].some((text) => text?.toLowerCase().includes(word));
   return locations
@@ -30,6 +32,7 @@ export class InsertTab {
    */
   constructor(element, page) {
     this.page = page;
+    /** @type {Location[]|null} */
     this.locations = null;
     this.#search = h('input', {
       type: 'search',
@@ -49,7 +52,7 @@ export class InsertTab {
           'button',
           {
             type: 'button',
-            title: 'Add a folder of models',
+            title: 'Add model path',
             onclick: () => this.#addPath(),
           },
           icon('add', 15),
@@ -60,12 +63,12 @@ export class InsertTab {
       this.#list,
     );
     this.#list.addEventListener('keydown', (event) => this.#key(event));
-    page.store.addEventListener('library', (event) => this.#take(event.detail.locations));
-    page.store.addEventListener('placing', () => this.#markPlaced());
-    page.connection.addEventListener('message', ({detail}) => {
+    page.store.listen('library', (event) => this.#take(event.detail.locations));
+    page.store.listen('placing', () => this.#markPlaced());
+    page.connection.listen('message', ({detail}) => {
       if (detail.type === 'download') this.#showDownload(detail);
     });
-    page.store.addEventListener('connection', () => {
+    page.store.listen('connection', () => {
       if (this.locations && page.store.connected) this.load();
     });
     this.#show();
@@ -74,8 +77,9 @@ export class InsertTab {
   #search;
   #list;
   #progress;
+  /** @type {ReturnType<typeof setTimeout>|0} */
   #hide = 0;
-  #closed = new Set(remembered.get('closed-locations', []));
+  #closed = new Set(remembered.get('closed-locations', /** @type {string[]} */ ([])));
 
   /** Asks for the library; called when the tab is first seen. */
   async load() {
@@ -86,6 +90,7 @@ export class InsertTab {
     }
   }
 
+  /** @param {Location[]} locations */
   #take(locations) {
     this.locations = locations;
     this.#show();
@@ -93,29 +98,31 @@ export class InsertTab {
 
   #show() {
     if (!this.locations) {
-      fill(this.#list, h('p', {class: 'empty', text: 'Looking for models…'}));
+      fill(this.#list, h('p', {class: 'empty', text: 'Loading models…'}));
       return;
     }
     const found = searched(this.locations, this.#search.value);
-    const at = document.activeElement?.dataset?.uri;
+    const at = document.activeElement instanceof HTMLElement
+      ? document.activeElement.dataset.uri : undefined;
     fill(
       this.#list,
       ...(found.length
         ? found.map((location) => this.#location(location))
-        : [h('p', {class: 'empty', text: 'No model has this in its name.'})]),
+        : [h('p', {class: 'empty', text: 'No matching models'})]),
     );
     if (at)
-      [...this.#list.querySelectorAll('.model-card')]
+      elementsOf(this.#list, '.model-card')
         .find((card) => card.dataset.uri === at)
         ?.focus();
   }
 
+  /** @param {Location} location */
   #location(location) {
     const body = location.problem
       ? h('p', {class: 'empty', text: location.problem})
       : location.models.length
         ? h('div', {class: 'model-grid'}, ...location.models.map((model) => this.#model(model)))
-        : h('p', {class: 'empty', text: 'No models in this folder.'});
+        : h('p', {class: 'empty', text: 'No models in this folder'});
     const details = h(
       'details',
       {class: 'section', open: !this.#closed.has(location.id)},
@@ -148,6 +155,7 @@ export class InsertTab {
     return details;
   }
 
+  /** @param {LibraryModel} model */
   #model(model) {
     const card = h(
       'div',
@@ -160,8 +168,8 @@ export class InsertTab {
         title: model.description || model.title || model.name,
         'aria-label': model.title || model.name,
         ondragstart: (event) => {
-          event.dataTransfer.setData('text/x-model-uri', model.uri);
-          event.dataTransfer.effectAllowed = 'copy';
+          event.dataTransfer?.setData('text/x-model-uri', model.uri);
+          if (event.dataTransfer) event.dataTransfer.effectAllowed = 'copy';
         },
       },
       this.#picture(model),
@@ -171,6 +179,7 @@ export class InsertTab {
     return card;
   }
 
+  /** @param {LibraryModel} model */
   #picture(model) {
     const frame = h('span', {class: 'thumb'}, icon('model', 26));
     if (!model.thumb) return frame;
@@ -179,24 +188,29 @@ export class InsertTab {
       loading: 'lazy',
       src: model.thumb,
       draggable: 'false',
-      onload: () => fill(frame, image),
+      onload: () => { fill(frame, image); },
       onerror: () => this.#render(model, frame),
     });
     frame.append(image);
     return frame;
   }
 
-  /** A model without a picture gets one from the view, when that can draw it. */
+  /**
+   * A model without a picture gets one from the view, when that can draw it.
+   * @param {LibraryModel} model
+   * @param {HTMLElement} frame
+   */
   async #render(model, frame) {
     frame.querySelector('img')?.remove();
-    const picture = await this.page.view?.thumbnail?.(model.uri, model.thumb);
+    const picture = await this.page.view?.thumbnail(model.uri, model.thumb);
     if (picture && frame.isConnected) {
       fill(frame, h('img', {alt: '', src: picture, draggable: 'false'}));
     }
   }
 
+  /** @param {LibraryModel} model */
   async #insert(model) {
-    const card = [...this.#list.querySelectorAll('.model-card')].find(
+    const card = elementsOf(this.#list, '.model-card').find(
       (one) => one.dataset.uri === model.uri,
     );
     card?.classList.add('pending');
@@ -206,11 +220,12 @@ export class InsertTab {
 
   #markPlaced() {
     const uri = this.page.store.placing?.uri;
-    for (const card of this.#list.querySelectorAll('.model-card')) {
+    for (const card of elementsOf(this.#list, '.model-card')) {
       card.classList.toggle('chosen', Boolean(uri) && card.dataset.uri === uri);
     }
   }
 
+  /** @param {DownloadPush} downloadPush */
   #showDownload({name, done, expected}) {
     clearTimeout(this.#hide);
     this.#progress.hidden = false;
@@ -231,11 +246,12 @@ export class InsertTab {
     );
   }
 
+  /** @param {KeyboardEvent} event */
   #key(event) {
-    const cards = [...this.#list.querySelectorAll('.model-card')].filter(
+    const cards = elementsOf(this.#list, '.model-card').filter(
       (card) => card.offsetParent,
     );
-    const at = cards.indexOf(document.activeElement);
+    const at = cards.findIndex((card) => card === document.activeElement);
     if (at < 0) return;
     const columns = cards.filter((card) => card.offsetTop === cards[at].offsetTop).length || 1;
     const to = {
@@ -262,7 +278,7 @@ export class InsertTab {
     });
     new Dialog({
       title: 'Add Path',
-      content: [labelled('A folder that holds model folders', path)],
+      content: [labelled('Model directory', path)],
       buttons: [
         {title: 'Cancel'},
         {
@@ -278,6 +294,7 @@ export class InsertTab {
     }).open();
   }
 
+  /** @param {Event} event @param {Location} location */
   async #removePath(event, location) {
     event.preventDefault();
     try {

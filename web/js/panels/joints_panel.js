@@ -7,7 +7,25 @@ import {numberText} from './text_format.js';
 import {icon} from './icons.js';
 import {makeInput} from './property_inputs.js';
 import {modelOf} from './world_rows.js';
+/** @import {Drive, Gains, Joint, Model, WatchPush} from '../protocol.js' */
 
+/** @typedef {Drive['mode']} DriveMode */
+/**
+ * A joint that can be driven, with its unit in each mode.
+ * @typedef {{joint: Joint, units: Record<DriveMode, string>}} DrivenJoint
+ */
+
+/**
+ * A row of the panel.
+ * @typedef {object} JointRow
+ * @property {HTMLElement} present  shows the joint's state
+ * @property {number} factor        rad or m of the shown unit
+ * @property {string} unit
+ * @property {Drive|null} [drive]   what the simulator drives the joint with
+ * @property {(drive: Drive|null|undefined) => void} show
+ */
+
+/** @type {[DriveMode, string][]} */
 const MODES = [
   ['force', 'Force'],
   ['position', 'Position'],
@@ -15,8 +33,13 @@ const MODES = [
 ];
 /** As gzclient's. */
 const GAINS = {p: 1, i: 0.1, d: 0.01};
+const GAIN_NAMES = /** @type {const} */ (['p', 'i', 'd']);
 
-/** Joints that can be driven, with their units in each mode. Pure. */
+/**
+ * Joints that can be driven, with their units in each mode. Pure.
+ * @param {Model|null} model
+ * @returns {DrivenJoint[]}
+ */
 export function drivenJoints(model) {
   return (model?.joints ?? [])
     .filter((joint) => joint.axis && joint.type !== 'fixed')
@@ -55,24 +78,28 @@ export class JointsPanel {
     fill(element, this.#head, tabs, this.#body);
     roving(tabs, '[role=tab]');
     const {store} = page;
-    for (const event of ['selection', 'document', 'entity']) {
-      store.addEventListener(event, () => this.#update());
+    for (const event of /** @type {const} */ (['selection', 'document', 'entity'])) {
+      store.listen(event, () => this.#update());
     }
-    store.addEventListener('watch', (event) => this.#showStates(event.detail));
+    store.listen('watch', (event) => this.#showStates(event.detail));
   }
 
   #head;
   #body;
   #tabs;
+  /** @type {DriveMode} */
   #mode = 'force';
   #shown = false;
+  /** @type {Model|null} */
   #model = null;
+  /** @type {(() => void)|null} */
   #off = null;
   #signature = '';
+  /** @type {Map<string, JointRow>} */
   #rows = new Map();
   #degrees = false;
 
-  /** Opens or closes the panel: a closed one asks for nothing. */
+  /** Opens or closes the panel: a closed one asks for nothing. @param {boolean} shown */
   show(shown) {
     this.#shown = shown;
     this.#signature = '';
@@ -110,8 +137,8 @@ export class JointsPanel {
         h('p', {
           class: 'empty',
           text: this.#model
-            ? 'This model has no joint that moves.'
-            : 'Select a model that has joints.',
+            ? 'This model has no movable joints.'
+            : 'Select a model with joints.',
         }),
       );
       return;
@@ -126,12 +153,12 @@ export class JointsPanel {
           h('input', {
             type: 'checkbox',
             checked: this.#degrees,
-            onchange: (event) => {
-              this.#degrees = event.target.checked;
+            onchange: () => {
+              this.#degrees = !this.#degrees;
               this.#build();
             },
           }),
-          'in degrees',
+          'Degrees',
         ),
       ...joints.map((one) => this.#row(one)),
       h(
@@ -147,40 +174,48 @@ export class JointsPanel {
     );
   }
 
+  /** @param {DrivenJoint} drivenJoint */
   #row({joint, units}) {
-    const scoped = `${this.#model.name}::${joint.name}`;
+    const scoped = `${this.#model?.name}::${joint.name}`;
     const mode = this.#mode;
     const degrees = this.#degrees && units.position === 'rad' && mode !== 'force';
     const factor = degrees ? Math.PI / 180 : 1;
     const unit = degrees ? units[mode].replace('rad', '°') : units[mode];
     const note = h('span', {class: 'field-note', role: 'alert'});
+    /** @param {string} text */
     const say = (text) => {
       note.textContent = text;
     };
-    const gains = mode === 'force' ? null : {...GAINS};
+    /** @type {Gains} */
+    const gains = mode === 'force' ? {} : {...GAINS};
+    /** @param {number} value */
     const send = async (value) => {
       say('');
-      const op = {kind: 'joint', joint: scoped, mode, value};
-      if (gains) op.gains = gains;
-      const outcome = await this.page.actions.ask('edit', {op}, {quiet: true});
+      const outcome = await this.page.actions.edit(
+        {kind: 'joint', joint: scoped, mode, value, ...(mode === 'force' ? {} : {gains})}, {quiet: true});
       if (!outcome.ok) say(outcome.issues[0].message);
       row.show(row.drive);
     };
+    /**
+     * @param {string} name
+     * @returns {import('./property_inputs.js').InputField}
+     */
     const label = (name) => ({type: 'number', label: `${joint.name} ${name}`});
-    const input = makeInput(label(mode), (value) => send(value * factor), say);
-    const gainInputs = Object.keys(gains ?? {}).map((name) => {
+    const input = makeInput(label(mode), (value) => send(Number(value) * factor), say);
+    const gainInputs = GAIN_NAMES.filter((name) => name in gains).map((name) => {
       const gain = makeInput(
         label(`${name.toUpperCase()} gain`),
         (value) => {
-          gains[name] = value;
+          gains[name] = Number(value);
           gain.show(value);
           if (row.drive?.mode === mode) send(row.drive.value);
         },
         say,
       );
-      return [name, gain];
+      return {name, gain};
     });
-    const present = h('output', {class: 'soft', 'aria-label': `${joint.name} now`});
+    const present = h('output', {class: 'soft', 'aria-label': `${joint.name} state`});
+    /** @type {JointRow} */
     const row = {
       present,
       factor,
@@ -190,12 +225,12 @@ export class JointsPanel {
       show(drive) {
         this.drive = drive;
         const mine = drive?.mode === mode ? drive : null;
-        Object.assign(gains ?? {}, mine?.gains);
+        Object.assign(gains, mine?.gains);
         input.show((mine?.value ?? 0) / factor);
-        for (const [name, gain] of gainInputs) gain.show(gains[name]);
+        for (const {name, gain} of gainInputs) gain.show(gains[name]);
       },
     };
-    row.show();
+    row.show(undefined);
     this.#rows.set(joint.name, row);
     return h(
       'div',
@@ -212,27 +247,31 @@ export class JointsPanel {
     );
   }
 
+  /** @param {WatchPush} watchPush */
   #showStates({topic, joints}) {
     if (!this.#model || topic !== `joints:${this.#model.name}`) return;
     for (const {name, axis, position, rate, drive} of joints ?? []) {
       const row = axis === 0 && this.#rows.get(name);
       if (!row) continue;
+      /** @param {number} value */
       const at = (value) => numberText(Math.round((value / row.factor) * 1e4) / 1e4);
       row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;
       if (JSON.stringify(drive) !== JSON.stringify(row.drive)) row.show(drive);
     }
   }
 
-  /** Nothing is asked of the joints any more. */
+  /** Nothing is asked of the joints any more. @param {DrivenJoint[]} joints */
   async #reset(joints) {
+    const model = this.#model?.name;
     for (const {joint} of joints) {
-      const scoped = `${this.#model.name}::${joint.name}`;
+      const scoped = `${model}::${joint.name}`;
       await this.page.actions.edit({kind: 'joint', joint: scoped, mode: 'force', value: 0});
     }
   }
 }
 
-const gainPart = ([name, gain]) =>
+/** @param {{name: string, gain: import('./property_inputs.js').Input}} part */
+const gainPart = ({name, gain}) =>
   h(
     'span',
     {class: 'part'},

@@ -1,17 +1,19 @@
 /** The Layers tab: a check box for each `visual/meta/layer` that occurs. */
 import {fill, h, onceAFrame} from './dom.js';
+/** @import {World} from '../protocol.js' */
 
 /**
  * The layers of a world. Pure.
  *
- * @param {any} document
+ * @param {World|null} document
  * @returns {number[]} ascending
  */
 export function layersOf(document) {
+  /** @type {Set<number>} */
   const layers = new Set();
   for (const model of document?.models ?? []) {
     for (const link of model.links) {
-      for (const {layer} of link.visuals ?? []) {
+      for (const {layer} of link.visuals) {
         if (layer !== undefined && layer !== null) layers.add(layer);
       }
     }
@@ -40,7 +42,7 @@ export function mountLayers(element, {store}) {
               h('input', {
                 type: 'checkbox',
                 checked: !store.overlays.hiddenLayers.has(layer),
-                onchange: (event) => store.setLayer(layer, event.target.checked),
+                onchange: () => store.setLayer(layer, store.overlays.hiddenLayers.has(layer)),
               }),
               `Layer ${layer}`,
             ),
@@ -48,11 +50,11 @@ export function mountLayers(element, {store}) {
         : [
             h('p', {
               class: 'empty',
-              text: 'No visual of this world has a layer (visual/meta/layer).',
+              text: 'No visual in this world defines a layer (visual/meta/layer).',
             }),
           ]),
     );
   });
-  for (const event of ['document', 'entity', 'overlays']) store.addEventListener(event, show);
+  for (const event of /** @type {const} */ (['document', 'entity', 'overlays'])) store.listen(event, show);
   show();
 }

@@ -1,11 +1,16 @@
 /** What is in the menus: titles, hotkeys and actions, out of one place for all of them. */
-import {HOTKEYS} from '../hotkeys.js';
+import {HOTKEYS, run} from '../hotkeys.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {OverlayFlag, Store} from '../store.js' */
+/** @import {Page} from './panels.js' */
+/** @import {ThemeName} from './theme.js' */
 
-/** The hotkey of an action, '' where it has none. */
+/** The hotkey of an action, '' where it has none. @param {keyof Actions} action */
 export function keysOf(action) {
   return HOTKEYS.find((row) => row.action === action)?.keys ?? '';
 }
 
+/** @type {([OverlayFlag, string]|null)[]} */
 const OVERLAYS = [
   ['grid', 'Grid'],
   ['origin', 'Origin'],
@@ -22,9 +27,12 @@ const OVERLAYS = [
 ];
 
 /** Those of one model: no grid, no origin, no contacts. */
-const OF_A_MODEL = OVERLAYS.filter(
-  (row) => row && !['grid', 'origin', 'contacts'].includes(row[0]),
+const OF_A_MODEL = OVERLAYS.flatMap((row) =>
+  row && !['grid', 'origin', 'contacts'].includes(row[0]) ? [row] : [],
 );
+
+/** @type {readonly ThemeName[]} */
+const THEMES = ['auto', 'dark', 'light'];
 
 const LINE = {separator: true};
 
@@ -36,12 +44,19 @@ const LINE = {separator: true};
  */
 export function menus(page) {
   const {store, actions, theme} = page;
+  /** @param {string} title @param {keyof Actions} action */
   const item = (title, action, more = {}) => ({
     title,
     keys: keysOf(action),
-    run: () => actions[action](),
+    run: () => run(actions, action),
     ...more,
   });
+  /**
+   * @param {string} title
+   * @param {keyof Actions} action
+   * @param {keyof Store['camera']} key
+   * @param {string} value
+   */
   const camera = (title, action, key, value) =>
     item(title, action, {
       checked: () => store.camera[key] === value,
@@ -94,7 +109,7 @@ export function menus(page) {
         item('Follow Selection', 'follow', {enabled: () => store.selection.length > 0}),
       ],
     },
-    {title: 'View', items: () => OVERLAYS.map((row) => (row ? overlayItem(page, ...row) : LINE))},
+    {title: 'View', items: () => OVERLAYS.map((row) => (row ? overlayItem(page, row[0], row[1]) : LINE))},
     {
       title: 'Window',
       items: () => [
@@ -115,8 +130,8 @@ export function menus(page) {
         }),
         item('Full Screen', 'fullScreen'),
         LINE,
-        ...['auto', 'dark', 'light'].map((name) => ({
-          title: {auto: "Colours: the browser's", dark: 'Colours: dark', light: 'Colours: light'}[
+        ...THEMES.map((name) => ({
+          title: {auto: 'Theme: browser default', dark: 'Theme: dark', light: 'Theme: light'}[
             name
           ],
           checked: () => theme.get() === name,
@@ -128,10 +143,17 @@ export function menus(page) {
   ];
 }
 
+/** @param {string} verb @param {string[]} labels */
 function labelOf(verb, labels) {
   return labels.length ? `${verb}: ${labels[0]}` : verb;
 }
 
+/**
+ * @param {Page} page
+ * @param {OverlayFlag} flag
+ * @param {string} title
+ * @param {string} [model]
+ */
 function overlayItem({store, actions}, flag, title, model) {
   return {
     title,
@@ -170,7 +192,7 @@ export function contextMenu(page, name) {
         {
           title: 'Apply Force/Torque',
           run: () => actions.applyForce(name),
-          enabled: () => !entity.model.static,
+          enabled: () => !entity.model?.static,
         },
       ];
   return [
@@ -190,7 +212,7 @@ export function contextMenu(page, name) {
       enabled: () => Boolean(store.clipboard),
     },
     {
-      title: chosen.length > 1 ? `Delete ${chosen.length} selected` : 'Delete',
+      title: chosen.length > 1 ? `Delete Selection (${chosen.length})` : 'Delete',
       keys: keysOf('remove'),
       run: () => actions.remove(chosen),
     },

@@ -21,17 +21,24 @@ export function rpyOf([x, y, z, w]) {
   ].map(clean);
 }
 
+/** @param {number} angle */
 function clean(angle) {
   const turned = Math.atan2(Math.sin(angle), Math.cos(angle));
   return Math.abs(turned) < 1e-12 ? 0 : turned;
 }
 
-/** @returns {number[]} x, y, z, roll, pitch, yaw of a pose of seven numbers */
+/**
+ * @param {number[]} pose
+ * @returns {number[]} x, y, z, roll, pitch, yaw of a pose of seven numbers
+ */
 export function sixOf(pose) {
   return [...pose.slice(0, 3), ...rpyOf(pose.slice(3, 7))];
 }
 
-/** @returns {number[]} the pose of seven numbers of x, y, z, roll, pitch, yaw */
+/**
+ * @param {number[]} six
+ * @returns {number[]} the pose of seven numbers of x, y, z, roll, pitch, yaw
+ */
 export function sevenOf(six) {
   return [...six.slice(0, 3), ...fromRpy(six[3], six[4], six[5])];
 }

@@ -3,12 +3,16 @@
  * came back.
  */
 import {compose, inverse} from '../pose.js';
-import {fill, h, onceAFrame, remembered} from './dom.js';
+import {byId, elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
 import {faultText} from './dialog.js';
 import {icon} from './icons.js';
 import {makeInput} from './property_inputs.js';
 import {sectionsOf, valueAt} from './property_sections.js';
 import {unitGeometry} from './geometry_fields.js';
+/** @import {Field, Section} from './property_fields.js' */
+/** @import {Found} from './property_sections.js' */
+/** @import {Input} from './property_inputs.js' */
+/** @import {Row} from './world_rows.js' */
 
 export class Properties {
   /**
@@ -19,6 +23,7 @@ export class Properties {
     this.element = element;
     this.store = store;
     this.request = request;
+    /** @type {Row|null} */
     this.row = null;
     this.#body = h('div', {class: 'properties-body'});
     this.#title = h('h2', {class: 'properties-title'});
@@ -26,29 +31,34 @@ export class Properties {
     this.update = onceAFrame(() => this.#show());
     // Escape leaves a field that holds nothing new; the next one is the view's.
     element.addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') document.getElementById('view').focus();
+      if (event.key === 'Escape') byId('view').focus();
     });
-    for (const event of ['document', 'entity', 'connection']) {
-      store.addEventListener(event, this.update);
+    for (const event of /** @type {const} */ (['document', 'entity', 'connection'])) {
+      store.listen(event, this.update);
     }
-    store.addEventListener('poses', () => this.#posesCame());
+    store.listen('poses', () => this.#posesCame());
   }
 
   #body;
   #title;
+  /** @type {string|null} */
   #signature = null;
+  /** @type {{key: string, field: Field, input: Input, element: HTMLElement}[]} */
   #inputs = [];
   #turns = new WeakMap();
   #closed = new Set(remembered.get('closed-sections', ['Inertial']));
 
+  /** Gives the focus to the field that had it. @type {(() => void)|null} */
   #refocus = null;
+  /** What waits for the next poses. @type {(() => void)[]} */
   #frames = [];
+  /** @type {ReturnType<typeof setTimeout>|0} */
   #later = 0;
 
   /** Ten times a second is as often as a person reads numbers. */
   #posesCame() {
     this.#frames.splice(0).forEach((resolve) => resolve());
-    if (this.#later || !['model', 'link'].includes(this.row?.kind)) return;
+    if (this.#later || !['model', 'link'].includes(this.row?.kind ?? '')) return;
     this.#later = setTimeout(() => {
       this.#later = 0;
       this.update();
@@ -57,7 +67,7 @@ export class Properties {
 
   /** Settles with the next poses: a moved model is where they say. */
   #nextFrame() {
-    return new Promise((resolve) => {
+    return new Promise((/** @type {(value?: unknown) => void} */ resolve) => {
       this.#frames.push(resolve);
       setTimeout(resolve, 500);
     });
@@ -66,17 +76,22 @@ export class Properties {
   /**
    * A request whose effect is told: the answer may come before the change of the document does, and
    * what the fields show is the document.
+   * @param {string} name
+   * @param {() => Promise<unknown>} request
    */
   async #told(name, request) {
-    let changed = null;
+    /** @type {() => void} */
+    let changed = () => {};
+    /** @type {Promise<void>} */
     const came = new Promise((resolve) => {
       changed = resolve;
     });
-    const hear = ({detail}) => {
-      if (!detail || detail.name === name) changed();
-    };
-    const events = ['entity', 'document'];
-    for (const event of events) this.store.addEventListener(event, hear);
+    const ends = [
+      this.store.listen('entity', ({detail}) => {
+        if (detail.name === name) changed();
+      }),
+      this.store.listen('document', () => changed()),
+    ];
     try {
       await request();
       await Promise.race([
@@ -86,7 +101,7 @@ export class Properties {
         }),
       ]);
     } finally {
-      for (const event of events) this.store.removeEventListener(event, hear);
+      for (const end of ends) end();
     }
   }
 
@@ -106,7 +121,7 @@ export class Properties {
     const signature = found
       ? JSON.stringify([
           found.title,
-          this.row.id,
+          this.row?.id,
           found.sections.map(({key, fields}) => [
             key,
             fields.map(({path, type, fixed}) => [path, type, fixed]),
@@ -126,25 +141,29 @@ export class Properties {
     }
   }
 
-  /** Poses are what they are now: models in the world, links in their model. */
+  /**
+   * Poses are what they are now: models in the world, links in their model.
+   * @param {unknown} entity
+   * @param {Field} field
+   */
   #value(entity, field) {
-    if (field.path === 'pose' && this.row.kind === 'model') {
-      return this.store.worldPose(entity.name) ?? entity.pose;
-    }
-    if (
-      field.path === 'pose' &&
-      this.row.kind === 'link' &&
-      field.local === 'pose' &&
-      entity.inertial
-    ) {
-      const [model, link] = [this.row.model, this.row.select].map((name) =>
-        this.store.worldPose(name),
-      );
-      return model && link ? compose(inverse(model), link) : entity.pose;
-    }
-    return valueAt(entity, field.local);
+    const now = field.path === 'pose' ? this.#poseNow(entity) : null;
+    return now ?? valueAt(entity, field.local ?? field.path);
   }
 
+  /**
+   * The present pose of a model or link; null for other entities.
+   * @param {unknown} entity
+   */
+  #poseNow(entity) {
+    const {kind, model, select} = this.row ?? {};
+    const [owner, own] = [model, select].map((name) => (name ? this.store.worldPose(name) : null));
+    if (kind === 'model') return own;
+    const isLink = typeof entity === 'object' && entity !== null && 'inertial' in entity;
+    return kind === 'link' && isLink && owner && own ? compose(inverse(owner), own) : null;
+  }
+
+  /** @param {Found|null} found */
   #build(found) {
     const focus = this.#focused() ?? this.#refocus;
     // A renamed entity is gone for a moment; its field gets the focus back.
@@ -155,7 +174,7 @@ export class Properties {
     if (!found) {
       fill(
         this.#body,
-        h('p', {class: 'empty', text: 'Choose a row above, or click something in the view.'}),
+        h('p', {class: 'empty', text: 'Select an item in the tree or in the 3D view.'}),
       );
       return;
     }
@@ -166,16 +185,16 @@ export class Properties {
   /** Gives the focus back to the same field of what is built next; null where it is elsewhere. */
   #focused() {
     const field = document.activeElement?.closest('.field');
-    if (!field || !this.#body.contains(field)) return null;
+    if (!(field instanceof HTMLElement) || !this.#body.contains(field)) return null;
     const {path} = field.dataset;
-    const at = [...field.querySelectorAll('input, select')].indexOf(document.activeElement);
-    return () =>
-      [...this.#body.querySelectorAll('.field')]
-        .find((one) => one.dataset.path === path)
-        ?.querySelectorAll('input, select')
-        [at]?.focus();
+    const at = elementsOf(field, 'input, select').findIndex((one) => one === document.activeElement);
+    return () => {
+      const again = elementsOf(this.#body, '.field').find((one) => one.dataset.path === path);
+      if (again) elementsOf(again, 'input, select')[at]?.focus();
+    };
   }
 
+  /** @param {Section} section */
   #section(section) {
     const rows = section.fields.map((field) => this.#field(section, field));
     if (!section.title) return h('div', {class: 'section'}, ...rows);
@@ -194,9 +213,12 @@ export class Properties {
     return details;
   }
 
+  /** @param {Section} section @param {Field} field */
   #field(section, field) {
     const note = h('div', {class: 'field-note', role: 'alert'});
+    /** @param {unknown} value */
     const commit = (value) => this.#commit(section, field, value, element, note);
+    /** @param {string} text */
     const refuse = (text) => {
       note.textContent = text;
     };
@@ -222,6 +244,13 @@ export class Properties {
     return element;
   }
 
+  /**
+   * @param {Section} section
+   * @param {Field} field
+   * @param {unknown} value
+   * @param {HTMLElement} element
+   * @param {HTMLElement} note
+   */
   async #commit(section, field, value, element, note) {
     note.textContent = '';
     element.classList.add('pending');
@@ -229,9 +258,9 @@ export class Properties {
     const turn = (this.#turns.get(element) ?? 0) + 1;
     this.#turns.set(element, turn);
     try {
-      if (field.rename) await this.#rename(section.target, value);
+      if (field.rename) await this.#rename(section.target, String(value));
       else if (field.path === 'geometry.type') {
-        await this.#set(section.target, 'geometry', unitGeometry(value));
+        await this.#set(section.target, 'geometry', unitGeometry(String(value)));
       } else await this.#set(section.target, field.path, value);
       if (field.path === 'pose' && this.row?.kind !== 'light') await this.#nextFrame();
       element.classList.add('taken');
@@ -245,15 +274,21 @@ export class Properties {
     this.#show();
   }
 
+  /** @param {string} name @param {string} to */
   async #rename(name, to) {
-    const op = {kind: 'rename', name, to: to.trim()};
-    await this.#told(op.to, () => this.request('edit', {op}));
-    this.store.select([op.to]);
+    const renamed = to.trim();
+    await this.#told(renamed, () =>
+      this.request('edit', {op: {kind: 'rename', name, to: renamed}}));
+    this.store.select([renamed]);
   }
 
+  /**
+   * @param {string} target
+   * @param {string} path
+   * @param {unknown} value
+   */
   #set(target, path, value) {
-    const owner = this.row.kind === 'light' ? target : (this.row.model ?? '');
-    const op = {kind: 'set', target, path, value};
-    return this.#told(owner, () => this.request('edit', {op}));
+    const owner = this.row?.kind === 'light' ? target : (this.row?.model ?? '');
+    return this.#told(owner, () => this.request('edit', {op: {kind: 'set', target, path, value}}));
   }
 }

@@ -4,34 +4,74 @@
  * @typedef {Object} Field
  * @property {string} path     dotted path within the entity, as the `set` operation takes it
  * @property {string} label
- * @property {string} type     number, integer, text, flag, color, vector, pose, choice,
- *   optional, xml
+ * @property {'number'|'integer'|'text'|'flag'|'color'|'vector'|'pose'|'choice'|'optional'|'xml'} type
  * @property {string} [unit]
  * @property {string[]} [parts]    labels of a vector's numbers
- * @property {[string, string][]|string[]} [choices]
+ * @property {readonly string[]} [choices]
  * @property {boolean} [fixed]     shown, not editable
+ * @property {number} [above]     what a number must be greater than
  * @property {number} [min]
  * @property {number} [max]
  * @property {string} [hint]
+ * @property {unknown} [initial]   what an optional one becomes when it is switched on
+ * @property {boolean} [rename]    a change renames the entity
+ * @property {string} [local]      the path within the section's entity
  *
  * @typedef {Object} Section
  * @property {string} key
  * @property {string} title    '' for the first one, which has no heading
  * @property {string} target   of its `set` operations
- * @property {any} entity      that the paths begin at
+ * @property {object|null|undefined} entity  that the paths begin at
  * @property {Field[]} fields
  */
+/** @import {Joint, Light} from '../protocol.js' */
 
+/**
+ * @param {string} path
+ * @param {string} label
+ * @param {Field['type']} type
+ * @param {Partial<Field>} [more]
+ * @returns {Field}
+ */
 const field = (path, label, type, more = {}) => ({path, label, type, ...more});
+/**
+ * @param {string} path
+ * @param {string} label
+ * @param {string} [unit]
+ * @param {Partial<Field>} [more]
+ */
 const number = (path, label, unit = '', more = {}) => field(path, label, 'number', {unit, ...more});
+/**
+ * @param {string} path
+ * @param {string} label
+ * @param {Partial<Field>} [more]
+ */
 const flag = (path, label, more = {}) => field(path, label, 'flag', more);
+/** @param {string} path @param {string} label */
 const color = (path, label) => field(path, label, 'color');
+/**
+ * @param {string} path
+ * @param {string} label
+ * @param {string} [unit]
+ * @param {Partial<Field>} [more]
+ */
 const vector = (path, label, unit = '', more = {}) =>
   field(path, label, 'vector', {parts: ['x', 'y', 'z'], unit, ...more});
+/**
+ * @param {string} path
+ * @param {string} label
+ * @param {Field['type']} [type]
+ * @param {Partial<Field>} [more]
+ */
 const fixed = (path, label, type = 'text', more = {}) =>
   field(path, label, type, {fixed: true, ...more});
 
-/** A switch for what may be absent: on puts `initial` there, off takes it away. */
+/**
+ * A switch for what may be absent: on puts `initial` there, off takes it away.
+ * @param {string} path
+ * @param {string} label
+ * @param {unknown} initial
+ */
 const optional = (path, label, initial) => field(path, label, 'optional', {initial});
 
 const NAME = fixed('name', 'name');
@@ -39,14 +79,14 @@ const NEW_NAME = field('name', 'name', 'text', {rename: true});
 const POSE = field('pose', 'pose', 'pose');
 const NOT_NEGATIVE = {min: 0};
 
-export const GUI = [optional('gui_camera', 'camera in the file', {})];
+export const GUI = [optional('gui_camera', 'GUI camera', {})];
 
 export const GUI_CAMERA = [
   fixed('name', 'name'),
   POSE,
   field('view_controller', 'view control', 'choice', {choices: ['orbit', 'fps', 'ortho']}),
   field('projection_type', 'projection', 'choice', {choices: ['perspective', 'orthographic']}),
-  field('track', 'track visual', 'text', {hint: 'model that the camera follows'}),
+  field('track', 'track visual', 'text', {hint: 'name of the model that the camera follows'}),
   flag('track_static', 'track: static'),
   flag('track_use_model_frame', 'track: use model frame'),
   flag('track_inherit_yaw', 'track: inherit yaw'),
@@ -78,13 +118,13 @@ export const SKY = [
 
 export const FOG = [
   field('type', 'type', 'choice', {choices: ['none', 'constant', 'linear', 'quadratic']}),
-  color('color', 'colour'),
+  color('color', 'color'),
   number('start', 'start', 'm', NOT_NEGATIVE),
   number('end', 'end', 'm', NOT_NEGATIVE),
   number('density', 'density', '', NOT_NEGATIVE),
 ];
 
-export const GLOBE = [optional('spherical_coordinates', 'on the globe', {})];
+export const GLOBE = [optional('spherical_coordinates', 'spherical coordinates', {})];
 
 export const SPHERICAL = [
   field('surface_model', 'surface model', 'choice', {choices: ['EARTH_WGS84']}),
@@ -191,10 +231,10 @@ export const JOINT = [
   fixed('type', 'type'),
   fixed('parent', 'parent'),
   fixed('child', 'child'),
-  field('pose', 'pose', 'pose', {fixed: true, hint: 'in the child link'}),
+  field('pose', 'pose', 'pose', {fixed: true, hint: 'relative to the child link'}),
 ];
 
-/** The fields of an axis, for rad or m. */
+/** The fields of an axis, for rad or m. @param {Joint} joint */
 export function axisFields(joint) {
   const linear = joint.type === 'prismatic';
   const [length, force] = linear ? ['m', 'N'] : ['rad', 'N m'];
@@ -202,8 +242,8 @@ export function axisFields(joint) {
     vector('xyz', 'axis'),
     number('lower', 'lower limit', length),
     number('upper', 'upper limit', length),
-    number('effort', 'effort limit', force, {hint: '-1: none'}),
-    number('velocity', 'velocity limit', `${length}/s`, {hint: '-1: none'}),
+    number('effort', 'effort limit', force, {hint: '-1: no limit'}),
+    number('velocity', 'velocity limit', `${length}/s`, {hint: '-1: no limit'}),
     number('damping', 'damping', `${force} s/${length}`, NOT_NEGATIVE),
     number('friction', 'friction', force, NOT_NEGATIVE),
     number('spring_reference', 'spring reference', length),
@@ -213,7 +253,7 @@ export function axisFields(joint) {
 
 export const LIGHT_TYPES = ['point', 'spot', 'directional'];
 
-/** The fields of a light: its type decides. */
+/** The fields of a light: its type decides. @param {Light} light */
 export function lightFields(light) {
   const far =
     light.type === 'directional'

@@ -10,6 +10,7 @@
  */
 export function clockText(ns) {
   const total = Math.max(0, Math.floor(ns / 1e6));
+  /** @param {number} number */
   const two = (number) => String(number).padStart(2, '0');
   const seconds = Math.floor(total / 1000);
   return (
@@ -23,7 +24,7 @@ export function clockText(ns) {
  * A number in at most seven significant digits, without trailing zeros: what a field shows while it
  * has no focus.
  *
- * @param {number} value
+ * @param {number|null|undefined} value
  * @returns {string}
  */
 export function numberText(value) {
@@ -35,11 +36,14 @@ export function numberText(value) {
   return trimmed(value.toPrecision(7));
 }
 
+/** @param {string} text */
 function trimmed(text) {
   const [mantissa, exponent] = text.split('e');
   const short = mantissa.includes('.') ? mantissa.replace(/\.?0+$/, '') : mantissa;
   return exponent === undefined ? short : `${short}e${Number(exponent)}`;
 }
+
+/** What is left to parse. @typedef {{tokens: (number|string)[], at: number}} TokenState */
 
 const TOKEN =
   /\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([a-zA-Z°]+)|([-+*/()]))/y;
@@ -71,7 +75,9 @@ export function parseNumber(text) {
   return state.at === tokens.length ? value : NaN;
 }
 
+/** @param {string} text */
 function tokensOf(text) {
+  /** @type {(number|string)[]} */
   const tokens = [];
   TOKEN.lastIndex = 0;
   const source = text.trim();
@@ -83,6 +89,7 @@ function tokensOf(text) {
   return tokens;
 }
 
+/** @param {TokenState} state */
 function sum(state) {
   let value = product(state);
   while (state.tokens[state.at] === '+' || state.tokens[state.at] === '-') {
@@ -92,6 +99,7 @@ function sum(state) {
   return value;
 }
 
+/** @param {TokenState} state */
 function product(state) {
   let value = factor(state);
   while (state.tokens[state.at] === '*' || state.tokens[state.at] === '/') {
@@ -102,6 +110,10 @@ function product(state) {
   return value;
 }
 
+/**
+ * @param {TokenState} state
+ * @returns {number}
+ */
 function factor(state) {
   const token = state.tokens[state.at++];
   if (token === '-') return -factor(state);
@@ -111,13 +123,11 @@ function factor(state) {
   else if (token === '(') {
     value = sum(state);
     if (state.tokens[state.at++] !== ')') return NaN;
-  } else if (NAMES.has(String(token).toLowerCase())) {
-    value = NAMES.get(token.toLowerCase());
-  }
-  const unit = state.tokens[state.at];
-  if (UNITS.has(unit)) {
+  } else value = NAMES.get(String(token).toLowerCase()) ?? NaN;
+  const unit = UNITS.get(String(state.tokens[state.at]));
+  if (unit !== undefined) {
     state.at += 1;
-    value *= UNITS.get(unit);
+    value *= unit;
   }
   return value;
 }
@@ -129,6 +139,7 @@ function factor(state) {
  * @returns {string} `#rrggbb`
  */
 export function colorText(color) {
+  /** @param {number} value */
   const part = (value) =>
     Math.round(Math.min(1, Math.max(0, value ?? 0)) * 255)
       .toString(16)
@@ -142,11 +153,12 @@ export function colorText(color) {
  * @returns {number[]} r, g, b, a in 0..1
  */
 export function colorOf(text, alpha) {
+  /** @param {number} at */
   const part = (at) => Math.round((parseInt(text.slice(at, at + 2), 16) / 255) * 1e4) / 1e4;
   return [part(1), part(3), part(5), alpha];
 }
 
-/** A number of bytes in words. */
+/** A number of bytes in words. @param {number} bytes */
 export function bytesText(bytes) {
   if (bytes < 1000) return `${bytes} B`;
   if (bytes < 1e6) return `${(bytes / 1e3).toFixed(0)} kB`;

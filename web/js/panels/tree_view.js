@@ -4,11 +4,13 @@
  */
 import {fill, h, onceAFrame} from './dom.js';
 import {icon} from './icons.js';
+/** @import {Child} from './dom.js' */
+/** @import {Row} from './world_rows.js' */
 
 const ROW = 24;
 const SPARE = 8;
 
-/** px before a row's arrow. */
+/** px before a row's arrow. @param {Row} row */
 const indent = (row) => 4 + (row.level - 1) * 14;
 
 export class Tree {
@@ -16,16 +18,18 @@ export class Tree {
    * @param {HTMLElement} element becomes the scrolling tree
    * @param {Object} handlers
    * @param {string} handlers.label
-   * @param {(row: any, event: Event) => void} handlers.choose a click, or moving with the keys
-   * @param {(row: any, open: boolean) => void} handlers.toggle
-   * @param {(row: any) => void} [handlers.activate] double click or Enter
-   * @param {(row: any, x: number, y: number) => void} [handlers.menu]
-   * @param {(row: any) => Node|null} [handlers.decorate] what stands at the end of a row
+   * @param {(row: Row, event: MouseEvent|KeyboardEvent) => void} handlers.choose a click, or moving with the keys
+   * @param {(row: Row, open: boolean) => void} handlers.toggle
+   * @param {(row: Row) => void} [handlers.activate] double click or Enter
+   * @param {(row: Row, x: number, y: number) => void} [handlers.menu]
+   * @param {(row: Row) => Child} [handlers.decorate] what stands at the end of a row
    */
   constructor(element, handlers) {
     this.element = element;
     this.handlers = handlers;
+    /** @type {Row[]} */
     this.rows = [];
+    /** Ids of the rows that are selected. @type {Set<string>} */
     this.selected = new Set();
     this.current = '';
     this.#prefix = `row-${Math.random().toString(36).slice(2, 8)}-`;
@@ -57,10 +61,11 @@ export class Tree {
 
   #prefix;
   #sheet;
+  /** The row where the button was pressed. @type {Row|null} */
   #pressed = null;
   #typed = {text: '', at: 0};
 
-  /** @param {any[]} rows as `world_rows.Row` @param {Set<string>} selected ids */
+  /** @param {Row[]} rows as `world_rows.Row` @param {Set<string>} selected ids */
   show(rows, selected) {
     this.rows = rows;
     this.selected = selected;
@@ -68,7 +73,7 @@ export class Tree {
     this.draw();
   }
 
-  /** Makes a row the current one and scrolls it into sight. */
+  /** Makes a row the current one and scrolls it into sight. @param {string} id */
   reveal(id) {
     const at = this.rows.findIndex((row) => row.id === id);
     if (at < 0) return;
@@ -96,6 +101,7 @@ export class Tree {
     else this.element.removeAttribute('aria-activedescendant');
   }
 
+  /** @param {Row} row @param {number} at */
   #rowElement(row, at) {
     const classes = ['tree-row', `kind-${row.kind}`];
     if (this.selected.has(row.id)) classes.push('selected');
@@ -127,17 +133,22 @@ export class Tree {
     );
   }
 
-  /** By place, not by element: a drawing between press and release replaces the elements. */
+  /**
+   * By place, not by element: a drawing between press and release replaces the elements.
+   * @param {MouseEvent} event
+   */
   #rowAt(event) {
     const top = this.element.getBoundingClientRect().top;
     return this.rows[Math.floor((event.clientY - top + this.element.scrollTop) / ROW)] ?? null;
   }
 
+  /** @param {MouseEvent} event @param {Row} row */
   #onArrow(event, row) {
     const left = event.clientX - this.element.getBoundingClientRect().left;
     return row.expandable && left < indent(row) + 18;
   }
 
+  /** @param {MouseEvent} event */
   #click(event) {
     const row = this.#rowAt(event);
     if (!row) return;
@@ -148,6 +159,7 @@ export class Tree {
     this.draw();
   }
 
+  /** @param {MouseEvent} event */
   #doubleClick(event) {
     const row = this.#rowAt(event);
     if (!row || this.#onArrow(event, row)) return;
@@ -155,6 +167,7 @@ export class Tree {
     else if (row.expandable) this.handlers.toggle(row, !row.open);
   }
 
+  /** @param {MouseEvent} event */
   #context(event) {
     event.preventDefault();
     const row = this.#rowAt(event);
@@ -163,6 +176,7 @@ export class Tree {
     this.handlers.menu(row, event.clientX, event.clientY);
   }
 
+  /** @param {KeyboardEvent} event */
   #key(event) {
     if (event.altKey || event.metaKey || event.target !== this.element) return;
     const at = this.rows.findIndex((row) => row.id === this.current);
@@ -174,6 +188,11 @@ export class Tree {
     }
   }
 
+  /**
+   * @param {KeyboardEvent} event
+   * @param {number} at
+   * @param {Row} row
+   */
   #keyMoves(event, at, row) {
     const page = Math.max(1, Math.floor(this.element.clientHeight / ROW) - 1);
     const last = this.rows.length - 1;
@@ -195,13 +214,18 @@ export class Tree {
     return true;
   }
 
-  /** Headings of a model's parts have nothing to show. */
+  /**
+   * Headings of a model's parts have nothing to show.
+   * @param {number} at
+   * @param {number} step
+   */
   #beyondHeadings(at, step) {
     let to = at;
     while (this.rows[to]?.kind === 'heading') to += step;
     return this.rows[to] ?? this.rows[at - step];
   }
 
+  /** @param {KeyboardEvent} event @param {Row} row */
   #keyActs(event, row) {
     const open = {ArrowLeft: false, ArrowRight: true}[event.key];
     if (open !== undefined) {
@@ -220,7 +244,7 @@ export class Tree {
     }
     if (event.key === 'ContextMenu' || (event.key === 'F10' && event.shiftKey)) {
       const box = document
-        .getElementById(this.element.getAttribute('aria-activedescendant'))
+        .getElementById(this.element.getAttribute('aria-activedescendant') ?? '')
         ?.getBoundingClientRect();
       if (box) this.handlers.menu?.(row, box.left + 40, box.bottom);
       return true;
@@ -228,7 +252,11 @@ export class Tree {
     return false;
   }
 
-  /** Upper-case letters look for a row by its beginning: the plain ones are hotkeys. */
+  /**
+   * Upper-case letters look for a row by its beginning: the plain ones are hotkeys.
+   * @param {KeyboardEvent} event
+   * @param {number} at
+   */
   #keyTypes(event, at) {
     if (event.ctrlKey || event.key.length !== 1 || !event.shiftKey || event.key === ' ')
       return false;
@@ -244,6 +272,7 @@ export class Tree {
     return true;
   }
 
+  /** @param {number} at */
   #parentOf(at) {
     const level = this.rows[at].level;
     for (let above = at - 1; above >= 0; above -= 1) {

@@ -1,9 +1,10 @@
 /** The World tab: a filter, the tree, and the properties of the row that is chosen. */
-import {fill, h, onceAFrame, remembered} from './dom.js';
+import {elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
 import {Properties} from './properties_panel.js';
 import {Tree} from './tree_view.js';
 import {rowOf, worldRows} from './world_rows.js';
 import {lyingBar, splitter} from './splitter.js';
+/** @import {Row} from './world_rows.js' */
 
 export class WorldTab {
   /**
@@ -48,10 +49,11 @@ export class WorldTab {
     });
     this.properties = new Properties(properties, page);
     this.update = onceAFrame(() => this.#update());
-    for (const event of ['document', 'entity']) this.store.addEventListener(event, this.update);
-    this.store.addEventListener('selection', () => this.#followSelection());
+    for (const event of /** @type {const} */ (['document', 'entity'])) this.store.listen(event, this.update);
+    this.store.listen('selection', () => this.#followSelection());
+    /** @type {boolean|null} */
     let paused = null;
-    this.store.addEventListener('stats', () => {
+    this.store.listen('stats', () => {
       if (this.store.stats.paused === paused) return;
       paused = this.store.stats.paused;
       this.tree.draw();
@@ -61,8 +63,9 @@ export class WorldTab {
 
   #filter;
   #open = new Set(['models', 'lights', ...remembered.get('open-rows', [])]);
+  /** The row whose properties are shown. @type {Row|null} */
   #row = null;
-  /** A selected name whose row has not come yet: what was just inserted. */
+  /** A selected name whose row has not come yet: what was just inserted. @type {string|null} */
   #awaited = null;
 
   #update() {
@@ -81,11 +84,13 @@ export class WorldTab {
     if (!document) return new Set();
     const models = new Set(document.models.map(({name}) => name));
     const lights = new Set(document.lights.map(({name}) => name));
+    /** @param {string} name */
     const idOf = (name) =>
       models.has(name) ? `model:${name}` : lights.has(name) ? `light:${name}` : `link:${name}`;
     return new Set([...selection.map(idOf), ...(this.#row ? [this.#row.id] : [])]);
   }
 
+  /** @param {Row} row @param {{ctrlKey?: boolean, metaKey?: boolean}} event */
   #choose(row, event) {
     if (row.kind === 'heading') return;
     this.#row = row;
@@ -97,11 +102,16 @@ export class WorldTab {
     this.update();
   }
 
-  /** A joint's or plugin's row leaves its model selected. */
+  /**
+   * A joint's or plugin's row leaves its model selected.
+   * @param {Row} row
+   * @param {string[]} selection
+   */
   #belongs(row, selection) {
     return row.model && selection.some((name) => this.store.split(name)[0]?.name === row.model);
   }
 
+  /** @param {Row} row @param {boolean} open */
   #toggle(row, open) {
     if (open) this.#open.add(row.id);
     else this.#open.delete(row.id);
@@ -131,18 +141,24 @@ export class WorldTab {
     this.properties.refresh();
   }
 
+  /**
+   * @param {Row} row
+   * @param {number} x
+   * @param {number} y
+   */
   #menu(row, x, y) {
     if (!row.select) return;
     if (!this.store.selection.includes(row.select)) this.#choose(row, {});
-    this.store.dispatchEvent(new CustomEvent('contextmenu', {detail: {name: row.select, x, y}}));
+    this.store.emit('contextmenu', {name: row.select, x, y});
   }
 
+  /** @param {Row} row */
   #decorate(row) {
     if (row.kind === 'model') {
-      const model = this.store.document.models.find((one) => one.name === row.name);
+      const model = this.store.document?.models.find((one) => one.name === row.name);
       return model?.static && h('span', {class: 'tag', text: 'static'});
     }
-    if (row.kind === 'physics' && this.store.stats?.paused) {
+    if (row.kind === 'physics' && this.store.stats.paused) {
       return h('span', {class: 'tag', text: 'paused'});
     }
     return null;
@@ -158,6 +174,6 @@ export class WorldTab {
   rename() {
     this.#update();
     this.properties.refresh();
-    this.properties.element.querySelector('[data-path="name"] input:not([readonly])')?.focus();
+    elementsOf(this.properties.element, '[data-path="name"] input:not([readonly])')[0]?.focus();
   }
 }

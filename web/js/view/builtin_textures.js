@@ -1,4 +1,7 @@
-/** Built-in textures drawn by the page: no image files are needed for them. */
+/**
+ * Built-in textures drawn by the page: no image files are needed for them.
+ * @param {number} seed
+ */
 
 function random(seed) {
   let state = seed;
@@ -8,6 +11,12 @@ function random(seed) {
   };
 }
 
+/**
+ * @param {CanvasRenderingContext2D} paint
+ * @param {number} size
+ * @param {number} amount
+ * @param {number} seed
+ */
 function speckle(paint, size, amount, seed) {
   const image = paint.getImageData(0, 0, size, size);
   const next = random(seed);
@@ -18,6 +27,12 @@ function speckle(paint, size, amount, seed) {
   paint.putImageData(image, 0, 0);
 }
 
+/**
+ * @param {CanvasRenderingContext2D} paint
+ * @param {number} size
+ * @param {string[]} colors
+ * @param {number} rows
+ */
 function planks(paint, size, colors, rows) {
   const next = random(7);
   const height = size / rows;
@@ -38,6 +53,7 @@ function planks(paint, size, colors, rows) {
   }
 }
 
+/** @param {CanvasRenderingContext2D} paint @param {number} size */
 function bricks(paint, size) {
   const next = random(3);
   paint.fillStyle = '#b9b2a6';
@@ -55,6 +71,13 @@ function bricks(paint, size) {
   }
 }
 
+/**
+ * @param {CanvasRenderingContext2D} paint
+ * @param {number} size
+ * @param {string} face
+ * @param {string} joint
+ * @param {number} count
+ */
 function tiles(paint, size, face, joint, count) {
   paint.fillStyle = joint;
   paint.fillRect(0, 0, size, size);
@@ -65,11 +88,21 @@ function tiles(paint, size, face, joint, count) {
   }
 }
 
+/**
+ * @param {CanvasRenderingContext2D} paint
+ * @param {number} size
+ * @param {string} color
+ */
 function plain(paint, size, color) {
   paint.fillStyle = color;
   paint.fillRect(0, 0, size, size);
 }
 
+/**
+ * @param {CanvasRenderingContext2D} paint
+ * @param {number} size
+ * @param {number} lanes
+ */
 function road(paint, size, lanes) {
   plain(paint, size, '#4b4b4d');
   paint.fillStyle = '#e9e7dd';
@@ -80,6 +113,7 @@ function road(paint, size, lanes) {
   }
 }
 
+/** @param {CanvasRenderingContext2D} paint @param {number} size */
 function checker(paint, size) {
   plain(paint, size, '#f4d616');
   paint.fillStyle = '#111';
@@ -87,7 +121,13 @@ function checker(paint, size) {
   paint.fillRect(size / 2, size / 2, size / 2, size / 2);
 }
 
+/**
+ * Draws a square of `size` px.
+ * @typedef {(paint: CanvasRenderingContext2D, size: number) => void} Painter
+ */
+
 /** How each pattern is drawn: painter, then the strength of the grain put over it. */
+/** @type {Record<string, [Painter, number]>} */
 const PATTERNS = {
   wood: [(paint, size) => planks(paint, size, ['#a9743f', '#9e6a37'], 4), 14],
   hardwood_floor: [(paint, size) => planks(paint, size, ['#b98a54', '#a97b47', '#c2935c'], 8), 12],
@@ -113,6 +153,7 @@ const PATTERNS = {
   com: [checker, 0],
 };
 
+/** @type {Record<string, string>} */
 const OTHER_NAMES = {
   woodfloor: 'hardwood_floor', hardwood: 'hardwood_floor', ceilingtiled: 'ceiling_tiled',
   tiles: 'ceiling_tiled', paintedwall: 'painted_wall', wall: 'painted_wall',
@@ -136,6 +177,7 @@ export function patternCanvas(name) {
   const canvas = document.createElement('canvas');
   canvas.width = canvas.height = SIZE;
   const paint = canvas.getContext('2d', {willReadFrequently: true});
+  if (!paint) return null;
   const [draw, grain] = pattern;
   draw(paint, SIZE);
   if (grain) speckle(paint, SIZE, grain, 11);

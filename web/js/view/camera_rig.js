@@ -2,15 +2,19 @@
 import {Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
 import {add, length, scale, subtract} from '../pose.js';
+/** @import {GuiCamera} from '../protocol.js' */
+/** @import {Vec3} from '../pose.js' */
+/** @import {View} from '../camera_math.js' */
+/** @import {ViewParts} from './view.js' */
 
 const FLIGHT = 500;
 const TURN_FLIGHT = 1000;
 const WALK_SPEED = {ahead: 1, aside: 0.8};
 
 export class CameraRig {
-  /** @type {views.View} */
+  /** @type {View} */
   view = views.HOME;
-  /** Pixels per metre when orthographic. */
+  /** Resolution (pixels per meter) when orthographic. */
   zoomLevel = views.ORTHOGRAPHIC_ZOOM;
   /** Called after each move. */
   onMoved = () => {};
@@ -19,29 +23,33 @@ export class CameraRig {
   #store;
   #models;
   #home = views.HOME;
+  /** @type {{from: View, to: View, began: number, duration: number}|null} */
   #flight = null;
   #walking = {ahead: 0, aside: 0, fast: false};
   #walkSpeed = 1;
   #lastWalk = 0;
+  /** Where what is followed was. @type {Vec3|null} */
   #followed = null;
+  /** File and name of the world. @type {string|null} */
   #world = null;
 
+  /** @param {Pick<ViewParts, 'stage'|'store'|'models'>} viewParts */
   constructor({stage, store, models}) {
     this.#stage = stage;
     this.#store = store;
     this.#models = models;
-    store.addEventListener('document', () => this.#openWorld());
-    store.addEventListener('entity', ({detail: {kind, value}}) => {
+    store.listen('document', () => this.#openWorld());
+    store.listen('entity', ({detail: {kind, value}}) => {
       if (kind === 'world' && value.gui_camera) this.#takeCamera(value.gui_camera);
     });
-    store.addEventListener('camera', () => this.#applyChoices());
+    store.listen('camera', () => this.#applyChoices());
     this.apply();
   }
 
   get orthographic() { return this.#store.camera.projection === 'orthographic'; }
   get fov() { return views.verticalFov(this.#stage.aspect); }
 
-  /** Metres a pixel covers at a point. */
+  /** Metres a pixel covers at a point. @param {Vec3} point */
   unitAt(point) {
     return this.orthographic ? 1 / this.zoomLevel
       : views.metresPerPixel(this.view, point, this.fov, this.#stage.height);
@@ -52,18 +60,35 @@ export class CameraRig {
     return add(this.view.position, scale(views.forward(this.view), 10));
   }
 
-  /** Takes a view at once; a flight ends. @param {views.View} view */
+  /** Takes a view at once; a flight ends. @param {View} view */
   set(view) {
     this.#flight = null;
     this.view = view;
     this.apply();
   }
 
+  /**
+   * @param {Vec3} pivot
+   * @param {number} dx
+   * @param {number} dy
+   * @param {'pitch'|'yaw'|null} only
+   */
   orbit(pivot, dx, dy, only) { this.set(views.orbit(this.view, pivot, dx, dy, only)); }
+  /** @param {number} dx @param {number} dy */
   look(dx, dy) { this.set(views.look(this.view, dx, dy)); }
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   * @param {Vec3} point
+   * @param {'x'|'y'|'z'|null} axis
+   */
   pan(dx, dy, point, axis) { this.set(views.pan(this.view, dx, dy, this.unitAt(point), axis)); }
 
-  /** Zooms to or from a point, factor < 1 towards it. */
+  /**
+   * Zooms to or from a point, factor < 1 towards it.
+   * @param {Vec3} point
+   * @param {number} factor
+   */
   zoom(point, factor) {
     if (!this.orthographic) {
       this.set(views.zoom(this.view, point, factor));
@@ -73,25 +98,31 @@ export class CameraRig {
     const lever = subtract(point, this.view.position);
     const side = views.right(this.view);
     const top = views.up(this.view);
+    /** @param {Vec3} axis */
     const part = (axis) => axis.reduce((sum, value, index) => sum + value * lever[index], 0);
     this.zoomLevel = Math.min(Math.max(this.zoomLevel / factor, 0.5), 20000);
     this.set({...this.view, position: add(this.view.position,
       add(scale(side, part(side) * (1 - factor)), scale(top, part(top) * (1 - factor))))});
   }
 
-  /** Faster or slower walking, with the wheel. */
+  /** Faster or slower walking, with the wheel. @param {number} factor */
   changeWalkSpeed(factor) {
     this.#walkSpeed = Math.min(Math.max(this.#walkSpeed * factor, 0.05), 50);
   }
 
-  /** Starts or stops walking. @param {number} ahead -1..1 @param {number} aside -1..1 */
+  /**
+   * Starts or stops walking.
+   * @param {number} ahead -1..1
+   * @param {number} aside -1..1
+   * @param {boolean} fast
+   */
   walk(ahead, aside, fast) {
     if (!this.#walking.ahead && !this.#walking.aside) this.#lastWalk = performance.now();
     this.#walking = {ahead, aside, fast};
     if (ahead || aside) this.#stage.invalidate();
   }
 
-  /** Flies to a view. */
+  /** Flies to a view. @param {View} to */
   fly(to, duration = FLIGHT) {
     this.#flight = {from: this.view, to, began: performance.now(), duration};
     this.#stage.invalidate();
@@ -107,7 +138,7 @@ export class CameraRig {
       this.#stage.aspect));
   }
 
-  /** Flies most of the way to a point. */
+  /** Flies most of the way to a point. @param {Vec3} point */
   flyTowards(point) {
     const position = add(this.view.position, scale(subtract(point, this.view.position), 0.8));
     this.fly({...views.lookAt(this.view.position, point), position});
@@ -118,7 +149,11 @@ export class CameraRig {
     this.fly(side === 'home' ? this.#home : views.fromSide(this.view, side, centre), TURN_FLIGHT);
   }
 
-  /** Moves on with time; @returns {boolean} whether it goes on moving */
+  /**
+   * Moves on with time;
+   * @param {number} now
+   * @returns {boolean} whether it goes on moving
+   */
   advance(now) {
     let moving = false;
     if (this.#flight) {
@@ -166,10 +201,10 @@ export class CameraRig {
     const {perspective, orthographic} = this.#stage;
     const camera = this.orthographic ? orthographic : perspective;
     this.#stage.camera = camera;
-    const ahead = new Vector3(...views.forward(this.view));
-    const side = new Vector3(...views.right(this.view));
-    const top = new Vector3(...views.up(this.view));
-    camera.position.set(...this.view.position);
+    const ahead = new Vector3().fromArray(views.forward(this.view));
+    const side = new Vector3().fromArray(views.right(this.view));
+    const top = new Vector3().fromArray(views.up(this.view));
+    camera.position.fromArray(this.view.position);
     camera.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(side, top, ahead.negate()));
     perspective.fov = this.fov * 180 / Math.PI;
     perspective.aspect = this.#stage.aspect;
@@ -182,7 +217,7 @@ export class CameraRig {
     this.#stage.invalidate();
   }
 
-  /** The world's camera was edited. */
+  /** The world's camera was edited. @param {GuiCamera} camera */
   #takeCamera(camera) {
     this.#home = views.fromPose(camera.pose);
     this.fly(this.#home);
@@ -190,6 +225,7 @@ export class CameraRig {
 
   /** A world that comes again, after a lost line say, is looked at as before. */
   #openWorld() {
+    if (!this.#store.document) return;
     const {gui_camera: camera, file, name} = this.#store.document;
     const which = JSON.stringify([file, name]);
     if (which === this.#world) return;

@@ -4,9 +4,14 @@ import {
   Mesh, ShaderMaterial, SphereGeometry, Vector3,
 } from 'three';
 import {colorOf} from './three_convert.js';
+/** @import {Materials} from './materials.js' */
+/** @import {Road, Sky} from '../protocol.js' */
+/** @import {Stage} from './stage.js' */
+/** @import {Store} from '../store.js' */
 
 const GRID_CELLS = 20;
 
+/** @param {number[]} points @param {number[]} [colors] */
 function lines(points, colors) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(points), 3));
@@ -100,8 +105,12 @@ function makeSky() {
   return dome;
 }
 
-/** Hours of the day put the sun and its colours where they belong. */
-function colourSky(dome, sky) {
+/**
+ * Hours of the day put the sun and its colours where they belong.
+ * @param {Mesh<SphereGeometry, ShaderMaterial>} dome
+ * @param {Sky} sky
+ */
+function colorSky(dome, sky) {
   const {uniforms} = dome.material;
   const day = sky.sunset - sky.sunrise;
   const part = day > 0 ? (sky.time - sky.sunrise) / day : 0.5;
@@ -117,7 +126,10 @@ function colourSky(dome, sky) {
   uniforms.drift.value = sky.cloud_direction;
 }
 
-/** Gazebo's fog in three's: constant has no thinning with distance but its density. */
+/**
+ * Gazebo's fog in three's: constant has no thinning with distance but its density.
+ * @param {import('../protocol.js').Fog|null|undefined} fog
+ */
 function fogOf(fog) {
   if (!fog || fog.type === 'none') return null;
   const color = colorOf(fog.color);
@@ -125,9 +137,13 @@ function fogOf(fog) {
   return new FogExp2(color, fog.density * (fog.type === 'quadratic' ? 0.5 : 1) / 10);
 }
 
+/** @param {Road} road */
 function ribbon({points, width}) {
+  /** @type {number[]} */
   const corners = [];
+  /** @type {number[]} */
   const uvs = [];
+  /** @type {number[]} */
   const triangles = [];
   let along = 0;
   points.forEach((point, index) => {
@@ -162,16 +178,18 @@ export class Surroundings {
   #grid = makeGrid();
   #origin = makeOrigin();
   #sky = makeSky();
+  /** @type {Mesh[]} */
   #roads = [];
 
+  /** @param {{stage: Stage, store: Store, materials: Materials}} options */
   constructor({stage, store, materials}) {
     this.#stage = stage;
     this.#store = store;
     this.#materials = materials;
     stage.scene.add(this.#grid, this.#origin);
-    store.addEventListener('document', () => this.#apply());
-    store.addEventListener('overlays', () => this.#flags());
-    store.addEventListener('entity', ({detail}) => {
+    store.listen('document', () => this.#apply());
+    store.listen('overlays', () => this.#flags());
+    store.listen('entity', ({detail}) => {
       if (detail.kind === 'world') this.#apply();
     });
   }
@@ -189,18 +207,19 @@ export class Surroundings {
   }
 
   #apply() {
-    const {scene: settings, roads = []} = this.#store.document;
+    if (!this.#store.document) return;
+    const {scene: settings, roads} = this.#store.document;
     const {scene} = this.#stage;
     scene.fog = fogOf(settings.fog);
     scene.background = scene.fog && !settings.sky ? scene.fog.color.clone()
       : colorOf(settings.background);
     scene.remove(this.#sky);
     if (settings.sky) {
-      colourSky(this.#sky, settings.sky);
+      colorSky(this.#sky, settings.sky);
       scene.add(this.#sky);
     }
     for (const road of this.#roads) scene.remove(road);
-    this.#roads = roads.filter(({points}) => points?.length > 1).map((road) => {
+    this.#roads = roads.filter(({points}) => points.length > 1).map((road) => {
       const mesh = new Mesh(ribbon(road),
         this.#materials.get(road.material ?? ASPHALT, {}, {doubleSided: true}));
       mesh.receiveShadow = true;

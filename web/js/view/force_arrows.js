@@ -4,11 +4,28 @@ import {
   conjugate, length, normalized, orientation, rotate, scale, subtract, transform,
 } from '../pose.js';
 import {arrow, empty, point, through} from './markers.js';
+/** @import {MousePoint} from './pointer.js' */
+/** @import {Ray} from '../drag_math.js' */
+/** @import {ShownWrench} from '../actions.js' */
+/** @import {Vec3} from '../pose.js' */
+/** @import {ViewParts} from './view.js' */
 
+/**
+ * A wrench's vectors that were turned by hand, N and N m.
+ * @typedef {{force?: Vec3, torque?: Vec3}} Turned
+ */
+
+/** @type {Record<'force'|'torque', number>} */
 const COLOR = {force: 0xff7a00, torque: 0xb5179e};
 const PIXELS = 120;
+const KINDS = /** @type {const} */ (['force', 'torque']);
 
-/** The nearest point to `centre` on a sphere's near side under a ray: where a tip goes. */
+/**
+ * The nearest point to `centre` on a sphere's near side under a ray: where a tip goes.
+ * @param {Ray} ray
+ * @param {Vec3} centre
+ * @param {number} radius
+ */
 function onSphere(ray, centre, radius) {
   const between = subtract(centre, ray.origin);
   const along = between.reduce((sum, part, i) => sum + part * ray.direction[i], 0);
@@ -27,10 +44,14 @@ export class Forces {
   #rig;
   #stage;
   #group = new Group();
+  /** @type {ShownWrench|null} */
   #wrench = null;
+  /** @type {((turned: Turned) => void)|null} */
   #onTurned = null;
+  /** @type {'force'|'torque'|null} */
   #held = null;
 
+  /** @param {ViewParts} viewParts */
   constructor({store, models, picker, rig, stage}) {
     this.#store = store;
     this.#models = models;
@@ -41,17 +62,16 @@ export class Forces {
   }
 
   /**
-   * @param {{link: string, force: number[], torque: number[], point?: number[],
-   *          in_link_axes?: boolean}|null} wrench  null takes the arrows away
-   * @param {(turned: {force?: number[], torque?: number[]}) => void} [onTurned]  told while an
+   * @param {ShownWrench|null} wrench  null takes the arrows away
+   * @param {((turned: Turned) => void)|null} [onTurned]  told while an
    *        arrow is dragged; magnitudes stay
    */
   show(wrench, onTurned = null) {
     this.#wrench = wrench;
     this.#onTurned = onTurned;
     empty(this.#group);
-    for (const kind of ['force', 'torque']) {
-      if (!wrench || !length(wrench[kind] ?? [0, 0, 0])) continue;
+    for (const kind of KINDS) {
+      if (!wrench || !length(wrench[kind])) continue;
       const mark = arrow([0, 0, 1], through(COLOR[kind], 0.95));
       mark.userData.kind = kind;
       this.#group.add(mark);
@@ -64,34 +84,39 @@ export class Forces {
   update() {
     const frame = this.#frame();
     this.#group.visible = frame !== null;
-    if (!frame) return;
+    const wrench = this.#wrench;
+    if (!frame || !wrench) return;
     for (const mark of this.#group.children) {
-      const vector = this.#wrench[mark.userData.kind];
-      const direction = this.#wrench.in_link_axes ? rotate(frame.axes, vector) : vector;
-      mark.position.set(...frame.place);
+      const vector = mark.userData.kind === 'force' ? wrench.force : wrench.torque;
+      const direction = wrench.in_link_axes ? rotate(frame.axes, vector) : vector;
+      mark.position.fromArray(frame.place);
       mark.scale.setScalar(PIXELS * this.#rig.unitAt(frame.place));
       point(mark, direction);
     }
   }
 
+  /** @param {MousePoint} event */
   hover(event) {
     return this.#under(event) !== null;
   }
 
+  /** @param {MousePoint} event */
   grab(event) {
     this.#held = this.#under(event);
     return this.#held !== null;
   }
 
+  /** @param {MousePoint} event */
   drag(event) {
     const frame = this.#frame();
-    if (!this.#held || !frame) return;
+    const wrench = this.#wrench;
+    if (!this.#held || !frame || !wrench) return;
     const ray = this.#picker.ray(event.clientX, event.clientY);
     const radius = PIXELS * this.#rig.unitAt(frame.place);
     let way = onSphere(ray, frame.place, radius);
-    if (this.#wrench.in_link_axes) way = rotate(conjugate(frame.axes), way);
-    const turned = scale(way, length(this.#wrench[this.#held]));
-    this.#wrench = {...this.#wrench, [this.#held]: turned};
+    if (wrench.in_link_axes) way = rotate(conjugate(frame.axes), way);
+    const turned = scale(way, length(wrench[this.#held]));
+    this.#wrench = {...wrench, [this.#held]: turned};
     this.#onTurned?.({[this.#held]: turned});
     this.update();
     this.#stage.invalidate();
@@ -101,17 +126,19 @@ export class Forces {
     this.#held = null;
   }
 
+  /** @param {MousePoint} mousePoint */
   #under({clientX, clientY}) {
     if (!this.#wrench || !this.#onTurned) return null;
     const [hit] = this.#picker.objects(this.#group.children, clientX, clientY);
-    return hit ? hit.object.parent.userData.kind : null;
+    return KINDS.find((kind) => hit?.object.parent?.userData.kind === kind) ?? null;
   }
 
   #frame() {
-    const entity = this.#wrench && this.#store.entity(this.#wrench.link);
-    if (entity?.kind !== 'link') return null;
-    const pose = this.#models.shownPose(this.#wrench.link);
-    const at = this.#wrench.point ?? entity.link.inertial.pose.slice(0, 3);
+    const wrench = this.#wrench;
+    const entity = wrench && this.#store.entity(wrench.link);
+    const pose = wrench && this.#models.shownPose(wrench.link);
+    if (!wrench || !pose || entity?.kind !== 'link') return null;
+    const at = wrench.point ?? entity.link.inertial.pose.slice(0, 3);
     return {place: transform(pose, at), axes: orientation(pose)};
   }
 }

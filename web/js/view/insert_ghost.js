@@ -3,7 +3,11 @@ import {rayPlane, WORLD_AXES} from '../drag_math.js';
 import {magnetic} from '../drag_snap.js';
 import {place} from './three_convert.js';
 import {lightIcon} from './light_views.js';
-import {soloModel} from './standalone_model.js';
+import {standaloneModel} from './standalone_model.js';
+/** @import {Group} from 'three' */
+/** @import {Model} from '../protocol.js' */
+/** @import {MousePoint} from './pointer.js' */
+/** @import {ViewParts} from './view.js' */
 
 export class Placer {
   #store;
@@ -11,19 +15,21 @@ export class Placer {
   #picker;
   #stage;
   #stock;
+  /** @type {Group|null} */
   #ghost = null;
   #dispose = () => {};
 
+  /** @param {ViewParts} viewParts */
   constructor({store, actions, picker, stage, stock}) {
     this.#store = store;
     this.#actions = actions;
     this.#picker = picker;
     this.#stage = stage;
     this.#stock = stock;
-    store.addEventListener('placing', () => this.#change());
+    store.listen('placing', () => this.#change());
   }
 
-  /** Goes where the mouse is; with Ctrl to whole metres when near. */
+  /** Goes where the mouse is; with Ctrl to whole metres when near. @param {MousePoint} event */
   follow(event) {
     const pose = this.#pose(event);
     if (!this.#ghost || !pose) return;
@@ -39,13 +45,13 @@ export class Placer {
     this.#stage.shadowsChanged();
   }
 
-  /** Puts it down where the mouse is. */
+  /** Puts it down where the mouse is. @param {MousePoint} event */
   put(event) {
     const pose = this.#pose(event);
     if (pose) this.#actions.place(pose);
   }
 
-  /** Keeps its own height and turn (Gazebo behaviour). */
+  /** Keeps its own height and turn (Gazebo behaviour). @param {MousePoint} mousePoint */
   #pose({clientX, clientY, ctrlKey, metaKey}) {
     const {placing} = this.#store;
     if (!placing) return null;
@@ -63,16 +69,18 @@ export class Placer {
     this.#dispose = () => {};
     const {placing} = this.#store;
     if (placing) {
-      this.#ghost = placing.kind === 'light' ? lightIcon(placing.document)
+      const ghost = placing.kind === 'light' ? lightIcon(placing.document)
         : this.#modelGhost(placing.document);
-      this.#ghost.visible = false;
-      this.#stage.scene.add(this.#ghost);
+      ghost.visible = false;
+      this.#stage.scene.add(ghost);
+      this.#ghost = ghost;
     }
     this.#stage.shadowsChanged();
   }
 
+  /** @param {Model} document */
   #modelGhost(document) {
-    const {group, ready, dispose} = soloModel(document, this.#stock, {opacity: 0.75});
+    const {group, ready, dispose} = standaloneModel(document, this.#stock, {opacity: 0.75});
     this.#dispose = dispose;
     ready.then(() => this.#stage.shadowsChanged());
     return group;

@@ -4,6 +4,16 @@ import {
   LineSegments, Mesh, MeshBasicMaterial, PointLight, Quaternion, SphereGeometry, SpotLight, Vector3,
 } from 'three';
 import {lightColorOf, place} from './three_convert.js';
+/** @import {Light} from '../protocol.js' */
+/** @import {Pose7} from '../pose.js' */
+/** @import {Stage} from './stage.js' */
+/** @import {Store} from '../store.js' */
+
+/** @typedef {DirectionalLight|PointLight|SpotLight} Lamp */
+/**
+ * A light of the world with what stands for it.
+ * @typedef {{light: Light, lamp: Lamp, icon: Group}} LightEntry
+ */
 
 /** three's lamps are physical: what falls on a white wall is divided by pi there. */
 const STRENGTH = Math.PI;
@@ -15,13 +25,16 @@ const wireMaterial = new LineBasicMaterial({color: 0xf5c518});
 const hitMaterial = new MeshBasicMaterial({visible: false});
 const hitGeometry = new SphereGeometry(0.3, 8, 6);
 
+/** @param {number[][][]} points */
 function wires(points) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(points.flat(2)), 3));
   return new LineSegments(geometry, wireMaterial);
 }
 
+/** @param {number} radius @param {number} z */
 function circle(radius, z, count = 16) {
+  /** @param {number} index */
   const at = (index) => {
     const angle = (2 * Math.PI * index) / count;
     return [radius * Math.cos(angle), radius * Math.sin(angle), z];
@@ -36,7 +49,7 @@ const OCTAHEDRON = (() => {
     [corner, ring[(index + 1) % 4]], [corner, [0, 0, r]], [corner, [0, 0, -r]]]);
 })();
 
-/** The wires of a light that shines down its -z. */
+/** The wires of a light that shines down its -z. @param {Light} light */
 function shapeOf({type, outer_angle: outer}) {
   if (type === 'point') return OCTAHEDRON;
   if (type === 'spot') {
@@ -50,13 +63,17 @@ function shapeOf({type, outer_angle: outer}) {
     [corner.map((part) => part / 2), [corner[0] / 2, corner[1] / 2, -0.6]]]);
 }
 
-/** The icon of a light: wires, and a ball that the mouse can hit. @returns {Group} */
+/**
+ * The icon of a light: wires, and a ball that the mouse can hit.
+ * @param {Light} light
+ * @returns {Group}
+ */
 export function lightIcon(light) {
   const group = new Group();
   const icon = wires(shapeOf(light));
   if (light.type !== 'point') {
     icon.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 0, -1),
-      new Vector3(...light.direction).normalize()));
+      new Vector3().fromArray(light.direction).normalize()));
   }
   group.add(icon, new Mesh(hitGeometry, hitMaterial));
   place(group, light.pose);
@@ -66,6 +83,7 @@ export function lightIcon(light) {
 /**
  * three dims by a power of the distance only: the power and strength that come nearest to
  * 1 / (constant + linear d + quadratic d^2) about a third of the range away.
+ * @param {Light} light
  */
 function dimming({constant, linear, quadratic, range}) {
   const near = Math.min(3, Math.max(range / 3, 0.1));
@@ -74,6 +92,7 @@ function dimming({constant, linear, quadratic, range}) {
   return {decay, strength: near ** decay / divisor};
 }
 
+/** @param {Light} light */
 function lampOf(light) {
   const color = lightColorOf(light.diffuse);
   if (light.type === 'directional') return new DirectionalLight(color, STRENGTH);
@@ -86,11 +105,12 @@ function lampOf(light) {
   return new SpotLight(color, STRENGTH * strength, light.range, outer, penumbra, decay);
 }
 
+/** @param {Lamp} lamp */
 function prepareShadow(lamp) {
   lamp.castShadow = true;
-  const size = lamp.isPointLight ? SHADOW_SIZE / 4 : SHADOW_SIZE;
+  const size = lamp instanceof PointLight ? SHADOW_SIZE / 4 : SHADOW_SIZE;
   lamp.shadow.mapSize.set(size, size);
-  lamp.shadow.bias = lamp.isDirectionalLight ? -0.0004 : -0.002;
+  lamp.shadow.bias = lamp instanceof DirectionalLight ? -0.0004 : -0.002;
   lamp.shadow.normalBias = 0.02;
   lamp.shadow.radius = 2;
 }
@@ -99,16 +119,18 @@ export class Lights {
   #stage;
   #store;
   #ambient = new HemisphereLight(0xffffff, 0x8a8680, 1);
+  /** @type {Map<string, LightEntry>} */
   #entries = new Map();
   #focus = {centre: new Vector3(1e9, 0, 0), reach: 0};
 
+  /** @param {{stage: Stage, store: Store}} options */
   constructor({stage, store}) {
     this.#stage = stage;
     this.#store = store;
     this.#ambient.position.set(0, 0, 1);
     stage.scene.add(this.#ambient);
-    store.addEventListener('document', () => this.#rebuild());
-    store.addEventListener('entity', ({detail: {kind, value}}) => {
+    store.listen('document', () => this.#rebuild());
+    store.listen('entity', ({detail: {kind, value}}) => {
       if (kind === 'light' || (kind === 'world' && value.scene)) this.#rebuild();
     });
   }
@@ -118,7 +140,11 @@ export class Lights {
     return new Map([...this.#entries].map(([name, {icon}]) => [name, icon]));
   }
 
-  /** Shows a light elsewhere while it is dragged. */
+  /**
+   * Shows a light elsewhere while it is dragged.
+   * @param {string} name
+   * @param {Pose7} pose
+   */
   move(name, pose) {
     const entry = this.#entries.get(name);
     if (!entry) return;
@@ -133,7 +159,7 @@ export class Lights {
    * @param {number} reach     m round it that must be covered
    */
   cover(centre, reach) {
-    const wanted = new Vector3(...centre);
+    const wanted = new Vector3().fromArray(centre);
     const {centre: now, reach: width} = this.#focus;
     // Often is expensive, and shadows would swim: only when the old place no longer does.
     if (now.distanceTo(wanted) < width * 0.25 && reach < width * 1.2 && reach > width * 0.5) return;
@@ -145,10 +171,12 @@ export class Lights {
   #rebuild() {
     const {scene} = this.#stage;
     for (const {lamp, icon} of this.#entries.values()) {
-      scene.remove(lamp, icon, lamp.target ?? lamp);
+      scene.remove(lamp, icon);
+      if ('target' in lamp) scene.remove(lamp.target);
       lamp.dispose();
     }
     this.#entries.clear();
+    if (!this.#store.document) return;
     const {lights, scene: settings} = this.#store.document;
     this.#ambient.color.copy(lightColorOf(settings.ambient));
     this.#ambient.groundColor.copy(this.#ambient.color).multiplyScalar(0.6);
@@ -163,19 +191,20 @@ export class Lights {
       const entry = {light, lamp, icon: lightIcon(light)};
       this.#entries.set(light.name, entry);
       scene.add(lamp, entry.icon);
-      if (lamp.target) scene.add(lamp.target);
+      if ('target' in lamp) scene.add(lamp.target);
       this.#aim(entry, light);
     }
     this.#stage.shadowsChanged();
   }
 
+  /** @param {LightEntry} lightEntry @param {Light} light */
   #aim({lamp}, light) {
-    const at = new Vector3(...light.pose.slice(0, 3));
-    const turn = new Quaternion(...light.pose.slice(3));
-    const way = new Vector3(...light.direction).applyQuaternion(turn).normalize();
-    if (light.type !== 'directional') {
+    const at = new Vector3().fromArray(light.pose);
+    const turn = new Quaternion().fromArray(light.pose, 3);
+    const way = new Vector3().fromArray(light.direction).applyQuaternion(turn).normalize();
+    if (!(lamp instanceof DirectionalLight)) {
       lamp.position.copy(at);
-      lamp.target?.position.copy(at).add(way);
+      if (lamp instanceof SpotLight) lamp.target.position.copy(at).add(way);
       return;
     }
     const {centre, reach} = this.#focus;

@@ -1,10 +1,18 @@
 /** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
-import {LoadingManager, Matrix4, Mesh, MeshPhongMaterial, DoubleSide} from 'three';
+import {faultText} from '../panels/dialog.js';
+import {
+  Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
+} from 'three';
+/** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
+/** @import {Geometry} from '../protocol.js' */
+
+/** A file that holds a mesh; `fallback`: the simulator's form of it, STL.
+ * @typedef {{url: string, format?: string|null, fallback?: string|null}} MeshSource */
 
 /**
  * @typedef {object} MeshPart
- * @property {import('three').BufferGeometry} geometry
- * @property {any} material  the file's own: a three material or, for groups, a list
+ * @property {BufferGeometry} geometry
+ * @property {Material|Material[]} material  the file's own: a three material or, for groups, a list
  * @property {Matrix4} matrix  file frame from part
  * @property {string[]} names  of the part and the nodes above it
  * @property {boolean} [whole] it is the mesh in one, its parts have no names
@@ -13,18 +21,22 @@ import {LoadingManager, Matrix4, Mesh, MeshPhongMaterial, DoubleSide} from 'thre
 const plainMaterial = new MeshPhongMaterial({color: 0xc8c8c8, specular: 0x0d0d0d,
   side: DoubleSide});
 
+/** @param {string} url */
 async function bytes(url) {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
   return response.arrayBuffer();
 }
 
+/** @param {string} url */
 const text = async (url) => new TextDecoder().decode(await bytes(url));
 /** three turns a scene unless its file says that y is up. */
 const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
 
+/** @param {string} url */
 const folder = (url) => url.slice(0, url.lastIndexOf('/') + 1);
 
+/** @param {string} url @param {LoadingManager} manager */
 async function readCollada(url, manager) {
   const [{ColladaLoader}, content] = await Promise.all([
     import('three/addons/loaders/ColladaLoader.js'), text(url)]);
@@ -35,12 +47,14 @@ async function readCollada(url, manager) {
   return read.scene;
 }
 
+/** @param {string} url */
 async function readStl(url) {
   const [{STLLoader}, content] = await Promise.all([
     import('three/addons/loaders/STLLoader.js'), bytes(url)]);
   return new Mesh(new STLLoader().parse(content), plainMaterial);
 }
 
+/** @param {string} url @param {LoadingManager} manager */
 async function readObj(url, manager) {
   const [{OBJLoader}, {MTLLoader}, content] = await Promise.all([
     import('three/addons/loaders/OBJLoader.js'), import('three/addons/loaders/MTLLoader.js'),
@@ -56,25 +70,43 @@ async function readObj(url, manager) {
   return loader.parse(content);
 }
 
+/** @type {Record<string, (url: string, manager: LoadingManager) => Promise<Object3D>>} */
 const READERS = {dae: readCollada, stl: readStl, obj: readObj};
 
+/** @param {MeshSource} meshSource */
 function formatOf({format, url}) {
-  return (format || url.split('?')[0].split('.').pop()).toLowerCase();
+  return (format || (url.split('?')[0].split('.').pop() ?? '')).toLowerCase();
 }
 
+/** @param {Mesh} object */
 function namesOf(object) {
+  /** @type {string[]} */
   const names = [];
-  for (let node = object; node; node = node.parent) if (node.name) names.push(node.name);
+  /** @type {Object3D|null} */
+  let node = object;
+  for (; node; node = node.parent) if (node.name) names.push(node.name);
   if (object.geometry.name) names.push(object.geometry.name);
   return names;
 }
 
-/** The meshes of a file that hold anything, ready to be drawn. */
+/**
+ * The file of a geometry, null where it has none that the page can load.
+ * @param {Geometry} geometry
+ * @returns {MeshSource|null}
+ */
+export function sourceOf(geometry) {
+  if (!('url' in geometry) || !geometry.url) return null;
+  const {url, format} = geometry;
+  return {url, format, fallback: geometry.type === 'mesh' ? geometry.fallback : null};
+}
+
+/** The meshes of a file that hold anything, ready to be drawn. @param {Object3D} root */
 function meshesOf(root) {
+  /** @type {Mesh[]} */
   const found = [];
   root.updateMatrixWorld(true);
   root.traverse((object) => {
-    if (!object.isMesh) return;
+    if (!(object instanceof Mesh)) return;
     if (!object.geometry.getAttribute('position')) return;
     if (!object.geometry.getAttribute('normal')) object.geometry.computeVertexNormals();
     const materials = Array.isArray(object.material) ? object.material : [object.material];
@@ -87,18 +119,22 @@ function meshesOf(root) {
   return found;
 }
 
+/** @param {Object3D} root */
 const partsOf = (root) => meshesOf(root).map((object) => ({geometry: object.geometry,
   material: object.material, matrix: object.matrixWorld.clone(), names: namesOf(object)}));
 
-/** A file's scene without its lights and cameras. */
+/** A file's scene without its lights and cameras. @param {Object3D} root */
 function figureOf(root) {
+  /** @type {Object3D[]} */
   const left = [];
-  root.traverse((object) => { if (object.isLight || object.isCamera) left.push(object); });
+  root.traverse((object) => {
+    if (object instanceof Light || object instanceof Camera) left.push(object);
+  });
   for (const object of left) object.removeFromParent();
   for (const mesh of meshesOf(root)) {
     mesh.castShadow = mesh.receiveShadow = true;
     // Its bounds are those of the rest pose, its bones may carry it elsewhere.
-    mesh.frustumCulled = !mesh.isSkinnedMesh;
+    mesh.frustumCulled = !(mesh instanceof SkinnedMesh);
   }
   return root;
 }
@@ -107,13 +143,17 @@ export class Meshes {
   /** Tells of pictures that arrive after their mesh. */
   manager = new LoadingManager();
   #busy = false;
+  /** @type {(() => void)[]} */
   #waiting = [];
+  /** @type {Map<string, Promise<MeshPart[]>>} */
   #files = new Map();
+  /** @type {Map<string, MeshPart[]>} */
   #ready = new Map();
 
   /** @param {(problem: string) => void} onProblem  called once for each file that cannot be read */
   constructor(onProblem) {
     this.onProblem = onProblem;
+    /** @type {Set<string>} */
     const told = new Set();
     this.manager.onStart = () => { this.#busy = true; };
     this.manager.onLoad = () => {
@@ -124,7 +164,7 @@ export class Meshes {
     this.manager.onError = (url) => {
       if (told.has(url)) return;
       told.add(url);
-      onProblem(`The picture ${decodeURI(url)} could not be read.`);
+      onProblem(`Failed to load texture ${decodeURI(url)}`);
     };
   }
 
@@ -133,37 +173,50 @@ export class Meshes {
 
   /** Resolves when no picture is under way. @returns {Promise<void>} */
   idle() {
-    return this.#busy ? new Promise((resolve) => this.#waiting.push(resolve)) : Promise.resolve();
+    return this.#busy ? new Promise((resolve) => { this.#waiting.push(resolve); }) : Promise.resolve();
   }
 
-  /** The parts of a mesh that was read before, or undefined. @returns {MeshPart[]|undefined} */
+  /**
+   * The parts of a mesh that was read before, or undefined.
+   * @param {MeshSource} geometry
+   * @returns {MeshPart[]|undefined}
+   */
   present(geometry) {
     return this.#ready.get(geometry.url);
   }
 
-  /** @returns {Promise<MeshPart[]>} empty for a file that cannot be read */
+  /**
+   * @param {MeshSource} geometry
+   * @returns {Promise<MeshPart[]>} empty for a file that cannot be read
+   */
   load(geometry) {
     const {url} = geometry;
-    if (!this.#files.has(url)) {
-      this.#files.set(url, this.#readSomehow(geometry, partsOf).then(({found, whole}) => {
-        const parts = (found ?? []).map((part) => (whole ? {...part, whole} : part));
-        this.#ready.set(url, parts);
-        return parts;
-      }));
-    }
-    return this.#files.get(url);
+    const parts = this.#files.get(url) ?? this.#readSomehow(geometry, partsOf)
+      .then(({found, whole}) => {
+        const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part));
+        this.#ready.set(url, ready);
+        return ready;
+      });
+    this.#files.set(url, parts);
+    return parts;
   }
 
   /**
    * A mesh as a scene of its own, with bones and `animations`, for one that moves in itself. Each
    * call makes another one.
-   * @returns {Promise<import('three').Object3D|null>} null for a file that cannot be read
+   * @param {MeshSource} geometry
+   * @returns {Promise<Object3D|null>} null for a file that cannot be read
    */
   async figure(geometry) {
     return (await this.#readSomehow(geometry, figureOf)).found;
   }
 
-  /** What this page cannot read the simulator may have read: its form then, without colours. */
+  /**
+   * @template T
+   * What this page cannot read the simulator may have read: its form then, without colours.
+   * @param {MeshSource} geometry
+   * @param {(root: Object3D) => T} use
+   */
   async #readSomehow(geometry, use) {
     try {
       return {found: use(await this.#read(geometry)), whole: false};
@@ -172,14 +225,15 @@ export class Meshes {
         const root = await this.#read({url: geometry.fallback, format: 'stl'}).catch(() => null);
         if (root) return {found: use(root), whole: true};
       }
-      this.onProblem(`The mesh ${decodeURI(geometry.url)} could not be read: ${error.message}`);
+      this.onProblem(`Failed to load mesh ${decodeURI(geometry.url)}: ${faultText(error)}`);
       return {found: null, whole: false};
     }
   }
 
+  /** @param {MeshSource} geometry */
   async #read(geometry) {
     const reader = READERS[formatOf(geometry)];
-    if (!reader) throw new Error(`the page reads ${Object.keys(READERS).join(', ')}`);
+    if (!reader) throw new Error(`unsupported format; supported: ${Object.keys(READERS).join(', ')}`);
     if (formatOf(geometry) !== 'stl') await this.#withTga();
     return reader(geometry.url, this.manager);
   }

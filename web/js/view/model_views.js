@@ -3,14 +3,22 @@ import {Box3, Matrix4} from 'three';
 import {canonicalLink} from '../store.js';
 import {compose, inverse} from '../pose.js';
 import {matrixOf} from './three_convert.js';
-import {visualParts} from './shape_meshes.js';
+import {boxOf, visualParts} from './shape_meshes.js';
+/** @import {Batches, Item} from './batches.js' */
+/** @import {Link, Model, Visual} from '../protocol.js' */
+/** @import {Part, Stock} from './shape_meshes.js' */
+/** @import {Pose7, Vec3} from '../pose.js' */
+/** @import {Stage} from './stage.js' */
+/** @import {Store} from '../store.js' */
 
 /** @typedef {{model: string, link: string, linkId: number, plane: boolean}} Owner  of an item */
 
 class LinkView {
+  /** @type {Item[]} */
   items = [];
   matrix = new Matrix4();
 
+  /** @param {Link} link */
   constructor(link) {
     this.link = link;
   }
@@ -21,6 +29,7 @@ class ModelView {
   links = new Map();
   gone = false;
 
+  /** @param {Model} document */
   constructor(document) {
     this.document = document;
     for (const link of document.links) this.links.set(link.id, new LinkView(link));
@@ -34,29 +43,38 @@ export class Models {
   #stage;
   /** @type {Map<string, ModelView>} */
   #views = new Map();
+  /** By link id. @type {Map<number, ModelView>} */
   #byLink = new Map();
-  /** Poses that the user's hand holds: pose frames for these links wait. */
+  /**
+   * Poses that the user's hand holds: pose frames for these links wait.
+   * @type {Map<number, Pose7>}
+   */
   #held = new Map();
+  /** By model name. @type {Map<string, Matrix4>} */
   #stretched = new Map();
+  /** @type {Set<string>} */
   #faded = new Set();
 
   /**
-   * @param {{store: import('../store.js').Store, batches: import('./batches.js').Batches,
-   *          stock: any, stage: import('./stage.js').Stage}} parts
+   * @param {{store: Store, batches: Batches,
+   *          stock: Stock, stage: Stage}} parts
    */
   constructor({store, batches, stock, stage}) {
     this.#store = store;
     this.#batches = batches;
     this.#stock = stock;
     this.#stage = stage;
-    store.addEventListener('document', () => this.rebuildAll());
-    store.addEventListener('entity', ({detail: {name, kind, value}}) => {
+    store.listen('document', () => this.rebuildAll());
+    store.listen('entity', ({detail: {name, kind, value}}) => {
       if (kind === 'model') this.#replace(name, value);
     });
-    store.addEventListener('poses', ({detail: ids}) => this.#followFrame(ids));
+    store.listen('poses', ({detail: ids}) => this.#followFrame(ids));
   }
 
-  /** Called after models were built or moved, with the ids of links or null for any. */
+  /**
+   * Called after models were built or moved, with the ids of links or null for any.
+   * @type {(ids: Set<number>|null) => void}
+   */
   onMoved = () => {};
 
   rebuildAll() {
@@ -64,13 +82,17 @@ export class Models {
     for (const model of this.#store.document?.models ?? []) this.#replace(model.name, model);
   }
 
-  /** Builds a model anew, after its appearance was changed. */
+  /** Builds a model anew, after its appearance was changed. @param {string} name */
   rebuild(name) {
     const model = this.#store.model(name);
     if (model) this.#replace(name, model);
   }
 
-  /** Shows a model half transparent while the hand is on it, or as it is. */
+  /**
+   * Shows a model half transparent while the hand is on it, or as it is.
+   * @param {string} name
+   * @param {boolean} faded
+   */
   fade(name, faded) {
     if (this.#faded.has(name) === faded) return;
     if (faded) this.#faded.add(name);
@@ -87,9 +109,11 @@ export class Models {
       const view = this.#views.get(name);
       if (!view) continue;
       const here = this.#store.worldPose(name);
+      if (!here) continue;
       const toModel = inverse(here);
       for (const [id, linkView] of view.links) {
-        this.#held.set(id, compose(pose, compose(toModel, this.#store.poses.get(id))));
+        const now = this.#store.poses.get(id);
+        if (now) this.#held.set(id, compose(pose, compose(toModel, now)));
         this.#moveLink(view, linkView);
       }
     }
@@ -98,6 +122,7 @@ export class Models {
 
   /**
    * Lets go of models; `keep`: where they are held is where they are, until a frame says otherwise.
+   * @param {string[]} names
    */
   release(names, {keep = false} = {}) {
     for (const name of names) {
@@ -106,7 +131,7 @@ export class Models {
       if (!view) continue;
       for (const [id, linkView] of view.links) {
         const pose = this.#held.get(id);
-        if (keep && pose && this.#store.poses.has(id)) this.#store.poses.get(id).set(pose);
+        if (keep && pose) this.#store.poses.get(id)?.set(pose);
         this.#held.delete(id);
         this.#moveLink(view, linkView);
       }
@@ -115,10 +140,12 @@ export class Models {
   }
 
   /**
+   * @template {{ok: boolean}} T
    * Shows models at new places at once, and lets go when the simulator has answered: at the new
    * places when it agreed, where they were when not.
    * @param {Record<string, number[]>} poses
-   * @param {Promise<{ok: boolean}>} asked
+   * @param {Promise<T>} asked
+   * @returns {Promise<T>}
    */
   async carry(poses, asked) {
     this.hold(poses);
@@ -127,32 +154,41 @@ export class Models {
     return outcome;
   }
 
-  /** Shows a model stretched by factors along its own axes. */
+  /**
+   * Shows a model stretched by factors along its own axes.
+   * @param {string} name
+   * @param {Vec3} factors
+   */
   stretch(name, factors) {
-    this.#stretched.set(name, new Matrix4().makeScale(...factors));
+    this.#stretched.set(name, new Matrix4().makeScale(factors[0], factors[1], factors[2]));
     const view = this.#views.get(name);
-    for (const linkView of view?.links.values() ?? []) this.#moveLink(view, linkView);
+    if (view) for (const linkView of view.links.values()) this.#moveLink(view, linkView);
     this.#changed(null);
   }
 
-  /** Where an entity is shown, held or not. @returns {number[]|null} pose7 */
+  /**
+   * Where an entity is shown, held or not.
+   * @param {string} name
+   * @returns {number[]|null} pose7
+   */
   shownPose(name) {
     const entity = this.#store.entity(name);
     if (!entity) return null;
     if (entity.kind === 'light') return [...entity.light.pose];
-    if (entity.kind === 'link') return [...this.#linkPose(entity.link.id)];
-    const first = canonicalLink(entity.model);
-    if (!first) return [...entity.model.pose];
-    return compose(this.#linkPose(first.id), inverse(first.pose));
+    const link = entity.kind === 'link' ? entity.link : canonicalLink(entity.model);
+    const pose = link && this.#linkPose(link.id);
+    if (!link || !pose) return [...entity.model.pose];
+    return entity.kind === 'link' ? Array.from(pose) : compose(pose, inverse(link.pose));
   }
 
-  /** The matrix of a link as it is shown. */
+  /** The matrix of a link as it is shown. @param {number} id */
   linkMatrix(id) {
     return this.#byLink.get(id)?.links.get(id)?.matrix;
   }
 
   /**
    * The bounding box of a model or link.
+   * @param {string} name
    * @param {number[]|null} [frame]  pose7 of the axes it is aligned with; the world's without
    * @returns {Box3|null} null when nothing of it is drawn
    */
@@ -166,19 +202,21 @@ export class Models {
     const part = new Matrix4();
     for (const linkView of links ?? []) {
       for (const {geometry, matrix} of linkView?.items ?? []) {
-        if (!geometry.boundingBox) geometry.computeBoundingBox();
+        const own = boxOf(geometry);
         part.copy(matrix);
         if (toFrame) part.premultiply(toFrame);
-        box.union(geometry.boundingBox.clone().applyMatrix4(part));
+        box.union(own.applyMatrix4(part));
       }
     }
     return box.isEmpty() ? null : box;
   }
 
+  /** @param {number} id */
   #linkPose(id) {
     return this.#held.get(id) ?? this.#store.poses.get(id);
   }
 
+  /** @param {string} name @param {Model|null} model */
   #replace(name, model) {
     const before = this.#views.get(name);
     if (before) {
@@ -193,6 +231,7 @@ export class Models {
     this.#changed(null);
   }
 
+  /** @param {string} name @param {Model} model */
   #build(name, model) {
     const view = new ModelView(model);
     this.#views.set(name, view);
@@ -203,6 +242,11 @@ export class Models {
     }
   }
 
+  /**
+   * @param {ModelView} view
+   * @param {LinkView} linkView
+   * @param {Visual} visual
+   */
   #addVisual(view, linkView, visual) {
     const {name} = view.document;
     if (this.#store.overlays.hiddenLayers.has(visual.layer ?? 0)) return;
@@ -212,6 +256,7 @@ export class Models {
     };
     const owner = {model: name, link: linkView.link.name, linkId: linkView.link.id,
       plane: visual.geometry.type === 'plane'};
+    /** @param {Part[]} parts */
     const add = (parts) => {
       for (const part of parts) {
         const item = this.#batches.add({...part, matrix: new Matrix4(), owner,
@@ -232,30 +277,34 @@ export class Models {
     }
   }
 
+  /** @param {ModelView} view @param {LinkView} linkView */
   #moveLink(view, linkView) {
     const pose = this.#linkPose(linkView.link.id);
     if (!pose) return;
     matrixOf(pose, linkView.matrix);
     const stretch = this.#stretched.get(view.document.name);
     if (stretch) {
-      const frame = matrixOf(this.shownPose(view.document.name));
+      const frame = matrixOf(this.shownPose(view.document.name) ?? view.document.pose);
       linkView.matrix.premultiply(frame.clone().invert()).premultiply(stretch).premultiply(frame);
     }
     for (const item of linkView.items) {
-      item.matrix.multiplyMatrices(linkView.matrix, item.local);
+      if (item.local) item.matrix.multiplyMatrices(linkView.matrix, item.local);
       this.#batches.moved(item);
     }
   }
 
+  /** @param {Set<number>} ids */
   #followFrame(ids) {
     for (const id of ids) {
       if (this.#held.has(id)) continue;
       const view = this.#byLink.get(id);
-      if (view) this.#moveLink(view, view.links.get(id));
+      const linkView = view?.links.get(id);
+      if (view && linkView) this.#moveLink(view, linkView);
     }
     this.#changed(ids);
   }
 
+  /** @param {Set<number>|null} ids */
   #changed(ids) {
     this.#stage.shadowsChanged();
     this.onMoved(ids);

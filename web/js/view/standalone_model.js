@@ -1,17 +1,20 @@
 /** A model drawn by itself, outside of the world: ghosts, previews, thumbnails. */
-import {Group} from 'three';
+import {Group, Mesh} from 'three';
 import {place} from './three_convert.js';
 import {meshOf, visualParts} from './shape_meshes.js';
+/** @import {Model} from '../protocol.js' */
+/** @import {Part, Stock} from './shape_meshes.js' */
 
 /**
- * @param {any} model  document
- * @param {any} stock  meshes and materials
+ * @param {Model} model
+ * @param {Stock} stock
  * @param {{opacity?: number}} [look]
  * @returns {{group: Group, ready: Promise<void>, dispose: () => void}} the group's children are
  *          the links, named so; its own pose is left to the caller
  */
-export function soloModel(model, stock, look = {}) {
+export function standaloneModel(model, stock, look = {}) {
   const group = new Group();
+  /** @type {Promise<void>[]} */
   const waits = [];
   for (const link of model.links) {
     const linkGroup = new Group();
@@ -19,6 +22,7 @@ export function soloModel(model, stock, look = {}) {
     place(linkGroup, link.pose);
     group.add(linkGroup);
     for (const visual of link.visuals) {
+      /** @param {Part[]} parts */
       const add = (parts) => {
         for (const part of parts) {
           const mesh = meshOf(part);
@@ -32,8 +36,8 @@ export function soloModel(model, stock, look = {}) {
       else add(parts);
     }
   }
-  const dispose = () => group.traverse(({geometry}) => {
-    if (geometry?.userData.single) geometry.dispose();
+  const dispose = () => group.traverse((object) => {
+    if (object instanceof Mesh && object.geometry.userData.single) object.geometry.dispose();
   });
   return {group, ready: Promise.all(waits).then(() => {}), dispose};
 }

@@ -5,13 +5,20 @@ import {Dialog} from '../dialog.js';
 import {h} from '../dom.js';
 import {makeInput} from '../property_inputs.js';
 import {modelOf} from '../world_rows.js';
+/** @import {Model} from '../../protocol.js' */
+/** @import {Page} from '../panels.js' */
+/** @import {Turned} from '../../view/force_arrows.js' */
 
-/** Length of a vector. */
+/** Length of a vector. @param {number[]} vector */
 function magnitude(vector) {
   return Math.hypot(...vector);
 }
 
-/** The vector of that direction, or along x where it has none, with another length. */
+/**
+ * The vector of that direction, or along x where it has none, with another length.
+ * @param {number[]} vector
+ * @param {number} length
+ */
 function withMagnitude(vector, length) {
   const old = magnitude(vector);
   if (!old) return [length, 0, 0];
@@ -20,21 +27,27 @@ function withMagnitude(vector, length) {
 
 /** A vector with a magnitude and Clear. */
 class VectorGroup {
+  /**
+   * @param {string} title
+   * @param {string} unit
+   * @param {() => void} changed
+   */
   constructor(title, unit, changed) {
     this.value = [0, 0, 0];
     this.#changed = changed;
+    /** @param {string} text */
     const refuse = (text) => {
       this.#note.textContent = text;
     };
     this.#note = h('span', {class: 'field-note', role: 'alert'});
     this.#vector = makeInput(
       {type: 'vector', label: title, parts: ['x', 'y', 'z'], unit},
-      (value) => this.set(value),
+      (value) => this.set(/** @type {number[]} */ (value)),
       refuse,
     );
     this.#size = makeInput(
       {type: 'number', label: `${title} magnitude`, min: 0},
-      (value) => this.set(withMagnitude(this.value, value)),
+      (value) => this.set(withMagnitude(this.value, Number(value))),
       refuse,
     );
     this.element = h(
@@ -64,6 +77,7 @@ class VectorGroup {
   #vector;
   #size;
 
+  /** @param {number[]} value */
   set(value) {
     this.value = value;
     this.#note.textContent = '';
@@ -78,6 +92,11 @@ class VectorGroup {
 }
 
 class ForceDialog {
+  /**
+   * @param {Page} page
+   * @param {Model} model
+   * @param {string} name
+   */
   constructor({actions, request}, model, name) {
     this.#actions = actions;
     this.#request = request;
@@ -116,10 +135,12 @@ class ForceDialog {
   #force;
   #torque;
   #point = [0, 0, 0];
+  /** @type {HTMLInputElement|undefined} */
   #atPoint;
   #steps = 1;
 
   #pointFields() {
+    /** @param {boolean} checked */
     const radio = (checked) =>
       h('input', {
         type: 'radio',
@@ -132,8 +153,8 @@ class ForceDialog {
     const input = makeInput(
       {type: 'vector', label: 'Application point', parts: ['x', 'y', 'z']},
       (value) => {
-        this.#point = value;
-        this.#atPoint.checked = true;
+        this.#point = /** @type {number[]} */ (value);
+        if (this.#atPoint) this.#atPoint.checked = true;
         input.show(value);
         this.preview();
       },
@@ -144,8 +165,8 @@ class ForceDialog {
       'fieldset',
       {},
       h('legend', {text: 'Applied at'}),
-      h('label', {}, atCentre, 'centre of mass'),
-      h('label', {}, this.#atPoint, 'a point of the link (m)'),
+      h('label', {}, atCentre, 'Center of mass'),
+      h('label', {}, this.#atPoint, 'Point in the link frame (m)'),
       input.element,
     );
   }
@@ -154,13 +175,13 @@ class ForceDialog {
     const input = makeInput(
       {type: 'integer', label: 'Steps', min: 1},
       (value) => {
-        this.#steps = value;
+        this.#steps = Number(value);
         input.show(value);
       },
       (text) => this.dialog.say(text),
     );
     input.show(this.#steps);
-    return h('div', {class: 'row'}, h('span', {text: 'Steps it lasts'}), input.element);
+    return h('div', {class: 'row'}, h('span', {text: 'Duration (steps)'}), input.element);
   }
 
   /** Draws the arrows in the view, where it can. */
@@ -170,24 +191,27 @@ class ForceDialog {
         link: this.#link.value,
         force: this.#force.value,
         torque: this.#torque.value,
-        point: this.#atPoint.checked ? this.#point : null,
+        point: this.#atPoint?.checked ? this.#point : null,
       },
-      (vector) => this.#force.set(vector),
+      (/** @type {Turned} */ {force, torque}) => {
+        if (force) this.#force.set(force);
+        if (torque) this.#torque.set(torque);
+      },
     );
   }
 
+  /** @param {boolean} withForce @param {boolean} withTorque */
   async #apply(withForce, withTorque) {
     const none = [0, 0, 0];
-    const wrench = {
+    this.dialog.say('');
+    await this.#request('edit', {op: {
       kind: 'wrench',
       link: this.#link.value,
       force: withForce ? this.#force.value : none,
       torque: withTorque ? this.#torque.value : none,
       steps: this.#steps,
-    };
-    if (withForce && this.#atPoint.checked) wrench.point = this.#point;
-    this.dialog.say('');
-    await this.#request('edit', {op: wrench});
+      ...(withForce && this.#atPoint?.checked ? {point: this.#point} : {}),
+    }});
     return false;
   }
 }

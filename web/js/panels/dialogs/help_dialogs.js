@@ -1,15 +1,17 @@
 /** Two windows to read: the hotkey chart and About. */
 import {Dialog} from '../dialog.js';
 import {h} from '../dom.js';
+/** @import {Hotkey} from '../../hotkeys.js' */
+/** @import {Requests} from '../../protocol.js' */
 
 /**
- * @param {{keys: string, title: string, group: string}[]} hotkeys the one table of them
+ * @param {readonly Hotkey[]} hotkeys the one table of them
  */
 export function hotkeyDialog(hotkeys) {
+  /** @type {Map<string, Hotkey[]>} */
   const groups = new Map();
   for (const hotkey of hotkeys) {
-    if (!groups.has(hotkey.group)) groups.set(hotkey.group, []);
-    groups.get(hotkey.group).push(hotkey);
+    groups.set(hotkey.group, [...(groups.get(hotkey.group) ?? []), hotkey]);
   }
   const columns = [...groups].map(([group, keys]) =>
     h(
@@ -34,7 +36,7 @@ export function hotkeyDialog(hotkeys) {
   }).open();
 }
 
-/** @param {{version?: string, app?: string}} about what the server said of itself */
+/** @param {Partial<Requests['hello']['reply']>} about what the server said of itself */
 export function aboutDialog(about) {
   return new Dialog({
     title: 'About',
@@ -44,9 +46,9 @@ export function aboutDialog(about) {
         text: `my_simulations ${about.app ?? ''}, protocol ${about.version ?? ''}`,
       }),
       h('p', {
-        text: 'Worlds as Gazebo Classic describes them, moved by Bullet, edited in a browser.',
+        text: 'A drop-in replacement for gazebo_ros, powered by PyBullet.',
       }),
-      h('p', {class: 'soft', text: `Drawn with three.js. Browser: ${navigator.userAgent}`}),
+      h('p', {class: 'soft', text: `Rendered with three.js. Browser: ${navigator.userAgent}`}),
     ],
     buttons: [{title: 'Close', primary: true, value: true}],
   }).open();

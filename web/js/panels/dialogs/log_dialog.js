@@ -3,20 +3,22 @@ import {Dialog} from '../dialog.js';
 import {fill, h} from '../dom.js';
 import {bytesText} from '../text_format.js';
 import {icon} from '../icons.js';
+/** @import {Issue} from '../../connection.js' */
 
 /**
  * @param {import('../panels.js').Page} page
- * @returns {Promise<any>}
+ * @returns {Promise<unknown>}
  */
 export function logsDialog({store, actions}) {
   const name = h('input', {
     type: 'text',
-    placeholder: 'name (or the date)',
+    placeholder: 'name (default: date and time)',
     'aria-label': 'Log name',
     spellcheck: 'false',
   });
   const record = h('button', {type: 'button'});
   const list = h('div', {class: 'folder-list', 'aria-label': 'Logs'});
+  /** @param {{ok: boolean, issues: Issue[]}} outcome */
   const check = (outcome) => {
     dialog.say(outcome.ok ? '' : outcome.issues[0].message);
     return outcome.ok;
@@ -48,7 +50,7 @@ export function logsDialog({store, actions}) {
               }),
             ),
           )
-        : [h('p', {class: 'empty', text: 'Nothing was recorded yet.'})]),
+        : [h('p', {class: 'empty', text: 'No logs'})]),
     );
   };
   const update = () => {
@@ -56,7 +58,7 @@ export function logsDialog({store, actions}) {
     fill(
       record,
       icon('log', 16),
-      h('span', {text: recording ? `Stop recording ${store.log.name}` : 'Record'}),
+      h('span', {text: recording ? `Stop recording ${store.log?.name ?? ''}` : 'Record'}),
     );
     record.classList.toggle('danger', recording);
     name.disabled = recording;
@@ -75,15 +77,15 @@ export function logsDialog({store, actions}) {
       h('div', {class: 'row'}, record, name),
       h('p', {
         class: 'soft',
-        text: `Every pose of the world is recorded while it runs. A replay shows it in this window
-          only; the simulation goes on.`,
+        text: `Records the poses of all links while the simulation runs. A replay is shown in this
+          window only; the simulation keeps running.`,
       }),
       list,
     ],
     buttons: [{title: 'Close', primary: true, value: true}],
   });
-  store.addEventListener('log', update);
+  const unlisten = store.listen('log', update);
   update();
   showList();
-  return dialog.open().finally(() => store.removeEventListener('log', update));
+  return dialog.open().finally(unlisten);
 }

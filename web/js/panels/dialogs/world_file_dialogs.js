@@ -3,18 +3,33 @@
  *
  * The server answers `folders {path}` with {path, parent, roots, folders, files}.
  */
+import {RequestError} from '../../connection.js';
 import {Dialog, ask, faultText, labelled} from '../dialog.js';
 import {fill, h, roving} from '../dom.js';
 import {bytesText} from '../text_format.js';
 import {icon} from '../icons.js';
+/** @import {Page} from '../panels.js' */
+/** @import {RequestFunction} from '../../connection.js' */
+/** @import {Requests} from '../../protocol.js' */
+
+/**
+ * @typedef {Object} FolderHandlers
+ * @property {(file: string) => void} onFile   a file was chosen
+ * @property {(file: string) => void} onOpen   a file was double-clicked
+ * @property {(fault: unknown) => void} onFault  null: there is none any more
+ */
+
+/** What the dialogs need of the page. @typedef {Pick<Page, 'store'|'request'>} FileDialogPage */
 
 const ENDINGS = /\.(world|sdf|xml)$/i;
 
 /** The list of one folder, with its way up and the allowed roots above it. */
 class FolderList {
+  /** @param {RequestFunction} request @param {FolderHandlers} folderHandlers */
   constructor(request, {onFile, onOpen, onFault}) {
     this.request = request;
     this.handlers = {onFile, onOpen, onFault};
+    /** @type {Requests['folders']['reply']|null} */
     this.listing = null;
     this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
     this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
@@ -30,6 +45,7 @@ class FolderList {
 
   #rove;
 
+  /** @param {string} [path] */
   async go(path) {
     try {
       this.listing = await this.request('folders', path ? {path} : {});
@@ -42,7 +58,8 @@ class FolderList {
   }
 
   #show() {
-    const {path, parent, roots = [], folders = [], files = []} = this.listing;
+    if (!this.listing) return;
+    const {path, parent, roots, folders, files} = this.listing;
     this.path.textContent = path;
     this.path.title = path;
     fill(
@@ -62,6 +79,7 @@ class FolderList {
         ),
       ),
     );
+    /** @type {HTMLElement[]} */
     const rows = [];
     if (parent) rows.push(this.#row('..', 'up', '', () => this.go(parent)));
     for (const folder of folders) {
@@ -80,6 +98,12 @@ class FolderList {
     this.#rove.settle();
   }
 
+  /**
+   * @param {string} name
+   * @param {string} glyph
+   * @param {string} more
+   * @param {() => void} open
+   */
   #row(name, glyph, more, open) {
     const row = h(
       'div',
@@ -108,12 +132,27 @@ class FolderList {
   }
 }
 
-/** A file's path below a folder. */
+/**
+ * Whether a request was refused with an issue of a code.
+ * @param {unknown} fault
+ * @param {string} code
+ */
+const hasCode = (fault, code) =>
+  fault instanceof RequestError && fault.issues.some((issue) => issue.code === code);
+
+/**
+ * A file's path below a folder.
+ * @param {string} folder
+ * @param {string} name
+ */
 function joined(folder, name) {
   return `${folder.replace(/\/$/, '')}/${name}`;
 }
 
-/** The name as it is saved: with the ending of a world, where the user gave none. */
+/**
+ * The name as it is saved: with the ending of a world, where the user gave none.
+ * @param {string} name
+ */
 export function withEnding(name) {
   return ENDINGS.test(name) ? name : `${name}.world`;
 }
@@ -121,12 +160,12 @@ export function withEnding(name) {
 /**
  * A window with a field for a name above the list of files.
  *
- * @param {(type: string, fields: any) => Promise<any>} request
+ * @param {RequestFunction} request
  * @param {Object} options
  * @param {string} options.title
  * @param {string} options.button  what its button says
  * @param {string} options.nameless  said where no name was given
- * @param {Object<string, any>} options.field  attributes of the field
+ * @param {Record<string, unknown>} options.field  attributes of the field
  * @param {(path: string) => Promise<string|false>} options.run  as a button's, for the chosen path
  * @returns {Promise<string|undefined>} what `run` answered, undefined when cancelled
  */
@@ -140,13 +179,16 @@ async function filesDialog(request, {title, button, nameless, field, run}) {
     ...field,
   });
   const folders = new FolderList(request, {
+    /** @param {string} file */
     onFile: (file) => {
       name.value = file;
     },
+    /** @param {string} file */
     onOpen: (file) => {
       name.value = file;
       dialog.submit();
     },
+    /** @param {unknown} fault */
     onFault: (fault) => dialog.say(fault ? faultText(fault) : ''),
   });
   const chosen = async () => {
@@ -155,8 +197,8 @@ async function filesDialog(request, {title, button, nameless, field, run}) {
       dialog.say(nameless);
       return false;
     }
-    const whole = wanted.startsWith('/') || !folders.listing;
-    return run(whole ? wanted : joined(folders.listing.path, wanted));
+    const folder = wanted.startsWith('/') ? null : folders.listing?.path;
+    return run(folder ? joined(folder, wanted) : wanted);
   };
   const dialog = new Dialog({
     title,
@@ -168,13 +210,14 @@ async function filesDialog(request, {title, button, nameless, field, run}) {
   // Typing replaces the name and leaves the ending.
   name.setSelectionRange(0, name.value.replace(ENDINGS, '').length);
   await folders.go();
-  return closed;
+  const answer = await closed;
+  return typeof answer === 'string' ? answer : undefined;
 }
 
 /**
  * Asks for a name and saves; asks again before it overwrites.
  *
- * @param {import('../panels.js').Page} page
+ * @param {FileDialogPage} page
  * @returns {Promise<string|undefined>} the path, undefined when cancelled
  */
 export function saveAsDialog({store, request}) {
@@ -182,33 +225,35 @@ export function saveAsDialog({store, request}) {
   return filesDialog(request, {
     title: 'Save World As',
     button: 'Save',
-    nameless: 'Give the file a name.',
+    nameless: 'Enter a file name.',
     field: {value: file || 'untitled.world'},
     run: (path) => saveTo(request, withEnding(path)),
   });
 }
 
+/** @param {RequestFunction} request @param {string} path */
 async function saveTo(request, path) {
   try {
     return (await request('save', {path, overwrite: false})).path;
   } catch (fault) {
-    if (!fault.issues?.some((issue) => issue.code === 'exists')) throw fault;
+    if (!hasCode(fault, 'exists')) throw fault;
   }
-  const overwrite = await ask('Overwrite the file?', `${path} exists already.`, [
+  const overwrite = await ask('Overwrite the file?', `${path} already exists.`, [
     {title: 'Cancel'},
     {title: 'Overwrite', value: true, primary: true},
   ]);
   return overwrite ? (await request('save', {path, overwrite: true})).path : false;
 }
 
+/** @param {string|undefined} path */
 function baseName(path) {
-  return path ? path.split('/').pop() : '';
+  return path?.split('/').pop() ?? '';
 }
 
 /**
  * Chooses a world file and opens it.
  *
- * @param {import('../panels.js').Page} page
+ * @param {FileDialogPage} page
  * @returns {Promise<string|undefined>}
  */
 export async function openDialog({store, request}) {
@@ -217,8 +262,8 @@ export async function openDialog({store, request}) {
   return filesDialog(request, {
     title: 'Open World',
     button: 'Open',
-    nameless: 'Choose a file.',
-    field: {placeholder: 'a name from the list, or a path'},
+    nameless: 'Select a file.',
+    field: {placeholder: 'file name or path'},
     async run(path) {
       await request('open', {path, discard: true});
       return path;
@@ -229,11 +274,12 @@ export async function openDialog({store, request}) {
 /**
  * Asks what becomes of unsaved changes.
  *
+ * @param {FileDialogPage} page
  * @returns {Promise<boolean>} whether to go on
  */
 export async function mayDiscard({store, request}) {
   if (!store.history?.dirty) return true;
-  const choice = await ask('Save the changes?', 'This world has changes that are not saved.', [
+  const choice = await ask('Save changes?', 'The world has unsaved changes.', [
     {title: 'Cancel'},
     {title: "Don't save", value: 'discard', danger: true},
     {title: 'Save', value: 'save', primary: true},
@@ -243,7 +289,10 @@ export async function mayDiscard({store, request}) {
   return saved({store, request});
 }
 
-/** Saves to the world's own file, or asks for a name where it has none that may be replaced. */
+/**
+ * Saves to the world's own file, or asks for a name where it has none that may be replaced.
+ * @param {FileDialogPage} page
+ */
 async function saved(page) {
   try {
     if (page.store.history.file) {
@@ -251,12 +300,12 @@ async function saved(page) {
       return true;
     }
   } catch (fault) {
-    if (!fault.issues?.some(({code}) => code === 'path-needed')) throw fault;
+    if (!hasCode(fault, 'path-needed')) throw fault;
   }
   return Boolean(await saveAsDialog(page));
 }
 
-/** An empty world in place of this one. */
+/** An empty world in place of this one. @param {FileDialogPage} page */
 export async function newWorld(page) {
   if (await mayDiscard(page)) await page.request('new', {discard: true});
 }
