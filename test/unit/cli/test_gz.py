@@ -76,7 +76,7 @@ def test_log_that_is_none_is_a_failure(tmp_path, capsys):
     path = tmp_path / "state.log"
     path.write_text("no log")
     assert gz_command.main(["gz", "log", "-i", "-f", str(path)]) == gz_command.FAILED
-    assert "is no state log" in capsys.readouterr().err
+    assert "is not a state log" in capsys.readouterr().err
 
 
 def test_world_needs_a_master(capsys, monkeypatch):
