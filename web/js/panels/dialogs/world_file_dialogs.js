@@ -168,7 +168,7 @@ export function withEnding(name) {
  * @param {Record<string, unknown>} options.field  attributes of the field
  * @param {(path: string) => Promise<string|false>} options.run  as a button's, for the chosen path
  * @param {Node[]} [options.more]  below the list
- * @param {(listing: any) => void} [options.onListing]  hears of the first folder's listing
+ * @param {(listing: Requests['folders']['reply']) => void} [options.onListing]  gets the first folder's listing
  * @returns {Promise<string|undefined>} what `run` answered, undefined when cancelled
  */
 async function filesDialog(
