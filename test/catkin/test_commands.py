@@ -57,12 +57,12 @@ def test_xacro_fails_with_a_status_on_a_missing_file():
     for path in (REPOSITORY / "compat/gazebo_ros/launch").glob("*.launch*")))
 def test_world_launch_file_forwards_every_argument(launch):
     done = _run("roslaunch", "--args", "/gazebo", "gazebo_ros", launch, "paused:=true",
-                "recording:=true", "verbose:=true", "physics:=ode", "extra_gazebo_args:=--seed 7",
+                "recording:=true", "verbose:=true", "physics:=bullet", "extra_gazebo_args:=--seed 7",
                 "world_name:=some.world", "gui:=false")
     assert done.returncode == 0, done.stderr
     words = done.stdout.split()
     assert words[0].endswith("/gzserver")
-    assert words[1:9] == ["-u", "-r", "--verbose", "-e", "ode", "--seed", "7", "some.world"]
+    assert words[1:9] == ["-u", "-r", "--verbose", "-e", "bullet", "--seed", "7", "some.world"]
 
 
 def test_launch_file_sets_the_parameters_of_its_arguments():
