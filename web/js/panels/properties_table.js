@@ -166,6 +166,8 @@ export const SURFACE = [
   vector('fdir1', 'friction direction'),
   number('slip1', 'slip1', '', NOT_NEGATIVE),
   number('slip2', 'slip2', '', NOT_NEGATIVE),
+  number('torsion', 'torsional friction', '', NOT_NEGATIVE),
+  number('patch_radius', 'patch radius', 'm', NOT_NEGATIVE),
   number('restitution', 'restitution', '', {min: 0, max: 1}),
   number('bounce_threshold', 'bounce threshold', 'm/s', NOT_NEGATIVE),
   number('kp', 'contact kp', 'N/m', NOT_NEGATIVE),
