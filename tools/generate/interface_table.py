@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write the table of topics and services into doc/ros_api.md, from the table that registers them."""
+"""Write the topics and services into doc/ros_api.md, from the table that registers them."""
 from __future__ import annotations
 
 import pathlib

@@ -36,8 +36,7 @@ class NoHistoryError(Exception):
 def git(folder: str, *words: str) -> str:
     """The output of a git command. Raises NoHistoryError when there is no git or it fails."""
     try:
-        done = subprocess.run(["git", "-C", folder, *words], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, check=False)
+        done = subprocess.run(["git", "-C", folder, *words], capture_output=True, check=False)
     except OSError as fault:
         raise NoHistoryError(f"git cannot be run: {fault}") from fault
     if done.returncode:

@@ -119,6 +119,6 @@ def test_folder_inside_another_repository_passes_and_says_so(repository):
 def test_shallow_clone_without_the_rules_commit_passes(repository, tmp_path):
     repository.commit("engine: cache bodies")
     clone = tmp_path / "clone"
-    subprocess.run(["git", "clone", "-q", "--depth", "1", f"file://{repository.folder}", str(clone)],
-                   check=True, capture_output=True)
+    words = ["git", "clone", "-q", "--depth", "1", f"file://{repository.folder}", str(clone)]
+    subprocess.run(words, check=True, capture_output=True)
     assert repository.check(clone)[0] == 0
