@@ -158,6 +158,14 @@ def test_modules_named_on_the_pages_exist():
             assert name in modules, f"{page.name}: {name}"
 
 
+def test_keys_named_on_the_pages_are_hotkeys_of_the_editor():
+    keys = set(re.findall(r"keys: '([^']+)'", text_of(REPOSITORY / "web" / "js" / "hotkeys.js")))
+    for name in ("world_editor", "building_editor", "lab_sheet", "first_hour"):
+        page = REPOSITORY / "doc" / f"{name}.md"
+        for key in re.findall(r"\bCtrl\+(?:Shift\+)?[A-Z]\b|\bF\d+\b", text_of(page)):
+            assert key in keys, f"{page.name}: {key}"
+
+
 # -- continuous integration ----------------------------------------------------------------------
 
 def test_job_files_are_yaml_with_jobs():
