@@ -158,6 +158,17 @@ def test_modules_named_on_the_pages_exist():
             assert name in modules, f"{page.name}: {name}"
 
 
+def test_every_parameter_of_the_node_is_documented():
+    page = text_of(REPOSITORY / "doc" / "ros_api.md")
+    names = set()
+    for path in (REPOSITORY / "src" / "my_simulations" / "ros").rglob("*.py"):
+        names.update(re.findall(r'"~([a-z_/]+)"', text_of(path)))
+        names.update(re.findall(r'parameters, "([a-z_]+)"', text_of(path)))
+    assert len(names) > 10
+    for name in names:
+        assert f"`~{name}`" in page, name
+
+
 def test_keys_named_on_the_pages_are_hotkeys_of_the_editor():
     keys = set(re.findall(r"keys: '([^']+)'", text_of(REPOSITORY / "web" / "js" / "hotkeys.js")))
     for name in ("world_editor", "building_editor", "lab_sheet", "first_hour"):
