@@ -1,4 +1,4 @@
-"""Tells catkin where the Python package is; not to be called by hand."""
+"""Tell catkin where the Python package is. catkin calls this; do not run it by hand."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import find_packages, setup
 

@@ -1,4 +1,4 @@
-"""Makes the README's pictures of the editor, of our own worlds: screenshots.py FOLDER."""
+"""Make the pictures of the editor in doc/images, of our own worlds: screenshots.py FOLDER."""
 from __future__ import annotations
 
 import math

@@ -74,6 +74,14 @@ check() {
   judge "$1" 0 0 "$status"
 }
 
+# check_and_report NAME SECONDS COMMAND...: as check; the step ends with the last line of the output.
+check_and_report() {
+  local status=0
+  begin "$1"
+  attempt "$@" || status=$?
+  if [ "$status" -eq 0 ]; then finish "$(tail -n 1 "$LOG")"; else judge "$1" 0 0 "$status"; fi
+}
+
 # pytest_folder FOLDER SECONDS FILE...: the tests of the given files.
 pytest_folder() {
   local folder="$1" limit="$2" status=0 head name results
