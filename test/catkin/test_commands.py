@@ -57,8 +57,8 @@ def test_xacro_fails_with_a_status_on_a_missing_file():
     for path in (REPOSITORY / "compat/gazebo_ros/launch").glob("*.launch*")))
 def test_world_launch_file_forwards_every_argument(launch):
     done = _run("roslaunch", "--args", "/gazebo", "gazebo_ros", launch, "paused:=true",
-                "recording:=true", "verbose:=true", "physics:=bullet", "extra_gazebo_args:=--seed 7",
-                "world_name:=some.world", "gui:=false")
+                "recording:=true", "verbose:=true", "physics:=bullet",
+                "extra_gazebo_args:=--seed 7", "world_name:=some.world", "gui:=false")
     assert done.returncode == 0, done.stderr
     words = done.stdout.split()
     assert words[0].endswith("/gzserver")
