@@ -2,15 +2,17 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Sequence, Tuple, Union
+from typing import Any, List, Optional, Sequence, Tuple, Union
 
 from ..description.model import Model
 from ..description.world import Actor, Light, World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
+from .include_overrides import IncludeOverrides
 from .sdf.include import read_include
 from .sdf.light import LightPlacement, read_light
-from .sdf.model import IncludeOverrides, ParsedModel, read_model
+from .sdf.model import read_model
+from .sdf.parsed_model import ParsedModel
 from .sdf.upgrade import upgrade
 from .sdf.world import read_world_element
 from .sdf.world_scene import read_actor
@@ -89,10 +91,8 @@ def read_entity(text: Text, resolver: Resolver,
     """
     source, root = _open(text, resolver, file)
     if root.tag == "robot":
-        from .urdf.robot import read_robot
-
         _refuse_xacro(root, source)
-        entity: Entity = read_robot(root, source, _name_if_missing(root, source))
+        entity: Entity = _read_robot(root, source, _name_if_missing(root, source))
     elif root.tag in _SDF_ROOTS:
         entity = _first_entity(root, source)
     else:
@@ -121,6 +121,13 @@ def read_any(text: Text, resolver: Resolver,
     return read_actor(actor, source), source.log.issues
 
 
+def _read_robot(root: Any, source: Source, overrides: Optional[IncludeOverrides]) -> Model:
+    """`urdf.robot.read_robot`, imported when the first URDF file is read."""
+    from .urdf.robot import read_robot
+
+    return read_robot(root, source, overrides)
+
+
 def _first_entity(root: Any, source: Source) -> Entity:
     for child in root:
         holders = child if child.tag == "world" else (child,)
@@ -131,7 +138,7 @@ def _first_entity(root: Any, source: Source) -> Entity:
             elif element.tag == "light":
                 found = read_light(element, source)
             elif element.tag == "include":
-                found = read_include(element, source)
+                found = read_include(element, source, read_model)
                 if found is None:
                     raise InputError(source.log.issues)
             if isinstance(found, ParsedModel):
@@ -187,7 +194,7 @@ def _open(text: Text, resolver: Resolver, file: str) -> Tuple[Source, Any]:
     log = Log()
     base_dir = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""
     trail = (os.path.abspath(file),) if base_dir else ()
-    source = Source(file, base_dir, resolver, log, trail)
+    source = Source(file, base_dir, resolver, _read_robot, log, trail)
     try:
         root = parse(text, file, log)
     except InputError as fault:

@@ -21,7 +21,8 @@ from my_simulations.formats.reading import read_world_text
 from my_simulations.resources.database.download_notes import DownloadNotes
 from my_simulations.resources.database.http_download import Limits
 from my_simulations.resources.database.model_database import ModelDatabase
-from my_simulations.resources.resolver import ModelNotProvidedError, Resolver, ResourceNotFoundError
+from my_simulations.resources.model_provider import ModelNotProvidedError
+from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
 
 LIST = "<database><name>d</name><models>{}</models></database>"
 MODEL = sdf('<model name="{}"><static>1</static><link name="l"/></model>', "1.6")

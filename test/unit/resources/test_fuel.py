@@ -15,7 +15,8 @@ from my_simulations.formats.reading import read_world_text
 from my_simulations.resources.database.download_time import DownloadTime
 from my_simulations.resources.database.fuel import FuelModels
 from my_simulations.resources.database.fuel_uri import FuelUri, fuel_uri
-from my_simulations.resources.resolver import ModelNotProvidedError, Resolver, ResourceNotFoundError
+from my_simulations.resources.model_provider import ModelNotProvidedError
+from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
 
 PUBLIC = "https://fuel.gazebosim.org"
 CONFIG = '<model><name>{}</name><sdf version="1.6">model.sdf</sdf></model>'

@@ -4,19 +4,22 @@ from __future__ import annotations
 import functools
 import os
 from dataclasses import replace
-from typing import Any, Callable, List, Optional, Sequence, Union
+from typing import Any, Callable, Optional, Sequence, Union
 
 from ...description.world import Actor, Light
 from ...errors import InputError
 from ...geometry import IDENTITY
 from ...resources.resolver import ResourceNotFoundError
+from ..include_overrides import IncludeOverrides
 from ..xml.binding import fill
 from ..xml.parsing import content, parse
 from ..xml.source import Level, Source
-from .flags import Said
 from .light import LightPlacement, read_light
-from .model import IncludeOverrides, ParsedModel, read_model, read_plugin, relative_to
+from .link import relative_to
+from .model_flags import ModelFlags
 from .model_tables import INCLUDE
+from .parsed_model import ParsedModel
+from .plugin import read_plugin
 from .upgrade import upgrade
 from .world_scene import read_actor
 
@@ -24,14 +27,25 @@ _DEEPEST = 20
 _MOST = 20000
 
 Included = Union[ParsedModel, LightPlacement, Actor]
+ModelReader = Callable[..., ParsedModel]
+"""`model.read_model`, which reads models with includes inside and is therefore handed in."""
 
 
-def read_include(element: Any, source: Source, static: bool = False,
+def read_include(element: Any, source: Source, read_model: ModelReader, static: bool = False,
                  outer: Sequence[str] = (), alone: bool = True) -> Optional[Included]:
-    """What an `<include>` brings; None, with an issue, where nothing usable comes.
+    """The entity that an `<include>` names; None, with an issue, if it cannot be used.
 
     Name, pose and static replace those of the included model; plugins are added. Source: SDF spec
-    1.7, include; a missing file leaves the include out, and the world loads (Gazebo behaviour).
+    1.7, include; an include whose file is missing is skipped, and the world loads (Gazebo
+    behaviour).
+
+    Args:
+        element: `<include>`.
+        source: the file that it is in.
+        read_model: reads a `<model>`; see `model.read_model` for this and the rest.
+        static: True if an outer model is static.
+        outer: names of the models around the include, outermost first.
+        alone: False if joints may name links of other models.
     """
     probe = _Include()
     found = fill(probe, element, INCLUDE, source, [])
@@ -73,7 +87,7 @@ class _Include:
 
 
 def _read_file(path: str, element: Any, source: Source, changes: IncludeOverrides,
-               read: Callable[..., ParsedModel], uri: str) -> Optional[Included]:
+               read: ModelReader, uri: str) -> Optional[Included]:
     if path in source.trail or len(source.trail) >= _DEEPEST:
         chain = " -> ".join(os.path.basename(os.path.dirname(p)) for p in (*source.trail, path))
         source.report(Level.ERROR, "include-cycle", f"models include each other: {chain}", element)
@@ -89,12 +103,10 @@ def _read_file(path: str, element: Any, source: Source, changes: IncludeOverride
     if root is None:
         return None
     if root.tag == "robot":
-        from ..urdf.robot import read_robot
-
-        model = read_robot(root, inner, changes)
+        model = source.read_robot(root, inner, changes)
         model.uri = uri
-        said = Said(static=True if model.static else None)
-        return ParsedModel(model, changes.relative_to, said=said)
+        flags = ModelFlags(static=True if model.static else None)
+        return ParsedModel(model, changes.relative_to, flags=flags)
     for child in root:
         if child.tag == "model":
             placement = read(child, inner, changes)
@@ -149,5 +161,3 @@ def _root(path: str, inner: Source, element: Any, source: Source) -> Optional[An
     source.parsed[path] = root
     return root
 
-
-__all__: List[str] = ["read_include", "Included"]

@@ -16,7 +16,8 @@ from ...geometry import Pose, Vec3, add, transform
 from ..xml.binding import fill
 from ..xml.source import Level, Source
 from .include import read_include
-from .model import ParsedModel, read_model
+from .model import read_model
+from .parsed_model import ParsedModel
 from .world_tables import POPULATION, Population
 
 MOST = 10000
@@ -50,7 +51,7 @@ def _templates(element: Any, source: Source) -> List[Model]:
     for child in element.iterchildren("model", "include"):
         if child.tag == "model":
             return [read_model(child, source).model]
-        included = read_include(child, source)
+        included = read_include(child, source, read_model)
         if isinstance(included, ParsedModel):
             return [included.model]
     return []

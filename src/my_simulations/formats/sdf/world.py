@@ -16,8 +16,11 @@ from .include import read_include
 from .inter_model_joint import Between
 from .joint import UnresolvedJoint, is_whole, read_joint
 from .light import LightPlacement, read_light
-from .model import ParsedModel, add_frames_inside, read_model, read_plugin, relative_to
+from .link import relative_to
+from .model import read_model
 from .model_tables import FRAME, PHYSICS, WORLD
+from .parsed_model import ParsedModel, add_frames_inside
+from .plugin import read_plugin
 from .population import read_population
 from .saved_state import read_state
 from .state_applied import state_issues
@@ -59,7 +62,7 @@ class _Entities:
     def read(self, element: Any) -> None:
         readers: Dict[str, Callable[[Any], Any]] = {
             "model": lambda child: read_model(child, self._source, alone=False),
-            "include": lambda child: read_include(child, self._source, alone=False),
+            "include": lambda child: read_include(child, self._source, read_model, alone=False),
             "light": lambda child: read_light(child, self._source),
             "population": lambda child: read_population(child, self._source, self._world.seed),
         }
@@ -88,7 +91,7 @@ class _Entities:
                 self._world.models.append(model)
                 self._frames.add(model.name, model.pose, entity.relative_to, element)
                 self._inner.append((entity, element))
-                self._pending += [one.moved_out(model.name) for one in entity.pending]
+                self._pending += [one.moved_out(model.name) for one in entity.unresolved_joints]
                 if entity.relative_to:
                     self._waiting.append((model, element))
         elif isinstance(entity, LightPlacement):

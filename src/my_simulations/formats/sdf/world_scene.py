@@ -18,7 +18,7 @@ from ...description.world import (
 from ..xml.binding import Found, fill
 from ..xml.source import Source
 from .collision_visual import fill_material
-from .model import read_plugin
+from .plugin import read_plugin
 from .world_tables import (
     ACTOR,
     ANIMATION,

@@ -8,7 +8,7 @@ from ...description.validate import faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose
 from ..default_inertia import usable
-from ..sdf.model import IncludeOverrides
+from ..include_overrides import IncludeOverrides
 from ..xml.binding import closest, fill
 from ..xml.source import Level, Source
 from .fixed_joint_lumping import lump, standing

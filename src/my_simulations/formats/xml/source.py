@@ -3,10 +3,12 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
+from ...description.model import Model
 from ...errors import Issue, Severity
 from ...resources.resolver import Resolver
+from ..include_overrides import IncludeOverrides
 
 _MOST_PATHS = 1000
 """Issues with an XPath; finding one takes as long as the element has siblings."""
@@ -63,6 +65,7 @@ class Source:
         file: path, or a name for text from elsewhere.
         base_dir: what relative URIs start from, "" where there is no file.
         resolver: finds URIs.
+        read_robot: reads the `<robot>` of an included file (see `urdf.robot.read_robot`).
         log: shared by all files of one reading.
         trail: files that are being included, outermost first.
         parsed: roots of included files by path, shared by all files of one reading.
@@ -71,6 +74,7 @@ class Source:
     file: str
     base_dir: str
     resolver: Resolver
+    read_robot: Callable[[Any, "Source", Optional[IncludeOverrides]], Model]
     log: Log = field(default_factory=Log)
     trail: Tuple[str, ...] = ()
     parsed: Dict[str, Any] = field(default_factory=dict)
