@@ -8,11 +8,13 @@ import sys
 from dataclasses import asdict
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
+from ..description.actor import Actor
 from ..description.flatten import flattened
+from ..description.light import Light
 from ..description.model import Link, Model
 from ..description.shapes import MeshTable
 from ..description.validate import Fault
-from ..description.world import Actor, Light, World
+from ..description.world import World
 from ..errors import InputError, Issue, Severity, error, errors_of, strictly
 from ..formats.loading_advice import findings
 from ..formats.mesh.loading import collision_meshes

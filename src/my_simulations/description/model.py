@@ -127,6 +127,7 @@ class Model:
     static: bool = False
     self_collide: bool = False
     allow_auto_disable: bool = True
+    enable_wind: bool = False
     canonical_link: str = ""
     links: List[Link] = field(default_factory=list)
     joints: List[Joint] = field(default_factory=list)

@@ -209,6 +209,7 @@ class Visual:
     cast_shadows: bool = True
     transparency: float = 0.0
     laser_retro: float = 0.0
+    layer: Optional[int] = None
     extra: List[str] = field(default_factory=list)
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 import os
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
+from ..description.actor import Actor
+from ..description.light import Light
 from ..description.model import Model
-from ..description.world import Actor, Light, World
+from ..description.world import World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
 from .include_overrides import IncludeOverrides

@@ -16,9 +16,9 @@ from typing import (
     Tuple,
 )
 
+from ..description.light import Light
 from ..description.model import Joint, Model
 from ..description.shapes import MeshTable
-from ..description.world import Light
 from ..engine.commands import LinkState, ModelState
 from ..engine.ring import Snapshot
 from ..engine.ring_rows import AXES, axis_rows, row_name

@@ -4,7 +4,9 @@ import os
 import pytest
 from reading import INERTIAL, codes, errors, sdf, tolerated, warnings, world_of
 
-from my_simulations.description.world import Light, Physics
+from my_simulations.description.light import Light
+from my_simulations.description.surroundings import Gui, Scene
+from my_simulations.description.world import Physics
 from my_simulations.formats.reading import read_entity, read_world, read_world_text
 from my_simulations.resources.resolver import Resolver
 
@@ -195,7 +197,9 @@ def test_what_is_not_simulated_is_kept_without_a_warning():
     kept = ["<scene><shadows>0</shadows></scene>", '<gui fullscreen="0"/>',
             '<state world_name="w"/>', '<actor name="man"/>']
     world, issues = world_of("".join(kept) + '<plugin name="p" filename="f"/>')
-    assert world.extra == kept and errors(issues) == [] and warnings(issues) == []
+    assert world.extra == [] and errors(issues) == [] and warnings(issues) == []
+    assert world.scene == Scene(shadows=False) and world.gui == Gui()
+    assert [actor.name for actor in world.actors] == ["man"] and world.state.world_name == "w"
     assert codes(issues) == ["not-simulated"] * 2  # the plugin and the actor
     assert [plugin.name for plugin in world.plugins] == ["p"]
 

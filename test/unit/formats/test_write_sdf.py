@@ -10,12 +10,18 @@ from lxml import etree
 from reading import VALID, link_of, model_of, sdf, world_of
 
 from my_simulations.description.compare import differences
+from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Polyline
-from my_simulations.description.world import Light, World
+from my_simulations.description.world import World
 from my_simulations.errors import Severity, errors_of
 from my_simulations.formats.reading import read_entity, read_file, read_world, read_world_text
 from my_simulations.formats.sdf import model_tables
+from my_simulations.formats.sdf.writer import (
+    material_element,
+    state_element,
+    surroundings_elements,
+)
 from my_simulations.formats.sdf.writer.entities import _Writer, write_entity, write_world
 from my_simulations.formats.sdf.writer.geometry_element import tables_by_shape
 from my_simulations.formats.xml.binding import Kept, Part, Table
@@ -278,7 +284,10 @@ def test_a_relative_mesh_becomes_a_path_and_a_model_uri_stays(tmp_path):
 
 def test_every_part_of_a_table_has_a_writer():
     """What the reader has a reader for, the writer writes."""
-    known = {name for name in dir(_Writer) if not name.startswith("_")}
+    known = {name for name in dir(_Writer) if not name.startswith("_")} | {
+        name.rpartition("write_")[2] for module in (surroundings_elements, material_element,
+                                                    state_element)
+        for name in dir(module)}
     aside = {"include", "geometry", "xyz", "axis2", "plugin",
              "population", "placement_frame", "screw_thread_pitch"}  # expanded or converted
     for table in tables():

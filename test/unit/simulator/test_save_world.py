@@ -12,10 +12,11 @@ from lxml import etree
 
 from my_simulations.description.compare import differences
 from my_simulations.description.flatten import flattened
+from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model, PluginSpec
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.unflatten import unflattened
-from my_simulations.description.world import Light, World
+from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, errors_of

@@ -6,20 +6,21 @@ import time
 from dataclasses import replace
 
 import pytest
+from reading import world_of
 from test_simulator import arm, box, case, close  # noqa: F401
 
+from my_simulations.description.light import Light
 from my_simulations.description.model import JointAxis
-from my_simulations.description.world import (
+from my_simulations.description.surroundings import (
     Atmosphere,
     Fog,
     GuiCamera,
-    Light,
     Scene,
     Sky,
     SphericalCoordinates,
     Wind,
-    World,
 )
+from my_simulations.description.world import World
 from my_simulations.errors import CommandError
 from my_simulations.formats.reading import read_world
 from my_simulations.formats.sdf.writer.entities import write_world
@@ -197,16 +198,17 @@ def test_changed_surroundings_are_saved_and_read_again(case, tmp_path):
 
 def test_what_the_tables_do_not_know_of_a_scene_is_kept(case, tmp_path):
     sim = case().sim
-    sim._session.world = replace(sim.world, scene=Scene(ambient=(1, 1, 1, 1)), extra=[
+    read, _ = world_of(
         "<scene><ambient>1 1 1 1</ambient><mood>grim</mood>"
-        "<sky><time>3</time><material>stars</material></sky></scene>",
-        "<gui fullscreen='1'><plugin name='p' filename='libp.so'/></gui>"])
+        "<sky><time>3</time><material>stars</material></sky></scene>"
+        "<gui fullscreen='1'><plugin name='p' filename='libp.so'/></gui>")
+    sim._session.world = replace(sim.world, scene=read.scene, gui=read.gui)
     sim.scene.set_scene(SCENE)
     sim.scene.set_gui_camera(CAMERA)
-    text = "".join(sim.world.extra)
+    text = write_world(sim.world).decode()
     assert "<mood>grim</mood>" in text and "stars" in text
     assert text.count("<ambient>") == 2 - 1
-    assert "libp.so" in text and 'fullscreen="1"' in text
+    assert "libp.so" in text and 'fullscreen="true"' in text
     assert again(sim.world, tmp_path).scene == SCENE
 
 

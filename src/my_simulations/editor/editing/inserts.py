@@ -6,6 +6,7 @@ from typing import Collection, Dict, List, Tuple, Union
 
 from ...description.compare import BUILT_IN
 from ...description.flatten import flattened
+from ...description.light import Light
 from ...description.model import Inertial, Link, Model
 from ...description.shapes import (
     Box,
@@ -18,7 +19,7 @@ from ...description.shapes import (
     Visual,
 )
 from ...description.validate import validate
-from ...description.world import Light, World
+from ...description.world import World
 from ...errors import CommandError, InputError, Issue, errors_of
 from ...formats.mesh.loading import collision_meshes
 from ...formats.reading import read_entity, read_file, read_world_text

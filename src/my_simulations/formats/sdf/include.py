@@ -6,7 +6,8 @@ import os
 from dataclasses import replace
 from typing import Any, Callable, Optional, Sequence, Union
 
-from ...description.world import Actor, Light
+from ...description.actor import Actor
+from ...description.light import Light
 from ...errors import InputError
 from ...geometry import IDENTITY
 from ...resources.resolver import ResourceNotFoundError

@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ...description.world import Light
+from ...description.light import Light
 from ..xml.binding import fill
 from ..xml.source import Level, Source
 from .model_tables import LIGHT

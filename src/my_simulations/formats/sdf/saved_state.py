@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, List
 
-from ...description.world import LightState, LinkState, ModelState, SavedState
+from ...description.saved_state import LightState, LinkState, ModelState, SavedState
 from ..xml.binding import fill
 from ..xml.source import Level, Source
 from ..xml.values import numbers

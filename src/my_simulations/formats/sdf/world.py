@@ -4,9 +4,11 @@ from __future__ import annotations
 import copy
 from typing import Any, Callable, Dict, List, Sequence, Set, Tuple
 
+from ...description.actor import Actor
+from ...description.light import Light
 from ...description.model import Link, Model
 from ...description.validate import link_names
-from ...description.world import Actor, Light, Physics, World
+from ...description.world import Physics, World
 from ...geometry import is_finite
 from ..xml.binding import Found, fill, to_xml
 from ..xml.source import Source
@@ -83,8 +85,8 @@ class _Entities:
             for model in entity:
                 self._add(ParsedModel(model), element)
         elif isinstance(entity, Actor):
+            entity.include = to_xml(element)
             self._world.actors.append(entity)
-            self._world.extra.append(to_xml(element))
         elif isinstance(entity, ParsedModel):
             model = entity.model
             if self._is_new(model.name, self._models, "model", element):

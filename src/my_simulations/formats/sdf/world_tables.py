@@ -4,22 +4,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
-from ...description.world import (
-    Actor,
-    Animation,
+from ...description.actor import Actor, Animation, Trajectory, Waypoint
+from ...description.saved_state import LightState, LinkState, ModelState, SavedState
+from ...description.surroundings import (
     Atmosphere,
     Fog,
+    Gui,
     GuiCamera,
-    LightState,
-    LinkState,
-    ModelState,
     Road,
-    SavedState,
     Scene,
     Sky,
     SphericalCoordinates,
-    Trajectory,
-    Waypoint,
     Wind,
 )
 from ...geometry import IDENTITY, Pose, Twist, Vec3
@@ -51,9 +46,9 @@ SCENE = Table("scene", Scene, {
     "origin_visual": Value("origin_visual", BOOL), "sky": Part(), "fog": Part(),
 }, level=WARNING, use=SHOWN)
 
-GUI = Table("gui", GuiCamera, {
-    "camera": Part(), "plugin": Kept(told=True),
-}, level=WARNING, known_attributes=("fullscreen",), use=SHOWN)
+GUI = Table("gui", Gui, {
+    "camera": Part(), "plugin": Part(use=KEPT, told=True),
+}, attributes={"fullscreen": Value("fullscreen", BOOL, use=KEPT)}, level=WARNING, use=SHOWN)
 
 GUI_CAMERA = Table("camera", GuiCamera, {
     "pose": Value("pose", POSE), "view_controller": Value("view_controller", TEXT),

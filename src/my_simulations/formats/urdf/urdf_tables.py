@@ -153,9 +153,10 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "static": Value("static", BOOL),
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
+    "enable_wind": Value("enable_wind", BOOL, use=Use.KEPT),
     "plugin": Part(use=Use.KEPT), "joint": Part(),
     "gripper": Kept(told=True),
-    **_kept("enable_wind", "frame", "canonicalBody", "selfCollide", "turnGravityOff"),
+    **_kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
 """`<gazebo>` without a reference."""
 

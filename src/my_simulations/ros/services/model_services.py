@@ -6,8 +6,8 @@ from typing import Any, Callable, List, Optional
 
 from ...description.compare import differences
 from ...description.flatten import flattened
+from ...description.light import Light
 from ...description.model import Model
-from ...description.world import Light
 from ...errors import CommandError, InputError, Issue, Severity, errors_of
 from ...formats.mesh.loading import collision_meshes
 from ...formats.reading import read_entity
