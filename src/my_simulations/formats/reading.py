@@ -2,19 +2,24 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Optional, Sequence, Tuple, Union
+from dataclasses import dataclass, replace
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
+from ..description.shapes import MeshTable
 from ..description.world import World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
 from .include_overrides import IncludeOverrides
+from .loading_advice import ADVICE_LIMIT, advice_issues
+from .mesh.loading import collision_meshes
 from .sdf.include import read_include
 from .sdf.light import LightPlacement, read_light
 from .sdf.model import read_model
 from .sdf.parsed_model import ParsedModel
+from .sdf.state_applied import apply_state
 from .sdf.upgrade import upgrade
 from .sdf.world import read_world_element
 from .sdf.world_scene import read_actor
@@ -29,43 +34,90 @@ _UNNAMED = "unnamed"
 _SDF_ROOTS = ("sdf", "gazebo")  # `<gazebo version="1.x">` is SDF from before it had its name
 
 
-def read_world(path: str, resolver: Resolver, *, seed: int = 0,
-               profile: str = "") -> Tuple[World, List[Issue]]:
-    """The first world of a file, with every issue met on the way.
+@dataclass(frozen=True)
+class LoadedWorld:
+    """A world that is ready to be simulated.
 
-    A model that cannot be used is left out whole, with its errors among the issues.
+    Attributes:
+        world: the description; a saved state of the file is applied.
+        meshes: the collision meshes of its models, by model name. A collision whose mesh is not
+            there collides with nothing; it stays in the description, so that saving keeps it.
+        issues: all faults of the file and of the files that it names, and advice.
+    """
+
+    world: World
+    meshes: Dict[str, MeshTable]
+    issues: List[Issue]
+
+
+def read_world(path: str, resolver: Resolver, *, seed: int = 0, profile: str = "",
+               advice_limit: Optional[int] = ADVICE_LIMIT) -> LoadedWorld:
+    """Read the first world of a file, completely.
+
+    A model that cannot be used is skipped, with its errors among the issues and in
+    `World.losses`.
 
     Args:
         path: the file.
-        resolver: finds what it names.
-        seed: of what the world draws at random.
-        profile: name of the physics preset to use; "" for the world's own choice.
+        resolver: finds the files that it names.
+        seed: seed of populations that are placed at random.
+        profile: name of the physics preset to use; "" for the default of the world.
+        advice_limit: see `advice_issues`.
 
     Raises:
-        InputError: nothing usable: no such file, cut-off XML, no `<world>`.
+        InputError: nothing is usable: no such file, truncated XML, no `<world>`.
     """
-    return read_world_text(_content(path), resolver, path, seed=seed, profile=profile)
+    return read_world_text(_content(path), resolver, path, seed=seed, profile=profile,
+                           advice_limit=advice_limit)
 
 
 def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
-                    profile: str = "") -> Tuple[World, List[Issue]]:
-    """As `read_world`, from text; `file` names it and, where it is a path, anchors relative URIs.
+                    profile: str = "",
+                    advice_limit: Optional[int] = ADVICE_LIMIT) -> LoadedWorld:
+    """As `read_world`, from text; `file` names it and, if it is a path, anchors relative URIs.
 
     Raises:
-        InputError: nothing usable.
+        InputError: nothing is usable.
     """
     source, root = _open(text, resolver, file)
+    return _loaded_world(root, source, _world_in(root, source, seed, profile), advice_limit)
+
+
+def parse_world(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
+                profile: str = "") -> Tuple[World, List[Issue]]:
+    """The description in a document, without what `read_world` adds.
+
+    `World.state` is not applied and no mesh is loaded: for copies and for tools that look into
+    files. Arguments and errors are those of `read_world_text`.
+    """
+    source, root = _open(text, resolver, file)
+    return _world_in(root, source, seed, profile), source.log.issues
+
+
+def _world_in(root: Any, source: Source, seed: int, profile: str) -> World:
     if root.tag not in _SDF_ROOTS:
         raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root,
                         _meant(root, ("sdf", "gazebo", "world")))
     element = root.find("world")
     if element is None:
-        raise _unusable(source, "world-missing", "the file holds no <world>", root,
+        raise _unusable(source, "world-missing", "the file contains no <world>", root,
                         _child_meant(root, ("world",)))
     world = read_world_element(element, source, seed, profile)
     if len(root.findall("world")) > 1:
-        source.warn("world-many", "the file holds several worlds; the first is used", root)
-    return world, source.log.issues
+        source.warn("world-many", "the file contains several worlds; the first is used", root)
+    return world
+
+
+def _loaded_world(root: Any, source: Source, parsed: World,
+                  advice_limit: Optional[int]) -> LoadedWorld:
+    issues = source.log.issues
+    world = replace(apply_state(parsed), losses=[str(issue) for issue in errors_of(issues)])
+    meshes: Dict[str, MeshTable] = {}
+    for model in world.models:
+        meshes[model.name], faults = collision_meshes(model)
+        issues += faults
+    issues += advice_issues(world.models, meshes, source.file, root=root, limit=advice_limit)
+    return LoadedWorld(world, meshes, issues)
 
 
 def read_file(path: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
@@ -92,35 +144,47 @@ def read_entity(text: Text, resolver: Resolver,
         InputError: nothing usable.
     """
     source, root = _open(text, resolver, file)
+    return _entity_in(root, source), source.log.issues
+
+
+def _entity_in(root: Any, source: Source) -> Entity:
     if root.tag == "robot":
         _refuse_xacro(root, source)
-        entity: Entity = _read_robot(root, source, _name_if_missing(root, source))
-    elif root.tag in _SDF_ROOTS:
-        entity = _first_entity(root, source)
-    else:
-        hint = ("put it into <sdf version='1.7'>…</sdf>"
-                if root.tag in ("model", "light", "world") else
-                _meant(root, ("sdf", "robot", "world", "model", "light")))
-        raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
-                        root, hint)
-    return entity, source.log.issues
+        return _read_robot(root, source, _name_if_missing(root, source))
+    if root.tag in _SDF_ROOTS:
+        return _first_entity(root, source)
+    hint = ("put it into <sdf version='1.7'>…</sdf>"
+            if root.tag in ("model", "light", "world") else
+            _meant(root, ("sdf", "robot", "world", "model", "light")))
+    raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
+                    root, hint)
 
 
 def read_any(text: Text, resolver: Resolver,
              file: str) -> Tuple[Union[World, Model, Light, Actor], List[Issue]]:
-    """Whatever a document holds: its first world, else its first model or light, else an actor.
+    """The first world of a document, else its first model or light, else an actor.
+
+    The issues are complete, as those of `read_world`, and all advice is among them.
 
     Raises:
-        InputError: nothing usable.
+        InputError: nothing is usable.
     """
     source, root = _open(text, resolver, file)
+    issues = source.log.issues
     if root.find("world") is not None:
-        return read_world_text(text, resolver, file)
+        loaded = _loaded_world(root, source, _world_in(root, source, 0, ""), None)
+        return loaded.world, loaded.issues
     actor = root.find("actor")
-    if actor is None or any(root.find(tag) is not None for tag in ("model", "light", "include")):
-        return read_entity(text, resolver, file)
-    source.tell_unused(actor)
-    return read_actor(actor, source), source.log.issues
+    if actor is not None and not any(root.find(tag) is not None
+                                     for tag in ("model", "light", "include")):
+        source.tell_unused(actor)
+        return read_actor(actor, source), issues
+    entity = _entity_in(root, source)
+    if isinstance(entity, Model):
+        meshes, faults = collision_meshes(entity)
+        issues += faults
+        issues += advice_issues([entity], {entity.name: meshes}, file, root=root, limit=None)
+    return entity, issues
 
 
 def _read_robot(root: Any, source: Source, overrides: Optional[IncludeOverrides]) -> Model:

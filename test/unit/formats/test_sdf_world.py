@@ -7,7 +7,7 @@ from reading import INERTIAL, codes, errors, sdf, tolerated, warnings, world_of
 from my_simulations.description.light import Light
 from my_simulations.description.surroundings import Gui, Scene
 from my_simulations.description.world import Physics
-from my_simulations.formats.reading import read_entity, read_world, read_world_text
+from my_simulations.formats.reading import parse_world, read_entity, read_world
 from my_simulations.resources.resolver import Resolver
 
 BOX = '<link name="l"><collision name="c"><geometry><box/></geometry></collision></link>'
@@ -51,7 +51,8 @@ def test_an_empty_world_has_the_defaults_of_the_format():
 
 def test_the_shipped_empty_world_gives_a_plane_and_a_light():
     resolver = Resolver.from_environment()
-    world, issues = read_world(resolver.resolve("worlds/empty.world"), resolver)
+    loaded = read_world(resolver.resolve("worlds/empty.world"), resolver)
+    world, issues = loaded.world, loaded.issues
     assert errors(issues) == []
     assert [model.name for model in world.models] == ["ground_plane"]
     assert world.models[0].static
@@ -213,7 +214,7 @@ def test_plugins_are_told_once_for_each_library():
 
 
 def test_only_the_first_of_several_worlds_is_read():
-    world, issues = read_world_text(sdf("<world name='a'/><world name='b'/>"), Resolver())
+    world, issues = parse_world(sdf("<world name='a'/><world name='b'/>"), Resolver())
     assert world.name == "a" and warnings(issues) == ["world-many"]
 
 
