@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 from ..description.actor import Actor
 from ..description.light import Light
@@ -143,8 +143,41 @@ def read_entity(text: Text, resolver: Resolver,
     Raises:
         InputError: nothing usable.
     """
+    return parse_document(text, resolver, file).read_entity()
+
+
+class ParsedDocument:
+    """A parsed document whose root element can be looked at before its entity is read.
+
+    Attributes:
+        root_tag: tag of the root element: `robot`, `sdf`, ...
+    """
+
+    def __init__(self, source: Source, root: Any) -> None:
+        self._source = source
+        self._root = root
+        self.root_tag: str = root.tag
+
+    def take_attributes(self, names: Iterable[str]) -> Dict[str, str]:
+        """Remove attributes from the root element; those that were there, by name."""
+        return {name: self._root.attrib.pop(name) for name in names if name in self._root.attrib}
+
+    def set_file(self, file: str) -> None:
+        """Give the document another name in issues, those that were found already included."""
+        log = self._source.log
+        log.issues = [replace(issue, file=file) if issue.file == self._source.file else issue
+                      for issue in log.issues]
+        self._source.file = file
+
+    def read_entity(self) -> Tuple[Entity, List[Issue]]:
+        """The first model or light; see the function `read_entity`. To be called once."""
+        return _entity_in(self._root, self._source), self._source.log.issues
+
+
+def parse_document(text: Text, resolver: Resolver, file: str = "<model_xml>") -> ParsedDocument:
+    """Parse a document; arguments and errors are those of `read_entity`."""
     source, root = _open(text, resolver, file)
-    return _entity_in(root, source), source.log.issues
+    return ParsedDocument(source, root)
 
 
 def _entity_in(root: Any, source: Source) -> Entity:
