@@ -1,10 +1,8 @@
-"""No module of the package imports itself by way of others, imports inside functions included.
-
-`.importlinter` says the same of the packages that lie side by side.
-"""
+"""No module or sub-package imports itself by way of others, imports inside functions included."""
 from __future__ import annotations
 
 import ast
+from itertools import takewhile
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[3] / "src"
@@ -61,6 +59,46 @@ def test_no_module_imports_itself_by_way_of_others():
     graph = import_graph(SOURCE, PACKAGE)
     assert len(graph) > 200
     assert cycle_in(graph) == []
+
+
+def sibling_graphs(graph):
+    """By package: the imports between the modules and packages that lie directly in it."""
+    found = {}
+    for importer, imports in graph.items():
+        for imported in imports:
+            here, there = importer.split("."), imported.split(".")
+            shared = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(here, there)))
+            if shared < min(len(here), len(there)):
+                siblings = found.setdefault(".".join(here[:shared]), {})
+                siblings.setdefault(here[shared], set()).add(there[shared])
+                siblings.setdefault(there[shared], set())
+    return found
+
+
+# The servers of the two front ends lie beside the parts that they start and that use them.
+COMPOSED = {f"{PACKAGE}.editor", f"{PACKAGE}.ros"}
+
+
+def test_no_package_imports_itself_by_way_of_those_beside_it():
+    found = sibling_graphs(import_graph(SOURCE, PACKAGE))
+    assert {PACKAGE, f"{PACKAGE}.formats", f"{PACKAGE}.formats.sdf", *COMPOSED} <= set(found)
+    cycles = {package: cycle_in(graph) for package, graph in found.items()}
+    assert {package for package, cycle in cycles.items() if cycle} <= COMPOSED, cycles
+
+
+def test_a_cycle_of_packages_without_one_of_modules_is_found(tmp_path):
+    package = tmp_path / "house"
+    for room in ("kitchen", "bath"):
+        (package / room).mkdir(parents=True)
+        (package / room / "__init__.py").touch()
+        (package / room / "floor.py").touch()
+    (package / "__init__.py").touch()
+    (package / "kitchen" / "sink.py").write_text("from ..bath import floor\n")
+    (package / "bath" / "tub.py").write_text("from ..kitchen.floor import tile\n")
+    graph = import_graph(tmp_path, "house")
+    assert cycle_in(graph) == []
+    assert cycle_in(sibling_graphs(graph)["house"]) in (
+        ["bath", "kitchen", "bath"], ["kitchen", "bath", "kitchen"])
 
 
 def test_a_cycle_by_way_of_an_import_inside_a_function_is_found(tmp_path):
