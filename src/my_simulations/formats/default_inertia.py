@@ -21,7 +21,7 @@ _LEAST = 1e-3
 """The least moment, of the largest one: a rod a hundred times as long as it is wide."""
 
 
-def usable(link: Link, source: Source, element: Any) -> Inertial:
+def usable_inertia(link: Link, source: Source, element: Any) -> Inertial:
     """The inertia of a link that can move, or one that can be simulated, with a warning."""
     inertial = link.inertial
     better = completed(inertial, link.collisions)

@@ -25,7 +25,7 @@ from .sdf.world import read_world_element
 from .sdf.world_scene import read_actor
 from .xml.binding import closest
 from .xml.parsing import content, parse
-from .xml.source import Level, Log, Source
+from .xml.source import FaultLevel, IssueCollector, Source
 
 Text = Union[str, bytes]
 Entity = Union[Model, Light]
@@ -97,11 +97,11 @@ def parse_world(text: Text, resolver: Resolver, file: str = "<world>", *, seed: 
 def _world_in(root: Any, source: Source, seed: int, profile: str) -> World:
     if root.tag not in _SDF_ROOTS:
         raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root,
-                        _meant(root, ("sdf", "gazebo", "world")))
+                        _suggestion(root, ("sdf", "gazebo", "world")))
     element = root.find("world")
     if element is None:
         raise _unusable(source, "world-missing", "the file contains no <world>", root,
-                        _child_meant(root, ("world",)))
+                        _child_suggestion(root, ("world",)))
     world = read_world_element(element, source, seed, profile)
     if len(root.findall("world")) > 1:
         source.warn("world-many", "the file contains several worlds; the first is used", root)
@@ -188,7 +188,7 @@ def _entity_in(root: Any, source: Source) -> Entity:
         return _first_entity(root, source)
     hint = ("put it into <sdf version='1.7'>…</sdf>"
             if root.tag in ("model", "light", "world") else
-            _meant(root, ("sdf", "robot", "world", "model", "light")))
+            _suggestion(root, ("sdf", "robot", "world", "model", "light")))
     raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
                     root, hint)
 
@@ -244,19 +244,19 @@ def _first_entity(root: Any, source: Source) -> Entity:
                 return found.model
             if isinstance(found, LightPlacement):
                 return found.light
-    raise _unusable(source, "model-missing", "the document holds no world, no model and no light",
-                    root, _child_meant(root, ("world", "model", "light", "include", "actor")))
+    raise _unusable(source, "model-missing", "the document contains no world, model or light",
+                    root, _child_suggestion(root, ("world", "model", "light", "include", "actor")))
 
 
-def _meant(element: Any, known: Sequence[str]) -> str:
+def _suggestion(element: Any, known: Sequence[str]) -> str:
     """A hint about an element whose name is unknown: the one it may be a misspelling of."""
     return closest(element.tag.lower() if isinstance(element.tag, str) else "", list(known))
 
 
-def _child_meant(root: Any, known: Sequence[str]) -> str:
+def _child_suggestion(root: Any, known: Sequence[str]) -> str:
     """The same for the children of the root, with the line of the first that looks like one."""
     for child in root:
-        hint = _meant(child, known)
+        hint = _suggestion(child, known)
         if hint:
             return f"line {child.sourceline} has <{child.tag}>; {hint}"
     return ""
@@ -266,14 +266,14 @@ def _name_if_missing(element: Any, source: Source) -> IncludeOverrides:
     """A spawn request brings a name of its own; a document without one will do for it."""
     if (element.get("name") or "").strip():
         return IncludeOverrides()
-    source.warn("name-missing", f"<{element.tag}> has no name; it is called {_UNNAMED!r}", element)
+    source.warn("name-missing", f"<{element.tag}> has no name; it is named {_UNNAMED!r}", element)
     return IncludeOverrides(name=_UNNAMED)
 
 
 def _refuse_xacro(root: Any, source: Source) -> None:
     for element in root.iter("{http://www.ros.org/wiki/xacro}*", "{http://wiki.ros.org/xacro}*",
                              "{http://ros.org/wiki/xacro}*"):
-        source.report(Level.FATAL, "xacro-unexpanded", "the text is xacro, not URDF", element,
+        source.report(FaultLevel.FATAL, "xacro-unexpanded", "the text is xacro, not URDF", element,
                       "expand it with the xacro command first")
         return
 
@@ -290,7 +290,7 @@ def _content(path: str) -> bytes:
 
 def _open(text: Text, resolver: Resolver, file: str) -> Tuple[Source, Any]:
     resolver.begin()
-    log = Log()
+    log = IssueCollector()
     base_dir = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""
     trail = (os.path.abspath(file),) if base_dir else ()
     source = Source(file, base_dir, resolver, _read_robot, log, trail)

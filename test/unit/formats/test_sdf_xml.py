@@ -8,7 +8,7 @@ from my_simulations.errors import InputError, Severity
 from my_simulations.formats.reading import parse_world, read_entity, read_world
 from my_simulations.formats.xml.parsing import parse
 from my_simulations.formats.xml.repair import balanced
-from my_simulations.formats.xml.source import Log
+from my_simulations.formats.xml.source import IssueCollector
 from my_simulations.resources.resolver import Resolver
 
 MODEL = '<model name="m"><link name="l"/></model>'
@@ -19,7 +19,7 @@ def read(text):
 
 
 def test_a_forgotten_end_tag_nests_nothing_that_follows():
-    log = Log()
+    log = IssueCollector()
     root = parse("<r>\n<a>\n<b x='1'>\n</a>\n<a/></r>", "f", log)
     assert [child.tag for child in root] == ["a", "a"]
     (issue,) = log.issues

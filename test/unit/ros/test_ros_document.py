@@ -38,7 +38,7 @@ def test_attributes_that_were_taken_cause_no_warning():
         "my_simulations_replace": "1"}
     _, issues = document.read_entity()
     assert [issue.message for issue in issues if issue.code == "unknown-attribute"] == [
-        "attribute odd is not known in <robot>; it is kept, without effect"]
+        "attribute odd is unknown in <robot>; it is kept without effect"]
 
 
 def test_a_document_that_gets_another_name_has_it_in_every_issue():

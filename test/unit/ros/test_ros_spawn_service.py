@@ -4,9 +4,6 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-
-pytest.importorskip("rospy")
-
 from geometry_msgs.msg import Pose, Quaternion
 
 from my_simulations.description.world import World

@@ -14,7 +14,7 @@ from ...resources.resolver import ResourceNotFoundError
 from ..include_overrides import IncludeOverrides
 from ..xml.binding import fill
 from ..xml.parsing import content, parse
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from .light import LightPlacement, read_light
 from .link import relative_to
 from .model_flags import ModelFlags
@@ -51,8 +51,8 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
     probe = _Include()
     found = fill(probe, element, INCLUDE, source, [])
     if not probe.uri:
-        say = source.tolerate if outer else functools.partial(source.report, Level.ERROR)
-        say("include-uri-missing", "<include> has no <uri>; it is left out", element)
+        say = source.tolerate if outer else functools.partial(source.report, FaultLevel.ERROR)
+        say("include-uri-missing", "<include> has no <uri>; it is skipped", element)
         return None
     if probe.pose is None and element.find("pose") is not None:
         probe.pose = IDENTITY  # an empty one, too, replaces that of the model
@@ -69,10 +69,10 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
                 " GAZEBO_MODEL_PATH, or name a model database in GAZEBO_MODEL_DATABASE_URI")
         if outer:
             source.tolerate("model-not-found", f"the included model {missing}; model {outer[-1]!r}"
-                            " goes without it", element, hint)
+                            " is loaded without it", element, hint)
         else:
-            source.report(Level.ERROR, "model-not-found", f"the included model {missing}", element,
-                          hint)
+            source.report(FaultLevel.ERROR, "model-not-found", f"the included model {missing}",
+                          element, hint)
         return None
     return _read_file(path, element, source, changes, read, probe.uri)
 
@@ -91,12 +91,13 @@ def _read_file(path: str, element: Any, source: Source, changes: IncludeOverride
                read: ModelReader, uri: str) -> Optional[Included]:
     if path in source.trail or len(source.trail) >= _DEEPEST:
         chain = " -> ".join(os.path.basename(os.path.dirname(p)) for p in (*source.trail, path))
-        source.report(Level.ERROR, "include-cycle", f"models include each other: {chain}", element)
+        source.report(FaultLevel.ERROR, "include-cycle", f"models include each other: {chain}",
+                      element)
         return None
     source.log.includes += 1
     if source.log.includes > _MOST:
-        source.report(Level.ERROR, "include-many", f"more than {_MOST} includes; the rest is left"
-                      " out", element)
+        source.report(FaultLevel.ERROR, "include-many", f"more than {_MOST} includes; the rest is"
+                      " skipped", element)
         return None
     inner = replace(source, file=path, base_dir=os.path.dirname(path),
                     trail=(*source.trail, path))
@@ -117,10 +118,11 @@ def _read_file(path: str, element: Any, source: Source, changes: IncludeOverride
             light = read_light(child, inner)
             return _changed_light(light, changes)
         if child.tag == "actor":
-            source.warn("actor-unsupported", f"{uri!r} is an actor: it is shown, but nothing of it"
-                        " is simulated", element)
+            source.warn("actor-unsupported", f"{uri!r} is an actor: it is shown, but not"
+                        " simulated", element)
             return _changed_actor(read_actor(child, inner), changes)
-    source.report(Level.ERROR, "include-empty", f"{path} holds no model and no light", element)
+    source.report(FaultLevel.ERROR, "include-empty", f"{path} contains no model and no light",
+                  element)
     return None
 
 
@@ -150,11 +152,11 @@ def _root(path: str, inner: Source, element: Any, source: Source) -> Optional[An
         if root.tag in ("sdf", "gazebo"):
             root = upgrade(root, inner)
         elif root.tag != "robot":
-            source.report(Level.ERROR, "include-empty", f"{path} is neither SDF nor URDF, its root"
-                          f" is <{root.tag}>", element)
+            source.report(FaultLevel.ERROR, "include-empty", f"{path} is neither SDF nor URDF, its"
+                          f" root is <{root.tag}>", element)
             root = None
     except OSError as fault:
-        source.report(Level.ERROR, "file-unreadable", f"{path} cannot be read:"
+        source.report(FaultLevel.ERROR, "file-unreadable", f"{path} cannot be read:"
                       f" {fault.strerror or fault}", element)
     except InputError as fault:
         for issue in fault.issues:

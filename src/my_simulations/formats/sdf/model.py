@@ -11,11 +11,11 @@ from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..include_overrides import IncludeOverrides
 from ..xml.binding import closest, fill
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from .frame_graph import FrameError, FrameTree
 from .include import read_include
-from .joint import UnresolvedJoint, is_whole, place_axes, read_joint, reverse_axes
-from .link import LinkReader, free_name, must_stand, relative_to
+from .joint import UnresolvedJoint, is_complete, place_axes, read_joint, reverse_axes
+from .link import LinkReader, free_name, must_be_static, relative_to
 from .model_flags import apply_include_flags, first_link, own_flags
 from .model_tables import FRAME, MODEL
 from .parsed_model import ParsedModel, add_frames_inside
@@ -78,7 +78,7 @@ class _ModelReader:
         model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
         model.plugins += changes.plugins
         model.links = self._links.read_all(found.get("link", ()), static)
-        self._stand_still(model, static)
+        self._force_static_if_needed(model, static)
         for child in found.get("frame", ()):
             self._frame(child)
         nested = self._within_depth(found.get("model", ()), model)
@@ -109,11 +109,11 @@ class _ModelReader:
         if changes.pose is not None:
             model.pose, placement.relative_to = changes.pose, changes.relative_to
 
-    def _stand_still(self, model: Model, static: bool) -> None:
+    def _force_static_if_needed(self, model: Model, static: bool) -> None:
         for link in model.links:
-            if not static and must_stand(link):
+            if not static and must_be_static(link):
                 self._source.warn("static-forced", f"model {model.name!r} is made static: its link"
-                                  f" {link.name!r} collides as a terrain or a map",
+                                  f" {link.name!r} has a heightmap or image collision",
                                   self._elements[id(link)])
                 model.static = True
                 return
@@ -131,8 +131,8 @@ class _ModelReader:
         if len((*self._outer, model.name)) < DEEPEST:
             return elements
         for child in elements:
-            self._source.report(Level.ERROR, "models-too-deep", "models are nested deeper than"
-                                f" {DEEPEST} levels; this one is left out", child)
+            self._source.report(FaultLevel.ERROR, "models-too-deep", "models are nested deeper than"
+                                f" {DEEPEST} levels; this one is skipped", child)
         return ()
 
     def _read_includes(self, elements: Sequence[Any], model: Model,
@@ -182,7 +182,7 @@ class _ModelReader:
         if inner.name in taken:
             free = free_name(inner.name, taken)
             self._source.tolerate("name-repeated", f"there are two models named {inner.name!r} in"
-                                  f" {model.name!r}; the second is called {free!r}", element,
+                                  f" {model.name!r}; the second is renamed to {free!r}", element,
                                   "names are unique within a model")
             inner.name = free
         model.models.append(inner)
@@ -228,9 +228,9 @@ class _ModelReader:
                         setattr(joint, role, self._links.world)
             if joint.name and joint.name in taken:
                 self._source.tolerate("name-repeated", f"there are two joints named {joint.name!r};"
-                                      " the second is left out", element,
+                                      " the second is skipped", element,
                                       "names are unique within a model")
-            elif is_whole(one, self._source):
+            elif is_complete(one, self._source):
                 taken.add(joint.name)
                 joints.append(one)
         return joints
@@ -309,7 +309,7 @@ class _ModelReader:
                 return _End.ELSEWHERE
             self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} names"
                                   f" {' and '.join(map(repr, strangers))}, which the model does not"
-                                  " have; the joint is left out", element,
+                                  " have; the joint is skipped", element,
                                   closest(strangers[0], sorted(names)))
             return _End.NOWHERE
         if joint.child == WORLD and joint.parent in names:

@@ -83,7 +83,7 @@ def _take_over(model: Model, flag: str, value: bool, element: Any, source: Sourc
             "allow_auto_disable": "allowed to sleep" if value else "kept awake"}[flag]
     source.log.add(Issue(
         Severity.NOTE, "include-flag", f"model {model.name!r} is {what} as a whole, since the model"
-        f" included here says <{flag}>{'true' if value else 'false'}</{flag}>; so are all such",
+        f" included here says <{flag}>{'true' if value else 'false'}</{flag}>; reported once",
         hint=f"say <{flag}> in {model.name!r} itself, before the include",
         **source.where(element)))
 

@@ -25,7 +25,7 @@ from ...description.shapes import (
 )
 from ...description.world import Physics, World
 from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
-from ..xml.source import Level
+from ..xml.source import FaultLevel
 from ..xml.values import (
     BOOL,
     COLOR,
@@ -40,7 +40,7 @@ from ..xml.values import (
     VECTOR3,
 )
 
-FATAL, ERROR, WARNING = Level.FATAL, Level.ERROR, Level.WARNING
+FATAL, ERROR, WARNING = FaultLevel.FATAL, FaultLevel.ERROR, FaultLevel.WARNING
 
 
 SHOWN, KEPT = Use.SHOWN, Use.KEPT

@@ -15,8 +15,8 @@ from ..xml.source import Source
 from ..xml.values import BOOL
 from .frame_graph import FrameError, FrameTree
 from .include import read_include
-from .inter_model_joint import Between
-from .joint import UnresolvedJoint, is_whole, read_joint
+from .inter_model_joint import InterModelJointReader
+from .joint import UnresolvedJoint, is_complete, read_joint
 from .light import LightPlacement, read_light
 from .link import relative_to
 from .model import read_model
@@ -30,7 +30,7 @@ from .world_scene import read_surroundings
 
 
 def read_world_element(element: Any, source: Source, seed: int = 0, profile: str = "") -> World:
-    """A world; models with a fatal fault are left out whole. Source: SDF spec 1.7, world.
+    """A world; models with a fatal fault are skipped. Source: SDF spec 1.7, world.
 
     `seed` and `profile` are as for `load.read_world`.
     """
@@ -108,7 +108,7 @@ class _Entities:
     def _is_new(self, name: str, names: Set[str], kind: str, element: Any) -> bool:
         if name in names:
             self._source.warn("name-repeated", f"there are two {kind}s named {name!r}; the second"
-                              " is left out", element)
+                              " is skipped", element)
             return False
         names.add(name)
         return True
@@ -132,10 +132,10 @@ class _Entities:
             return
         links = {f"{model.name}::{name}" for model in self._world.models
                  for name in link_names(model)}
-        between = Between(links, self._frames, self._source)
+        between = InterModelJointReader(links, self._frames, self._source)
         for element in joints:
             one = UnresolvedJoint(*read_joint(element, self._source), element)
-            if is_whole(one, self._source) and between.connect(one):
+            if is_complete(one, self._source) and between.connect(one):
                 self._world.joints.append(one.joint)
         for one in self._pending:
             if between.connect(one):
@@ -196,7 +196,7 @@ def _check_physics(physics: Physics, element: Any, source: Source) -> None:
         instead.append(f"max_step_size is out of range; {usual.max_step_size:g} s is used")
     if physics.real_time_update_rate < 0:
         physics.real_time_update_rate = 0.0
-        instead.append("real_time_update_rate is below 0; time goes on as fast as it can")
+        instead.append("real_time_update_rate is negative; the simulation runs as fast as possible")
     if physics.ode.iters < 1:
         physics.ode.iters = usual.ode.iters
         instead.append(f"ode/solver/iters is out of range; {usual.ode.iters} is used")

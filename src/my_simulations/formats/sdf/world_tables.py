@@ -19,10 +19,10 @@ from ...description.surroundings import (
 )
 from ...geometry import IDENTITY, Pose, Twist, Vec3
 from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
-from ..xml.source import Level
+from ..xml.source import FaultLevel
 from ..xml.values import BOOL, COLOR, FLOAT, INT, POSE, SCALE, SECONDS, TEXT, VECTOR3, numbers
 
-WARNING, SHOWN, KEPT = Level.WARNING, Use.SHOWN, Use.KEPT
+WARNING, SHOWN, KEPT = FaultLevel.WARNING, Use.SHOWN, Use.KEPT
 
 SKY = Table("sky", Sky, {
     "time": Value("time", FLOAT), "sunrise": Value("sunrise", FLOAT),
@@ -147,7 +147,7 @@ class TwistKind:
     def format(self, value: Twist) -> str:
         return f"{VECTOR3.format(value.linear)} {VECTOR3.format(value.angular)}"
 
-    def salvage(self, text: str) -> Twist:
+    def parse_leniently(self, text: str) -> Twist:
         raise ValueError("not a twist")
 
 
@@ -163,8 +163,8 @@ class Nanoseconds:
     def format(self, value: int) -> str:
         return f"{value // 10 ** 9} {value % 10 ** 9}"
 
-    def salvage(self, text: str) -> int:
-        return round(SECONDS.salvage(text) * 1e9)
+    def parse_leniently(self, text: str) -> int:
+        return round(SECONDS.parse_leniently(text) * 1e9)
 
 
 _NS: Any = Nanoseconds()

@@ -20,7 +20,7 @@ def lump(root: Body) -> List[str]:
     for body in parents_first(root):
         if body.up is not None and is_lumped(body.up):
             parent = body.up.parent
-            body.into = standing(parent)
+            body.into = lumped_into(parent)
             body.offset = compose(parent.offset, body.up.origin)
             _move(body, body.into)
             frames += _frames(body.up)
@@ -34,7 +34,7 @@ def is_lumped(connection: Connection) -> bool:
     return connection.joint.type == "fixed" and not connection.keep and not from_world
 
 
-def standing(body: Body) -> Body:
+def lumped_into(body: Body) -> Body:
     """The body that `body` has become part of, itself where it stays."""
     return body.into if body.into is not None else body
 

@@ -11,7 +11,7 @@ from ...description.model import Inertial, JointAxis, Link, Mimic, Model
 from ...description.shapes import Box, Capsule, Collision, Color, Cylinder, Mesh, Sphere, Visual
 from ...geometry import IDENTITY_QUAT, ZERO3, Quat, Vec3
 from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
-from ..xml.source import Level
+from ..xml.source import FaultLevel
 from ..xml.values import (
     BOOL,
     COLOR,
@@ -26,7 +26,7 @@ from ..xml.values import (
     VECTOR3,
 )
 
-FATAL, WARNING = Level.FATAL, Level.WARNING
+FATAL, WARNING = FaultLevel.FATAL, FaultLevel.WARNING
 
 
 def _kept(*names: str) -> Dict[str, Entry]:

@@ -19,7 +19,7 @@ def write_state(parent: Any, state: SavedState, write_model: Callable[[Any, Mode
 
     `write_model` and `write_light` write an inserted model or light below an element.
 
-    Times that are 0 are left out, except sim time. Links and joints of nested models stand in
+    Times that are 0 are not written, except sim time. Links and joints of nested models stand in
     elements of their own; velocities are six plain numbers, linear then angular, in world axes.
     """
     from lxml import etree
