@@ -237,7 +237,7 @@ def files() -> List[Row]:
 
     from my_simulations.description.shapes import Mesh
     from my_simulations.formats.mesh.loading import load_mesh
-    from my_simulations.formats.reading import read_world_text
+    from my_simulations.formats.reading import parse_world
     from my_simulations.resources.resolver import Resolver
     resolver = Resolver.from_environment()
     rows: List[Row] = []
@@ -249,7 +249,7 @@ def files() -> List[Row]:
         rows.append((label, f"{span:.3f} s", f"{bar} s", span <= bar))
 
     large = scenes.world("boxes", 1000, True, 1000.0)
-    took("reading a world of 1000 models", 1.0, lambda: read_world_text(large, resolver,
+    took("reading a world of 1000 models", 1.0, lambda: parse_world(large, resolver,
                                                                         file="large.world"))
     with tempfile.NamedTemporaryFile(suffix=".stl") as stream:
         side = np.arange(225.0)

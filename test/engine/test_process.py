@@ -14,8 +14,9 @@ import pytest
 from conftest import arm, ball, box, ground
 
 from my_simulations.description.model import Inertial, JointAxis, Link, Model
+from my_simulations.description.saved_state import InitialState
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
-from my_simulations.description.world import InitialState, Physics, World
+from my_simulations.description.world import Physics, World
 from my_simulations.engine.commands import FOREVER, JointPid, LoadModel, Restart, TimedWrench
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.errors import CommandError, EngineLostError

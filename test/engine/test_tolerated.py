@@ -11,7 +11,6 @@ from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.errors import InputError, errors_of
-from my_simulations.formats.mesh.loading import collision_meshes
 from my_simulations.formats.reading import read_entity, read_file, read_world_text
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
@@ -63,10 +62,9 @@ def test_things_lie_on_a_mesh_that_is_scaled_flat(static):
         <ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial><collision name='c'>
         <geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision></link></model></world>
         </sdf>"""
-    world, issues = read_world_text(text, Resolver())
-    meshes = {model.name: collision_meshes(model)[0] for model in world.models}
-    poses, _ = after(world, meshes, 1000)
-    assert errors_of(issues) == []
+    loaded = read_world_text(text, Resolver())
+    poses, _ = after(loaded.world, loaded.meshes, 1000)
+    assert errors_of(loaded.issues) == []
     assert -0.005 < poses["plate"].position[2] < 0.025
     assert 0.09 < poses["box"].position[2] < 0.15
 

@@ -35,6 +35,7 @@ LIGHT = ('<sdf version="1.6"><light name="lamp" type="point"><pose>0 0 3 0 0 0</
 VALID = {
     "spawn_urdf_model": {"model_name": "new", "model_xml": box()},
     "spawn_sdf_model": {"model_name": "new", "model_xml": static_box_sdf()},
+    "spawn_object": {"model_name": "new", "model_xml": box()},
     "delete_model": {"model_name": "box"},
     "delete_light": {"light_name": "lamp"},
     "get_model_properties": {"model_name": "box"},
@@ -92,11 +93,13 @@ UNKNOWN = [
 ]
 FRAMES = [
     ("spawn_urdf_model", "reference_frame"), ("spawn_sdf_model", "reference_frame"),
+    ("spawn_object", "reference_frame"),
     ("get_model_state", "relative_entity_name"), ("get_link_state", "reference_frame"),
     ("set_model_state", "model_state.reference_frame"),
     ("set_link_state", "link_state.reference_frame"),
     ("apply_body_wrench", "reference_frame"),
 ]
+SPAWN = ("spawn_urdf_model", "spawn_sdf_model", "spawn_object")
 ODE = ["sor_pgs_w", "contact_surface_layer", "contact_max_correcting_vel", "cfm", "erp"]
 
 REFUSED = [
@@ -105,15 +108,16 @@ REFUSED = [
     *[(service, {field: name}, "frame") for service, field in FRAMES
       for name in ("nothing", "/world", "box::nothing", "::", " ")],
 
-    *[(service, {"model_name": name}, word) for service in ("spawn_urdf_model", "spawn_sdf_model")
+    *[(service, {"model_name": name}, word) for service in SPAWN
       for name, word in (("", "empty"), ("  ", "empty"), ("a::b", "::"),
                          ("box", "already exists"))],
-    *[(service, {"model_xml": xml}, "") for service in ("spawn_urdf_model", "spawn_sdf_model")
+    *[(service, {"model_xml": xml}, "") for service in SPAWN
       for xml in ("", "no xml", "<robot", "<robot/>", "<sdf/>", "<model/>", "<sdf version='1.6'/>",
                   "<!-- endless", "<robot name='r'><link name='l'/><link name='l'/></robot>")],
     *numbers("spawn_urdf_model", axes("initial_pose.position"), ABSURD, "initial_pose"),
     *numbers("spawn_urdf_model", axes("initial_pose.orientation", "xyzw"), None, "initial_pose"),
     *numbers("spawn_sdf_model", axes("initial_pose.position"), ABSURD, "initial_pose"),
+    *numbers("spawn_object", axes("initial_pose.position"), ABSURD, "initial_pose"),
     ("spawn_sdf_model", {"model_xml": static_box_sdf("1e300 0 0 0 0 0")}, "beyond"),
     ("spawn_sdf_model", {"model_name": "lamp", "model_xml": LIGHT}, "already exists"),
 

@@ -10,6 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rospy
 import support
 from gazebo_msgs.msg import LinkState, ModelState
+from my_simulations_msgs.srv import SpawnObject
 from support import numbers, pose, twist
 
 PENDULUM = """<robot name="arm">
@@ -189,6 +190,24 @@ class Base:
         self.spawned("two")
         again = support.box(0.4, attributes='my_simulations_replace="true"')
         self.spawned("one", xml=again, where=pose(-2.0, 0.0, 0.2))
+        self.assertEqual(sorted(self.gazebo.names()), ["ground_plane", "one", "two"])
+        self.assertAlmostEqual(self.gazebo.get_model_state("one", "").pose.position.x, -2.0, 3)
+
+    def test_an_object_can_be_replaced_in_one_step(self):
+        spawn = rospy.ServiceProxy("/gazebo/spawn_object", SpawnObject)
+        rospy.wait_for_service("/gazebo/spawn_object", 10.0)
+        self.spawned("one", where=pose(1.0, 0.0, 0.1))
+        self.spawned("two")
+        refused = spawn(model_name="one", model_xml=support.box(0.4))
+        self.assertFalse(refused.success)
+        self.assertIn("already exists", refused.status_message)
+        faulty = spawn(model_name="one", model_xml="<robot name='x'><link name='l'/>"
+                       "<link name='l'/></robot>", replace=True, file="/tmp/arm.urdf")
+        self.assertFalse(faulty.success)
+        self.assertIn("/tmp/arm.urdf:1", faulty.status_message)
+        answer = spawn(model_name="one", model_xml=support.box(0.4), replace=True,
+                       initial_pose=pose(-2.0, 0.0, 0.2))
+        self.assertTrue(answer.success, answer.status_message)
         self.assertEqual(sorted(self.gazebo.names()), ["ground_plane", "one", "two"])
         self.assertAlmostEqual(self.gazebo.get_model_state("one", "").pose.position.x, -2.0, 3)
 

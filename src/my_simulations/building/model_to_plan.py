@@ -10,7 +10,7 @@ import re
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..description.model import Link, Model
-from ..description.shapes import Box, Material, Polyline, Visual
+from ..description.shapes import Box, Material, Polyline
 from ..errors import InputError, Issue, error, warning
 from ..geometry import Pose, Vec3, compose, rotate, rpy_from_quat, transform
 from .building_plan import WHITE, Floor, Level, Opening, Plan, Point, Stairs, Wall
@@ -18,7 +18,6 @@ from .plan_json import COUNTERS
 from .plan_to_model import GREY
 
 _NAME = re.compile(r"(Wall|Window|Door|Stairs|Floor|Roof)_(\d+)\Z")
-_LAYER = re.compile(r"<layer>\s*(\d+)\s*</layer>")
 
 ROUGH = 1e-3
 """Metres; Gazebo writes six digits, so that edges which meet differ by less."""
@@ -100,7 +99,7 @@ def _item(link: Link, model: Pose) -> Optional[_Item]:
                  [_block(shape.geometry, shape.pose) for shape in shapes
                   if isinstance(shape.geometry, Box)],
                  [shape.geometry for shape in shapes if isinstance(shape.geometry, Polyline)],
-                 color, texture, _layer(visual))
+                 color, texture, visual.layer if visual is not None else None)
 
 
 def _block(box: Box, pose: Pose) -> _Block:
@@ -118,14 +117,6 @@ def _look(material: Optional[Material]) -> Tuple[str, str]:
     color = "#" + "".join(f"{min(max(round(part * 255), 0), 255):02x}" for part in shade[:3])
     texture = material.script_name if material.script_name != GREY else ""
     return color, texture
-
-
-def _layer(visual: Optional[Visual]) -> Optional[int]:
-    for xml in visual.extra if visual is not None else ():
-        found = _LAYER.search(xml)
-        if found:
-            return int(found.group(1))
-    return None
 
 
 def _levels(items: List[_Item]) -> List[Level]:

@@ -133,7 +133,7 @@ class _Links:
 
     def __init__(self, layer: int, centre: Point, base: float) -> None:
         self.links: List[Link] = []
-        self._meta = [f"<meta><layer>{layer}</layer></meta>"]
+        self._layer = layer
         self._centre = centre
         self._base = base
 
@@ -192,7 +192,7 @@ class _Links:
             ending = f"_{number}" if numbered else ""
             link.collisions.append(Collision(f"{name}_Collision{ending}", geometry, at))
             link.visuals.append(Visual(f"{name}_Visual{ending}", geometry, at,
-                                       _material(color, texture), extra=list(self._meta)))
+                                       _material(color, texture), layer=self._layer))
         self.links.append(link)
 
 

@@ -8,17 +8,14 @@ import sys
 from dataclasses import asdict
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
+from ..description.actor import Actor
 from ..description.flatten import flattened
-from ..description.model import Link, Model
-from ..description.shapes import MeshTable
-from ..description.validate import Fault
-from ..description.world import Actor, Light, World
+from ..description.light import Light
+from ..description.model import Model
+from ..description.world import World
 from ..errors import InputError, Issue, Severity, error, errors_of, strictly
-from ..formats.loading_advice import findings
-from ..formats.mesh.loading import collision_meshes
 from ..formats.reading import read_any
-from ..formats.xml.parsing import content, parse
-from ..formats.xml.source import Log
+from ..formats.xml.parsing import content
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
@@ -76,21 +73,9 @@ def check(file: str, resolver: Resolver) -> Tuple[Optional[Loaded], List[Issue]]
     """What a file describes, None where nothing usable, and all that is to be said about it."""
     try:
         path, text = _document(file)
-        root = parse(text, path, Log())
+        return read_any(text, resolver, path)
     except InputError as fault:
         return None, fault.issues
-    try:
-        loaded, issues = read_any(text, resolver, path)
-    except InputError as fault:
-        return None, fault.issues
-    models = _models(loaded)
-    issues = list(issues)
-    meshes: Dict[str, MeshTable] = {}
-    for model in models:
-        meshes[model.name], faults = collision_meshes(model)
-        issues += faults
-    issues += [_placed(finding, models, root, path) for finding in findings(models, meshes)]
-    return loaded, issues
 
 
 def _document(file: str) -> Tuple[str, Union[str, bytes]]:
@@ -114,43 +99,6 @@ def _models(loaded: Loaded) -> List[Model]:
     if isinstance(loaded, World):
         return loaded.models
     return [loaded] if isinstance(loaded, Model) else []
-
-
-def _placed(fault: Fault, models: Sequence[Model], root: Any, path: str) -> Issue:
-    """The finding, at the element of the file that it is about, or at the one that includes it."""
-    where: Dict[str, Any] = {"file": path}
-    element = _element_of(fault.subject, models, root)
-    if element is not None:
-        where["line"] = element.sourceline or 0
-        where["xpath"] = element.getroottree().getpath(element)
-    return Issue(fault.severity, fault.code, fault.message, hint=fault.hint, **where)
-
-
-def _element_of(subject: Any, models: Sequence[Model], root: Any) -> Optional[Any]:
-    for model in models:
-        for link in flattened(model).links:
-            if subject is link.inertial or any(subject is one for one in link.collisions):
-                return _named(root, model, link, getattr(subject, "name", ""))
-    return None
-
-
-def _named(root: Any, model: Model, link: Link, collision: str) -> Optional[Any]:
-    """The innermost element that can be told by its name, collision, link or model."""
-    holder = root if root.tag == "robot" else None
-    for element in root.iter("model", "include"):
-        name = element.get("name") if element.tag == "model" else element.findtext("name")
-        uri = (element.findtext("uri") or "").strip()
-        if name == model.name or (name is None and uri and uri == model.uri):
-            holder = element
-            break
-    if holder is None:
-        return None
-    plain = link.name.rpartition("::")[2]
-    for inner in holder.iter("link"):
-        if inner.get("name") == plain:
-            return next((one for one in inner.iter("collision")
-                         if collision and one.get("name") == collision), inner)
-    return holder
 
 
 def counts(loaded: Optional[Loaded]) -> Dict[str, Any]:

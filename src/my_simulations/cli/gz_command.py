@@ -9,8 +9,9 @@ import argparse
 import sys
 from typing import Callable, Dict, List, NoReturn, Optional, Sequence
 
+from ..description.light import Light
 from ..description.model import Model
-from ..description.world import Light, World
+from ..description.world import World
 from ..errors import CommandError, InputError
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.resolver import Resolver

@@ -21,6 +21,7 @@ from ..resources.package_files import PACKAGE
 from ..ros.arguments import number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle import master_api
+from ..ros.own_server import spawns_objects
 
 OK, FAILED, USAGE = 0, 1, 2
 TIMEOUT = 30.0
@@ -164,8 +165,12 @@ class SimulatorClient:
         parameters.wait(lambda: parameters.service_is_there(probe), timeout,
                         f"the simulator (service {probe})",
                         "is the node running? roslaunch my_simulations my_world.launch starts it")
-        self.replaces = parameters.get(f"{name}/my_simulations/version") is not None
+        self.replaces = spawns_objects(parameters.get, name)
         """Whether a spawn request may replace a model in one step."""
+        if self.replaces:
+            offered = f"{name}/spawn_object"
+            parameters.wait(lambda: parameters.service_is_there(offered), timeout,
+                            f"the service {offered}", "is the simulator still starting?")
 
     def model_names(self) -> List[str]:
         """The models of the world."""
@@ -189,6 +194,17 @@ class SimulatorClient:
         return self._checked("spawn_sdf_model" if sdf else "spawn_urdf_model", "SpawnModel",
                              model_name=name, model_xml=xml,
                              initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))))
+
+    def spawn_object(self, name: str, xml: str, position: Vec3, rpy: Vec3, *, replace: bool,
+                     file: str, launch_pid: int) -> str:
+        """Puts a model into the world of our own simulator; see `SpawnObject.srv`.
+
+        Raises:
+            ToolError: it was refused or did not answer.
+        """
+        return self._checked("spawn_object", "SpawnObject", model_name=name, model_xml=xml,
+                             initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))),
+                             replace=replace, file=file, launch_pid=launch_pid)
 
     def delete(self, name: str) -> str:
         """Takes a model out of the world; the simulator's words.
@@ -266,10 +282,10 @@ def _service_class(kind: str) -> Any:
                         "devel/setup.bash first") from fault
     if kind == "Empty":
         return Empty
-    if kind == "StepWorld":
-        from my_simulations_msgs.srv import StepWorld
+    if kind in ("SpawnObject", "StepWorld"):
+        from my_simulations_msgs import srv as ours
 
-        return StepWorld
+        return getattr(ours, kind)
     return getattr(srv, kind)
 
 

@@ -19,8 +19,6 @@ from ..ros.lifecycle.launch_info import Launch
 OK, FAILED, USAGE = 0, 1, 2
 WAIT_SECONDS = 120.0
 MASTER_SECONDS = 10.0
-OURS = "my_simulations/version"
-"""Parameter below the node's name by which our server is told from Gazebo's."""
 
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
@@ -245,29 +243,32 @@ def _call_spawn(options: argparse.Namespace, text: str, launch: Launch) -> None:
     from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 
     from ..geometry import quat_from_rpy
-    from ..objects.object_document import FILE, LAUNCH, marked
+    from ..objects.object_document import root_tag
     from ..ros import service_client
+    from ..ros.own_server import spawns_objects
 
-    kind = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
+    name = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
     service_client.service(
-        service_client.api_name(options.gazebo_namespace, kind), SpawnModel, options.timeout
+        service_client.api_name(options.gazebo_namespace, name), SpawnModel, options.timeout
     )
-
     if options.package_to_model:
         text = _package_to_model(text)
-    # What our own server is told besides; Gazebo would only wonder at it.
-    if rospy.get_param(service_client.api_name(options.gazebo_namespace, OURS), None) is not None:
-        text = marked(text, {FILE: _origin(options), LAUNCH: str(launch.pid or "")})
+    kind, request = SpawnModel, SpawnModelRequest()
+    if (not options.urdf or root_tag(text) in ("robot", "")) and spawns_objects(
+            lambda parameter: rospy.get_param(parameter, None), options.gazebo_namespace):
+        from my_simulations_msgs.srv import SpawnObject, SpawnObjectRequest
+
+        name, kind = "spawn_object", SpawnObject
+        request = SpawnObjectRequest(file=_origin(options), launch_pid=launch.pid)
     namespace = options.robot_namespace
-    request = SpawnModelRequest(
-        model_name=options.model, model_xml=text,
-        robot_namespace=rospy.get_namespace() if namespace is None else namespace,
-        reference_frame=options.reference_frame)
+    request.model_name, request.model_xml = options.model, text
+    request.robot_namespace = rospy.get_namespace() if namespace is None else namespace
+    request.reference_frame = options.reference_frame
     position, orientation = request.initial_pose.position, request.initial_pose.orientation
     position.x, position.y, position.z = options.x, options.y, options.z
     (orientation.x, orientation.y, orientation.z,
      orientation.w) = quat_from_rpy(options.R, options.P, options.Y)
-    print(f"spawn_model: {_call(options, kind, SpawnModel, request)}", flush=True)
+    print(f"spawn_model: {_call(options, name, kind, request)}", flush=True)
 
 
 def _set_joints(options: argparse.Namespace) -> None:

@@ -6,7 +6,6 @@ import contextlib
 from typing import List, Optional, Sequence, Set
 
 from ..errors import InputError
-from ..objects.object_document import FILE, LAUNCH, REPLACE, marked
 from ..objects.object_list import PlacedObject
 from ..objects.selection import select
 from ..ros.arguments import Parser
@@ -99,13 +98,13 @@ def _spawn_each(objects: List[PlacedObject], simulator: client.SimulatorClient, 
 def _spawn_one(placed: PlacedObject, document: Document, simulator: client.SimulatorClient,
                there: Set[str], launch: Launch) -> str:
     replaced = placed.name in there
-    xml = document.xml
     if simulator.replaces:
-        xml = marked(xml, {REPLACE: "true" if replaced else "", FILE: document.origin,
-                           LAUNCH: str(launch.pid or "")})
-    elif replaced:
-        simulator.delete(placed.name)
-    simulator.spawn(placed.name, xml, document.sdf, placed.position, placed.rpy)
+        simulator.spawn_object(placed.name, document.xml, placed.position, placed.rpy,
+                               replace=replaced, file=document.origin, launch_pid=launch.pid)
+    else:
+        if replaced:
+            simulator.delete(placed.name)
+        simulator.spawn(placed.name, document.xml, document.sdf, placed.position, placed.rpy)
     there.add(placed.name)
     x, y, z = placed.position
     also = f" (not {document.other})" if document.other else ""

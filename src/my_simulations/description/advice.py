@@ -9,10 +9,11 @@ import math
 from dataclasses import dataclass, replace
 from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
+from ..errors import Severity
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
 from .model import WORLD, Inertial, Link, Model
 from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
-from .validate import Fault, Severity
+from .validate import Fault
 
 THINNEST_M = 1e-4
 DEEPEST_M = 0.005

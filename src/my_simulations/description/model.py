@@ -16,9 +16,15 @@ WORLD = "world"
 
 @dataclass
 class Inertial:
-    """Mass in kg; `pose`: centre of mass and inertia axes in the link frame; kg m^2 about it.
+    """Mass and inertia of a link. Source: SDF spec 1.7, inertial.
 
     The defaults are SDF's: a dynamic link without `<inertial>` has mass 1 and unit inertia.
+
+    Attributes:
+        mass: kg.
+        pose: pose of the inertial frame in the link frame; its origin is the centre of mass.
+        ixx, ixy, ixz, iyy, iyz, izz: inertia tensor about the centre of mass, in the axes of the
+            inertial frame, kg m^2.
     """
 
     mass: float = 1.0
@@ -33,7 +39,22 @@ class Inertial:
 
 @dataclass
 class Link:
-    """A rigid body; `pose` in the model frame."""
+    """A rigid body. Source: SDF spec 1.7, link.
+
+    Attributes:
+        name: unique among the links, joints and nested models of its model.
+        pose: pose of the link frame in the model frame.
+        inertial: mass and inertia.
+        collisions: shapes that collide.
+        visuals: shapes that are drawn.
+        gravity: whether gravity acts on the link.
+        kinematic: whether the link ignores forces and contacts and moves only on command.
+        self_collide: whether the link collides with other links of its model; None for the
+            model's own value.
+        linear_decay: share of the linear velocity that is removed in every step, 0 to 1.
+        angular_decay: share of the angular velocity that is removed in every step, 0 to 1.
+        extra: XML of child elements that no field holds.
+    """
 
     name: str
     pose: Pose = IDENTITY
@@ -50,12 +71,23 @@ class Link:
 
 @dataclass
 class JointAxis:
-    """One degree of freedom; `xyz` a unit vector in the joint frame.
+    """One degree of freedom of a joint. Source: SDF spec 1.7, joint/axis.
 
-    Limits in rad or m; `effort` N m or N and `velocity` rad/s or m/s, -1 for unlimited;
-    `damping`, `friction`, `spring_stiffness` per rad or m. Friction is a brake that drives the rate
-    to `motor_rate`: with another rate than 0 it is ODE's joint motor (`vel` and `fmax`), which no
-    file can say.
+    Units are those of a revolute axis first, of a prismatic one second.
+
+    Attributes:
+        xyz: direction, a unit vector in the joint frame.
+        lower: lower limit of the position, rad or m; -1e16 for none.
+        upper: upper limit of the position, rad or m; 1e16 for none.
+        effort: greatest effort applied by clients, N m or N; -1 for no limit.
+        velocity: greatest rate, rad/s or m/s; -1 for no limit.
+        damping: viscous damping, N m s/rad or N s/m.
+        friction: dry friction, N m or N.
+        spring_reference: position at which the spring is relaxed, rad or m.
+        spring_stiffness: N m/rad or N/m.
+        mimic: makes the axis follow another joint; None for a free axis.
+        motor_rate: rate to which the friction drives the axis, rad/s or m/s. With a value other
+            than 0 it is ODE's joint motor (`vel` and `fmax`), which no file can describe.
     """
 
     xyz: Vec3 = (0.0, 0.0, 1.0)
@@ -73,7 +105,13 @@ class JointAxis:
 
 @dataclass
 class Mimic:
-    """An axis that follows another joint's: q = multiplier q_joint + offset (URDF, SDF 1.11)."""
+    """An axis that follows another joint: q = multiplier q_joint + offset (URDF, SDF 1.11).
+
+    Attributes:
+        joint: name of the joint that is followed.
+        multiplier: ratio of the positions, in the units of the two axes.
+        offset: position of the axis where the followed joint is at 0, rad or m.
+    """
 
     joint: str
     multiplier: float = 1.0
@@ -82,12 +120,22 @@ class Mimic:
 
 @dataclass
 class Joint:
-    """A connection of two links of the model (`parent` may be `world`).
+    """A joint between two links. Source: SDF spec 1.7, joint.
 
-    `type` is SDF's word: revolute, prismatic, fixed, … `pose` is in the child link's frame.
-    `axis` is None for a fixed joint. Position 0 is the configuration of the file.
-    `thread_pitch` rad/m of a screw, positive left-handed as in Gazebo Classic; `gearbox_ratio`:
-    theta2 = -ratio theta1, both about the link `gearbox_reference`.
+    Its position is 0 in the configuration of the description.
+
+    Attributes:
+        name: unique among the joints of its model.
+        type: SDF's name of the type: `revolute`, `prismatic`, `fixed`, `universal`, ...
+        parent: name of the parent link, or `world`.
+        child: name of the child link.
+        pose: pose of the joint frame in the frame of the child link.
+        axis: the first axis; None for a joint without one, such as a fixed joint.
+        axis2: the second axis of a universal, revolute2 or gearbox joint; None for others.
+        thread_pitch: of a screw joint, rad/m, positive left-handed as in Gazebo Classic.
+        gearbox_ratio: of a gearbox joint: theta2 = -ratio theta1, no unit.
+        gearbox_reference: name of the link about which a gearbox measures both angles.
+        extra: XML of child elements that no field holds.
     """
 
     name: str
@@ -105,7 +153,13 @@ class Joint:
 
 @dataclass
 class PluginSpec:
-    """A `<plugin>` as written: `xml` is the whole element."""
+    """A `<plugin>`, which is kept and not loaded.
+
+    Attributes:
+        name: name of the plugin.
+        filename: file name of its library.
+        xml: the whole element as written.
+    """
 
     name: str
     filename: str
@@ -114,12 +168,25 @@ class PluginSpec:
 
 @dataclass
 class Model:
-    """A model; `pose` in the world (or in the parent model, when nested).
+    """A model. Source: SDF spec 1.7, model.
 
-    `canonical_link` is "" for the first link. `models` are nested ones; `flattened` in
-    `description.flatten` gives the same model with the nested links under scoped names.
-    `extra` holds the XML of children that are kept but not simulated. `guide` is, in one that was
-    flattened, the model as it was.
+    `description.flatten` makes it a model without nested ones, with scoped link names.
+
+    Attributes:
+        name: unique among the models and lights of the world, or in the outer model.
+        pose: pose of the model frame in the world frame, or in that of the outer model.
+        static: whether the model never moves.
+        self_collide: whether links of the model collide with each other.
+        allow_auto_disable: whether the physics engine may put the model to sleep at rest.
+        enable_wind: whether wind would act on the model; kept, no force comes of it.
+        canonical_link: name of the link that the model frame moves with, "" for the first link.
+        links: links, in the order of the file.
+        joints: joints, in the order of the file.
+        models: nested models.
+        plugins: plugins.
+        extra: XML of child elements that no field holds.
+        uri: URI of the `<include>` that brings the model, "" for none.
+        guide: in a flattened model, the model before flattening; else None.
     """
 
     name: str
@@ -127,6 +194,7 @@ class Model:
     static: bool = False
     self_collide: bool = False
     allow_auto_disable: bool = True
+    enable_wind: bool = False
     canonical_link: str = ""
     links: List[Link] = field(default_factory=list)
     joints: List[Joint] = field(default_factory=list)

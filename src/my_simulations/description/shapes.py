@@ -11,21 +11,34 @@ Color = Tuple[float, float, float, float]
 
 @dataclass
 class Box:
-    """`size`: full edge lengths in metres, centred on the origin."""
+    """A box centred on the origin.
+
+    Attributes:
+        size: full edge lengths along x, y, z, m.
+    """
 
     size: Vec3 = (1.0, 1.0, 1.0)
 
 
 @dataclass
 class Sphere:
-    """`radius` in metres."""
+    """A sphere centred on the origin.
+
+    Attributes:
+        radius: m.
+    """
 
     radius: float = 1.0
 
 
 @dataclass
 class Cylinder:
-    """Axis z, centred; metres."""
+    """A cylinder along z, centred on the origin.
+
+    Attributes:
+        radius: m.
+        length: full length, m.
+    """
 
     radius: float = 1.0
     length: float = 1.0
@@ -33,7 +46,12 @@ class Cylinder:
 
 @dataclass
 class Plane:
-    """Collides as a half-space whatever its size; `size` is that of the visual."""
+    """A plane through the origin; as a collision it is an infinite half-space.
+
+    Attributes:
+        normal: unit vector out of the solid side.
+        size: edge lengths of what is drawn, m.
+    """
 
     normal: Vec3 = (0.0, 0.0, 1.0)
     size: Tuple[float, float] = (1.0, 1.0)
@@ -46,7 +64,7 @@ class Mesh:
     Attributes:
         uri: as written in the file.
         path: absolute path it resolved to; "" where it was not found.
-        scale: per axis, applied in the mesh's own frame.
+        scale: scale along x, y, z, applied in the mesh's own frame, no unit.
         submesh: name of the part to use, "" for all.
         center: shift the part so that its bounding box is centred on the origin.
     """
@@ -60,7 +78,12 @@ class Mesh:
 
 @dataclass
 class Capsule:
-    """A cylinder along z with half-spheres on both ends; `length` without them (SDF 1.8)."""
+    """A cylinder along z with half-spheres on both ends, centred on the origin (SDF 1.8).
+
+    Attributes:
+        radius: m.
+        length: length of the cylinder without the half-spheres, m.
+    """
 
     radius: float = 0.5
     length: float = 1.0
@@ -68,14 +91,23 @@ class Capsule:
 
 @dataclass
 class Ellipsoid:
-    """`radii` along x, y, z (SDF 1.8)."""
+    """An ellipsoid centred on the origin (SDF 1.8).
+
+    Attributes:
+        radii: half axes along x, y, z, m.
+    """
 
     radii: Vec3 = (1.0, 1.0, 1.0)
 
 
 @dataclass
 class Cone:
-    """Axis z, apex up, centred between base and apex (SDF 1.11)."""
+    """A cone along z, apex up, centred between base and apex (SDF 1.11).
+
+    Attributes:
+        radius: radius of the base, m.
+        length: height, m.
+    """
 
     radius: float = 0.5
     length: float = 1.0
@@ -83,10 +115,15 @@ class Cone:
 
 @dataclass
 class Heightmap:
-    """A terrain from a grey image.
+    """A terrain from a grey image. Source: SDF spec 1.7, geometry/heightmap.
 
-    `size`: extent along x and y, and the height of white above black; `position`: of the centre in
-    the link frame; `sampling`: subdivisions of a pixel. `extra` keeps textures and blends.
+    Attributes:
+        uri: URI of the image, as written in the file.
+        path: absolute path of the image; "" where it was not found.
+        size: extent along x and y, and the height of white above black, m.
+        position: position of the centre in the frame of the collision or visual, m.
+        sampling: subdivisions of a pixel.
+        extra: XML of child elements that no field holds, such as textures.
     """
 
     uri: str = ""
@@ -99,7 +136,12 @@ class Heightmap:
 
 @dataclass
 class Polyline:
-    """Closed polygons in the x-y plane, the first outer and the others holes, extruded along z."""
+    """Closed polygons in the x-y plane, extruded along z from 0. Source: SDF spec 1.7, polyline.
+
+    Attributes:
+        loops: corners of each polygon, m; the first is the outline, the others are holes.
+        height: height of the solid, m.
+    """
 
     loops: List[List[Tuple[float, float]]] = field(default_factory=list)
     height: float = 1.0
@@ -107,9 +149,15 @@ class Polyline:
 
 @dataclass
 class ImageMap:
-    """A map image: every pixel darker than `threshold` (0..255) stands as a box `height` high.
+    """A map image whose dark pixels become boxes. Source: SDF spec 1.7, geometry/image.
 
-    `scale` is metres a pixel; `granularity` pixels a box.
+    Attributes:
+        uri: URI of the image, as written in the file.
+        path: absolute path of the image; "" where it was not found.
+        scale: edge length of a pixel, m.
+        threshold: grey value, 0..255, below which a pixel becomes a box.
+        height: height of the boxes, m.
+        granularity: edge length of a box, pixels.
     """
 
     uri: str = ""
@@ -151,12 +199,24 @@ class MeshData:
 
 @dataclass
 class Surface:
-    """Contact properties; defaults are SDF's (collision/surface).
+    """Contact properties of a collision. Source: SDF spec 1.7, collision/surface.
 
-    `mu`, `mu2` Coulomb coefficients; `restitution` 0..1, used for impacts faster than
-    `bounce_threshold` m/s; `kp` N/m, `kd` N s/m, `max_vel` m/s, `min_depth` m. `fdir1`, in the
-    collision frame, is the direction in which `mu` and `slip1` hold. `torsion` is the coefficient
-    of torsional friction on a patch of `patch_radius` m, or one of a sphere of `surface_radius` m.
+    Attributes:
+        mu: Coulomb friction coefficient, no unit; with `fdir1` in the first direction.
+        mu2: coefficient in the second direction; used with `fdir1`.
+        fdir1: first friction direction, in the collision frame; zero for none.
+        slip1, slip2: force-dependent slip in the two directions, m/(N s); kept.
+        restitution: coefficient of restitution, 0 to 1.
+        bounce_threshold: impact velocity below which nothing bounces, m/s.
+        kp: contact stiffness, N/m.
+        kd: contact damping, N s/m.
+        max_vel: greatest velocity that corrects penetration, m/s.
+        min_depth: penetration below which it is not corrected, m; kept.
+        collide_without_contact: whether contacts are found without forces.
+        collide_bitmask: collisions collide if their bit masks have a common bit.
+        torsion: coefficient of torsional friction, no unit.
+        patch_radius: radius of the contact patch for torsional friction, m.
+        surface_radius: radius of a sphere instead of a patch, m; kept.
     """
 
     mu: float = 1.0
@@ -180,7 +240,14 @@ class Surface:
 
 @dataclass
 class Material:
-    """Appearance, kept for the editor. Colours are r, g, b, a in 0..1; None where unset."""
+    """Appearance of a visual. Source: SDF spec 1.7, material.
+
+    Attributes:
+        ambient, diffuse, specular, emissive: colours, r, g, b, a in 0..1; None where not given.
+        script_uris: URIs of Ogre material scripts.
+        script_name: name of a material in the scripts, "" for none.
+        texture: URI of a texture image as written in a URDF file, "" for none.
+    """
 
     ambient: Optional[Color] = None
     diffuse: Optional[Color] = None
@@ -193,7 +260,17 @@ class Material:
 
 @dataclass
 class Collision:
-    """One collision of a link; `pose` in the link frame."""
+    """A shape of a link that collides. Source: SDF spec 1.7, collision.
+
+    Attributes:
+        name: unique among the collisions of its link.
+        geometry: the shape.
+        pose: pose of the shape in the link frame.
+        surface: contact properties.
+        max_contacts: greatest number of contacts with another collision; kept.
+        laser_retro: intensity returned to a laser; kept.
+        extra: XML of child elements that no field holds.
+    """
 
     name: str
     geometry: Geometry
@@ -206,7 +283,20 @@ class Collision:
 
 @dataclass
 class Visual:
-    """One visual of a link; `pose` in the link frame; `transparency` 0 opaque to 1 invisible."""
+    """A shape of a link that is drawn. Source: SDF spec 1.7, visual.
+
+    Attributes:
+        name: unique among the visuals of its link.
+        geometry: the shape.
+        pose: pose of the shape in the link frame.
+        material: appearance; None for the default.
+        cast_shadows: whether the shape casts shadows.
+        transparency: 0 opaque to 1 invisible.
+        laser_retro: intensity returned to a laser; kept.
+        layer: layer that the editor can hide (`meta/layer`; in buildings the storey); None for
+            none.
+        extra: XML of child elements that no field holds.
+    """
 
     name: str
     geometry: Geometry
@@ -215,6 +305,7 @@ class Visual:
     cast_shadows: bool = True
     transparency: float = 0.0
     laser_retro: float = 0.0
+    layer: Optional[int] = None
     extra: List[str] = field(default_factory=list)
 
 

@@ -120,7 +120,7 @@ def link_faults(link: Link, static: bool) -> Iterator[Fault]:
     """Faults of one link; mass and inertia count for links that can move only."""
     if link.name == WORLD:
         yield Fault("name-reserved",
-                    "a link is named 'world', which joints mean the world by", link)
+                    "a link is named 'world', which means the world in joints", link)
     if not pose_is_finite(link.pose):
         yield Fault("pose-not-finite", f"the pose of link {link.name!r} is not finite", link)
     if not (static or link.kinematic):

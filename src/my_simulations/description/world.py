@@ -1,42 +1,43 @@
-"""Worlds: models, lights, physics, and what is kept for the editor."""
+"""Worlds: models, lights, physics settings and surroundings."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional
 
-from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
+from ..geometry import Vec3
+from .actor import Actor
+from .light import Light
 from .model import Joint, Model, PluginSpec
-from .shapes import Color, Material
-
-
-@dataclass
-class Light:
-    """A light; `type` is point, directional or spot; defaults are SDF's."""
-
-    name: str
-    type: str = "point"
-    pose: Pose = IDENTITY
-    cast_shadows: bool = False
-    diffuse: Color = (1.0, 1.0, 1.0, 1.0)
-    specular: Color = (0.1, 0.1, 0.1, 1.0)
-    range: float = 10.0
-    constant: float = 1.0
-    linear: float = 1.0
-    quadratic: float = 0.0
-    direction: Vec3 = (0.0, 0.0, -1.0)
-    inner_angle: float = 0.0
-    outer_angle: float = 0.0
-    falloff: float = 0.0
-    extra: List[str] = field(default_factory=list)
+from .saved_state import InitialState, SavedState
+from .surroundings import (
+    Atmosphere,
+    Gui,
+    GuiCamera,
+    Road,
+    Scene,
+    SphericalCoordinates,
+    Wind,
+)
 
 
 @dataclass
 class OdePhysics:
-    """Settings of Gazebo's ODE engine: stored and read back; two of them also drive ours.
+    """Settings of Gazebo's ODE engine: kept and reported; two of them also set PyBullet's solver.
+
+    Source: SDF spec 1.7, physics/ode.
 
     Attributes:
-        iters: the most iterations of a step.
-        friction_model: "pyramid_model" or "cone_model" (SDF, ode/solver); "" for the default.
+        auto_disable_bodies: whether bodies at rest are put to sleep.
+        precon_iters: number of preconditioning iterations.
+        iters: greatest number of solver iterations per step; sets PyBullet's solver.
+        sor: successive over-relaxation factor, no unit.
+        rms_error_tol: residual at which the solver stops, no unit.
+        cfm: constraint force mixing, ODE's units.
+        erp: error reduction parameter, 0 to 1.
+        contact_surface_layer: depth of penetration without contact forces, m.
+        contact_max_correcting_vel: greatest velocity that corrects penetration, m/s.
+        max_contacts: greatest number of contacts between two collisions.
+        friction_model: "pyramid_model" or "cone_model"; "" for the default. Sets PyBullet's solver.
     """
 
     auto_disable_bodies: bool = False
@@ -54,7 +55,16 @@ class OdePhysics:
 
 @dataclass
 class Physics:
-    """`max_step_size` s; `real_time_update_rate` steps per second of wall time, 0 = unthrottled."""
+    """A physics preset. Source: SDF spec 1.7, physics.
+
+    Attributes:
+        name: name of the preset.
+        type: engine that Gazebo would use: `ode`, `bullet`, `simbody` or `dart`.
+        max_step_size: sim time per step, s.
+        real_time_factor: kept and reported; `real_time_update_rate` sets the speed, as in Gazebo.
+        real_time_update_rate: steps per second of wall time, Hz; 0 for as many as possible.
+        ode: settings of the ODE engine.
+    """
 
     name: str = "default_physics"
     type: str = "ode"
@@ -65,211 +75,33 @@ class Physics:
 
 
 @dataclass
-class Fog:
-    """`type` is none, constant, linear or quadratic; `start`, `end` in metres."""
-
-    type: str = "none"
-    color: Color = (1.0, 1.0, 1.0, 1.0)
-    start: float = 1.0
-    end: float = 100.0
-    density: float = 1.0
-
-
-@dataclass
-class Sky:
-    """Hours of the day; clouds drift at `cloud_speed` m/s towards `cloud_direction` rad."""
-
-    time: float = 10.0
-    sunrise: float = 6.0
-    sunset: float = 20.0
-    cloud_speed: float = 0.6
-    cloud_direction: float = 0.0
-    cloud_humidity: float = 0.5
-    cloud_mean_size: float = 0.5
-    cloud_ambient: Color = (0.8, 0.8, 0.8, 1.0)
-
-
-@dataclass
-class Scene:
-    """What the editor's view looks like; no sky means a plain background."""
-
-    ambient: Color = (0.4, 0.4, 0.4, 1.0)
-    background: Color = (0.7, 0.7, 0.7, 1.0)
-    shadows: bool = True
-    grid: bool = True
-    origin_visual: bool = True
-    sky: Optional[Sky] = None
-    fog: Optional[Fog] = None
-
-
-@dataclass
-class GuiCamera:
-    """The view a world opens with; `track` names the model it follows, "" for none."""
-
-    name: str = "user_camera"
-    pose: Pose = IDENTITY
-    view_controller: str = "orbit"
-    projection_type: str = "perspective"
-    track: str = ""
-    track_min_dist: float = 0.0
-    track_max_dist: float = 0.0
-    track_static: bool = False
-    track_use_model_frame: bool = True
-    track_xyz: Vec3 = (-5.0, 0.0, 3.0)
-    track_inherit_yaw: bool = False
-
-
-@dataclass
-class Wind:
-    """`linear_velocity` m/s in world axes."""
-
-    linear_velocity: Vec3 = (0.0, 0.0, 0.0)
-
-
-@dataclass
-class Atmosphere:
-    """K, Pa and K/m at sea level."""
-
-    type: str = "adiabatic"
-    temperature: float = 288.15
-    pressure: float = 101325.0
-    temperature_gradient: float = -0.0065
-
-
-@dataclass
-class SphericalCoordinates:
-    """Where on the globe the world's origin lies; degrees and metres."""
-
-    surface_model: str = "EARTH_WGS84"
-    world_frame_orientation: str = "ENU"
-    latitude_deg: float = 0.0
-    longitude_deg: float = 0.0
-    elevation: float = 0.0
-    heading_deg: float = 0.0
-
-
-@dataclass
-class Road:
-    """A ribbon along `points`, `width` metres wide; seen, never touched."""
-
-    name: str
-    width: float = 1.0
-    points: List[Vec3] = field(default_factory=list)
-    material: Optional[Material] = None
-
-
-@dataclass
-class Animation:
-    """A named cycle of a skeleton."""
-
-    name: str
-    filename: str = ""
-    scale: float = 1.0
-    interpolate_x: bool = False
-
-
-@dataclass
-class Waypoint:
-    """`time` s since the trajectory began; `pose` in the world (Gazebo behaviour)."""
-
-    time: float = 0.0
-    pose: Pose = IDENTITY
-
-
-@dataclass
-class Trajectory:
-    """`type` names the animation played meanwhile; trajectories run in the order of `id`."""
-
-    id: int = 0
-    type: str = ""
-    tension: float = 0.0
-    waypoints: List[Waypoint] = field(default_factory=list)
-
-
-@dataclass
-class Actor:
-    """A walking figure; `skin` and the files of animations are URIs, `base_dir` anchors them."""
-
-    name: str
-    pose: Pose = IDENTITY
-    skin: str = ""
-    skin_scale: float = 1.0
-    animations: List[Animation] = field(default_factory=list)
-    loop: bool = True
-    delay_start: float = 0.0
-    auto_start: bool = True
-    trajectories: List[Trajectory] = field(default_factory=list)
-    plugins: List[PluginSpec] = field(default_factory=list)
-    base_dir: str = ""
-
-
-@dataclass
-class LinkState:
-    """Where a link was when the world was saved: pose and twist of the link frame in the world.
-
-    `name` is scoped within its model: `link`, `nested::link`.
-    """
-
-    name: str
-    pose: Pose = IDENTITY
-    twist: Twist = STILL
-
-
-@dataclass
-class ModelState:
-    """A model when the world was saved; `pose` in the world; `joints`: positions by axis."""
-
-    name: str
-    pose: Optional[Pose] = None
-    scale: Vec3 = (1.0, 1.0, 1.0)
-    links: List[LinkState] = field(default_factory=list)
-    joints: Dict[str, List[float]] = field(default_factory=dict)
-
-
-@dataclass
-class LightState:
-    """A light when the world was saved; `pose` in the world."""
-
-    name: str
-    pose: Pose = IDENTITY
-
-
-@dataclass
-class SavedState:
-    """A `<state>`: what had become of the world when it was saved; times in ns."""
-
-    world_name: str = ""
-    sim_time_ns: int = 0
-    real_time_ns: int = 0
-    wall_time_ns: int = 0
-    iterations: int = 0
-    models: List[ModelState] = field(default_factory=list)
-    lights: List[LightState] = field(default_factory=list)
-    inserted_models: List[Model] = field(default_factory=list)
-    inserted_lights: List[Light] = field(default_factory=list)
-    deletions: List[str] = field(default_factory=list)
-
-
-@dataclass
-class InitialState:
-    """What a model starts with besides its pose.
-
-    `twists` of link frames by scoped link name; `joints`: positions in rad or m by joint name.
-    """
-
-    twists: Dict[str, Twist] = field(default_factory=dict)
-    joints: Dict[str, float] = field(default_factory=dict)
-
-
-@dataclass
 class World:
-    """A world file, read.
+    """A world. Source: SDF spec 1.7, world.
 
-    `extra` holds the XML of children kept but not simulated, those with a field of their own from
-    `scene` to `roads` included: the fields show what that XML says. `joints` connect links of
-    different models, by scoped names. `initial_ns` is the sim time it starts at, and `initial`
-    what its models start with, by name; both come from a saved state (`formats.state`). `losses`
-    says what of the file could not be read and is therefore missing here.
+    Attributes:
+        name: name of the world.
+        gravity: m/s^2, world axes.
+        physics: the physics preset in use.
+        models: top-level models, in the order of the file.
+        lights: lights, in the order of the file.
+        plugins: world plugins; not loaded.
+        extra: XML of child elements that no field holds.
+        file: path of the file, or a name for text from elsewhere.
+        magnetic_field: T, world axes.
+        scene: how the world is drawn.
+        gui: `<gui>` besides its camera.
+        gui_camera: the camera with which the world opens; None for the default one.
+        wind: wind.
+        atmosphere: atmosphere.
+        spherical_coordinates: place of the origin on Earth; None if unknown.
+        actors: actors, in the order of the file.
+        roads: roads, in the order of the file.
+        joints: joints between models; parent and child are scoped link names, or `world`.
+        state: a saved state that is not applied yet; None otherwise.
+        initial_ns: sim time at the start, ns; from a saved state.
+        initial: initial states of models by name; from a saved state.
+        seed: seed of populations that are placed at random.
+        losses: errors of the file, one sentence each: what they name is missing here.
     """
 
     name: str = "default"
@@ -282,6 +114,7 @@ class World:
     file: str = ""
     magnetic_field: Vec3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
     scene: Scene = field(default_factory=Scene)
+    gui: Gui = field(default_factory=Gui)
     gui_camera: Optional[GuiCamera] = None
     wind: Wind = field(default_factory=Wind)
     atmosphere: Atmosphere = field(default_factory=Atmosphere)

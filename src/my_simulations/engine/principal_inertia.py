@@ -1,7 +1,7 @@
 """Inertia tensors as engines want them: a frame and a diagonal."""
 from __future__ import annotations
 
-from typing import Tuple
+from typing import Any, Tuple
 
 import numpy as np
 
@@ -30,7 +30,7 @@ def principal(inertial: Inertial) -> Tuple[Pose, Vec3]:
         float(moments[0]), float(moments[1]), float(moments[2]))
 
 
-def _quat_of(r: np.ndarray) -> Quat:
+def _quat_of(r: np.ndarray[Any, Any]) -> Quat:
     """The quaternion (x y z w) of a rotation matrix, by its largest component (Shepperd 1978)."""
     candidates = [
         r[0, 0] - r[1, 1] - r[2, 2], r[1, 1] - r[0, 0] - r[2, 2],

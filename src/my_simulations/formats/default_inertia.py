@@ -14,14 +14,14 @@ from typing import Any, List, Optional, Tuple
 from ..description.model import Inertial, Link
 from ..description.shapes import Box, Collision, Cylinder, Geometry, Sphere
 from ..description.validate import is_positive_definite, tensor_text
-from .urdf.fixed_joint_lumping import merged
+from .combined_inertia import combined_inertia
 from .xml.source import Source
 
 _LEAST = 1e-3
 """The least moment, of the largest one: a rod a hundred times as long as it is wide."""
 
 
-def usable(link: Link, source: Source, element: Any) -> Inertial:
+def usable_inertia(link: Link, source: Source, element: Any) -> Inertial:
     """The inertia of a link that can move, or one that can be simulated, with a warning."""
     inertial = link.inertial
     better = completed(inertial, link.collisions)
@@ -87,7 +87,7 @@ def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inert
     for collision, (own, (x, y, z)) in solids:
         mass = inertial.mass * own / volume
         part = Inertial(mass, ixx=mass * x, iyy=mass * y, izz=mass * z)
-        total = merged(total, part, collision.pose)
+        total = combined_inertia(total, part, collision.pose)
     assert total is not None
     total.pose = inertial.pose._replace(orientation=total.pose.orientation)
     return total

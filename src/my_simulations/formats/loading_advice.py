@@ -1,24 +1,28 @@
-"""What is said, besides faults, about models that are loaded: `description.advice`, and meshes."""
+"""Warnings about models that load, but look wrong: `description.advice`, and mesh shapes."""
 from __future__ import annotations
 
 from itertools import islice
-from typing import Iterator, List, Mapping, Sequence
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence
 
 from ..description.advice import advice, links_of, thin_mesh
-from ..description.model import Model
+from ..description.flatten import flattened
+from ..description.model import Link, Model
 from ..description.shapes import Mesh, MeshTable, mesh_key
 from ..description.validate import Fault
 from ..errors import Issue, warning
 
-MOST = 20
-"""Findings told of one world; a pile that starts in itself has one for each pair."""
+ADVICE_LIMIT = 20
+"""Findings logged for one world; a pile whose models overlap has one for each pair."""
 
 
 def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],
              only: str = "") -> Iterator[Fault]:
-    """Findings about models that stand in one world; `meshes` by model name, as loaded.
+    """Findings about the models of one world.
 
-    With `only`, those that have to do with the model of that name.
+    Args:
+        models: the models.
+        meshes: their loaded collision meshes by model name.
+        only: name of the model whose findings are wanted, "" for all models.
     """
     yield from advice(models, only)
     for model in models:
@@ -27,16 +31,64 @@ def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],
             yield from _thin_meshes(model, table)
 
 
-def advised(models: Sequence[Model], meshes: Mapping[str, MeshTable], file: str = "",
-            only: str = "") -> List[Issue]:
-    """The findings as warnings for the log, at most `MOST` and how to get the others."""
-    told = list(islice(findings(models, meshes, only), MOST + 1))
-    issues = [Issue(one.severity, one.code, one.message, file=file, hint=one.hint)
-              for one in told[:MOST]]
-    if len(told) > MOST:
-        issues.append(warning("advice-many", "there is more to say of this kind", file=file,
+def advice_issues(models: Sequence[Model], meshes: Mapping[str, MeshTable], file: str = "", *,
+                  only: str = "", root: Any = None,
+                  limit: Optional[int] = ADVICE_LIMIT) -> List[Issue]:
+    """The findings as warnings.
+
+    Args:
+        models: see `findings`.
+        meshes: see `findings`.
+        file: file of the models, for the issues.
+        only: see `findings`.
+        root: root element of the file, for line and XPath; None if unknown.
+        limit: greatest number of findings; one more warning says how to get the others. None for
+            all findings.
+    """
+    found = findings(models, meshes, only)
+    listed = list(found if limit is None else islice(found, limit + 1))
+    issues = [_issue(one, models, file, root) for one in listed[:limit]]
+    if len(listed) > len(issues):
+        issues.append(warning("advice-many", "there are more warnings of this kind", file=file,
                               hint=f"rosrun my_simulations check_model {file or 'FILE'}"))
     return issues
+
+
+def _issue(fault: Fault, models: Sequence[Model], file: str, root: Any) -> Issue:
+    """The finding, at the element that it is about, or at the one that includes it."""
+    where: Dict[str, Any] = {"file": file}
+    element = _element_of(fault.subject, models, root) if root is not None else None
+    if element is not None:
+        where["line"] = element.sourceline or 0
+        where["xpath"] = element.getroottree().getpath(element)
+    return Issue(fault.severity, fault.code, fault.message, hint=fault.hint, **where)
+
+
+def _element_of(subject: Any, models: Sequence[Model], root: Any) -> Any:
+    for model in models:
+        for link in flattened(model).links:
+            if subject is link.inertial or any(subject is one for one in link.collisions):
+                return _named(root, model, link, getattr(subject, "name", ""))
+    return None
+
+
+def _named(root: Any, model: Model, link: Link, collision: str) -> Any:
+    """The innermost element that the names of collision, link and model identify; or None."""
+    holder = root if root.tag == "robot" else None
+    for element in root.iter("model", "include"):
+        name = element.get("name") if element.tag == "model" else element.findtext("name")
+        uri = (element.findtext("uri") or "").strip()
+        if name == model.name or (name is None and uri and uri == model.uri):
+            holder = element
+            break
+    if holder is None:
+        return None
+    plain = link.name.rpartition("::")[2]
+    for inner in holder.iter("link"):
+        if inner.get("name") == plain:
+            return next((one for one in inner.iter("collision")
+                         if collision and one.get("name") == collision), inner)
+    return holder
 
 
 def _thin_meshes(model: Model, meshes: MeshTable) -> Iterator[Fault]:

@@ -2,21 +2,30 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Sequence, Tuple, Union
+from dataclasses import dataclass, replace
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
+from ..description.actor import Actor
+from ..description.light import Light
 from ..description.model import Model
-from ..description.world import Actor, Light, World
+from ..description.shapes import MeshTable
+from ..description.world import World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
+from .include_overrides import IncludeOverrides
+from .loading_advice import ADVICE_LIMIT, advice_issues
+from .mesh.loading import collision_meshes
 from .sdf.include import read_include
 from .sdf.light import LightPlacement, read_light
-from .sdf.model import IncludeOverrides, ParsedModel, read_model
+from .sdf.model import read_model
+from .sdf.parsed_model import ParsedModel
+from .sdf.state_applied import apply_state
 from .sdf.upgrade import upgrade
 from .sdf.world import read_world_element
 from .sdf.world_scene import read_actor
 from .xml.binding import closest
 from .xml.parsing import content, parse
-from .xml.source import Level, Log, Source
+from .xml.source import FaultLevel, IssueCollector, Source
 
 Text = Union[str, bytes]
 Entity = Union[Model, Light]
@@ -25,43 +34,90 @@ _UNNAMED = "unnamed"
 _SDF_ROOTS = ("sdf", "gazebo")  # `<gazebo version="1.x">` is SDF from before it had its name
 
 
-def read_world(path: str, resolver: Resolver, *, seed: int = 0,
-               profile: str = "") -> Tuple[World, List[Issue]]:
-    """The first world of a file, with every issue met on the way.
+@dataclass(frozen=True)
+class LoadedWorld:
+    """A world that is ready to be simulated.
 
-    A model that cannot be used is left out whole, with its errors among the issues.
+    Attributes:
+        world: the description; a saved state of the file is applied.
+        meshes: the collision meshes of its models, by model name. A collision whose mesh is not
+            there collides with nothing; it stays in the description, so that saving keeps it.
+        issues: all faults of the file and of the files that it names, and advice.
+    """
+
+    world: World
+    meshes: Dict[str, MeshTable]
+    issues: List[Issue]
+
+
+def read_world(path: str, resolver: Resolver, *, seed: int = 0, profile: str = "",
+               advice_limit: Optional[int] = ADVICE_LIMIT) -> LoadedWorld:
+    """Read the first world of a file, completely.
+
+    A model that cannot be used is skipped, with its errors among the issues and in
+    `World.losses`.
 
     Args:
         path: the file.
-        resolver: finds what it names.
-        seed: of what the world draws at random.
-        profile: name of the physics preset to use; "" for the world's own choice.
+        resolver: finds the files that it names.
+        seed: seed of populations that are placed at random.
+        profile: name of the physics preset to use; "" for the default of the world.
+        advice_limit: see `advice_issues`.
 
     Raises:
-        InputError: nothing usable: no such file, cut-off XML, no `<world>`.
+        InputError: nothing is usable: no such file, truncated XML, no `<world>`.
     """
-    return read_world_text(_content(path), resolver, path, seed=seed, profile=profile)
+    return read_world_text(_content(path), resolver, path, seed=seed, profile=profile,
+                           advice_limit=advice_limit)
 
 
 def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
-                    profile: str = "") -> Tuple[World, List[Issue]]:
-    """As `read_world`, from text; `file` names it and, where it is a path, anchors relative URIs.
+                    profile: str = "",
+                    advice_limit: Optional[int] = ADVICE_LIMIT) -> LoadedWorld:
+    """As `read_world`, from text; `file` names it and, if it is a path, anchors relative URIs.
 
     Raises:
-        InputError: nothing usable.
+        InputError: nothing is usable.
     """
     source, root = _open(text, resolver, file)
+    return _loaded_world(root, source, _world_in(root, source, seed, profile), advice_limit)
+
+
+def parse_world(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
+                profile: str = "") -> Tuple[World, List[Issue]]:
+    """The description in a document, without what `read_world` adds.
+
+    `World.state` is not applied and no mesh is loaded: for copies and for tools that look into
+    files. Arguments and errors are those of `read_world_text`.
+    """
+    source, root = _open(text, resolver, file)
+    return _world_in(root, source, seed, profile), source.log.issues
+
+
+def _world_in(root: Any, source: Source, seed: int, profile: str) -> World:
     if root.tag not in _SDF_ROOTS:
         raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root,
-                        _meant(root, ("sdf", "gazebo", "world")))
+                        _suggestion(root, ("sdf", "gazebo", "world")))
     element = root.find("world")
     if element is None:
-        raise _unusable(source, "world-missing", "the file holds no <world>", root,
-                        _child_meant(root, ("world",)))
+        raise _unusable(source, "world-missing", "the file contains no <world>", root,
+                        _child_suggestion(root, ("world",)))
     world = read_world_element(element, source, seed, profile)
     if len(root.findall("world")) > 1:
-        source.warn("world-many", "the file holds several worlds; the first is used", root)
-    return world, source.log.issues
+        source.warn("world-many", "the file contains several worlds; the first is used", root)
+    return world
+
+
+def _loaded_world(root: Any, source: Source, parsed: World,
+                  advice_limit: Optional[int]) -> LoadedWorld:
+    issues = source.log.issues
+    world = replace(apply_state(parsed), losses=[str(issue) for issue in errors_of(issues)])
+    meshes: Dict[str, MeshTable] = {}
+    for model in world.models:
+        meshes[model.name], faults = collision_meshes(model)
+        issues += faults
+    issues += advice_issues(world.models, meshes, source.file, root=root, limit=advice_limit)
+    return LoadedWorld(world, meshes, issues)
 
 
 def read_file(path: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
@@ -87,38 +143,88 @@ def read_entity(text: Text, resolver: Resolver,
     Raises:
         InputError: nothing usable.
     """
-    source, root = _open(text, resolver, file)
-    if root.tag == "robot":
-        from .urdf.robot import read_robot
+    return parse_document(text, resolver, file).read_entity()
 
+
+class ParsedDocument:
+    """A parsed document whose root element can be looked at before its entity is read.
+
+    Attributes:
+        root_tag: tag of the root element: `robot`, `sdf`, ...
+    """
+
+    def __init__(self, source: Source, root: Any) -> None:
+        self._source = source
+        self._root = root
+        self.root_tag: str = root.tag
+
+    def take_attributes(self, names: Iterable[str]) -> Dict[str, str]:
+        """Remove attributes from the root element; those that were there, by name."""
+        return {name: self._root.attrib.pop(name) for name in names if name in self._root.attrib}
+
+    def set_file(self, file: str) -> None:
+        """Give the document another name in issues, those that were found already included."""
+        log = self._source.log
+        log.issues = [replace(issue, file=file) if issue.file == self._source.file else issue
+                      for issue in log.issues]
+        self._source.file = file
+
+    def read_entity(self) -> Tuple[Entity, List[Issue]]:
+        """The first model or light; see the function `read_entity`. To be called once."""
+        return _entity_in(self._root, self._source), self._source.log.issues
+
+
+def parse_document(text: Text, resolver: Resolver, file: str = "<model_xml>") -> ParsedDocument:
+    """Parse a document; arguments and errors are those of `read_entity`."""
+    source, root = _open(text, resolver, file)
+    return ParsedDocument(source, root)
+
+
+def _entity_in(root: Any, source: Source) -> Entity:
+    if root.tag == "robot":
         _refuse_xacro(root, source)
-        entity: Entity = read_robot(root, source, _name_if_missing(root, source))
-    elif root.tag in _SDF_ROOTS:
-        entity = _first_entity(root, source)
-    else:
-        hint = ("put it into <sdf version='1.7'>…</sdf>"
-                if root.tag in ("model", "light", "world") else
-                _meant(root, ("sdf", "robot", "world", "model", "light")))
-        raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
-                        root, hint)
-    return entity, source.log.issues
+        return _read_robot(root, source, _name_if_missing(root, source))
+    if root.tag in _SDF_ROOTS:
+        return _first_entity(root, source)
+    hint = ("put it into <sdf version='1.7'>…</sdf>"
+            if root.tag in ("model", "light", "world") else
+            _suggestion(root, ("sdf", "robot", "world", "model", "light")))
+    raise _unusable(source, "root-unknown", f"expected <sdf> or <robot>, found <{root.tag}>",
+                    root, hint)
 
 
 def read_any(text: Text, resolver: Resolver,
              file: str) -> Tuple[Union[World, Model, Light, Actor], List[Issue]]:
-    """Whatever a document holds: its first world, else its first model or light, else an actor.
+    """The first world of a document, else its first model or light, else an actor.
+
+    The issues are complete, as those of `read_world`, and all advice is among them.
 
     Raises:
-        InputError: nothing usable.
+        InputError: nothing is usable.
     """
     source, root = _open(text, resolver, file)
+    issues = source.log.issues
     if root.find("world") is not None:
-        return read_world_text(text, resolver, file)
+        loaded = _loaded_world(root, source, _world_in(root, source, 0, ""), None)
+        return loaded.world, loaded.issues
     actor = root.find("actor")
-    if actor is None or any(root.find(tag) is not None for tag in ("model", "light", "include")):
-        return read_entity(text, resolver, file)
-    source.tell_unused(actor)
-    return read_actor(actor, source), source.log.issues
+    if actor is not None and not any(root.find(tag) is not None
+                                     for tag in ("model", "light", "include")):
+        source.tell_unused(actor)
+        return read_actor(actor, source), issues
+    entity = _entity_in(root, source)
+    if isinstance(entity, Model):
+        meshes, faults = collision_meshes(entity)
+        issues += faults
+        issues += advice_issues([entity], {entity.name: meshes}, file, root=root, limit=None)
+    return entity, issues
+
+
+def _read_robot(root: Any, source: Source, overrides: Optional[IncludeOverrides]) -> Model:
+    """`urdf.robot.read_robot`, imported when the first URDF file is read."""
+    from .urdf.robot import read_robot
+
+    return read_robot(root, source, overrides)
 
 
 def _first_entity(root: Any, source: Source) -> Entity:
@@ -131,26 +237,26 @@ def _first_entity(root: Any, source: Source) -> Entity:
             elif element.tag == "light":
                 found = read_light(element, source)
             elif element.tag == "include":
-                found = read_include(element, source)
+                found = read_include(element, source, read_model)
                 if found is None:
                     raise InputError(source.log.issues)
             if isinstance(found, ParsedModel):
                 return found.model
             if isinstance(found, LightPlacement):
                 return found.light
-    raise _unusable(source, "model-missing", "the document holds no world, no model and no light",
-                    root, _child_meant(root, ("world", "model", "light", "include", "actor")))
+    raise _unusable(source, "model-missing", "the document contains no world, model or light",
+                    root, _child_suggestion(root, ("world", "model", "light", "include", "actor")))
 
 
-def _meant(element: Any, known: Sequence[str]) -> str:
+def _suggestion(element: Any, known: Sequence[str]) -> str:
     """A hint about an element whose name is unknown: the one it may be a misspelling of."""
     return closest(element.tag.lower() if isinstance(element.tag, str) else "", list(known))
 
 
-def _child_meant(root: Any, known: Sequence[str]) -> str:
+def _child_suggestion(root: Any, known: Sequence[str]) -> str:
     """The same for the children of the root, with the line of the first that looks like one."""
     for child in root:
-        hint = _meant(child, known)
+        hint = _suggestion(child, known)
         if hint:
             return f"line {child.sourceline} has <{child.tag}>; {hint}"
     return ""
@@ -160,14 +266,14 @@ def _name_if_missing(element: Any, source: Source) -> IncludeOverrides:
     """A spawn request brings a name of its own; a document without one will do for it."""
     if (element.get("name") or "").strip():
         return IncludeOverrides()
-    source.warn("name-missing", f"<{element.tag}> has no name; it is called {_UNNAMED!r}", element)
+    source.warn("name-missing", f"<{element.tag}> has no name; it is named {_UNNAMED!r}", element)
     return IncludeOverrides(name=_UNNAMED)
 
 
 def _refuse_xacro(root: Any, source: Source) -> None:
     for element in root.iter("{http://www.ros.org/wiki/xacro}*", "{http://wiki.ros.org/xacro}*",
                              "{http://ros.org/wiki/xacro}*"):
-        source.report(Level.FATAL, "xacro-unexpanded", "the text is xacro, not URDF", element,
+        source.report(FaultLevel.FATAL, "xacro-unexpanded", "the text is xacro, not URDF", element,
                       "expand it with the xacro command first")
         return
 
@@ -184,10 +290,10 @@ def _content(path: str) -> bytes:
 
 def _open(text: Text, resolver: Resolver, file: str) -> Tuple[Source, Any]:
     resolver.begin()
-    log = Log()
+    log = IssueCollector()
     base_dir = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""
     trail = (os.path.abspath(file),) if base_dir else ()
-    source = Source(file, base_dir, resolver, log, trail)
+    source = Source(file, base_dir, resolver, _read_robot, log, trail)
     try:
         root = parse(text, file, log)
     except InputError as fault:

@@ -1,4 +1,4 @@
-"""An object's XML text: read from its file, and marked for replacing a model of its name.
+"""The XML text of an object, read from its file.
 
 The text is handled as text: whether its XML is sound is for the simulator to say, which can
 recover more than a parser here could, and names line and column.
@@ -6,14 +6,8 @@ recover more than a parser here could, and names line and column.
 from __future__ import annotations
 
 import re
-from typing import Mapping
-from xml.sax.saxutils import quoteattr
 
 from ..errors import InputError, error
-
-REPLACE, FILE, LAUNCH = (f"my_simulations_{mark}" for mark in ("replace", "file", "launch"))
-"""On the root element of a spawn request: replace the model of that name in one step; where the
-document was read; process id of the roslaunch that sends it."""
 
 _DECLARATION = re.compile(rb"\A\s*<\?xml[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"'][^>]*\?>")
 _PROLOGUE = re.compile(r"\s+|<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:[^\[>]|\[[^\]]*\])*>", re.S)
@@ -53,19 +47,6 @@ def root_tag(xml: str) -> str:
     start = _root_start(xml)
     found = _START_TAG.match(xml, start)
     return found.group(0)[1:] if found else ""
-
-
-def marked(xml: str, marks: Mapping[str, str]) -> str:
-    """The same document with more attributes on its root element; empty ones are left out.
-
-    Text without a root element comes back unchanged; the simulator rejects it with a reason.
-    """
-    start = _root_start(xml)
-    found = _START_TAG.match(xml, start)
-    if not found:
-        return xml
-    text = "".join(f" {name}={quoteattr(value)}" for name, value in marks.items() if value)
-    return f"{xml[:found.end()]}{text}{xml[found.end():]}"
 
 
 def _root_start(xml: str) -> int:

@@ -12,14 +12,10 @@ from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
 from .database.fuel_uri import FuelUri, fuel_uri, is_web_address
 from .model_config import description_in
+from .model_provider import DATABASE, ModelNotProvidedError, Progress
 from .package_files import PACKAGE, package_directories
 from .ros_packages import ExportedPaths, FindPackage, PackageIndex, package_name
 from .suggestions import suggestion
-
-DATABASE = "GAZEBO_MODEL_DATABASE_URI"
-
-Progress = Callable[[str, int, int], None]
-"""Called with a model's name, the bytes that have come, and those expected (0: not known)."""
 
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
 
@@ -40,10 +36,6 @@ class ResourceNotFoundError(Exception):
         places = ", ".join(self.tried)
         why = reason or (f"tried {places}" if places else "no place to look in")
         super().__init__(f"{uri!r} was not found: {why}")
-
-
-class ModelNotProvidedError(Exception):
-    """A model that a source of missing models cannot give; the text says why."""
 
 
 class MissingModels(Protocol):

@@ -148,6 +148,8 @@ TABLE: Tuple[Row, ...] = (
     Row("set_logger_level", "roscpp/SetLoggerLevel", SERVES, BY_ROSPY, always=True),
 
     _empty("reset_time", "world.reset_time", "ResetTime", "time is 0, all else stays", True),
+    _ours("spawn_object", "SpawnObject", "models.spawn_object", "SpawnObject",
+          "models and lights of SDF or URDF; can replace a model of that name in one step"),
     _ours("step_world", "StepWorld", "stepping.step", "StepWorld",
           "makes `steps` steps as fast as the machine can, also while paused; answered when they "
           "are done"),

@@ -142,7 +142,8 @@ class Node:
 
         simulator = self._simulator
         return {
-            "editor": EditorService(self._open_editor), "reconfigure": _reconfigure(simulator),
+            "models": self._models(), "editor": EditorService(self._open_editor),
+            "reconfigure": _reconfigure(simulator),
             "saving": SaveService(simulator, self._resolver, self._launch.folder),
             "stepping": SteppingService(simulator), "world": WorldServices(simulator),
         }

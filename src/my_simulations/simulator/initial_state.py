@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import List, Optional
 
-from ..description.world import InitialState
+from ..description.saved_state import InitialState
 from ..engine.commands import Command, SetJoints, SetLinkState, SetModelState
 from ..geometry import compose
 from .registry import Entity

@@ -65,7 +65,7 @@ class Joints:
                 session.registry.swap(entity, changed)
 
 
-def _fixed_properties(joint: Joint) -> tuple:
+def _fixed_properties(joint: Joint) -> Tuple[object, ...]:
     """What of a joint the engine cannot change in place."""
     return (joint.name, joint.type, joint.parent, joint.child, joint.pose, joint.thread_pitch,
             joint.gearbox_ratio, joint.gearbox_reference,

@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import List, Optional
 
-from ..description.world import Light
+from ..description.light import Light
 from ..errors import CommandError
 from ..geometry import Pose, compose, normalised, pose_is_finite
 from .order_slot import OrderSlot

@@ -8,10 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple
 
+from ..description.light import Light
 from ..description.model import Joint, Model
 from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
-from ..description.world import Light, Physics
+from ..description.world import Physics
 from ..engine.commands import ModelState
 from ..errors import CommandError
 from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract

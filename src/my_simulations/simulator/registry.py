@@ -16,10 +16,10 @@ from typing import (
     Tuple,
 )
 
+from ..description.light import Light
 from ..description.model import Joint, Model
 from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
-from ..description.world import Light
 from ..engine.commands import LinkState, ModelState
 from ..engine.ring import Snapshot
 from ..engine.ring_rows import AXES, axis_rows, row_name

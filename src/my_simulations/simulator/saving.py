@@ -12,8 +12,9 @@ from typing import Dict, List, Optional, Sequence
 
 from ..description.compare import differences
 from ..description.model import Joint, Model
+from ..description.saved_state import LightState, LinkState, ModelState, SavedState
 from ..description.unflatten import unflattened
-from ..description.world import LightState, LinkState, ModelState, SavedState, World
+from ..description.world import World
 from ..engine.ring import Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, InputError
@@ -54,9 +55,7 @@ def present_world(simulator: Simulator, *, state: bool = True, launched: bool = 
     return replace(
         world, models=models, lights=simulator.lights.all(),
         joints=_joints_of(simulator, entities), physics=simulator.physics.settings,
-        gravity=simulator.physics.gravity, state=saved, initial={}, initial_ns=0,
-        extra=[xml for xml in world.extra if not xml.lstrip().startswith("<state")],
-    )
+        gravity=simulator.physics.gravity, state=saved, initial={}, initial_ns=0)
 
 
 def _joints_of(simulator: Simulator, entities: Sequence[Entity]) -> List[Joint]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, Dict, Optional
 
-from ..description.world import Atmosphere, GuiCamera, Scene, SphericalCoordinates, Wind
+from ..description.surroundings import Atmosphere, GuiCamera, Scene, SphericalCoordinates, Wind
 from ..geometry import Vec3
 from .session import Session
 
@@ -12,7 +13,9 @@ from .session import Session
 class SceneSettings:
     """Sets fields of the description that are shown or saved, and not simulated.
 
-    They are read from `Simulator.world`. Each call takes both locks of the session.
+    They are read from `Simulator.world`. Each call takes both locks of the session. A new value
+    without XML of its own (`extra`) takes over that of the value which it replaces, so that saving
+    the world does not lose elements of its file.
     """
 
     def __init__(self, session: Session) -> None:
@@ -20,19 +23,21 @@ class SceneSettings:
 
     def set_scene(self, scene: Scene) -> None:
         """Ambient light, background, sky, fog, shadows and grid."""
-        self._session.set_world_fields(scene=scene)
+        self._session.set_world_fields(scene=_with_extra(scene, self._session.world.scene))
 
     def set_gui_camera(self, camera: Optional[GuiCamera]) -> None:
         """The view that the world opens with."""
-        self._session.set_world_fields(gui_camera=camera)
+        self._session.set_world_fields(gui_camera=_with_extra(
+            camera, self._session.world.gui_camera))
 
     def set_wind(self, wind: Wind) -> None:
         """Kept and saved; no force comes of it."""
-        self._session.set_world_fields(wind=wind)
+        self._session.set_world_fields(wind=_with_extra(wind, self._session.world.wind))
 
     def set_atmosphere(self, atmosphere: Atmosphere) -> None:
         """Kept and saved."""
-        self._session.set_world_fields(atmosphere=atmosphere)
+        self._session.set_world_fields(atmosphere=_with_extra(
+            atmosphere, self._session.world.atmosphere))
 
     def set_magnetic_field(self, field: Vec3) -> None:
         """T, world axes; kept and saved."""
@@ -40,4 +45,17 @@ class SceneSettings:
 
     def set_spherical_coordinates(self, place: Optional[SphericalCoordinates]) -> None:
         """Kept and saved."""
-        self._session.set_world_fields(spherical_coordinates=place)
+        self._session.set_world_fields(spherical_coordinates=_with_extra(
+            place, self._session.world.spherical_coordinates))
+
+
+def _with_extra(new: Any, old: Any) -> Any:
+    """A dataclass of the surroundings with the kept XML of the value that it replaces."""
+    if not is_dataclass(new) or isinstance(new, type) or type(new) is not type(old):
+        return new
+    changes: Dict[str, Any] = {}
+    for item in fields(new):
+        value, before = getattr(new, item.name), getattr(old, item.name)
+        changes[item.name] = (value or before) if item.name == "extra" else _with_extra(
+            value, before)
+    return replace(new, **changes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from typing import Any, Callable, List, Optional
 
 from ..description.model import Model
@@ -13,7 +14,6 @@ from ..engine.commands import Command
 from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
-from ..formats.sdf.world_settings import with_surroundings
 from ..geometry import Pose
 from .registry import Entity, Registry, Rows
 from .supervisor import Supervisor
@@ -99,7 +99,7 @@ class Session:
     def set_world_fields(self, **fields: Any) -> None:
         """Replace fields of the description that the engine does not simulate."""
         with self.structure_lock, self.registry_lock:
-            self.world = with_surroundings(self.world, **fields)
+            self.world = replace(self.world, **fields)
             self.registry.revision += 1
 
     def entities(self) -> List[Entity]:

@@ -6,7 +6,7 @@ from typing import List, Optional
 
 from ..description.shapes import MeshTable
 from ..errors import Issue
-from ..formats.loading_advice import advised
+from ..formats.loading_advice import advice_issues
 from .registry import UnknownEntityError
 from .simulator import Simulator
 
@@ -25,4 +25,4 @@ def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable])
     else:
         entities, snapshot = simulator.states.latest()
         models = [replace(entity.model, pose=entity.state(snapshot)[0]) for entity in entities]
-    return advised(models, {name: meshes or {}}, only=name)
+    return advice_issues(models, {name: meshes or {}}, only=name)

@@ -1,15 +1,12 @@
-"""A world of some name: found, read, its meshes loaded, its simulator started."""
+"""Finding and reading a world by name, and starting its simulator."""
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Callable, Dict, List, Tuple
+from typing import Callable
 
-from ..description.model import Model
-from ..description.shapes import MeshTable
-from ..description.world import World
 from ..engine.api import Engine
 from ..engine.commands import FOREVER
-from ..errors import InputError, Issue, error, errors_of
+from ..errors import InputError, Issue, error
+from ..formats.reading import LoadedWorld, read_world
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_files import advice_on, find_world
 from .simulator import Simulator
@@ -37,60 +34,35 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
         InputError: there is no usable world.
         CommandError: there is no engine.
     """
-    world, meshes = load_world(name, resolver, log, seed=seed, profile=profile, caller=caller)
+    loaded = load_world(name, resolver, log, seed=seed, profile=profile, caller=caller)
     read()
-    simulator = Simulator(world, engine_factory=engines, paused=True, log=log, meshes=meshes,
-                          steps=steps)
+    simulator = Simulator(loaded.world, engine_factory=engines, paused=True, log=log,
+                          meshes=loaded.meshes, steps=steps)
     simulator.start()
     return simulator
 
 
-def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0,
-               profile: str = "", caller: str = "") -> Tuple[World, Dict[str, MeshTable]]:
-    """Read a world.
-
-    A collision whose mesh cannot be used collides with nothing, and the rest of the world loads;
-    it stays in the description, so that saving the world does not lose it.
+def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profile: str = "",
+               caller: str = "") -> LoadedWorld:
+    """Find and read a world.
 
     Args:
-        name: what `find_world` takes.
-        resolver: finds the file and what it names.
-        log: hears every issue of a world that is usable.
-        seed: of what the world draws at random.
-        profile: name of the physics preset to use; "" for the world's own choice.
+        name: a file name as `find_world` takes it.
+        resolver: finds the file and the files that it names.
+        log: receives every issue of a world that is usable.
+        seed: seed of populations that are placed at random.
+        profile: name of the physics preset to use; "" for the default of the world.
         caller: folder that relative names start from; "" for the working directory.
-
-    Returns:
-        The world, and the collision meshes of its models by model name.
 
     Raises:
         InputError: there is no usable world.
     """
-    from ..formats.loading_advice import advised
-    from ..formats.reading import read_world
-    from ..formats.sdf.state_applied import apply_state
-
     try:
         path = find_world(name, resolver, caller)
     except ResourceNotFoundError as missing:
         raise InputError([error("world-not-found", f"world file {missing}",
                                 hint=advice_on(name, caller))]) from missing
-    world, issues = read_world(path, resolver, seed=seed, profile=profile)
-    for issue in issues:
+    loaded = read_world(path, resolver, seed=seed, profile=profile)
+    for issue in loaded.issues:
         log(issue)
-    world = replace(apply_state(world), losses=[str(issue) for issue in errors_of(issues)])
-    meshes = _meshes(world.models, log)
-    for issue in advised(world.models, meshes, path):
-        log(issue)
-    return world, meshes
-
-
-def _meshes(models: List[Model], log: Log) -> Dict[str, MeshTable]:
-    from ..formats.mesh.loading import collision_meshes
-
-    tables: Dict[str, MeshTable] = {}
-    for model in models:
-        tables[model.name], issues = collision_meshes(model)
-        for issue in issues:
-            log(issue)
-    return tables
+    return loaded

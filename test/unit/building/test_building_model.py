@@ -66,8 +66,8 @@ def test_colours_textures_and_layers_are_written():
     assert painted.material.ambient == pytest.approx((194 / 255, 169 / 255, 160 / 255, 1), abs=1e-6)
     assert painted.material.script_name == "Gazebo/Grey"
     assert bricks.material.script_name == "Gazebo/Bricks"
-    assert painted.extra == ["<meta><layer>0</layer></meta>"]
-    assert link(model, "Floor_0").visuals[0].extra == ["<meta><layer>1</layer></meta>"]
+    assert painted.layer == 0 and painted.extra == []
+    assert link(model, "Floor_0").visuals[0].layer == 1
 
 
 def test_a_free_window_is_a_link_and_makes_no_hole():

@@ -80,7 +80,7 @@ def test_levels_without_layers_are_told_by_their_height():
     model = building_model(two_rooms())
     for link in model.links:
         for visual in link.visuals:
-            visual.extra = []
+            visual.layer = None
     plan, _ = plan_from_model(model)
     assert [len(level.walls) for level in plan.levels] == [5, 4]
     assert len(plan.levels[1].floors) == 1 and len(plan.levels[0].stairs) == 1

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import pytest
 
-from my_simulations.description.world import Actor, Animation, Trajectory, Waypoint
+from my_simulations.description.actor import Actor, Animation, Trajectory, Waypoint
 from my_simulations.editor.scene.scene_json import Documents
 from my_simulations.editor.transport.http_pages import Pages
 from my_simulations.editor.transport.protocol import Protocol

@@ -11,7 +11,7 @@ import pytest
 from editor_case import Browser, Refused, box, cases
 
 from my_simulations.editor.library.autosave import process_id
-from my_simulations.formats.reading import read_world
+from my_simulations.formats.reading import parse_world, read_world
 from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 
@@ -32,7 +32,8 @@ def test_save_asks_for_a_name_once_and_replaces_its_own_file_later(case):
         assert browser.last("history")["file"] == path
         await browser.edit("insert", shape="sphere")
         assert (await browser.ask("save"))["path"] == path
-        world, issues = read_world(path, Resolver())
+        loaded = read_world(path, Resolver())
+        world, issues = loaded.world, loaded.issues
         assert [model.name for model in world.models] == ["a", "unit_box", "unit_sphere"]
         assert not [issue for issue in issues if issue.severity.value == "error"]
 
@@ -134,7 +135,7 @@ def test_what_the_launch_file_spawned_is_saved_when_asked_for_and_then_by_every_
     made.sim.models.spawn(box("robo", (2.0, 0.0, 0.5)), launched=True)
 
     def saved():
-        world, _ = read_world(str(made.worlds / "w.world"), Resolver())
+        world, _ = parse_world((made.worlds / "w.world").read_bytes(), Resolver())
         return [model.name for model in world.models], world.state is not None
 
     async def save(browser):

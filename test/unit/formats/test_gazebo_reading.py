@@ -57,7 +57,7 @@ LINKS = f'<link name="a">{INERTIAL}</link><link name="b">{INERTIAL}</link>'
 def test_a_text_that_is_not_quite_a_value_is_read_as_gazebo_does(kind, text, value):
     with pytest.raises(ValueError):
         kind.parse(text)
-    assert kind.salvage(text) == value
+    assert kind.parse_leniently(text) == value
 
 
 @pytest.mark.parametrize("kind, text", [
@@ -66,7 +66,7 @@ def test_a_text_that_is_not_quite_a_value_is_read_as_gazebo_does(kind, text, val
 ])
 def test_a_text_that_gazebo_refuses_stays_refused(kind, text):
     with pytest.raises(ValueError):
-        kind.salvage(text)
+        kind.parse_leniently(text)
 
 
 def test_a_number_read_in_part_is_told_with_what_was_made_of_it():

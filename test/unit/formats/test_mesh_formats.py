@@ -159,7 +159,7 @@ def test_nodes_that_double_at_each_level_are_refused(tmp_path):
                     "<library_visual"),
                    ('<node id="n">', '<node id="n"><instance_node url="#n0"/>'))
     issue = fault_of(written(tmp_path, "a.dae", text))
-    assert issue.code == "mesh-unreadable" and "without end" in issue.message
+    assert issue.code == "mesh-unreadable" and "form a cycle" in issue.message
 
 
 def ascii_stl(head="solid", vertex="vertex 1 0 0", end="endsolid"):

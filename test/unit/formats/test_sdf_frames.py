@@ -6,7 +6,7 @@ from reading import INERTIAL, errors, model_of, sdf, tolerated, warnings, world_
 
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Mimic
-from my_simulations.formats.reading import read_world_text
+from my_simulations.formats.reading import parse_world
 from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.resources.resolver import Resolver
 
@@ -174,7 +174,7 @@ def test_the_axis_of_a_joint_of_an_old_world_is_in_world_coordinates():
 
 def test_joints_between_models_are_written_as_the_worlds_own():
     world = two_models(joint("k", "world", "a::l"), joint("j", "a::l", "l"))
-    copy, issues = read_world_text(write_world(world), Resolver())
+    copy, issues = parse_world(write_world(world), Resolver())
     assert errors(issues) == [] and copy.joints == world.joints
     assert {one.name for one in copy.joints} == {"k", "b::j"}
 

@@ -6,7 +6,7 @@ from reading import INVALID, VALID, refusal
 
 from my_simulations.description.validate import validate
 from my_simulations.errors import InputError, Severity, errors_of, strictly
-from my_simulations.formats.reading import read_file, read_world, read_world_text
+from my_simulations.formats.reading import parse_world, read_file, read_world
 from my_simulations.resources.resolver import Resolver
 
 MODEL_FAULTS = {
@@ -107,7 +107,7 @@ def test_a_world_leaves_out_an_unusable_model_whole_and_keeps_the_rest(name):
     start, end = text.index("<model"), text.rindex("</model>") + len("</model>")
     text = (text[:start] + "<world name='w'>" + text[start:end]
             + "<model name='good'><link name='l'/></model></world>" + text[end:])
-    world, issues = read_world_text(text, Resolver(), invalid(name))
+    world, issues = parse_world(text, Resolver(), invalid(name))
     assert [model.name for model in world.models] == ["good"]
     assert MODEL_FAULTS[name][0] in [issue.code for issue in errors_of(issues)]
 
@@ -117,7 +117,7 @@ def test_a_world_keeps_the_model_a_part_of_which_is_broken(name):
     with open(invalid(name)) as stream:
         text = stream.read()
     text = text.replace("<model", "<world name='w'><model").replace("</model>", "</model></world>")
-    world, issues = read_world_text(text, Resolver(), invalid(name))
+    world, issues = parse_world(text, Resolver(), invalid(name))
     model = world.models[0]
     assert [link.name for link in model.links] in (["body"], ["a", "b"])
     assert model.joints == []
@@ -176,7 +176,8 @@ def test_a_file_without_world_is_refused():
 
 def test_an_unknown_include_lists_every_place_tried_and_the_rest_loads(tmp_path):
     resolver = Resolver([str(tmp_path / "one"), str(tmp_path / "two")])
-    world, issues = read_world(invalid("include_unknown.world"), resolver)
+    loaded = read_world(invalid("include_unknown.world"), resolver)
+    world, issues = loaded.world, loaded.issues
     assert [model.name for model in world.models] == ["thing"]
     (issue,) = errors_of(issues)
     assert (issue.code, issue.line) == ("model-not-found", 3)
@@ -185,13 +186,15 @@ def test_an_unknown_include_lists_every_place_tried_and_the_rest_loads(tmp_path)
 
 
 def test_an_include_without_uri_is_left_out_and_the_rest_loads():
-    world, issues = read_world(invalid("include_without_uri.world"), Resolver())
+    loaded = read_world(invalid("include_without_uri.world"), Resolver())
+    world, issues = loaded.world, loaded.issues
     assert [model.name for model in world.models] == ["thing"]
     assert [issue.code for issue in errors_of(issues)] == ["include-uri-missing"]
 
 
 def test_a_step_size_of_zero_becomes_the_default():
-    world, issues = read_world(invalid("step_size_zero.world"), Resolver())
+    loaded = read_world(invalid("step_size_zero.world"), Resolver())
+    world, issues = loaded.world, loaded.issues
     assert world.physics.max_step_size == 0.001
     assert [issue.code for issue in issues if issue.tolerated] == ["physics-range"]
 

@@ -23,7 +23,7 @@ from my_simulations.description.shapes import (
     Surface,
 )
 from my_simulations.errors import Severity, errors_of
-from my_simulations.formats.reading import read_entity, read_world_text
+from my_simulations.formats.reading import parse_world, read_entity
 from my_simulations.formats.sdf import model
 from my_simulations.formats.sdf.model import DEEPEST
 from my_simulations.geometry import quat_from_rpy
@@ -399,7 +399,7 @@ def nested_models(count):
 @pytest.mark.parametrize("count, kept", [(DEEPEST, DEEPEST), (DEEPEST + 1, DEEPEST),
                                          (220, DEEPEST)])
 def test_models_inside_models_are_read_up_to_a_depth(count, kept):
-    world, issues = read_world_text(nested_models(count), Resolver())
+    world, issues = parse_world(nested_models(count), Resolver())
     assert [model.name for model in world.models] == ["m0", "after"]
     assert len(flattened(world.models[0]).links) == kept
     assert [issue.code for issue in errors_of(issues)] == ["models-too-deep"] * (count > kept)
@@ -413,6 +413,6 @@ def test_a_fault_of_a_nested_model_is_told_once_however_deep_it_lies(monkeypatch
     original = model.own_faults
     monkeypatch.setattr(model, "own_faults",
                         lambda model, static: asked.append(model) or original(model, static))
-    _, issues = read_world_text(text, Resolver())
+    _, issues = parse_world(text, Resolver())
     assert len(errors_of(issues)) == 1
     assert len(asked) == 21  # each model once: 200 models would be 20 000 else

@@ -1,9 +1,15 @@
 """Populations, and what a world shows or tells without moving."""
 import pytest
+from lxml import etree
 from reading import errors, warnings, world_of
 
-from my_simulations.description.world import Animation, Atmosphere, Scene, Waypoint, World
+from my_simulations.description.actor import Animation, Waypoint
+from my_simulations.description.compare import differences
+from my_simulations.description.surroundings import Atmosphere, Scene
+from my_simulations.description.world import World
+from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import Pose
+from my_simulations.resources.resolver import Resolver
 
 CAN = '<model name="can"><link name="l"/></model>'
 
@@ -118,13 +124,71 @@ def test_roads_and_actors_are_read_and_kept():
         '<trajectory id="1" type="run"/><trajectory id="0" type="walk"><waypoint><time>4</time>'
         "<pose>1 2 0 0 0 0</pose></waypoint></trajectory></script></actor>")
     world, issues = world_of(road + actor)
-    assert world.extra == [road, actor] and errors(issues) == [] and warnings(issues) == []
+    assert errors(issues) == [] and warnings(issues) == []
     assert (world.roads[0].width, world.roads[0].points) == (3, [(0, 0, 0), (1, 0, 0)])
     man = world.actors[0]
     assert (man.skin, man.loop, man.delay_start, man.auto_start) == ("walk.dae", False, 2, True)
     assert man.animations == [Animation("walk", "walk.dae", 1.0, True)]
     assert [one.type for one in man.trajectories] == ["walk", "run"]
     assert man.trajectories[0].waypoints == [Waypoint(4, Pose((1, 2, 0)))]
+    written = etree.fromstring(write_world(world)).find("world")
+    assert shape_of(written.find("road")) == shape_of(etree.fromstring(road))
+    found = shape_of(written.find("actor"))
+    assert found[:2] == ("actor", {"name": "man"})
+    assert sorted(found[3], key=str) == sorted(shape_of(etree.fromstring(actor.replace(
+        '<trajectory id="1" type="run"/>', "").replace(
+        "</script>", '<trajectory id="1" type="run"/></script>')))[3], key=str)
+
+
+def shape_of(element):
+    """Tag, attributes, text and children of an element, for comparisons."""
+    return (element.tag, dict(element.attrib), (element.text or "").strip(),
+            [shape_of(child) for child in element])
+
+
+def test_unknown_elements_of_surroundings_and_actors_survive_saving():
+    """No field holds them, so that only `extra` can."""
+    kept = {
+        "scene/mood": "grim", "scene/sky/material": "stars", "scene/sky/clouds/shape": "round",
+        "scene/fog/smell": "salt", "gui/skin": "dark", "gui/camera/lens": "wide",
+        "wind/gusts": "1", "atmosphere/haze": "2", "spherical_coordinates/datum": "3",
+        "road/lanes": "2", "road/material/shininess": "4", "actor/mood": "glad",
+        "actor/animation/speed": "5", "actor/script/trajectory/pace": "6",
+        "actor/script/trajectory/waypoint/pause": "7",
+    }
+    root = etree.Element("world", name="w")
+    for path, text in kept.items():
+        at = root
+        for tag in path.split("/"):
+            there = at.find(tag)
+            at = etree.SubElement(at, tag) if there is None else there
+        at.text = text
+    root.find("gui").append(etree.fromstring('<plugin name="p" filename="libp.so"/>'))
+    root.find("gui").set("fullscreen", "true")
+    inside = "".join(etree.tostring(child, encoding="unicode") for child in root)
+    world, issues = world_of(inside, "1.7")
+    assert errors(issues) == [] and world.extra == []
+    written = etree.fromstring(write_world(world)).find("world")
+    assert {path: written.findtext(path) for path in kept} == kept
+    assert written.find("gui").get("fullscreen") == "true"
+    assert written.find("gui/plugin").get("filename") == "libp.so"
+    copy, _ = world_of("".join(etree.tostring(child, encoding="unicode") for child in written),
+                       "1.7")
+    assert differences(world, copy) == []
+
+
+def test_an_included_actor_is_saved_as_the_include_that_brings_it(tmp_path):
+    folder = tmp_path / "walker"
+    folder.mkdir()
+    (folder / "model.sdf").write_text(
+        '<sdf version="1.6"><actor name="walker"><skin><filename>walk.dae</filename></skin></actor>'
+        "</sdf>")
+    include = "<include><uri>model://walker</uri><name>man</name></include>"
+    world, _ = world_of(include, resolver=Resolver([str(tmp_path)]))
+    assert [actor.name for actor in world.actors] == ["man"] and world.extra == []
+    written = etree.fromstring(write_world(world)).find("world")
+    assert written.find("actor") is None
+    assert shape_of(written.find("include")) == shape_of(etree.fromstring(include))
 
 
 def test_what_does_nothing_is_said_once_for_each_kind():

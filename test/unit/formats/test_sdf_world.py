@@ -4,8 +4,10 @@ import os
 import pytest
 from reading import INERTIAL, codes, errors, sdf, tolerated, warnings, world_of
 
-from my_simulations.description.world import Light, Physics
-from my_simulations.formats.reading import read_entity, read_world, read_world_text
+from my_simulations.description.light import Light
+from my_simulations.description.surroundings import Gui, Scene
+from my_simulations.description.world import Physics
+from my_simulations.formats.reading import parse_world, read_entity, read_world
 from my_simulations.resources.resolver import Resolver
 
 BOX = '<link name="l"><collision name="c"><geometry><box/></geometry></collision></link>'
@@ -49,7 +51,8 @@ def test_an_empty_world_has_the_defaults_of_the_format():
 
 def test_the_shipped_empty_world_gives_a_plane_and_a_light():
     resolver = Resolver.from_environment()
-    world, issues = read_world(resolver.resolve("worlds/empty.world"), resolver)
+    loaded = read_world(resolver.resolve("worlds/empty.world"), resolver)
+    world, issues = loaded.world, loaded.issues
     assert errors(issues) == []
     assert [model.name for model in world.models] == ["ground_plane"]
     assert world.models[0].static
@@ -195,7 +198,9 @@ def test_what_is_not_simulated_is_kept_without_a_warning():
     kept = ["<scene><shadows>0</shadows></scene>", '<gui fullscreen="0"/>',
             '<state world_name="w"/>', '<actor name="man"/>']
     world, issues = world_of("".join(kept) + '<plugin name="p" filename="f"/>')
-    assert world.extra == kept and errors(issues) == [] and warnings(issues) == []
+    assert world.extra == [] and errors(issues) == [] and warnings(issues) == []
+    assert world.scene == Scene(shadows=False) and world.gui == Gui()
+    assert [actor.name for actor in world.actors] == ["man"] and world.state.world_name == "w"
     assert codes(issues) == ["not-simulated"] * 2  # the plugin and the actor
     assert [plugin.name for plugin in world.plugins] == ["p"]
 
@@ -209,7 +214,7 @@ def test_plugins_are_told_once_for_each_library():
 
 
 def test_only_the_first_of_several_worlds_is_read():
-    world, issues = read_world_text(sdf("<world name='a'/><world name='b'/>"), Resolver())
+    world, issues = parse_world(sdf("<world name='a'/><world name='b'/>"), Resolver())
     assert world.name == "a" and warnings(issues) == ["world-many"]
 
 

@@ -5,10 +5,10 @@ import pytest
 from reading import DATA, codes, errors, refusal, sdf, warnings
 
 from my_simulations.errors import InputError, Severity
-from my_simulations.formats.reading import read_entity, read_world, read_world_text
+from my_simulations.formats.reading import parse_world, read_entity, read_world
 from my_simulations.formats.xml.parsing import parse
 from my_simulations.formats.xml.repair import balanced
-from my_simulations.formats.xml.source import Log
+from my_simulations.formats.xml.source import IssueCollector
 from my_simulations.resources.resolver import Resolver
 
 MODEL = '<model name="m"><link name="l"/></model>'
@@ -19,7 +19,7 @@ def read(text):
 
 
 def test_a_forgotten_end_tag_nests_nothing_that_follows():
-    log = Log()
+    log = IssueCollector()
     root = parse("<r>\n<a>\n<b x='1'>\n</a>\n<a/></r>", "f", log)
     assert [child.tag for child in root] == ["a", "a"]
     (issue,) = log.issues
@@ -164,7 +164,7 @@ def test_balancing_leaves_a_sound_text_as_it_is():
     ("<a/>" * 2000001, "xml-too-large"),
 ])
 def test_masses_are_refused(inside, code):
-    fault = refusal(read_world_text, f"<sdf version='1.6'><world name='w'>{inside}</world></sdf>",
+    fault = refusal(parse_world, f"<sdf version='1.6'><world name='w'>{inside}</world></sdf>",
                     Resolver())
     assert fault.first.code == code
 
@@ -179,7 +179,7 @@ def test_a_file_larger_than_is_read_is_refused_without_reading_it_whole(tmp_path
 
 
 def test_unknown_names_without_end_are_not_all_told():
-    _, issues = read_world_text("<sdf version='1.6'><world name='w'>" + "".join(
+    _, issues = parse_world("<sdf version='1.6'><world name='w'>" + "".join(
         f"<x{i}/>" for i in range(3000)) + "</world></sdf>", Resolver())
     assert len(issues) < 1000 and issues[-1].code == "unknown-many"
 
@@ -225,7 +225,7 @@ def test_a_misspelt_root_is_answered_with_the_one_that_was_meant(text, meant):
 
 def test_a_misspelt_world_is_answered_with_the_name_that_was_meant():
     with pytest.raises(InputError) as refused:
-        read_world_text("<sdf version='1.7'><wrold name='w'/></sdf>", Resolver())
+        parse_world("<sdf version='1.7'><wrold name='w'/></sdf>", Resolver())
     assert "did you mean world?" in refused.value.issues[0].hint
 
 
@@ -234,5 +234,5 @@ def test_an_included_model_of_a_misspelt_name_is_answered_with_one_that_is_there
         (tmp_path / name).mkdir()
     text = ("<sdf version='1.7'><world name='w'><include><uri>model://sunn</uri></include>"
             "</world></sdf>")
-    _, issues = read_world_text(text, Resolver([str(tmp_path)]))
+    _, issues = parse_world(text, Resolver([str(tmp_path)]))
     assert issues[0].hint.startswith("did you mean model://sun? Else install it")

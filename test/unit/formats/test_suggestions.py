@@ -66,7 +66,7 @@ def test_numbers_that_are_parted_by_commas_are_told_how_to_be():
         _, issues = read_entity(text, Resolver())
     except InputError as refused:
         issues = refused.issues
-    assert any("parted by blanks, not by commas" in issue.message for issue in issues)
+    assert any("separated by spaces, not by commas" in issue.message for issue in issues)
 
 
 @pytest.mark.parametrize("run, meant", [

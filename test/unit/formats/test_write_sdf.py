@@ -10,12 +10,18 @@ from lxml import etree
 from reading import VALID, link_of, model_of, sdf, world_of
 
 from my_simulations.description.compare import differences
+from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Polyline
-from my_simulations.description.world import Light, World
+from my_simulations.description.world import World
 from my_simulations.errors import Severity, errors_of
-from my_simulations.formats.reading import read_entity, read_file, read_world, read_world_text
+from my_simulations.formats.reading import parse_world, read_entity, read_file, read_world
 from my_simulations.formats.sdf import model_tables
+from my_simulations.formats.sdf.writer import (
+    material_element,
+    state_element,
+    surroundings_elements,
+)
 from my_simulations.formats.sdf.writer.entities import _Writer, write_entity, write_world
 from my_simulations.formats.sdf.writer.geometry_element import tables_by_shape
 from my_simulations.formats.xml.binding import Kept, Part, Table
@@ -49,13 +55,14 @@ def written(model):
 @pytest.mark.parametrize("full", [True, False], ids=["inlined", "included"])
 def test_a_world_that_was_written_reads_as_the_same(path, full):
     resolver = Resolver.from_environment()
-    world, _ = read_world(str(path), resolver)
+    loaded = read_world(str(path), resolver)
+    world = loaded.world
 
     def bare(model):
         return read_file(resolver.model_file(model.uri), resolver)[0]
 
     text = write_world(world, included=None if full else bare)
-    copy, issues = read_world_text(text, resolver)
+    copy, issues = parse_world(text, resolver)
     assert {issue.severity for issue in issues} <= {Severity.NOTE}
     assert differences(world, copy, CLOSE) == []
     assert (b"<include>" in text) is (not full and any(m.uri for m in world.models))
@@ -178,7 +185,8 @@ def test_a_joint_may_be_called_as_a_link_which_sdf_1_7_forbids():
 
 @pytest.mark.parametrize("path", sorted(ROOT.glob("world/**/*.world")), ids=lambda p: p.name)
 def test_each_thing_of_a_world_can_be_copied_as_text_and_pasted(path):
-    world, _ = read_world(str(path), Resolver.from_environment())
+    loaded = read_world(str(path), Resolver.from_environment())
+    world = loaded.world
     for thing in (*world.models, *world.lights):
         text = write_entity(thing)
         copy, issues = read_entity(text.decode(), Resolver.from_environment())
@@ -230,17 +238,17 @@ def test_presets_of_physics_stay_beside_the_one_in_use():
     assert sorted(physics) == ["fast", "slow"]
     assert physics["fast"].findtext("ode/solver/iters") == "70"
     assert physics["fast"].findtext("ode/solver/type") == "world"
-    copy, _ = read_world_text(write_world(world), Resolver())
+    copy, _ = parse_world(write_world(world), Resolver())
     assert copy.physics.name == "fast"
 
 
 def test_an_undeclared_prefix_is_declared_once():
     text = '<scene><ignition:name>a</ignition:name><ambient>1 1 1 1</ambient></scene>'
-    world, _ = read_world_text(sdf(f'<world name="w">{text}</world>', "1.7"), Resolver())
+    world, _ = parse_world(sdf(f'<world name="w">{text}</world>', "1.7"), Resolver())
     written_once = write_world(world)
     assert written_once.count(b"xmlns:ignition") == 1
     etree.fromstring(written_once)
-    copy, _ = read_world_text(written_once, Resolver())
+    copy, _ = parse_world(written_once, Resolver())
     assert write_world(copy) == written_once
 
 
@@ -278,7 +286,10 @@ def test_a_relative_mesh_becomes_a_path_and_a_model_uri_stays(tmp_path):
 
 def test_every_part_of_a_table_has_a_writer():
     """What the reader has a reader for, the writer writes."""
-    known = {name for name in dir(_Writer) if not name.startswith("_")}
+    known = {name for name in dir(_Writer) if not name.startswith("_")} | {
+        name.rpartition("write_")[2] for module in (surroundings_elements, material_element,
+                                                    state_element)
+        for name in dir(module)}
     aside = {"include", "geometry", "xyz", "axis2", "plugin",
              "population", "placement_frame", "screw_thread_pitch"}  # expanded or converted
     for table in tables():

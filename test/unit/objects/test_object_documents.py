@@ -6,41 +6,25 @@ from pathlib import Path
 import pytest
 
 from my_simulations.errors import InputError
-from my_simulations.objects.object_document import FILE, REPLACE, marked, read_document, root_tag
+from my_simulations.objects.object_document import read_document, root_tag
 
 TUTORIAL = Path(__file__).resolve().parents[2] / "data" / "tutorial"
 
 
 @pytest.mark.parametrize("prologue", [
     "", "<?xml version='1.0'?>\n", "\ufeff<?xml version='1.0'?>",
-    "<!-- a <robot> in a comment -->\n",
+    "<!-- a <sdf> in a comment -->\n",
     "<?xml version='1.0'?><!DOCTYPE robot [<!ENTITY a 'b'>]>\n",
     "  \n<?note <x/>?><!-- -->"])
-def test_the_mark_goes_to_the_root_element_whatever_comes_before(prologue):
-    text = marked(prologue + "<robot name='a'><link name='b'/></robot>", {REPLACE: "true"})
-    assert text == prologue + ("<robot my_simulations_replace=\"true\" name='a'>"
-                                 "<link name='b'/></robot>")
+def test_the_root_element_is_found_whatever_comes_before(prologue):
+    assert root_tag(prologue + "<robot name='a'><link name='b'/></robot>") == "robot"
 
 
 @pytest.mark.parametrize("text,expected", [
-    ("<sdf/>", '<sdf my_simulations_replace="true"/>'),
-    ("<robot>", '<robot my_simulations_replace="true">'),
-    ("", ""), ("no xml", "no xml"), ("<!-- never closed <robot>", "<!-- never closed <robot>")])
-def test_only_a_root_element_is_marked(text, expected):
-    assert marked(text, {REPLACE: "true"}) == expected
-
-
-def test_a_marked_document_is_otherwise_the_same():
-    text = "<sdf version='1.6'><model name='m'/></sdf>"
-    root = ElementTree.fromstring(marked(text, {REPLACE: "true"}))
-    assert root.attrib == {"version": "1.6", "my_simulations_replace": "true"}
-    assert root[0].tag == "model"
-
-
-def test_a_mark_takes_any_path_and_empty_ones_are_left_out():
-    path = "/tmp/a & 'b' \"c\" <d>.urdf"
-    root = ElementTree.fromstring(marked("<robot/>", {FILE: path, REPLACE: ""}))
-    assert root.attrib == {FILE: path}
+    ("<sdf/>", "sdf"), ("<robot>", "robot"), ("", ""), ("no xml", ""),
+    ("<!-- never closed <robot>", "")])
+def test_text_without_a_root_element_has_no_tag(text, expected):
+    assert root_tag(text) == expected
 
 
 def test_the_tutorials_template_is_read_as_printed():

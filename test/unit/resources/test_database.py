@@ -17,11 +17,12 @@ import pytest
 from reading import sdf
 
 from my_simulations.errors import Severity, errors_of
-from my_simulations.formats.reading import read_world_text
+from my_simulations.formats.reading import parse_world
 from my_simulations.resources.database.download_notes import DownloadNotes
 from my_simulations.resources.database.http_download import Limits
 from my_simulations.resources.database.model_database import ModelDatabase
-from my_simulations.resources.resolver import ModelNotProvidedError, Resolver, ResourceNotFoundError
+from my_simulations.resources.model_provider import ModelNotProvidedError
+from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
 
 LIST = "<database><name>d</name><models>{}</models></database>"
 MODEL = sdf('<model name="{}"><static>1</static><link name="l"/></model>', "1.6")
@@ -173,7 +174,7 @@ def test_a_world_gets_its_models_and_goes_on_without_those_that_are_nowhere(
     resolver = Resolver([str(tmp_path / "models")], missing=database())
     text = sdf('<world name="w"><include><uri>model://lamp</uri></include>'
                "<include><uri>model://nowhere</uri></include></world>")
-    world, issues = read_world_text(text, resolver)
+    world, issues = parse_world(text, resolver)
     assert [model.name for model in world.models] == ["lamp"]
     (missing,) = errors_of(issues)
     assert missing.code == "model-not-found" and "no model 'nowhere'" in missing.message

@@ -11,11 +11,12 @@ from reading import sdf
 from test_database import Server
 
 from my_simulations.errors import errors_of
-from my_simulations.formats.reading import read_world_text
+from my_simulations.formats.reading import parse_world
 from my_simulations.resources.database.download_time import DownloadTime
 from my_simulations.resources.database.fuel import FuelModels
 from my_simulations.resources.database.fuel_uri import FuelUri, fuel_uri
-from my_simulations.resources.resolver import ModelNotProvidedError, Resolver, ResourceNotFoundError
+from my_simulations.resources.model_provider import ModelNotProvidedError
+from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
 
 PUBLIC = "https://fuel.gazebosim.org"
 CONFIG = '<model><name>{}</name><sdf version="1.6">model.sdf</sdf></model>'
@@ -118,7 +119,7 @@ def test_a_world_includes_a_cached_model_whose_meshes_are_named_in_either_way(ca
                     "a.stl"):
         (folder / "model.sdf").write_text(
             MODEL.format("lamp").replace("model://lamp/meshes/a.stl", address))
-        world, issues = read_world_text(text, resolver)
+        world, issues = parse_world(text, resolver)
         assert errors_of(issues) == []
         [model] = world.models
         assert model.uri == f"{PUBLIC}/1.0/Acme/models/Lamp"
@@ -167,7 +168,7 @@ def test_the_configuration_of_the_cache_names_servers(server, tmp_path, monkeypa
 def test_a_world_goes_on_without_what_cannot_be_had(models, server):
     text = sdf(f"<world name='w'><include><uri>{server.uri}/1.0/a/models/none</uri></include>"
                "<model name='m'><link name='l'/></model></world>")
-    world, issues = read_world_text(text, Resolver(fuel=models))
+    world, issues = parse_world(text, Resolver(fuel=models))
     [fault] = errors_of(issues)
     assert fault.code == "model-not-found" and "404" in fault.message and fault.line
     assert [model.name for model in world.models] == ["m"]

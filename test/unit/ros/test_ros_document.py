@@ -2,27 +2,50 @@ import pytest
 
 from my_simulations.description.model import Link, Model, PluginSpec
 from my_simulations.errors import CommandError
-from my_simulations.ros.services.spawn_request import asks_to_replace, checked_name, named, root_of
+from my_simulations.formats.reading import parse_document
+from my_simulations.resources.resolver import Resolver
+from my_simulations.ros.services.spawn_request import (
+    SpawnOptions,
+    checked_name,
+    named,
+    options_of_attributes,
+)
 
 
 @pytest.mark.parametrize("text, root", [
     ("<robot name='a'/>", "robot"),
-    ("<?xml version='1.0' encoding='ISO-8859-1'?>\n<!-- a > b -->\n<sdf version='1.6'><x></sdf>",
-     "sdf"),
-    ("<robot><never closed", "robot"),
-    ("", ""),
-    ("no xml at all", ""),
-    ("<!-- never closed", ""),
+    ("<?xml version='1.0'?>\n<!-- a > b --><sdf version='1.6'><model name='m'/></sdf>", "sdf"),
 ])
-def test_the_root_is_found_without_reading_on(text, root):
-    assert root_of(text)[0] == root
+def test_the_root_is_known_before_the_entity_is_read(text, root):
+    assert parse_document(text, Resolver()).root_tag == root
 
 
 @pytest.mark.parametrize("value, asked", [("true", True), ("1", True), ("false", False)])
-def test_replacement_is_asked_for_by_a_root_attribute(value, asked):
-    _, attributes = root_of(f"<robot my_simulations_replace='{value}'/>")
-    assert asks_to_replace(attributes) is asked
-    assert not asks_to_replace(root_of("<robot/>")[1])
+def test_replacement_is_asked_for_by_a_deprecated_root_attribute(value, asked):
+    assert options_of_attributes({"my_simulations_replace": value}).replace is asked
+    assert options_of_attributes({}) == SpawnOptions()
+
+
+@pytest.mark.parametrize("value, pid", [("41", 41), ("", 0), ("many", 0), ("9" * 30, 0)])
+def test_the_launch_of_a_deprecated_root_attribute_is_a_process_id(value, pid):
+    assert options_of_attributes({"my_simulations_launch": value}).launch_pid == pid
+
+
+def test_attributes_that_were_taken_cause_no_warning():
+    text = "<robot name='a' my_simulations_replace='1' odd='2'><link name='l'/></robot>"
+    document = parse_document(text, Resolver())
+    assert document.take_attributes(("my_simulations_replace", "my_simulations_file")) == {
+        "my_simulations_replace": "1"}
+    _, issues = document.read_entity()
+    assert [issue.message for issue in issues if issue.code == "unknown-attribute"] == [
+        "attribute odd is unknown in <robot>; it is kept without effect"]
+
+
+def test_a_document_that_gets_another_name_has_it_in_every_issue():
+    document = parse_document("<robot name='a'><link name='l'/><odd></robot>", Resolver())
+    document.set_file("arm.urdf")
+    _, issues = document.read_entity()
+    assert len(issues) > 1 and {issue.file for issue in issues} == {"arm.urdf"}
 
 
 @pytest.mark.parametrize("name", ["", "  ", "a::b"])

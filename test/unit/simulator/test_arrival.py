@@ -8,7 +8,7 @@ from my_simulations.description.shapes import Box, Collision, Plane
 from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
-from my_simulations.formats.loading_advice import MOST, advised
+from my_simulations.formats.loading_advice import ADVICE_LIMIT, advice_issues
 from my_simulations.geometry import Pose
 from my_simulations.simulator import spawn_advice
 from my_simulations.simulator.simulator import Simulator
@@ -67,6 +67,6 @@ def test_in_a_crowd_only_the_model_itself_is_looked_at(sim, monkeypatch):
 
 
 def test_a_pile_is_told_of_up_to_a_number_of_findings():
-    pile = advised([cube(f"c{n}", 3.0) for n in range(9)], {}, "w.world")
-    assert len(pile) == MOST + 1 and pile[-1].code == "advice-many"
+    pile = advice_issues([cube(f"c{n}", 3.0) for n in range(9)], {}, "w.world")
+    assert len(pile) == ADVICE_LIMIT + 1 and pile[-1].code == "advice-many"
     assert "check_model w.world" in pile[-1].hint

@@ -5,8 +5,9 @@ import math
 
 import pytest
 
+from my_simulations.description.light import Light
 from my_simulations.description.model import Link, Model
-from my_simulations.description.world import Light, World
+from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import STILL, Pose, quat_from_rpy

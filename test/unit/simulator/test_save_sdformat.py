@@ -56,7 +56,8 @@ def test_it_reads_every_world_that_is_written(faults, tmp_path):
     paths = []
     for number, path in enumerate(WORLDS):
         paths.append(tmp_path / f"{number}.world")
-        paths[-1].write_bytes(write_world(read_world(str(path), Resolver.from_environment())[0]))
+        paths[-1].write_bytes(write_world(read_world(
+            str(path), Resolver.from_environment()).world))
     assert faults(*paths) == ""
 
 

@@ -12,14 +12,15 @@ from lxml import etree
 
 from my_simulations.description.compare import differences
 from my_simulations.description.flatten import flattened
+from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model, PluginSpec
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.unflatten import unflattened
-from my_simulations.description.world import Light, World
+from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, errors_of
-from my_simulations.formats.reading import read_world
+from my_simulations.formats.reading import parse_world, read_world
 from my_simulations.formats.sdf.state_applied import apply_state
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.resources.package_files import own_directory
@@ -69,7 +70,8 @@ def running():
 
 
 def load(path):
-    world, issues = read_world(path, Resolver())
+    with open(path, "rb") as file:
+        world, issues = parse_world(file.read(), Resolver(), path)
     assert not errors_of(issues), issues
     return world
 
@@ -306,7 +308,8 @@ def test_an_unchanged_include_is_one_again(running, tmp_path):
             "</include></world></sdf>")
     (tmp_path / "in.world").write_text(text)
     resolver = Resolver.from_environment()
-    world, _ = read_world(str(tmp_path / "in.world"), resolver)
+    loaded = read_world(str(tmp_path / "in.world"), resolver)
+    world = loaded.world
     sim = running(world=world)
     sim.states.set_model_state("b", Pose((7.0, 0, 0)), Twist())
     path = save_world(sim, "out.world", roots=[str(tmp_path)], resolver=resolver, inline=False)

@@ -6,21 +6,22 @@ import time
 from dataclasses import replace
 
 import pytest
+from reading import world_of
 from test_simulator import arm, box, case, close  # noqa: F401
 
+from my_simulations.description.light import Light
 from my_simulations.description.model import JointAxis
-from my_simulations.description.world import (
+from my_simulations.description.surroundings import (
     Atmosphere,
     Fog,
     GuiCamera,
-    Light,
     Scene,
     Sky,
     SphericalCoordinates,
     Wind,
-    World,
 )
-from my_simulations.errors import CommandError
+from my_simulations.description.world import World
+from my_simulations.errors import CommandError, errors_of
 from my_simulations.formats.reading import read_world
 from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import STILL, Pose, Twist, quat_from_rpy
@@ -32,9 +33,9 @@ from my_simulations.simulator.saving import present_world
 def again(world, tmp_path):
     path = tmp_path / "again.world"
     path.write_bytes(write_world(world, None))
-    found, issues = read_world(str(path), Resolver.from_environment())
-    assert not [issue for issue in issues if issue.severity.name == "ERROR"], issues
-    return found
+    found = read_world(str(path), Resolver.from_environment())
+    assert not errors_of(found.issues), found.issues
+    return found.world
 
 
 # -- models ----------------------------------------------------------------------------------------
@@ -197,17 +198,19 @@ def test_changed_surroundings_are_saved_and_read_again(case, tmp_path):
 
 def test_what_the_tables_do_not_know_of_a_scene_is_kept(case, tmp_path):
     sim = case().sim
-    sim._session.world = replace(sim.world, scene=Scene(ambient=(1, 1, 1, 1)), extra=[
+    read, _ = world_of(
         "<scene><ambient>1 1 1 1</ambient><mood>grim</mood>"
-        "<sky><time>3</time><material>stars</material></sky></scene>",
-        "<gui fullscreen='1'><plugin name='p' filename='libp.so'/></gui>"])
+        "<sky><time>3</time><material>stars</material></sky></scene>"
+        "<gui fullscreen='1'><plugin name='p' filename='libp.so'/></gui>")
+    sim._session.world = replace(sim.world, scene=read.scene, gui=read.gui)
     sim.scene.set_scene(SCENE)
     sim.scene.set_gui_camera(CAMERA)
-    text = "".join(sim.world.extra)
+    text = write_world(sim.world).decode()
     assert "<mood>grim</mood>" in text and "stars" in text
     assert text.count("<ambient>") == 2 - 1
-    assert "libp.so" in text and 'fullscreen="1"' in text
-    assert again(sim.world, tmp_path).scene == SCENE
+    assert "libp.so" in text and 'fullscreen="true"' in text
+    found = again(sim.world, tmp_path).scene
+    assert replace(found, extra=[], sky=replace(found.sky, extra=[])) == SCENE
 
 
 def test_sky_and_camera_can_be_taken_away(case, tmp_path):

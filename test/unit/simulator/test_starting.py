@@ -28,13 +28,13 @@ def test_a_collision_whose_mesh_is_broken_stays_without_a_mesh_and_the_rest_load
     (tmp_path / "broken.stl").write_text("solid nothing\nendsolid nothing\n")
     (tmp_path / "room.world").write_text(WORLD)
     issues = []
-    world, meshes = load_world("room.world", Resolver(resource_paths=[str(tmp_path)]),
-                               issues.append)
-    good, bad = world.models
+    loaded = load_world("room.world", Resolver(resource_paths=[str(tmp_path)]),
+                        issues.append)
+    good, bad = loaded.world.models
     assert (good.name, len(good.links[0].collisions)) == ("good", 1)
     # Still in the description, so that saving the world keeps it.
     assert (bad.name, [c.name for c in bad.links[0].collisions]) == ("bad", ["c"])
-    assert meshes["bad"] == {}
+    assert loaded.meshes["bad"] == {}
     assert any(issue.tolerated and "broken.stl" in str(issue)
                for issue in issues)
 
@@ -51,6 +51,7 @@ def test_what_is_rarely_meant_is_told_with_the_world(tmp_path):
     assert {(one.code, one.severity) for one in issues} == {
         (code, Severity.WARNING) for code in ("inertia-odd", "starts-inside", "shape-thin")}
     assert {one.file for one in issues} == {str(tmp_path / "w.world")}
+    assert all(one.line and one.xpath.startswith("/sdf/world/model") for one in issues)
 
 
 def test_issues_wait_until_there_is_a_log():
@@ -102,8 +103,8 @@ PRESETS = """<sdf version="1.6"><world name="w">
 def test_a_physics_preset_is_chosen_by_name(tmp_path, profile, step):
     (tmp_path / "a.world").write_text(PRESETS)
     issues = []
-    world, _ = load_world(str(tmp_path / "a.world"), Resolver(), issues.append, profile=profile)
-    assert world.physics.max_step_size == step
+    loaded = load_world(str(tmp_path / "a.world"), Resolver(), issues.append, profile=profile)
+    assert loaded.world.physics.max_step_size == step
     assert [issue.code for issue in issues] == (["physics-profile"] if profile == "none" else [])
 
 
@@ -116,8 +117,8 @@ def test_a_seed_decides_where_a_population_stands(tmp_path):
     (tmp_path / "a.world").write_text(RANDOM)
 
     def places(seed):
-        world, _ = load_world(str(tmp_path / "a.world"), Resolver(), lambda issue: None, seed=seed)
-        return [model.pose.position for model in world.models]
+        loaded = load_world(str(tmp_path / "a.world"), Resolver(), lambda issue: None, seed=seed)
+        return [model.pose.position for model in loaded.world.models]
 
     assert len(places(1)) == 5
     assert places(1) == places(1) != places(2)
@@ -132,9 +133,9 @@ def test_a_world_starts_paused_with_its_seed_and_preset_and_stands_after_its_ste
     try:
         assert (sim.clock.paused, sim.clock.step, told) == (True, 0, ["read"])
         assert sim.physics.settings.max_step_size == 0.004
-        again, _ = load_world(str(tmp_path / "a.world"), Resolver(), lambda issue: None, seed=3)
+        again = load_world(str(tmp_path / "a.world"), Resolver(), lambda issue: None, seed=3)
         assert [sim.models.get(name).pose for name in sim.models.names()] == [
-            model.pose for model in again.models]
+            model.pose for model in again.world.models]
         sim.clock.unpause()
         deadline = time.monotonic() + 10
         while sim.clock.step < 20:

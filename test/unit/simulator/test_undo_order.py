@@ -9,8 +9,8 @@ from editor_case import box as shown_box
 from editor_case import cases
 from test_simulator import box, case, close  # noqa: F401
 
+from my_simulations.description.light import Light
 from my_simulations.description.model import Model
-from my_simulations.description.world import Light
 from my_simulations.errors import CommandError
 from my_simulations.geometry import STILL, Pose
 from my_simulations.simulator.history import History

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 
 from my_simulations.errors import InputError, Severity
-from my_simulations.formats.reading import read_entity, read_world_text
+from my_simulations.formats.reading import parse_world, read_entity
 from my_simulations.resources.resolver import Resolver
 
 DATA = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
@@ -41,8 +41,8 @@ def robot_of(inside, resolver=None):
 
 def world_of(inside, version="1.6", resolver=None):
     """A world, read; and the issues."""
-    return read_world_text(sdf(f'<world name="w">{inside}</world>', version),
-                           resolver or Resolver())
+    return parse_world(sdf(f'<world name="w">{inside}</world>', version),
+                       resolver or Resolver())
 
 
 def codes(issues, severity=None):

@@ -5,9 +5,9 @@ import math
 from dataclasses import replace
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
+from ...description.light import Light
 from ...description.model import Model
 from ...description.unflatten import unflattened
-from ...description.world import Light
 from ...engine.commands import JointPid
 from ...errors import CommandError, Issue
 from ...formats.sdf.writer.entities import write_world

@@ -6,6 +6,7 @@ from typing import Collection, Dict, List, Tuple, Union
 
 from ...description.compare import BUILT_IN
 from ...description.flatten import flattened
+from ...description.light import Light
 from ...description.model import Inertial, Link, Model
 from ...description.shapes import (
     Box,
@@ -18,10 +19,10 @@ from ...description.shapes import (
     Visual,
 )
 from ...description.validate import validate
-from ...description.world import Light, World
+from ...description.world import World
 from ...errors import CommandError, InputError, Issue, errors_of
 from ...formats.mesh.loading import collision_meshes
-from ...formats.reading import read_entity, read_file, read_world_text
+from ...formats.reading import parse_world, read_entity, read_file
 from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.simulator import Simulator
@@ -67,7 +68,7 @@ def entities_of_text(text: str, resolver: Resolver) -> Tuple[List[Entity], List[
     if "<world" not in text:
         entity, issues = entity_of_text(text, resolver)
         return [entity], issues
-    world, issues = read_world_text(text, resolver, "<clipboard>")
+    world, issues = parse_world(text, resolver, "<clipboard>")
     if errors_of(issues):
         raise InputError(issues)
     return [*world.models, *world.lights], issues

@@ -9,7 +9,7 @@ from ...description.compare import BUILT_IN
 from ...description.model import Joint, Link, Model
 from ...description.scoped_names import split_scoped
 from ...description.shapes import Collision, Heightmap, ImageMap, Mesh, Visual
-from ...description.world import GuiCamera, SphericalCoordinates
+from ...description.surroundings import GuiCamera, SphericalCoordinates
 from ...errors import CommandError
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.operations import (
@@ -28,7 +28,6 @@ from .inserts import checked
 from .property_path import with_value
 
 _NEW = {"gui_camera": GuiCamera, "spherical_coordinates": SphericalCoordinates}
-_WIND = re.compile(r"\s*<enable_wind\b")
 _PART = re.compile(r"(collision|visual):(.+)\Z", re.DOTALL)
 
 
@@ -90,12 +89,6 @@ def _of_model(model: Model, path: str, value: Any) -> Operation:
     _refuse_name(path)
     if path == "pose":
         return Place({model.name: with_value(model, "pose", value).pose})
-    if path == "enable_wind":
-        if not isinstance(value, bool):
-            raise CommandError(f"enable_wind must be true or false, found {value!r:.60}")
-        extra = [xml for xml in model.extra if not _WIND.match(xml)]
-        text = f"<enable_wind>{str(value).lower()}</enable_wind>"
-        return EditModel(model.name, replace(model, extra=[*extra, text]))
     return _edited(model, with_value(model, path, value))
 
 

@@ -118,8 +118,9 @@ class Autosave:
         """The newest entry whose process is gone, of this world's file before others."""
         entries = [entry for entry in map(self._read, self._listed()) if entry is not None]
         left = [entry for entry in entries if not _lives(entry.process)]
-        return max(left, default=None,
-                   key=lambda entry: (entry.file == self._files.file, entry.saved_at))
+        if not left:
+            return None
+        return max(left, key=lambda entry: (entry.file == self._files.file, entry.saved_at))
 
     def _listed(self) -> List[str]:
         try:

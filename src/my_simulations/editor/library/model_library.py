@@ -14,8 +14,9 @@ from ...errors import CommandError
 from ...resources.database.fuel import FuelModels
 from ...resources.database.fuel_uri import fuel_uri, is_web_address
 from ...resources.database.model_database import ModelDatabase
+from ...resources.model_provider import ModelNotProvidedError
 from ...resources.package_files import own_directory
-from ...resources.resolver import ModelNotProvidedError, Resolver, ResourceNotFoundError
+from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.safe_file import write_whole
 from ..transport.served_files import ServedFiles
 

@@ -137,9 +137,10 @@ class WorldFiles:
             self.file = file
 
     def _load(self, name: str, changed: Callable[[World], World]) -> None:
-        world, meshes = load_world(name, self._resolver, self._tell)
+        loaded = load_world(name, self._resolver, self._tell)
+        world = loaded.world
         self._options.log(Issue(Severity.NOTE, "world-file", f"the world file is {world.file}"))
-        self._world.load_world(changed(world), meshes)
+        self._world.load_world(changed(world), loaded.meshes)
 
     def folders(self, message: Dict[str, Any]) -> Dict[str, Any]:
         """`folders`: folders and world files below an allowed root."""

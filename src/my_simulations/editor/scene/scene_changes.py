@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Optional
 
-from ...description.world import Light
+from ...description.light import Light
 from ...engine.ring import Snapshot
 from ...simulator.registry import Entity
 from ...simulator.simulator import Simulator

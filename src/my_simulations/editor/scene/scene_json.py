@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import os
-import re
 from typing import Any, Dict, Sequence
 
+from ...description.actor import Actor
+from ...description.light import Light
 from ...description.model import Joint, Link, Model
 from ...description.shapes import (
     Box,
@@ -22,7 +23,7 @@ from ...description.shapes import (
     Sphere,
     Visual,
 )
-from ...description.world import Actor, Light, World
+from ...description.world import World
 from ...engine.ring import Snapshot
 from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
@@ -40,8 +41,6 @@ NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule",
 _SCALABLE = (Box, Sphere, Cylinder, Capsule, Cone, Ellipsoid, Mesh, Polyline)
 _LOADED = {".dae": "dae", ".stl": "stl", ".stla": "stl", ".stlb": "stl", ".obj": "obj",
            ".glb": "glb", ".gltf": "gltf"}
-_LAYER = re.compile(r"<layer>\s*(-?\d+)\s*</layer>")
-_WIND = re.compile(r"<enable_wind>\s*(\w+)\s*</enable_wind>")
 
 
 class Documents:
@@ -79,11 +78,10 @@ class Documents:
 
     def model(self, model: Model, pose: Pose, first_id: int = 0) -> Dict[str, Any]:
         """The protocol's `Model` of a flattened model at a world pose."""
-        wind = _WIND.search("".join(model.extra))
         return {
             "name": model.name, "pose": plain(pose), "static": model.static,
             "self_collide": model.self_collide, "allow_auto_disable": model.allow_auto_disable,
-            "enable_wind": wind is not None and wind.group(1).lower() in ("true", "1"),
+            "enable_wind": model.enable_wind,
             "canonical_link": model.canonical_link,
             "links": [self._link(link, first_id + n) for n, link in enumerate(model.links)],
             "joints": [_joint(joint) for joint in model.joints],
@@ -98,7 +96,7 @@ class Documents:
 
     def actor(self, actor: Actor) -> Dict[str, Any]:
         """The protocol's `Actor`: its skin is a geometry, "empty" for an actor without one."""
-        return {**plain_fields(actor, "plugins", "skin_scale"),
+        return {**plain_fields(actor, "plugins", "skin_scale", "include"),
                 "geometry": self._found_mesh(actor.skin, actor.base_dir, actor.skin_scale),
                 "animations": [{**plain_fields(one, "scale"), "geometry":
                                 self._found_mesh(one.filename, actor.base_dir, one.scale)}
@@ -126,11 +124,9 @@ class Documents:
                 "geometry": self.geometry(collision.geometry)}
 
     def _visual(self, visual: Visual) -> Dict[str, Any]:
-        layer = _LAYER.search("".join(visual.extra))
         return {**plain_fields(visual, "geometry", "material"),
                 "geometry": self.geometry(visual.geometry),
-                "material": self._materials.document(visual.material),
-                "layer": int(layer.group(1)) if layer else None}
+                "material": self._materials.document(visual.material)}
 
     def geometry(self, shape: Geometry) -> Dict[str, Any]:
         """The protocol's `Geometry`, with a URL where the page must load something."""

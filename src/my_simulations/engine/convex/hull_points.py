@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ _ROUND = 32     # points on a circle
 _SPHERE = 256   # points on a sphere
 
 
-def hull_points(geometry: Geometry) -> np.ndarray:
+def hull_points(geometry: Geometry) -> np.ndarray[Any, Any]:
     """Points (n, 3) in metres, in the shape's frame, whose hull is the shape.
 
     Curved surfaces are touched from inside: a sphere of 256 points loses 1 % of its radius.
@@ -37,18 +38,18 @@ def hull_points(geometry: Geometry) -> np.ndarray:
     raise ValueError(f"a {type(geometry).__name__.lower()} has no hull")
 
 
-def naming_triangles(count: int) -> np.ndarray:
+def naming_triangles(count: int) -> np.ndarray[Any, Any]:
     """Triangles (count, 3) that name every point: a reader of meshes skips points without one."""
     ring = np.arange(count)
     return np.stack([ring, (ring + 1) % count, (ring + 2) % count], axis=1)
 
 
-def _circle(radius: float, z: float) -> np.ndarray:
+def _circle(radius: float, z: float) -> np.ndarray[Any, Any]:
     turns = np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)
     return np.stack([radius * np.cos(turns), radius * np.sin(turns), np.full(_ROUND, z)], axis=1)
 
 
-def _unit_sphere() -> np.ndarray:
+def _unit_sphere() -> np.ndarray[Any, Any]:
     """Evenly spread points (Fibonacci lattice), the poles and the axes among them."""
     steps = np.arange(_SPHERE) + 0.5
     polar, turn = np.arccos(1.0 - 2.0 * steps / _SPHERE), np.pi * (1.0 + 5.0**0.5) * steps

@@ -33,7 +33,7 @@ def read_collada(data: bytes) -> List[MeshPart]:
             made = (_part(names, geometry, unit) for names, geometry in _instances(document))
             return bounded(part for part in made if part is not None)
     except RecursionError:
-        raise MeshError("its nodes are nested without end") from None
+        raise MeshError("its nodes form a cycle or are nested too deeply") from None
     except (LookupError, TypeError, ValueError, OverflowError, AttributeError) as fault:
         # pycollada takes for granted that what it has not checked is there.
         raise MeshError(str(fault), _line_of_fault(root)) from None
@@ -95,7 +95,7 @@ def _instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
         node, above, names, depth = waiting.pop()
         count += 1
         if count > _MOST_INSTANCES or depth > _DEEPEST:
-            raise MeshError("its nodes are nested without end")
+            raise MeshError("its nodes form a cycle or are nested too deeply")
         if isinstance(node, GeometryNode):
             for bound in node.objects("geometry", above):
                 yield (*_names(bound.original), *names), bound

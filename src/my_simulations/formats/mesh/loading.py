@@ -76,7 +76,7 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
             if isinstance(mesh, Mesh):
                 found = odd_size(mesh, data, moves=not model.static)
         except InputError as fault:
-            found = [replace(issue, message=f"{issue.message}; it is left out", tolerated=True,
+            found = [replace(issue, message=f"{issue.message}; it is skipped", tolerated=True,
                              severity=Severity.WARNING) for issue in fault.issues]
         where = f"collision {collision.name!r} of link {scope + link.name!r}"
         issues += [replace(issue, message=f"{where}: {issue.message}") for issue in found]

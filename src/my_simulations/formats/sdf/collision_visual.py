@@ -18,7 +18,7 @@ from ...description.shapes import (
 from ...description.validate import geometry_fault, has_zero_size
 from ...resources.resolver import ResourceNotFoundError
 from ..xml.binding import BAD, REFUSED, Found, closest, fill, read_text, to_xml
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from ..xml.values import VECTOR2
 from .model_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
 
@@ -26,7 +26,7 @@ from .model_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
 def read_collision(
     element: Any, source: Source, kept: List[str]
 ) -> Optional[Tuple[Collision, Found]]:
-    """A collision; None where it is left out: its XML is then in `kept`.
+    """A collision; None where it is skipped: its XML is then in `kept`.
 
     Source: SDF spec 1.7, link/collision.
     """
@@ -41,7 +41,7 @@ def read_collision(
 
 
 def read_visual(element: Any, source: Source, kept: List[str]) -> Optional[Tuple[Visual, Found]]:
-    """A visual; None where it is left out: its XML is then in `kept`.
+    """A visual; None where it is skipped: its XML is then in `kept`.
 
     Source: SDF spec 1.7, link/visual.
     """
@@ -78,7 +78,7 @@ def _anchored(uri: str, base_dir: str) -> str:
 def _geometry(
     elements: Sequence[Any], owner: Any, source: Source, collides: bool, kept: List[str],
 ) -> Optional[Geometry]:
-    level = Level.ERROR if collides else Level.WARNING
+    level = FaultLevel.ERROR if collides else FaultLevel.WARNING
     shapes = [child for element in elements for child in element if isinstance(child.tag, str)]
     if not elements:
         source.report(level, "geometry-missing", f"<{owner.tag}> has no <geometry>", owner)
@@ -87,7 +87,7 @@ def _geometry(
         return Empty()
     shape = shapes[0]
     if len(shapes) > 1 and shape.tag != "polyline":
-        source.warn("geometry-many", f"<geometry> holds several shapes; <{shape.tag}> is used",
+        source.warn("geometry-many", f"<geometry> contains several shapes; <{shape.tag}> is used",
                     shapes[1])
     table = GEOMETRIES.get(shape.tag)
     if table is None:
@@ -105,7 +105,7 @@ def _geometry(
     return checked(geometry, shape, owner.tag, source)
 
 
-def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: Level) -> bool:
+def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: FaultLevel) -> bool:
     """The points of all sibling polylines: the first is the outline, the others are holes."""
     for shape in shapes:
         loop: List[Tuple[float, float]] = []
@@ -126,11 +126,11 @@ _CLOSED = 1e-4
 """Metres between the first and the last point of a loop that was closed by hand (Gazebo)."""
 
 
-def unknown_shape(shape: Any, owner: str, level: Level, source: Source,
+def unknown_shape(shape: Any, owner: str, level: FaultLevel, source: Source,
                   known: Sequence[str]) -> None:
-    """Report a shape that is left out."""
+    """Report a shape that is skipped."""
     source.report(level, "geometry-unknown",
-                  f"<{shape.tag}> is not a known shape; this {owner} is left out", shape,
+                  f"<{shape.tag}> is not a known shape; this {owner} is skipped", shape,
                   closest(shape.tag, list(known)))
 
 
@@ -147,7 +147,7 @@ def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optio
         # ODE never lets a geometry of size 0 touch anything: files use them as place-holders.
         mild = not collides or has_zero_size(geometry)
         say = source.warn if mild else source.tolerate
-        say("bad-shape", f"{problem}; this {owner} is left out", shape)
+        say("bad-shape", f"{problem}; this {owner} is skipped", shape)
         return None
     return geometry
 
@@ -179,7 +179,7 @@ def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Sour
         owner = "collision" if collides else "visual"
         kind = "mesh" if isinstance(mesh, Mesh) else "image"
         say = source.tolerate if collides else source.warn
-        without = "; this collision is left out" if collides else ""
+        without = "; this collision is skipped" if collides else ""
         say(f"{kind}-not-found", f"the {kind} of this {owner} {missing}{without}", element,
             hint=source.resolver.meant(missing) + "check the path, GAZEBO_MODEL_PATH and"
                  " ROS_PACKAGE_PATH")

@@ -4,19 +4,23 @@ from __future__ import annotations
 import functools
 import os
 from dataclasses import replace
-from typing import Any, Callable, List, Optional, Sequence, Union
+from typing import Any, Callable, Optional, Sequence, Union
 
-from ...description.world import Actor, Light
+from ...description.actor import Actor
+from ...description.light import Light
 from ...errors import InputError
 from ...geometry import IDENTITY
 from ...resources.resolver import ResourceNotFoundError
+from ..include_overrides import IncludeOverrides
 from ..xml.binding import fill
 from ..xml.parsing import content, parse
-from ..xml.source import Level, Source
-from .flags import Said
+from ..xml.source import FaultLevel, Source
 from .light import LightPlacement, read_light
-from .model import IncludeOverrides, ParsedModel, read_model, read_plugin, relative_to
+from .link import relative_to
+from .model_flags import ModelFlags
 from .model_tables import INCLUDE
+from .parsed_model import ParsedModel
+from .plugin import read_plugin
 from .upgrade import upgrade
 from .world_scene import read_actor
 
@@ -24,20 +28,31 @@ _DEEPEST = 20
 _MOST = 20000
 
 Included = Union[ParsedModel, LightPlacement, Actor]
+ModelReader = Callable[..., ParsedModel]
+"""`model.read_model`, which reads models with includes inside and is therefore handed in."""
 
 
-def read_include(element: Any, source: Source, static: bool = False,
+def read_include(element: Any, source: Source, read_model: ModelReader, static: bool = False,
                  outer: Sequence[str] = (), alone: bool = True) -> Optional[Included]:
-    """What an `<include>` brings; None, with an issue, where nothing usable comes.
+    """The entity that an `<include>` names; None, with an issue, if it cannot be used.
 
     Name, pose and static replace those of the included model; plugins are added. Source: SDF spec
-    1.7, include; a missing file leaves the include out, and the world loads (Gazebo behaviour).
+    1.7, include; an include whose file is missing is skipped, and the world loads (Gazebo
+    behaviour).
+
+    Args:
+        element: `<include>`.
+        source: the file that it is in.
+        read_model: reads a `<model>`; see `model.read_model` for this and the rest.
+        static: True if an outer model is static.
+        outer: names of the models around the include, outermost first.
+        alone: False if joints may name links of other models.
     """
     probe = _Include()
     found = fill(probe, element, INCLUDE, source, [])
     if not probe.uri:
-        say = source.tolerate if outer else functools.partial(source.report, Level.ERROR)
-        say("include-uri-missing", "<include> has no <uri>; it is left out", element)
+        say = source.tolerate if outer else functools.partial(source.report, FaultLevel.ERROR)
+        say("include-uri-missing", "<include> has no <uri>; it is skipped", element)
         return None
     if probe.pose is None and element.find("pose") is not None:
         probe.pose = IDENTITY  # an empty one, too, replaces that of the model
@@ -54,10 +69,10 @@ def read_include(element: Any, source: Source, static: bool = False,
                 " GAZEBO_MODEL_PATH, or name a model database in GAZEBO_MODEL_DATABASE_URI")
         if outer:
             source.tolerate("model-not-found", f"the included model {missing}; model {outer[-1]!r}"
-                            " goes without it", element, hint)
+                            " is loaded without it", element, hint)
         else:
-            source.report(Level.ERROR, "model-not-found", f"the included model {missing}", element,
-                          hint)
+            source.report(FaultLevel.ERROR, "model-not-found", f"the included model {missing}",
+                          element, hint)
         return None
     return _read_file(path, element, source, changes, read, probe.uri)
 
@@ -73,15 +88,16 @@ class _Include:
 
 
 def _read_file(path: str, element: Any, source: Source, changes: IncludeOverrides,
-               read: Callable[..., ParsedModel], uri: str) -> Optional[Included]:
+               read: ModelReader, uri: str) -> Optional[Included]:
     if path in source.trail or len(source.trail) >= _DEEPEST:
         chain = " -> ".join(os.path.basename(os.path.dirname(p)) for p in (*source.trail, path))
-        source.report(Level.ERROR, "include-cycle", f"models include each other: {chain}", element)
+        source.report(FaultLevel.ERROR, "include-cycle", f"models include each other: {chain}",
+                      element)
         return None
     source.log.includes += 1
     if source.log.includes > _MOST:
-        source.report(Level.ERROR, "include-many", f"more than {_MOST} includes; the rest is left"
-                      " out", element)
+        source.report(FaultLevel.ERROR, "include-many", f"more than {_MOST} includes; the rest is"
+                      " skipped", element)
         return None
     inner = replace(source, file=path, base_dir=os.path.dirname(path),
                     trail=(*source.trail, path))
@@ -89,12 +105,10 @@ def _read_file(path: str, element: Any, source: Source, changes: IncludeOverride
     if root is None:
         return None
     if root.tag == "robot":
-        from ..urdf.robot import read_robot
-
-        model = read_robot(root, inner, changes)
+        model = source.read_robot(root, inner, changes)
         model.uri = uri
-        said = Said(static=True if model.static else None)
-        return ParsedModel(model, changes.relative_to, said=said)
+        flags = ModelFlags(static=True if model.static else None)
+        return ParsedModel(model, changes.relative_to, flags=flags)
     for child in root:
         if child.tag == "model":
             placement = read(child, inner, changes)
@@ -104,10 +118,11 @@ def _read_file(path: str, element: Any, source: Source, changes: IncludeOverride
             light = read_light(child, inner)
             return _changed_light(light, changes)
         if child.tag == "actor":
-            source.warn("actor-unsupported", f"{uri!r} is an actor: it is shown, but nothing of it"
-                        " is simulated", element)
+            source.warn("actor-unsupported", f"{uri!r} is an actor: it is shown, but not"
+                        " simulated", element)
             return _changed_actor(read_actor(child, inner), changes)
-    source.report(Level.ERROR, "include-empty", f"{path} holds no model and no light", element)
+    source.report(FaultLevel.ERROR, "include-empty", f"{path} contains no model and no light",
+                  element)
     return None
 
 
@@ -137,11 +152,11 @@ def _root(path: str, inner: Source, element: Any, source: Source) -> Optional[An
         if root.tag in ("sdf", "gazebo"):
             root = upgrade(root, inner)
         elif root.tag != "robot":
-            source.report(Level.ERROR, "include-empty", f"{path} is neither SDF nor URDF, its root"
-                          f" is <{root.tag}>", element)
+            source.report(FaultLevel.ERROR, "include-empty", f"{path} is neither SDF nor URDF, its"
+                          f" root is <{root.tag}>", element)
             root = None
     except OSError as fault:
-        source.report(Level.ERROR, "file-unreadable", f"{path} cannot be read:"
+        source.report(FaultLevel.ERROR, "file-unreadable", f"{path} cannot be read:"
                       f" {fault.strerror or fault}", element)
     except InputError as fault:
         for issue in fault.issues:
@@ -149,5 +164,3 @@ def _root(path: str, inner: Source, element: Any, source: Source) -> Optional[An
     source.parsed[path] = root
     return root
 
-
-__all__: List[str] = ["read_include", "Included"]

@@ -14,7 +14,7 @@ from .joint import UnresolvedJoint, place_axes, reverse_axes
 from .link import relative_to
 
 
-class Between:
+class InterModelJointReader:
     """Finds the ends of joints, and brings them to the frame of the child.
 
     Args:
@@ -35,13 +35,13 @@ class Between:
         if parent is None or child is None:
             self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} connects"
                                   f" {joint.parent!r} with {joint.child!r}, which are not both in"
-                                  " the world; it is left out", one.element)
+                                  " the world; it is skipped", one.element)
             return False
         joint.parent, joint.child = parent, child
         try:
             self._place(one)
         except FrameError as fault:
-            self._source.tolerate("frame-unknown", f"joint {joint.name!r}: {fault}; it is left out",
+            self._source.tolerate("frame-unknown", f"joint {joint.name!r}: {fault}; it is skipped",
                                   one.element)
             return False
         return True

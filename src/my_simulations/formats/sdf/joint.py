@@ -9,7 +9,7 @@ from ...description.model import INFINITE, Joint, JointAxis, Mimic
 from ...description.validate import JOINT_TYPES
 from ...geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
 from ..xml.binding import REFUSED, Found, Table, Value, closest, fill, read_text, to_xml
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from ..xml.values import FLOAT, TEXT, VECTOR3
 from .frame_graph import FrameError
 from .model_tables import AXIS, AXIS2, JOINT
@@ -87,10 +87,10 @@ def _mimic(element: Any, source: Source) -> Mimic:
     values = _Follow()
     fill(values, element, MIMIC, source, [])
     if not values.joint:
-        source.report(Level.FATAL, "mimic-joint-missing", "<mimic> names no joint", element)
+        source.report(FaultLevel.FATAL, "mimic-joint-missing", "<mimic> names no joint", element)
     if element.get("axis") not in (None, "", "axis"):
-        source.warn("mimic-axis", "<mimic> follows the second axis of a joint, which is not known"
-                    " here; its first is followed", element)
+        source.warn("mimic-axis", "<mimic> follows the second axis of a joint, which is not"
+                    " supported; the first axis is used", element)
     return Mimic(values.joint, values.multiplier,
                  values.offset - values.multiplier * values.reference)
 
@@ -105,7 +105,7 @@ class _Follow:
 
 MIMIC = Table("mimic", _Follow, {
     name: Value(name, FLOAT) for name in ("multiplier", "offset", "reference")
-}, attributes={"joint": Value("joint", TEXT)}, level=Level.FATAL, known_attributes=("axis",))
+}, attributes={"joint": Value("joint", TEXT)}, level=FaultLevel.FATAL, known_attributes=("axis",))
 
 
 def _thread(joint: Joint, element: Any, source: Source) -> None:
@@ -113,10 +113,10 @@ def _thread(joint: Joint, element: Any, source: Source) -> None:
     try:
         pitch = FLOAT.parse(element.text or "")
     except ValueError as fault:
-        source.report(Level.FATAL, "bad-value", f"<screw_thread_pitch>: {fault}", element)
+        source.report(FaultLevel.FATAL, "bad-value", f"<screw_thread_pitch>: {fault}", element)
         return
     if pitch == 0:
-        source.report(Level.FATAL, "bad-value", "<screw_thread_pitch> must not be 0", element)
+        source.report(FaultLevel.FATAL, "bad-value", "<screw_thread_pitch> must not be 0", element)
         return
     joint.thread_pitch = -2.0 * math.pi / pitch
 
@@ -143,30 +143,31 @@ def _type(element: Any, source: Source) -> str:
     name = element.get("name", "")
     joint_type: str = (element.get("type") or "").strip()
     if not joint_type:
-        source.report(Level.ERROR, "joint-type-missing", f"joint {name!r} has no type; it is left"
-                      " out", element)
+        source.report(FaultLevel.ERROR, "joint-type-missing", f"joint {name!r} has no type; it is"
+                      " skipped", element)
     elif joint_type == "piston":
-        source.warn("joint-unsupported", f"joint {name!r}: the type piston is not moved", element,
+        source.warn("joint-unsupported", f"joint {name!r}: type piston is not supported; the"
+                    " joint does not move", element,
                     "it was dropped from the format; use prismatic")
     elif joint_type not in JOINT_TYPES:
         source.tolerate("joint-type-unknown", f"joint {name!r} has the unknown type"
-                        f" {joint_type!r}; it is left out", element,
+                        f" {joint_type!r}; it is skipped", element,
                         closest(joint_type, list(JOINT_TYPES)))
     return joint_type
 
 
-def is_whole(one: UnresolvedJoint, source: Source) -> bool:
+def is_complete(one: UnresolvedJoint, source: Source) -> bool:
     """False for a joint that Gazebo does not make, either, for what it says itself."""
     joint = one.joint
     if joint.type not in (*JOINT_TYPES, "piston"):
         return False  # `read_joint` has said so
     missing = [role for role in ("parent", "child") if not getattr(joint, role)]
     if missing:
-        source.report(Level.ERROR, "joint-link-missing", f"joint {joint.name!r} has no"
-                      f" {' and no '.join(missing)} link; it is left out", one.element)
+        source.report(FaultLevel.ERROR, "joint-link-missing", f"joint {joint.name!r} has no"
+                      f" {' and no '.join(missing)} link; it is skipped", one.element)
     elif joint.parent == joint.child:
         source.tolerate("joint-link-repeated", f"joint {joint.name!r} connects {joint.child!r} with"
-                        " itself; it is left out", one.element)
+                        " itself; it is skipped", one.element)
     else:
         return True
     return False
@@ -218,7 +219,7 @@ def _vector(xyz: Any, source: Source) -> Vec3:
     text = (xyz.text or "").strip()
     if not text:
         return (0.0, 0.0, 1.0)
-    vector = read_text(VECTOR3, text, "<xyz>", xyz, source, Level.FATAL)
+    vector = read_text(VECTOR3, text, "<xyz>", xyz, source, FaultLevel.FATAL)
     return (0.0, 0.0, 1.0) if vector is REFUSED else vector
 
 

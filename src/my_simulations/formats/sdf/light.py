@@ -4,9 +4,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ...description.world import Light
+from ...description.light import Light
 from ..xml.binding import fill
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from .model_tables import LIGHT
 
 TYPES = ("point", "directional", "spot")
@@ -25,9 +25,9 @@ def read_light(element: Any, source: Source) -> LightPlacement:
     light = Light(element.get("name", ""))
     found = fill(light, element, LIGHT, source, light.extra)
     if not light.name:
-        source.report(Level.FATAL, "name-empty", "the light has no name", element)
+        source.report(FaultLevel.FATAL, "name-empty", "the light has no name", element)
     if light.type not in TYPES:
-        source.warn("light-type", f"{light.type!r} is no type of light; point is used", element,
+        source.warn("light-type", f"{light.type!r} is not a light type; point is used", element,
                     "a light is point, directional or spot")
         light.type = "point"
     frame = next((pose.get("relative_to") or "" for pose in found.get("pose", ())), "")

@@ -5,9 +5,9 @@ from typing import Any, Container, Dict, List, Sequence, Set, Tuple
 
 from ...description.model import WORLD, Inertial, Link
 from ...description.shapes import Heightmap, ImageMap
-from ..default_inertia import usable
+from ..default_inertia import usable_inertia
 from ..xml.binding import Found, fill
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from .collision_visual import read_collision, read_visual
 from .frame_graph import FrameTree
 from .model_tables import INERTIAL, LINK
@@ -50,12 +50,12 @@ class LinkReader:
         name: str = element.get("name", "")
         if name == WORLD:
             self.world = name = free_name(WORLD, known)
-            self._source.tolerate("name-reserved", f"a link is named 'world', which joints mean the"
-                                  f" world by; it is called {name!r}", element)
+            self._source.tolerate("name-reserved", f"a link is named 'world', which means the"
+                                  f" world in joints; it is renamed to {name!r}", element)
         elif name and name in self._taken:
             name = free_name(name, known)
             self._source.tolerate("name-repeated", f"there are two links named"
-                                  f" {element.get('name')!r}; the second is called {name!r}",
+                                  f" {element.get('name')!r}; the second is renamed to {name!r}",
                                   element, "names are unique within a model")
         known.add(name)
         self._taken.add(name)
@@ -74,7 +74,7 @@ class LinkReader:
             link.inertial = Inertial()
             # A static model ignores its inertia, whatever it says (SDF spec, model/static).
             inside = fill(link.inertial, child, INERTIAL, source, link.extra,
-                          Level.WARNING if static else None)
+                          FaultLevel.WARNING if static else None)
             self.elements[id(link.inertial)] = child
             self._note_pose(link.inertial, inside, link)
         self.elements.setdefault(id(link.inertial), element)
@@ -98,7 +98,7 @@ class LinkReader:
 
     def _complete_inertia(self, link: Link) -> None:
         element = self.elements[id(link.inertial)]
-        link.inertial = usable(link, self._source, element)
+        link.inertial = usable_inertia(link, self._source, element)
         self.elements[id(link.inertial)] = element
 
     def _note_pose(self, thing: Any, found: Found, link: Link) -> None:
@@ -132,6 +132,6 @@ def free_name(wanted: str, taken: Container[str]) -> str:
     return f"{wanted}_{count}"
 
 
-def must_stand(link: Link) -> bool:
+def must_be_static(link: Link) -> bool:
     """True for a link that collides as a terrain or a map, which cannot move (Gazebo behaviour)."""
     return any(isinstance(one.geometry, (Heightmap, ImageMap)) for one in link.collisions)

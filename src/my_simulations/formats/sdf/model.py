@@ -2,55 +2,28 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any, List, Optional, Sequence, Set, Tuple
 
-from ...description.model import WORLD, Link, Model, PluginSpec
+from ...description.model import WORLD, Link, Model
 from ...description.validate import link_names, own_faults, place_faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose, inverse
-from ..xml.binding import closest, fill, to_xml
-from ..xml.source import Level, Source
-from .flags import Said, first_link, says, settle
+from ..include_overrides import IncludeOverrides
+from ..xml.binding import closest, fill
+from ..xml.source import FaultLevel, Source
 from .frame_graph import FrameError, FrameTree
-from .joint import UnresolvedJoint, is_whole, place_axes, read_joint, reverse_axes
-from .link import LinkReader, free_name, must_stand, relative_to
+from .include import read_include
+from .joint import UnresolvedJoint, is_complete, place_axes, read_joint, reverse_axes
+from .link import LinkReader, free_name, must_be_static, relative_to
+from .model_flags import apply_include_flags, first_link, own_flags
 from .model_tables import FRAME, MODEL
+from .parsed_model import ParsedModel, add_frames_inside
+from .plugin import read_plugin
 
 ROOT = "__model__"
 DEEPEST = 50
 """Models inside models; what the files of Gazebo and of robots have is 2 or 3."""
-
-
-@dataclass
-class IncludeOverrides:
-    """What an include says about the model it brings; None where it is silent."""
-
-    name: Optional[str] = None
-    pose: Optional[Pose] = None
-    relative_to: str = ""
-    static: Optional[bool] = None
-    plugins: List[PluginSpec] = field(default_factory=list)
-    placement_frame: str = ""
-
-
-@dataclass
-class ParsedModel:
-    """A model that was read.
-
-    Attributes:
-        model: it.
-        relative_to: the frame its pose is given in, "" for the parent's.
-        frames: those inside it; None for one from a URDF file.
-        pending: joints with a link that is not its own, for the outer model to look for.
-        said: what it says of itself as a whole, for a model that includes it.
-    """
-
-    model: Model
-    relative_to: str = ""
-    frames: Optional[FrameTree] = None
-    pending: List[UnresolvedJoint] = field(default_factory=list)
-    said: Said = Said()
 
 
 def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides] = None,
@@ -68,11 +41,6 @@ def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides]
     return _ModelReader(
         element, source, changes or IncludeOverrides(), static, tuple(outer), alone
     ).read()
-
-
-def read_plugin(element: Any) -> PluginSpec:
-    """A `<plugin>`, kept whole."""
-    return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element))
 
 
 class _End(enum.Enum):
@@ -110,7 +78,7 @@ class _ModelReader:
         model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
         model.plugins += changes.plugins
         model.links = self._links.read_all(found.get("link", ()), static)
-        self._stand_still(model, static)
+        self._force_static_if_needed(model, static)
         for child in found.get("frame", ()):
             self._frame(child)
         nested = self._within_depth(found.get("model", ()), model)
@@ -129,7 +97,7 @@ class _ModelReader:
         self._place(model)
         ends = [(one, self._place_joint(one, model, names)) for one in (*joints, *waiting)]
         model.joints = [one.joint for one, end in ends if end is _End.HERE] + model.joints
-        placement.pending = [one for one, end in ends if end is _End.ELSEWHERE]
+        placement.unresolved_joints = [one for one, end in ends if end is _End.ELSEWHERE]
         self._put_by(element.get("placement_frame") or "", model)
         self._check(model)
         return placement
@@ -141,11 +109,11 @@ class _ModelReader:
         if changes.pose is not None:
             model.pose, placement.relative_to = changes.pose, changes.relative_to
 
-    def _stand_still(self, model: Model, static: bool) -> None:
+    def _force_static_if_needed(self, model: Model, static: bool) -> None:
         for link in model.links:
-            if not static and must_stand(link):
+            if not static and must_be_static(link):
                 self._source.warn("static-forced", f"model {model.name!r} is made static: its link"
-                                  f" {link.name!r} collides as a terrain or a map",
+                                  f" {link.name!r} has a heightmap or image collision",
                                   self._elements[id(link)])
                 model.static = True
                 return
@@ -163,34 +131,33 @@ class _ModelReader:
         if len((*self._outer, model.name)) < DEEPEST:
             return elements
         for child in elements:
-            self._source.report(Level.ERROR, "models-too-deep", "models are nested deeper than"
-                                f" {DEEPEST} levels; this one is left out", child)
+            self._source.report(FaultLevel.ERROR, "models-too-deep", "models are nested deeper than"
+                                f" {DEEPEST} levels; this one is skipped", child)
         return ()
 
     def _read_includes(self, elements: Sequence[Any], model: Model,
                        placement: ParsedModel) -> List[Tuple[Any, ParsedModel]]:
-        """The models that are included in this one; settles what they say of the whole."""
-        from .include import read_include
-
+        """The models that are included in this one; applies their flags to this one."""
         included: List[Tuple[Any, ParsedModel]] = []
-        placement.said = says(model, self._element)
+        placement.flags = own_flags(model, self._element)
         for child in elements:
             static = model.static or self._outer_static
-            inner = read_include(child, self._source, static, (*self._outer, model.name))
+            inner = read_include(child, self._source, read_model, static,
+                                 (*self._outer, model.name))
             if isinstance(inner, ParsedModel):
                 included.append((child, inner))
-                placement.said = settle(model, self._element,
-                                        [(one, other.said) for one, other in included],
-                                        self._source)
-                self._obey(placement)
-        self._obey(placement)
+                placement.flags = apply_include_flags(
+                    model, self._element, [(one, other.flags) for one, other in included],
+                    self._source)
+                self._override_static(placement)
+        self._override_static(placement)
         return included
 
-    def _obey(self, placement: ParsedModel) -> None:
-        """What an include says of this model counts before all that the model says."""
+    def _override_static(self, placement: ParsedModel) -> None:
+        """Apply the `<static>` of the include that brings this model, which has precedence."""
         if self._changes.static is not None:
             placement.model.static = self._changes.static
-            placement.said = replace(placement.said, static=self._changes.static)
+            placement.flags = replace(placement.flags, static=self._changes.static)
 
     def _nested(self, elements: Sequence[Any], included: Sequence[Tuple[Any, ParsedModel]],
                 model: Model, static: bool) -> List[UnresolvedJoint]:
@@ -204,7 +171,7 @@ class _ModelReader:
             if (child.get("merge") or "").strip().lower() in ("true", "1"):
                 self._merge(placement, child, model)
             else:
-                placement.model.static = model.static  # as `sdf_flags` settled it
+                placement.model.static = model.static  # as set by `apply_include_flags`
                 waiting += self._adopt(placement, child, model)
         return waiting
 
@@ -215,7 +182,7 @@ class _ModelReader:
         if inner.name in taken:
             free = free_name(inner.name, taken)
             self._source.tolerate("name-repeated", f"there are two models named {inner.name!r} in"
-                                  f" {model.name!r}; the second is called {free!r}", element,
+                                  f" {model.name!r}; the second is renamed to {free!r}", element,
                                   "names are unique within a model")
             inner.name = free
         model.models.append(inner)
@@ -225,7 +192,7 @@ class _ModelReader:
         if placement.relative_to:
             self._links.given_in.append((inner, inner.name, ""))
         add_frames_inside(self._frames, placement, element)
-        return [one.moved_out(inner.name) for one in placement.pending]
+        return [one.moved_out(inner.name) for one in placement.unresolved_joints]
 
     def _merge(self, placement: ParsedModel, element: Any, model: Model) -> None:
         """Put what a model holds into this one, where it stands. Source: SDF spec 1.9, include."""
@@ -261,9 +228,9 @@ class _ModelReader:
                         setattr(joint, role, self._links.world)
             if joint.name and joint.name in taken:
                 self._source.tolerate("name-repeated", f"there are two joints named {joint.name!r};"
-                                      " the second is left out", element,
+                                      " the second is skipped", element,
                                       "names are unique within a model")
-            elif is_whole(one, self._source):
+            elif is_complete(one, self._source):
                 taken.add(joint.name)
                 joints.append(one)
         return joints
@@ -342,7 +309,7 @@ class _ModelReader:
                 return _End.ELSEWHERE
             self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} names"
                                   f" {' and '.join(map(repr, strangers))}, which the model does not"
-                                  " have; the joint is left out", element,
+                                  " have; the joint is skipped", element,
                                   closest(strangers[0], sorted(names)))
             return _End.NOWHERE
         if joint.child == WORLD and joint.parent in names:
@@ -388,26 +355,3 @@ class _ModelReader:
                       **self._source.where(element)),
                 fatal=fault.severity is Severity.ERROR,
             )
-
-
-def add_frames_inside(frames: FrameTree, placement: ParsedModel, element: Any) -> None:
-    """Declare what is inside a model that is declared itself, under scoped names."""
-    model = placement.model
-    if placement.frames is not None:
-        frames.include(model.name, placement.frames, element)
-    else:
-        _add_inner_frames(frames, model, model.name, element)
-
-
-def _add_inner_frames(frames: FrameTree, model: Model, scope: str, element: Any) -> None:
-    for link in model.links:
-        name = f"{scope}::{link.name}"
-        frames.add(name, link.pose, scope, element, name)
-    for nested in model.models:
-        inner = f"{scope}::{nested.name}"
-        frames.add(inner, nested.pose, scope, element)
-        _add_inner_frames(frames, nested, inner, element)
-
-
-__all__ = ["IncludeOverrides", "ParsedModel", "add_frames_inside", "read_model", "read_plugin",
-           "relative_to"]

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Dict, Mapping
 
+from ...description.light import Light
 from ...description.model import Inertial, Joint, JointAxis, Link, Model
 from ...description.shapes import (
     Box,
@@ -22,9 +23,9 @@ from ...description.shapes import (
     Surface,
     Visual,
 )
-from ...description.world import Light, Physics, World
+from ...description.world import Physics, World
 from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
-from ..xml.source import Level
+from ..xml.source import FaultLevel
 from ..xml.values import (
     BOOL,
     COLOR,
@@ -39,7 +40,7 @@ from ..xml.values import (
     VECTOR3,
 )
 
-FATAL, ERROR, WARNING = Level.FATAL, Level.ERROR, Level.WARNING
+FATAL, ERROR, WARNING = FaultLevel.FATAL, FaultLevel.ERROR, FaultLevel.WARNING
 
 
 SHOWN, KEPT = Use.SHOWN, Use.KEPT
@@ -147,7 +148,8 @@ VISUAL = Table("visual", Visual, {
     "cast_shadows": Value("cast_shadows", BOOL),
     "transparency": Value("transparency", FLOAT),
     "laser_retro": Value("laser_retro", FLOAT, use=KEPT),
-    **_kept("frame", "visibility_flags", "meta"), **_told("plugin"),
+    "meta": Group({"layer": Value("layer", INT)}),
+    **_kept("frame", "visibility_flags"), **_told("plugin"),
 }, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 MATERIAL = Table("material", Material, {
@@ -224,7 +226,8 @@ MODEL = Table("model", Model, {
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
     "frame": Part("1.5", kept=True), "plugin": Part(use=KEPT, told=True),
-    **_kept("enable_wind"), **_told("gripper"),
+    "enable_wind": Value("enable_wind", BOOL, use=KEPT),
+    **_told("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
 
@@ -282,12 +285,10 @@ WORLD = Table("world", World, {
     "physics": Part(), "light": Part(use=SHOWN), "model": Part(), "include": Part(),
     "plugin": Part(use=KEPT, told=True),
     "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
-    "state": Part(kept=True), "joint": Part("1.10"),
+    "state": Part(), "joint": Part("1.10"),
     "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),
-    "gui": Part(use=SHOWN, kept=True), "scene": Part(use=SHOWN, kept=True),
-    "actor": Part(use=SHOWN, told=True, kept=True),
-    "road": Part(use=KEPT, told=True, kept=True),
-    "wind": Part(use=KEPT, told=True, kept=True), "atmosphere": Part(use=KEPT, kept=True),
-    "spherical_coordinates": Part(use=KEPT, kept=True),
+    "gui": Part(use=SHOWN), "scene": Part(use=SHOWN), "actor": Part(use=SHOWN, told=True),
+    "road": Part(use=KEPT, told=True), "wind": Part(use=KEPT, told=True),
+    "atmosphere": Part(use=KEPT), "spherical_coordinates": Part(use=KEPT),
     **_told("audio"),
 }, known_attributes=("name",))

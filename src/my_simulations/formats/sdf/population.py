@@ -14,13 +14,14 @@ from typing import Any, Callable, Dict, List
 from ...description.model import Model
 from ...geometry import Pose, Vec3, add, transform
 from ..xml.binding import fill
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from .include import read_include
-from .model import ParsedModel, read_model
+from .model import read_model
+from .parsed_model import ParsedModel
 from .world_tables import POPULATION, Population
 
 MOST = 10000
-"""Models of one population; more are left out with an error."""
+"""Models of one population; more are skipped with an error."""
 
 _SAMPLES = 10000
 _LATTICE = 0.1
@@ -37,8 +38,8 @@ def read_population(element: Any, source: Source, seed: int) -> List[Model]:
         return []
     problem = _problem(population) if templates else "there is no <model> and no <include>"
     if problem:
-        source.report(Level.ERROR, "population-unusable", f"population {population.name!r} is left"
-                      f" out: {problem}", element)
+        source.report(FaultLevel.ERROR, "population-unusable", f"population {population.name!r} is"
+                      f" skipped: {problem}", element)
         return []
     places = positions(population, random.Random(f"{seed}/{population.name}"))
     return [_clone(templates[0], number, place, population)
@@ -50,7 +51,7 @@ def _templates(element: Any, source: Source) -> List[Model]:
     for child in element.iterchildren("model", "include"):
         if child.tag == "model":
             return [read_model(child, source).model]
-        included = read_include(child, source)
+        included = read_include(child, source, read_model)
         if isinstance(included, ParsedModel):
             return [included.model]
     return []

@@ -3,9 +3,9 @@ from __future__ import annotations
 
 from typing import Any, List
 
-from ...description.world import LightState, LinkState, ModelState, SavedState
+from ...description.saved_state import LightState, LinkState, ModelState, SavedState
 from ..xml.binding import fill
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from ..xml.values import numbers
 from .light import read_light
 from .model import read_model
@@ -54,7 +54,7 @@ def _angles(element: Any, source: Source) -> List[float]:
         try:
             angles.append(numbers(angle.text or "", 1)[0])
         except ValueError as fault:
-            source.report(Level.WARNING, "bad-value", f"<angle>: {fault}", angle)
+            source.report(FaultLevel.WARNING, "bad-value", f"<angle>: {fault}", angle)
     return angles
 
 

@@ -9,8 +9,10 @@ from dataclasses import replace
 from typing import Any, Dict, List, Optional, Set, Tuple
 
 from ...description.flatten import flattened
+from ...description.light import Light
 from ...description.model import Joint, Link, Model
-from ...description.world import InitialState, Light, ModelState, SavedState, World
+from ...description.saved_state import InitialState, ModelState, SavedState
+from ...description.world import World
 from ...errors import Issue, warning
 from ...geometry import Pose, Twist, compose, inverse
 from .state_joint_positions import joint_position
@@ -22,7 +24,7 @@ def apply_state(world: World) -> World:
 
     A model without joints has its links moved. One with joints is moved by its canonical link, and
     its joints get positions, since a joint is at 0 in the configuration of the description. The
-    result has no state any more, neither as a field nor in `extra`.
+    result has no state any more.
     """
     state = world.state
     if state is None:
@@ -41,7 +43,6 @@ def apply_state(world: World) -> World:
         models=[model for model in models if model.name not in gone],
         lights=[light for light in lights if light.name not in gone],
         initial={name: start for name, start in initial.items() if name not in gone},
-        extra=[xml for xml in world.extra if not xml.lstrip().startswith("<state")],
     )
 
 

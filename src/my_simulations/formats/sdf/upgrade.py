@@ -9,7 +9,7 @@ from typing import Any, Callable, List, Tuple
 
 from ...geometry import normalised, rpy_from_quat
 from ...resources.model_config import NEWEST, version_of
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from ..xml.values import numbers
 from .pre_1_2 import includes_by_uri, values_to_elements
 
@@ -22,8 +22,8 @@ def upgrade(root: Any, source: Source) -> Any:
     version = _version(root, source)
     if version > NEWEST:
         source.warn(
-            "sdf-newer", f"SDF {root.get('version')} is newer than 1.7; what is not known is"
-            " kept, without effect", root,
+            "sdf-newer", f"SDF {root.get('version')} is newer than 1.7; unknown elements are"
+            " kept without effect", root,
         )
         _from_1_9(root, source)
     for before, step in _STEPS:
@@ -171,7 +171,7 @@ def _from_1_9(root: Any, source: Source) -> None:
                 x, y, z, *rpy = numbers(pose.text, 6)
                 angles = (math.radians(rpy[0]), math.radians(rpy[1]), math.radians(rpy[2]))
         except ValueError as fault:
-            source.report(Level.FATAL, "bad-value", f"<pose>: {fault}", pose)
+            source.report(FaultLevel.FATAL, "bad-value", f"<pose>: {fault}", pose)
             pose.text = ""
             continue
         pose.text = " ".join(repr(value) for value in (x, y, z, *angles))

@@ -4,20 +4,25 @@ from __future__ import annotations
 import copy
 from typing import Any, Callable, Dict, List, Sequence, Set, Tuple
 
+from ...description.actor import Actor
+from ...description.light import Light
 from ...description.model import Link, Model
 from ...description.validate import link_names
-from ...description.world import Actor, Light, Physics, World
+from ...description.world import Physics, World
 from ...geometry import is_finite
 from ..xml.binding import Found, fill, to_xml
 from ..xml.source import Source
 from ..xml.values import BOOL
 from .frame_graph import FrameError, FrameTree
 from .include import read_include
-from .inter_model_joint import Between
-from .joint import UnresolvedJoint, is_whole, read_joint
+from .inter_model_joint import InterModelJointReader
+from .joint import UnresolvedJoint, is_complete, read_joint
 from .light import LightPlacement, read_light
-from .model import ParsedModel, add_frames_inside, read_model, read_plugin, relative_to
+from .link import relative_to
+from .model import read_model
 from .model_tables import FRAME, PHYSICS, WORLD
+from .parsed_model import ParsedModel, add_frames_inside
+from .plugin import read_plugin
 from .population import read_population
 from .saved_state import read_state
 from .state_applied import state_issues
@@ -25,7 +30,7 @@ from .world_scene import read_surroundings
 
 
 def read_world_element(element: Any, source: Source, seed: int = 0, profile: str = "") -> World:
-    """A world; models with a fatal fault are left out whole. Source: SDF spec 1.7, world.
+    """A world; models with a fatal fault are skipped. Source: SDF spec 1.7, world.
 
     `seed` and `profile` are as for `load.read_world`.
     """
@@ -59,7 +64,7 @@ class _Entities:
     def read(self, element: Any) -> None:
         readers: Dict[str, Callable[[Any], Any]] = {
             "model": lambda child: read_model(child, self._source, alone=False),
-            "include": lambda child: read_include(child, self._source, alone=False),
+            "include": lambda child: read_include(child, self._source, read_model, alone=False),
             "light": lambda child: read_light(child, self._source),
             "population": lambda child: read_population(child, self._source, self._world.seed),
         }
@@ -80,15 +85,15 @@ class _Entities:
             for model in entity:
                 self._add(ParsedModel(model), element)
         elif isinstance(entity, Actor):
+            entity.include = to_xml(element)
             self._world.actors.append(entity)
-            self._world.extra.append(to_xml(element))
         elif isinstance(entity, ParsedModel):
             model = entity.model
             if self._is_new(model.name, self._models, "model", element):
                 self._world.models.append(model)
                 self._frames.add(model.name, model.pose, entity.relative_to, element)
                 self._inner.append((entity, element))
-                self._pending += [one.moved_out(model.name) for one in entity.pending]
+                self._pending += [one.moved_out(model.name) for one in entity.unresolved_joints]
                 if entity.relative_to:
                     self._waiting.append((model, element))
         elif isinstance(entity, LightPlacement):
@@ -103,7 +108,7 @@ class _Entities:
     def _is_new(self, name: str, names: Set[str], kind: str, element: Any) -> bool:
         if name in names:
             self._source.warn("name-repeated", f"there are two {kind}s named {name!r}; the second"
-                              " is left out", element)
+                              " is skipped", element)
             return False
         names.add(name)
         return True
@@ -127,10 +132,10 @@ class _Entities:
             return
         links = {f"{model.name}::{name}" for model in self._world.models
                  for name in link_names(model)}
-        between = Between(links, self._frames, self._source)
+        between = InterModelJointReader(links, self._frames, self._source)
         for element in joints:
             one = UnresolvedJoint(*read_joint(element, self._source), element)
-            if is_whole(one, self._source) and between.connect(one):
+            if is_complete(one, self._source) and between.connect(one):
                 self._world.joints.append(one.joint)
         for one in self._pending:
             if between.connect(one):
@@ -191,7 +196,7 @@ def _check_physics(physics: Physics, element: Any, source: Source) -> None:
         instead.append(f"max_step_size is out of range; {usual.max_step_size:g} s is used")
     if physics.real_time_update_rate < 0:
         physics.real_time_update_rate = 0.0
-        instead.append("real_time_update_rate is below 0; time goes on as fast as it can")
+        instead.append("real_time_update_rate is negative; the simulation runs as fast as possible")
     if physics.ode.iters < 1:
         physics.ode.iters = usual.ode.iters
         instead.append(f"ode/solver/iters is out of range; {usual.ode.iters} is used")

@@ -4,30 +4,25 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
-from ...description.world import (
-    Actor,
-    Animation,
+from ...description.actor import Actor, Animation, Trajectory, Waypoint
+from ...description.saved_state import LightState, LinkState, ModelState, SavedState
+from ...description.surroundings import (
     Atmosphere,
     Fog,
+    Gui,
     GuiCamera,
-    LightState,
-    LinkState,
-    ModelState,
     Road,
-    SavedState,
     Scene,
     Sky,
     SphericalCoordinates,
-    Trajectory,
-    Waypoint,
     Wind,
 )
 from ...geometry import IDENTITY, Pose, Twist, Vec3
 from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
-from ..xml.source import Level
+from ..xml.source import FaultLevel
 from ..xml.values import BOOL, COLOR, FLOAT, INT, POSE, SCALE, SECONDS, TEXT, VECTOR3, numbers
 
-WARNING, SHOWN, KEPT = Level.WARNING, Use.SHOWN, Use.KEPT
+WARNING, SHOWN, KEPT = FaultLevel.WARNING, Use.SHOWN, Use.KEPT
 
 SKY = Table("sky", Sky, {
     "time": Value("time", FLOAT), "sunrise": Value("sunrise", FLOAT),
@@ -51,9 +46,9 @@ SCENE = Table("scene", Scene, {
     "origin_visual": Value("origin_visual", BOOL), "sky": Part(), "fog": Part(),
 }, level=WARNING, use=SHOWN)
 
-GUI = Table("gui", GuiCamera, {
-    "camera": Part(), "plugin": Kept(told=True),
-}, level=WARNING, known_attributes=("fullscreen",), use=SHOWN)
+GUI = Table("gui", Gui, {
+    "camera": Part(), "plugin": Part(use=KEPT, told=True),
+}, attributes={"fullscreen": Value("fullscreen", BOOL, use=KEPT)}, level=WARNING, use=SHOWN)
 
 GUI_CAMERA = Table("camera", GuiCamera, {
     "pose": Value("pose", POSE), "view_controller": Value("view_controller", TEXT),
@@ -152,7 +147,7 @@ class TwistKind:
     def format(self, value: Twist) -> str:
         return f"{VECTOR3.format(value.linear)} {VECTOR3.format(value.angular)}"
 
-    def salvage(self, text: str) -> Twist:
+    def parse_leniently(self, text: str) -> Twist:
         raise ValueError("not a twist")
 
 
@@ -168,8 +163,8 @@ class Nanoseconds:
     def format(self, value: int) -> str:
         return f"{value // 10 ** 9} {value % 10 ** 9}"
 
-    def salvage(self, text: str) -> int:
-        return round(SECONDS.salvage(text) * 1e9)
+    def parse_leniently(self, text: str) -> int:
+        return round(SECONDS.parse_leniently(text) * 1e9)
 
 
 _NS: Any = Nanoseconds()

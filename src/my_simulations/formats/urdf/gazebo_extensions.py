@@ -11,7 +11,7 @@ from ..sdf.collision_visual import fill_material
 from ..sdf.model_tables import COLLISION as SDF_COLLISION
 from ..sdf.model_tables import VISUAL as SDF_VISUAL
 from ..xml.binding import Value, closest, fill, set_value, to_xml
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from ..xml.values import BOOL, FLOAT, POSE
 from .kinematic_tree import Body, Connection
 from .urdf_tables import (
@@ -122,8 +122,8 @@ class Extensions:
             return  # a link and a joint may share their name
         if tag not in GAZEBO_LINK_KEPT and ":" not in tag and tag[0] != "{":
             known = [*GAZEBO_COLLISION, *GAZEBO_LINK, *GAZEBO_LINK_KEPT, "material"]
-            self._source.warn("unknown-element", f"element <{tag}> is not known in <gazebo>; it is"
-                              " kept, without effect", child, closest(tag, known))
+            self._source.warn("unknown-element", f"element <{tag}> is unknown in <gazebo>; it is"
+                              " kept without effect", child, closest(tag, known))
         body.link.extra.append(to_xml(child))
         if tag in _TOLD:
             self._source.tell_unused(child)
@@ -144,7 +144,7 @@ class Extensions:
             joint.extra.append(to_xml(child))
 
     def _set(self, target: Any, value: Value, child: Any) -> None:
-        set_value(target, value, child.text or "", child, child.tag, self._source, Level.ERROR)
+        set_value(target, value, child.text or "", child, child.tag, self._source, FaultLevel.ERROR)
 
 
 BUILT_IN_MATERIALS = "file://media/materials/scripts/gazebo.material"

@@ -6,10 +6,10 @@ from typing import Any, Dict, Optional
 from ...description.model import WORLD, Joint
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..sdf.frame_graph import FrameError
-from ..sdf.joint import UnresolvedJoint, is_whole, place_axes, read_joint, reverse_axes
+from ..sdf.joint import UnresolvedJoint, is_complete, place_axes, read_joint, reverse_axes
 from ..xml.binding import closest
 from ..xml.source import Source
-from .fixed_joint_lumping import standing
+from .fixed_joint_lumping import lumped_into
 from .kinematic_tree import Body
 
 
@@ -25,7 +25,7 @@ def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
         robot: the name of the model, which may stand before those of links.
     """
     joint, found = read_joint(element, source)
-    if not is_whole(UnresolvedJoint(joint, found, element), source):
+    if not is_complete(UnresolvedJoint(joint, found, element), source):
         return None
     for role in ("parent", "child"):
         name = getattr(joint, role)
@@ -33,14 +33,14 @@ def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
         setattr(joint, role, own)
         if own not in bodies and own != WORLD:
             source.tolerate("joint-link-unknown", f"joint {joint.name!r} names {name!r}, which is"
-                            " not a link of the robot; it is left out", element,
+                            " not a link of the robot; it is skipped", element,
                             closest(own, list(bodies)))
             return None
     at = compose(poses.get(joint.child, IDENTITY), joint.pose)
     for role in ("parent", "child"):
         name = getattr(joint, role)
         if name in bodies:
-            setattr(joint, role, standing(bodies[name]).link.name)
+            setattr(joint, role, lumped_into(bodies[name]).link.name)
     turned = joint.child == WORLD
     if turned:  # the description knows the world as a parent only
         joint.parent, joint.child = joint.child, joint.parent

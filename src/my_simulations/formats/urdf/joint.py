@@ -7,7 +7,7 @@ from xml.sax.saxutils import quoteattr
 from ...description.model import INFINITE, Joint, JointAxis, Mimic
 from ...geometry import Quat, conjugate, norm, rotate, scale
 from ..xml.binding import Found, closest, fill
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from ..xml.values import FLOAT
 from .kinematic_tree import Body, Connection
 from .link import read_origin
@@ -25,14 +25,14 @@ def read_connection(element: Any, source: Source, bodies: Dict[str, Body]) -> Op
     ends = Ends()
     found = fill(ends, element, JOINT, source, [])
     if joint_type not in TYPES:
-        source.report(Level.FATAL, "joint-type-unknown", f"joint {name!r} has the unknown type"
+        source.report(FaultLevel.FATAL, "joint-type-unknown", f"joint {name!r} has the unknown type"
                       f" {joint_type!r}", element, closest(joint_type, list(TYPES)))
         return None
     for role, link in (("parent", ends.parent), ("child", ends.child)):
         if link not in bodies:
             what = f"names {link!r} as its {role}, which is not a link" if link else (
                 f"has no {role} link")
-            source.report(Level.FATAL, "joint-link-unknown" if link else "joint-link-missing",
+            source.report(FaultLevel.FATAL, "joint-link-unknown" if link else "joint-link-missing",
                           f"joint {name!r} {what} of the robot", element,
                           closest(link, list(bodies)))
             return None
@@ -52,7 +52,7 @@ def _follow(joint: Joint, element: Any, source: Source) -> None:
     fill(mimic, element, MIMIC, source, [])
     if not mimic.joint or joint.axis is None:
         source.warn("mimic-joint-missing", f"joint {joint.name!r}: <mimic> names no joint, or has"
-                    " no axis to turn; it is left out", element)
+                    " no axis to turn; it is skipped", element)
         return
     joint.axis.mimic = mimic
     joint.extra.append(
@@ -82,7 +82,7 @@ def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[
     if limits is not None:
         _limit(axis, limits, joint, found["limit"][0], source)
     elif joint.type != "continuous":
-        source.report(Level.FATAL, "joint-limit-missing", f"joint {joint.name!r} of type"
+        source.report(FaultLevel.FATAL, "joint-limit-missing", f"joint {joint.name!r} of type"
                       f" {joint.type} has no <limit>", element,
                       "a revolute joint without limits is of type continuous")
     return axis

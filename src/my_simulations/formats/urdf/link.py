@@ -9,7 +9,7 @@ from ...description.shapes import Collision, Empty, Geometry, Material, Visual
 from ...geometry import IDENTITY, Pose
 from ..sdf.collision_visual import checked, unknown_shape
 from ..xml.binding import BAD, closest, fill
-from ..xml.source import Level, Source
+from ..xml.source import FaultLevel, Source
 from .kinematic_tree import Body
 from .urdf_tables import (
     COLLISION,
@@ -27,7 +27,8 @@ Palette = Dict[str, Material]
 """Materials by name; a visual may name one that is defined elsewhere in the file."""
 
 
-def read_origin(elements: Sequence[Any], source: Source, level: Optional[Level] = None) -> Pose:
+def read_origin(elements: Sequence[Any], source: Source,
+                level: Optional[FaultLevel] = None) -> Pose:
     """The pose of the first `<origin>`, identity where there is none."""
     for element in elements:
         origin = Origin()
@@ -54,7 +55,7 @@ def read_body(element: Any, source: Source, static: bool, palette: Palette) -> B
     for child in found.get("visual", ()):
         visual = Visual("", Empty())
         inside = fill(visual, child, VISUAL, source, [])
-        visual.pose = read_origin(inside.get("origin", ()), source, Level.WARNING)
+        visual.pose = read_origin(inside.get("origin", ()), source, FaultLevel.WARNING)
         geometry = _geometry(inside.get("geometry", ()), child, source, False)
         if geometry is not None:
             visual.geometry = geometry
@@ -65,7 +66,7 @@ def read_body(element: Any, source: Source, static: bool, palette: Palette) -> B
 
 
 def _inertial(element: Any, source: Source, static: bool) -> Inertial:
-    level = Level.WARNING if static else Level.FATAL
+    level = FaultLevel.WARNING if static else FaultLevel.FATAL
     inertial = Inertial(0.0)
     found = fill(inertial, element, INERTIAL, source, [], level)
     inertial.pose = read_origin(found.get("origin", ()), source, level)
@@ -81,7 +82,7 @@ def _inertial(element: Any, source: Source, static: bool) -> Inertial:
 
 def _geometry(elements: Sequence[Any], owner: Any, source: Source,
               collides: bool) -> Optional[Geometry]:
-    level = Level.ERROR if collides else Level.WARNING
+    level = FaultLevel.ERROR if collides else FaultLevel.WARNING
     shapes = [child for element in elements for child in element]
     if not shapes:
         source.report(level, "geometry-missing", f"<{owner.tag}> has no shape", owner)
@@ -94,7 +95,7 @@ def _geometry(elements: Sequence[Any], owner: Any, source: Source,
     missing = [name for name in needed if not (shape.get(name) or "").strip()]
     if missing:
         what = f"<{shape.tag}> has no {' and no '.join(missing)}"
-        source.report(level, "attribute-missing", f"{what}; this {owner.tag} is left out", shape)
+        source.report(level, "attribute-missing", f"{what}; this {owner.tag} is skipped", shape)
         return None
     geometry: Geometry = table.of()
     if BAD in fill(geometry, shape, table, source, [], level):

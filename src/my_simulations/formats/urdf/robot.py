@@ -7,11 +7,11 @@ from ...description.model import WORLD, JointAxis, Model
 from ...description.validate import faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose
-from ..default_inertia import usable
-from ..sdf.model import IncludeOverrides
+from ..default_inertia import usable_inertia
+from ..include_overrides import IncludeOverrides
 from ..xml.binding import closest, fill
-from ..xml.source import Level, Source
-from .fixed_joint_lumping import lump, standing
+from ..xml.source import FaultLevel, Source
+from .fixed_joint_lumping import lump, lumped_into
 from .gazebo_extensions import Extensions, moved
 from .gazebo_joint import read_sdf_joint
 from .joint import read_connection, turned_to
@@ -115,7 +115,7 @@ class _RobotReader:
         first, last = sorted((other, connection), key=lambda one: one.joint.name)
         self._source.tolerate("link-two-parents", f"link {connection.joint.child!r} is the child of"
                               f" joint {other.joint.name!r} and of joint {connection.joint.name!r};"
-                              f" {first.joint.name!r} is left out", connection.element,
+                              f" {first.joint.name!r} is skipped", connection.element,
                               "links and joints of a robot form a tree")
         if first is connection:
             return False
@@ -135,7 +135,7 @@ class _RobotReader:
             self._fatal("root-many", f"the robot has {len(roots)} root links: {names}",
                         roots[1].element, "connect them with joints")
         elif sum(1 for _ in parents_first(roots[0])) < len(self._bodies):
-            self._fatal("joint-cycle", "some joints of the robot form a ring", self._element)
+            self._fatal("joint-cycle", "some joints of the robot form a cycle", self._element)
         else:
             return roots[0]
         return None
@@ -165,7 +165,7 @@ class _RobotReader:
         model.extra += frames
         if not model.links and root.link.name != WORLD:
             self._source.tolerate("link-missing", f"no link of the robot has a mass: its root"
-                                  f" {root.link.name!r} is left out with all below it, and the"
+                                  f" {root.link.name!r} is skipped with all below it, and the"
                                   " model is empty", root.element,
                                   "give it an <inertial>, or make the model static")
         return poses
@@ -179,16 +179,16 @@ class _RobotReader:
         if self._model.static:
             return dropped
         for body in parents_first(root):
-            stands = standing(body)
+            stands = lumped_into(body)
             up = stands.up
-            below = up is not None and id(standing(up.parent)) in dropped
+            below = up is not None and id(lumped_into(up.parent)) in dropped
             massless = stands.inertial is None or stands.inertial.mass <= 0
             is_world = stands is root and root.link.name == WORLD
             if below or (massless and not is_world):
                 dropped[id(body)] = body
                 if body is stands and not below:
                     self._source.warn(
-                        "link-massless", f"link {body.link.name!r} has no mass; it is left out with"
+                        "link-massless", f"link {body.link.name!r} has no mass; it is skipped with"
                         f" {len(list(parents_first(body))) - 1} links below it", body.element,
                         "a link that can move needs an <inertial> with a mass above 0",
                     )
@@ -210,7 +210,7 @@ class _RobotReader:
         self._model.links.append(link)
 
     def _complete_inertia(self, body: Body) -> None:
-        body.link.inertial = usable(body.link, self._source, body.element)
+        body.link.inertial = usable_inertia(body.link, self._source, body.element)
 
     def _named(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
         prefix = body.link.name if stem.startswith(LUMP) else ""
@@ -224,11 +224,11 @@ class _RobotReader:
     def _joint(self, connection: Connection) -> None:
         joint = connection.joint
         if joint.type in ("floating", "planar"):
-            self._source.warn("joint-unsupported", f"joint {joint.name!r} of type {joint.type} does"
-                              " not hold its links together here, nor in Gazebo",
+            self._source.warn("joint-unsupported", f"joint {joint.name!r} of type {joint.type} is"
+                              " not simulated, as in Gazebo: its links are not connected",
                               connection.element)
             return
-        joint.parent = standing(connection.parent).link.name
+        joint.parent = lumped_into(connection.parent).link.name
         if joint.type == "fixed" and connection.keep == "revolute":
             joint.type, joint.axis = "revolute", JointAxis(lower=0.0, upper=0.0)
         self._elements[id(joint)] = connection.element
@@ -236,7 +236,7 @@ class _RobotReader:
 
     def _hand_over(self, body: Body) -> None:
         """What else a lumped link had goes to the link it is part of; that one's own word wins."""
-        link, to = body.link, standing(body).link
+        link, to = body.link, lumped_into(body).link
         to.extra += [moved(xml, body.offset) for xml in link.extra]
         if to.self_collide is None:
             to.self_collide = link.self_collide
@@ -247,7 +247,7 @@ class _RobotReader:
     def _warn_about_world(self, body: Body) -> None:
         if body.collisions or body.visuals:
             self._source.warn("world-shapes", "the link `world` stands for the world itself; its"
-                              " shapes are left out", body.element)
+                              " shapes are skipped", body.element)
 
     def _check(self) -> None:
         known = [joint.name for joint in self._model.joints]
@@ -266,6 +266,6 @@ class _RobotReader:
             )
 
     def _fatal(self, code: str, message: str, element: Any, hint: str = "") -> None:
-        self._source.report(Level.FATAL, code, message, element, hint)
+        self._source.report(FaultLevel.FATAL, code, message, element, hint)
 
 

@@ -11,7 +11,7 @@ from ...description.model import Inertial, JointAxis, Link, Mimic, Model
 from ...description.shapes import Box, Capsule, Collision, Color, Cylinder, Mesh, Sphere, Visual
 from ...geometry import IDENTITY_QUAT, ZERO3, Quat, Vec3
 from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
-from ..xml.source import Level
+from ..xml.source import FaultLevel
 from ..xml.values import (
     BOOL,
     COLOR,
@@ -26,7 +26,7 @@ from ..xml.values import (
     VECTOR3,
 )
 
-FATAL, WARNING = Level.FATAL, Level.WARNING
+FATAL, WARNING = FaultLevel.FATAL, FaultLevel.WARNING
 
 
 def _kept(*names: str) -> Dict[str, Entry]:
@@ -153,9 +153,10 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "static": Value("static", BOOL),
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
+    "enable_wind": Value("enable_wind", BOOL, use=Use.KEPT),
     "plugin": Part(use=Use.KEPT), "joint": Part(),
     "gripper": Kept(told=True),
-    **_kept("enable_wind", "frame", "canonicalBody", "selfCollide", "turnGravityOff"),
+    **_kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
 """`<gazebo>` without a reference."""
 

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass, field, fields
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Set, Tuple, Union
 
-from .source import Level, Source
+from .source import FaultLevel, Source
 from .values import LIMIT, UNSET, Kind
 
 
@@ -41,7 +41,7 @@ class Value:
 
     field: str
     kind: Kind
-    level: Optional[Level] = None
+    level: Optional[FaultLevel] = None
     since: str = ""
     repeated: bool = False
     part: str = ""
@@ -65,7 +65,7 @@ class Group:
 class Part:
     """A child element with a reader of its own.
 
-    `told`: that it does nothing here is said once for each kind. `kept`: its XML is kept besides.
+    `told`: that it is not simulated is said once for each kind. `kept`: its XML is kept besides.
     """
 
     since: str = ""
@@ -78,7 +78,7 @@ class Part:
 class Kept:
     """A child element that is known and kept as XML, not simulated.
 
-    `told`: that it does nothing here is said once for each kind.
+    `told`: that it is not simulated is said once for each kind.
     """
 
     since: str = ""
@@ -107,7 +107,7 @@ class Table:
     of: Any
     children: Mapping[str, Entry] = field(default_factory=dict)
     attributes: Mapping[str, Value] = field(default_factory=dict)
-    level: Level = Level.ERROR
+    level: FaultLevel = FaultLevel.ERROR
     known_attributes: Tuple[str, ...] = ()
     use: Use = Use.SIMULATED
     strict: bool = False
@@ -153,7 +153,7 @@ BAD = "(bad)"
 
 
 def fill(target: Any, element: Any, table: Table, source: Source, extra: List[str],
-         level: Optional[Level] = None) -> Found:
+         level: Optional[FaultLevel] = None) -> Found:
     """Fill `target` from `element` by `table`.
 
     Args:
@@ -176,7 +176,7 @@ def fill(target: Any, element: Any, table: Table, source: Source, extra: List[st
 
 
 def set_value(target: Any, value: Value, text: str, element: Any, name: str, source: Source,
-              level: Level, strict: bool = False) -> bool:
+              level: FaultLevel, strict: bool = False) -> bool:
     """Set one field from text; an empty or unset text changes nothing.
 
     Args:
@@ -214,7 +214,7 @@ REFUSED, DEFAULT = object(), object()
 """For a text that is no value, and for a value that cannot be used, so that its default is."""
 
 
-def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, level: Level,
+def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, level: FaultLevel,
               strict: bool = False) -> Any:
     """The value of a text, `REFUSED` or `DEFAULT`.
 
@@ -235,7 +235,7 @@ def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, l
     try:
         if strict:
             raise fault
-        value = kind.salvage(text)
+        value = kind.parse_leniently(text)
     except ValueError:
         source.report(level, "bad-value", f"{shown}: {fault}", element, hint)
         return REFUSED
@@ -256,7 +256,7 @@ class _Filler:
     __slots__ = ("_table", "_source", "_extra", "_found", "_level")
 
     def __init__(self, table: Table, source: Source, extra: List[str], found: Found,
-                 level: Optional[Level]) -> None:
+                 level: Optional[FaultLevel]) -> None:
         self._level = level
         self._table = table
         self._source = source
@@ -302,8 +302,8 @@ class _Filler:
 
     def _repeated(self, child: Any, parent: Any) -> None:
         """Gazebo asks for the first element of a name, and keeps the others unread."""
-        self._source.tolerate("element-repeated", f"<{child.tag}> stands again in"
-                              f" <{parent.tag}>; the first one counts", child)
+        self._source.tolerate("element-repeated", f"<{child.tag}> is repeated in"
+                              f" <{parent.tag}>; the first one is used", child)
 
     def _aside(self, child: Any, entry: Union[Part, Kept], wrap: Tuple[str, ...]) -> None:
         """A child with a reader of its own, or one that is kept, or both."""
@@ -332,7 +332,7 @@ class _Filler:
         inside = parent.tag if parent is not None else self._table.name
         self._source.warn(
             "unknown-element" if what.startswith("element") else "unknown-attribute",
-            f"{what} is not known in <{inside}>; it is kept, without effect", element,
+            f"{what} is unknown in <{inside}>; it is kept without effect", element,
             closest(name, known),
         )
 

@@ -12,7 +12,7 @@ import re
 from typing import Any, Union
 
 from ...errors import InputError, error
-from .source import Log
+from .source import IssueCollector
 
 _DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
 _ENCODING = re.compile(rb"""<\?xml[^>]*\bencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
@@ -40,7 +40,7 @@ def content(path: str) -> bytes:
         return stream.read(LARGEST + 1)  # a pipe has no size; `parse` looks again
 
 
-def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
+def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
     """The root element of a document.
 
     Args:
@@ -71,7 +71,7 @@ def parse(text: Union[str, bytes], file: str, log: Log) -> Any:
     except etree.XMLSyntaxError as fault:
         root = _recover(_decoded(data, isinstance(text, str), file, log), fault, file, log)
     if root is None:
-        raise _fault("xml-no-root", "the document holds no element", file)
+        raise _fault("xml-no-root", "the document contains no element", file)
     return root
 
 
@@ -99,7 +99,7 @@ def _refuse_masses(data: bytes, file: str) -> None:
     from .repair import MOST_ATTRIBUTES
 
     if data.count(b"<") > _MOST_TAGS:
-        raise _fault("xml-too-large", f"the document holds more than {_MOST_TAGS} tags", file)
+        raise _fault("xml-too-large", f"the document contains more than {_MOST_TAGS} tags", file)
     for found in _LONG_TAG.finditer(data):
         tag = found.group().split(b">", 1)[0]
         if tag.count(b"=") > MOST_ATTRIBUTES:
@@ -137,7 +137,7 @@ def _strict_parser(encoding: Any) -> Any:
     return _parser(encoding or "", False)
 
 
-def _decoded(data: bytes, was_text: bool, file: str, log: Log) -> str:
+def _decoded(data: bytes, was_text: bool, file: str, log: IssueCollector) -> str:
     if was_text:
         return data.decode("utf-8")
     encoding = next((name for mark, name in _BOMS if data.startswith(mark)), "")
@@ -153,7 +153,7 @@ def _decoded(data: bytes, was_text: bool, file: str, log: Log) -> str:
         return data.decode("latin-1")
 
 
-def _retyped(data: bytes, root: Any, file: str, log: Log) -> Any:
+def _retyped(data: bytes, root: Any, file: str, log: IssueCollector) -> Any:
     """The root of a well-formed document whose text may hold elements in typographic brackets."""
     from lxml import etree
 
@@ -165,7 +165,7 @@ def _retyped(data: bytes, root: Any, file: str, log: Log) -> Any:
     return _recover(text, etree.XMLSyntaxError("text in ‹›", 0, 1, 1), file, log)
 
 
-def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
+def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
     """A second attempt, over text with its tags balanced; raises InputError where cut off."""
     from lxml import etree
 
@@ -182,7 +182,7 @@ def _recover(text: str, fault: Any, file: str, log: Log) -> Any:
     if result.hopeless:
         raise _fault("xml-malformed", f"not well formed: {result.hopeless}", file, line, column)
     if result.elements == 0:
-        raise _fault("xml-no-root", "the document holds no element", file, line, column)
+        raise _fault("xml-no-root", "the document contains no element", file, line, column)
     if result.cut_off:
         raise _fault(
             "xml-truncated", f"the document is cut off: {result.cut_off}", file,

@@ -3,10 +3,12 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
+from ...description.model import Model
 from ...errors import Issue, Severity
 from ...resources.resolver import Resolver
+from ..include_overrides import IncludeOverrides
 
 _MOST_PATHS = 1000
 """Issues with an XPath; finding one takes as long as the element has siblings."""
@@ -21,15 +23,15 @@ _TOLD_APART_BY = {"sensor": "type", "plugin": "filename"}
 """Attributes that make elements of one name different things."""
 
 
-class Level(enum.Enum):
+class FaultLevel(enum.Enum):
     """What a broken value or element does to what it belongs to."""
 
     FATAL = "fatal"      # an error; the whole model (or light) cannot be used
-    ERROR = "error"      # an error; only the element is left out
+    ERROR = "error"      # an error; only the element is skipped
     WARNING = "warning"  # Gazebo would go on as well
 
 
-class Log:
+class IssueCollector:
     """Issues of one reading, without exact repeats (a model may be included a thousand times).
 
     Attributes:
@@ -63,6 +65,7 @@ class Source:
         file: path, or a name for text from elsewhere.
         base_dir: what relative URIs start from, "" where there is no file.
         resolver: finds URIs.
+        read_robot: reads the `<robot>` of an included file (see `urdf.robot.read_robot`).
         log: shared by all files of one reading.
         trail: files that are being included, outermost first.
         parsed: roots of included files by path, shared by all files of one reading.
@@ -71,7 +74,8 @@ class Source:
     file: str
     base_dir: str
     resolver: Resolver
-    log: Log = field(default_factory=Log)
+    read_robot: Callable[[Any, "Source", Optional[IncludeOverrides]], Model]
+    log: IssueCollector = field(default_factory=IssueCollector)
     trail: Tuple[str, ...] = ()
     parsed: Dict[str, Any] = field(default_factory=dict)
 
@@ -88,16 +92,17 @@ class Source:
         }
 
     def report(
-        self, level: Level, code: str, message: str, element: Optional[Any] = None, hint: str = ""
+        self, level: FaultLevel, code: str, message: str, element: Optional[Any] = None,
+        hint: str = ""
     ) -> None:
         """Note a fault of `element`."""
-        severity = Severity.WARNING if level is Level.WARNING else Severity.ERROR
+        severity = Severity.WARNING if level is FaultLevel.WARNING else Severity.ERROR
         issue = Issue(severity, code, message, hint=hint, **self.where(element))
-        self.log.add(issue, fatal=level is Level.FATAL)
+        self.log.add(issue, fatal=level is FaultLevel.FATAL)
 
     def warn(self, code: str, message: str, element: Optional[Any] = None, hint: str = "") -> None:
         """Note a fault that Gazebo, too, would only mention."""
-        self.report(Level.WARNING, code, message, element, hint)
+        self.report(FaultLevel.WARNING, code, message, element, hint)
 
     def tolerate(
         self, code: str, message: str, element: Optional[Any] = None, hint: str = ""
@@ -115,6 +120,6 @@ class Source:
             return
         self.log.told.add(kind)
         what = ("shown, but not simulated" if element.tag in _ONLY_SHOWN
-                else "kept, but does nothing here")
+                else "kept, but not simulated")
         self.log.add(Issue(Severity.NOTE, "not-simulated", f"<{kind}> is {what}",
                            **self.where(element)))

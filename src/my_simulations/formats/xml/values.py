@@ -1,7 +1,7 @@
 """Kinds of values in SDF and URDF text: one class each, reading and writing together.
 
-`parse` raises ValueError with a phrase that says what was expected and what was found; `salvage`
-reads such a text as Gazebo does, and raises it where Gazebo, too, reads nothing.
+`parse` raises ValueError with a phrase that says what was expected and what was found;
+`parse_leniently` reads such a text as Gazebo does, and raises ValueError where Gazebo rejects it.
 """
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ class Kind(Protocol):
     def format(self, value: Any) -> str:
         """Text that `parse` reads as the same value."""
 
-    def salvage(self, text: str) -> Any:
+    def parse_leniently(self, text: str) -> Any:
         """What Gazebo makes of a text that `parse` refuses; ValueError where it refuses it too."""
 
 
 def numbers(text: str, count: int) -> Tuple[float, ...]:
-    """Exactly `count` finite numbers, parted by any white space."""
+    """Exactly `count` finite numbers, separated by any white space."""
     parts = text.split()
     if len(parts) != count:
         plural = "number" if count == 1 else "numbers"
-        commas = ", parted by blanks, not by commas" if "," in text else ""
+        commas = ", separated by spaces, not by commas" if "," in text else ""
         raise ValueError(f"expected {count} {plural}{commas}, found {_shown(text)}")
     return tuple([number(part) for part in parts])
 
@@ -91,7 +91,7 @@ class Bool:
         return "true" if value else "false"
 
 
-    def salvage(self, text: str) -> bool:
+    def parse_leniently(self, text: str) -> bool:
         raise ValueError(f"expected true or false, found {_shown(text)}")
 
 
@@ -115,7 +115,7 @@ class Float:
         return _formatted(value)
 
 
-    def salvage(self, text: str) -> float:
+    def parse_leniently(self, text: str) -> float:
         return leading_number(_SPELT_OUT.get(text.strip().lower(), text))
 
 
@@ -130,8 +130,8 @@ class Friction(Float):
     def parse(self, text: str) -> float:
         return self._bounded(super().parse(text))
 
-    def salvage(self, text: str) -> float:
-        return self._bounded(super().salvage(text))
+    def parse_leniently(self, text: str) -> float:
+        return self._bounded(super().parse_leniently(text))
 
     def _bounded(self, value: float) -> float:
         return self._UNBOUNDED if value < 0 or value == math.inf else value
@@ -149,8 +149,8 @@ class Limit:
     def format(self, value: float) -> str:
         return _formatted(value) if math.isfinite(value) else repr(value)
 
-    def salvage(self, text: str) -> float:
-        return FLOAT.salvage(text)
+    def parse_leniently(self, text: str) -> float:
+        return FLOAT.parse_leniently(text)
 
 
 class Int:
@@ -175,7 +175,7 @@ class Int:
     def format(self, value: int) -> str:
         return str(value)
 
-    def salvage(self, text: str) -> int:
+    def parse_leniently(self, text: str) -> int:
         return leading_integer(_SPELT_OUT.get(text.strip().lower(), text))
 
 
@@ -188,7 +188,7 @@ class Text:
     def format(self, value: str) -> str:
         return value
 
-    def salvage(self, text: str) -> str:
+    def parse_leniently(self, text: str) -> str:
         return self.parse(text)
 
 
@@ -203,13 +203,13 @@ class Vector2:
         return _formatted(*value)
 
 
-    def salvage(self, text: str) -> Tuple[float, float]:
+    def parse_leniently(self, text: str) -> Tuple[float, float]:
         x, y = _whole(text, 2)
         return (x, y)
 
 
 class PlaneSize(Vector2):
-    """Two numbers; a third, which some files give, is left out (Gazebo behaviour)."""
+    """Two numbers; a third, which some files give, is skipped (Gazebo behaviour)."""
 
     def parse(self, text: str) -> Tuple[float, float]:
         parts = text.split()
@@ -227,7 +227,7 @@ class Vector3:
         return _formatted(*value)
 
 
-    def salvage(self, text: str) -> Vec3:
+    def parse_leniently(self, text: str) -> Vec3:
         x, y, z = _whole(text, 3)
         return (x, y, z)
 
@@ -255,7 +255,7 @@ class Color:
         r, g, b, a = (self._share(number(part)) for part in (*parts, "1")[:4])
         return (r, g, b, a)
 
-    def salvage(self, text: str) -> Tuple[float, float, float, float]:
+    def parse_leniently(self, text: str) -> Tuple[float, float, float, float]:
         r, g, b, a = stream_numbers(text, 4)
         return (self._share(r or 0.0), self._share(g or 0.0), self._share(b or 0.0),
                 1.0 if a is None else self._share(a))
@@ -278,7 +278,7 @@ class Rpy:
     def format(self, value: Quat) -> str:
         return _formatted(*rpy_from_quat(value))
 
-    def salvage(self, text: str) -> Quat:
+    def parse_leniently(self, text: str) -> Quat:
         roll, pitch, yaw = _whole(text, 3)
         return quat_from_rpy(roll, pitch, yaw)
 
@@ -293,7 +293,7 @@ class PoseKind:
     def format(self, value: Pose) -> str:
         return _formatted(*value.position, *rpy_from_quat(value.orientation))
 
-    def salvage(self, text: str) -> Pose:
+    def parse_leniently(self, text: str) -> Pose:
         """Position and rotation are each taken whole or not at all (libignition-math 6)."""
         found = stream_numbers(text, 6)
         position, angles = _all_or_zeros(found[:3]), _all_or_zeros(found[3:])
@@ -309,7 +309,7 @@ class Seconds:
             return number(parts[0]) + number(parts[1]) * 1e-9
         return numbers(text, 1)[0]
 
-    def salvage(self, text: str) -> float:
+    def parse_leniently(self, text: str) -> float:
         seconds, nanoseconds = stream_numbers(text, 2)
         return (seconds or 0.0) + (nanoseconds or 0.0) * 1e-9
 

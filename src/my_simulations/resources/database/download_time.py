@@ -4,7 +4,7 @@ from __future__ import annotations
 import time
 from typing import Callable, Dict, Optional
 
-from ..resolver import ModelNotProvidedError, Progress
+from ..model_provider import ModelNotProvidedError, Progress
 from .http_download import Limits
 
 WORLD_SECONDS = 10.0

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Dict, List, Optional, Sequence
 from urllib.parse import quote
 
-from ..resolver import ModelNotProvidedError, Progress
+from ..model_provider import ModelNotProvidedError, Progress
 from .fuel_uri import API, KNOWN_HOSTS, FuelUri
 
 if TYPE_CHECKING:

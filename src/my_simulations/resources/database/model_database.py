@@ -12,7 +12,7 @@ import re
 from typing import List, Optional, Set
 from urllib.parse import quote
 
-from ..resolver import DATABASE, ModelNotProvidedError, Progress
+from ..model_provider import DATABASE, ModelNotProvidedError, Progress
 from .archive import install, unpack
 from .download_time import WORLD_SECONDS, DownloadTime
 from .http_download import HttpError, Limits, fetch

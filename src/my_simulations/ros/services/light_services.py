@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Dict, Tuple
 
-from ...description.world import Light
+from ...description.light import Light
 from ...errors import CommandError
 from ...geometry import Pose, norm, scale
 from ...simulator.registry import UnknownEntityError

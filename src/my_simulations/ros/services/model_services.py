@@ -1,4 +1,4 @@
-"""spawn_urdf_model, spawn_sdf_model (models and lights) and delete_model."""
+"""spawn_urdf_model, spawn_sdf_model, spawn_object (models and lights) and delete_model."""
 from __future__ import annotations
 
 from dataclasses import replace as with_changes
@@ -6,11 +6,11 @@ from typing import Any, Callable, List, Optional
 
 from ...description.compare import differences
 from ...description.flatten import flattened
+from ...description.light import Light
 from ...description.model import Model
-from ...description.world import Light
-from ...errors import CommandError, InputError, Issue, Severity, errors_of
+from ...errors import CommandError, InputError, Issue, Severity, errors_of, warning
 from ...formats.mesh.loading import collision_meshes
-from ...formats.reading import read_entity
+from ...formats.reading import ParsedDocument, parse_document
 from ...geometry import IDENTITY, Pose, compose
 from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
@@ -19,12 +19,12 @@ from ..message_conversion import LENGTH, pose_from_message, within
 from .entity_errors import in_gazebos_words
 from .spawn_request import (
     FILE_ATTRIBUTE,
-    MARK,
-    asks_to_replace,
+    LAUNCH_ATTRIBUTE,
+    REPLACE_ATTRIBUTE,
+    SpawnOptions,
     checked_name,
-    launched_by,
     named,
-    root_of,
+    options_of_attributes,
 )
 
 SAME = 1e-9
@@ -43,47 +43,66 @@ class ModelServices:
         self._simulator = simulator
         self._resolver = resolver
         self._log = log
+        self._told_deprecated = False
 
     def spawn_urdf(self, request: Any, _response: Any) -> str:
         """A URDF document; any other root is refused, as in Gazebo."""
-        root, _ = root_of(request.model_xml)
-        if root not in ("robot", ""):
+        document = self._parsed(request, "")
+        if document.root_tag != "robot":
             raise CommandError("Failure - entity format is invalid. The root element of a URDF is "
-                               f"<robot>, here it is <{root}>; use spawn_sdf_model for SDF")
-        return self._spawn(request)
+                               f"<robot>, here it is <{document.root_tag}>; use spawn_sdf_model for"
+                               " SDF")
+        return self._spawn(request, document, self._attribute_options(request, document))
 
     def spawn_sdf(self, request: Any, _response: Any) -> str:
         """An SDF document, or a URDF one."""
-        return self._spawn(request)
+        document = self._parsed(request, "")
+        return self._spawn(request, document, self._attribute_options(request, document))
 
-    def _spawn(self, request: Any) -> str:
-        name = checked_name(request.model_name)
+    def spawn_object(self, request: Any, _response: Any) -> str:
+        """A document of either format, with the options of our own tools."""
+        return self._spawn(request, self._parsed(request, request.file),
+                           SpawnOptions(request.replace, request.file, request.launch_pid))
+
+    def _parsed(self, request: Any, file: str) -> ParsedDocument:
+        checked_name(request.model_name)
+        return parse_document(request.model_xml, self._resolver, _label(request, file))
+
+    def _attribute_options(self, request: Any, document: ParsedDocument) -> SpawnOptions:
+        found = document.take_attributes(
+            (REPLACE_ATTRIBUTE, FILE_ATTRIBUTE, LAUNCH_ATTRIBUTE))
+        options = options_of_attributes(found)
+        if options.file:
+            document.set_file(_label(request, options.file))
+        if found and not self._told_deprecated:
+            self._told_deprecated = True
+            self._log(warning(
+                "attribute-deprecated", f"the attribute {next(iter(found))!r} of a spawn request is"
+                " deprecated", file=_label(request, options.file),
+                hint="call the service spawn_object, whose request has a field for it"))
+        return options
+
+    def _spawn(self, request: Any, document: ParsedDocument, options: SpawnOptions) -> str:
+        name = request.model_name
         initial = pose_from_message(request.initial_pose, "initial_pose")
-        marks = root_of(request.model_xml)[1]
-        replaces, launched = asks_to_replace(marks), launched_by(marks, self._launcher)
+        launched = self._launcher != 0 and options.launch_pid == self._launcher
         there = self._simulator.models.has(name)
-        if there and not replaces and not (launched and self._is_the_worlds(name)):
+        if there and not options.replace and not (launched and self._is_the_worlds(name)):
             raise CommandError(f"Failure - entity already exists. (model {name!r})")
-        return self.spawn_text(request.model_xml, name, initial,
-                               frame=request.reference_frame, namespace=request.robot_namespace,
-                               replace=replaces, launched=launched,
-                               file=f"model '{name}', {marks.get(FILE_ATTRIBUTE) or 'model_xml'}")
+        return self._spawn_document(
+            document, name, initial, frame=request.reference_frame,
+            namespace=request.robot_namespace, replace=options.replace, launched=launched)
 
     def spawn_text(self, text: str, name: Optional[str], initial: Pose = IDENTITY, *,
-                   frame: str = "", namespace: str = "", replace: bool = False,
                    launched: bool = False, file: str = "model_xml") -> str:
         """Put the model or light of a document into the world.
 
         Args:
             text: URDF or SDF.
             name: its name in the world; None for the document's own.
-            initial: pose in `frame`; the document's own pose is composed onto it, and with
-                several frames T_frame o T_initial o T_own is where the model goes (Gazebo).
-            frame: "" or a literal for the world, else a model or link.
-            namespace: for plugins that name none.
-            replace: take a model of that name out in the same step.
-            launched: by the launch file of the simulator: where the world has that very model
-                already, it is taken for it.
+            initial: pose in the world frame; the document's own pose is composed onto it.
+            launched: whether the launch file of the simulator spawns it: where the world file
+                has that very model already, that one is taken.
             file: what messages call the document.
 
         Returns:
@@ -93,15 +112,25 @@ class ModelServices:
             InputError: the document describes no whole model.
             CommandError: the world refuses it.
         """
-        entity, issues = read_entity(text, self._resolver, file=file)
+        document = parse_document(text, self._resolver, file)
+        return self._spawn_document(document, name, initial, launched=launched)
+
+    def _spawn_document(self, document: ParsedDocument, name: Optional[str], initial: Pose, *,
+                        frame: str = "", namespace: str = "", replace: bool = False,
+                        launched: bool = False) -> str:
+        """As `spawn_text`.
+
+        The model goes to T_frame T_initial T_own (Gazebo behaviour). `frame` is a model or link,
+        "" for the world; `namespace` is for plugins that name none; `replace` replaces a model of
+        that name in the same step.
+        """
+        entity, issues = document.read_entity()
         if not isinstance(entity, Model):
             self._report(issues)
             return self._spawn_light(entity, name, initial, frame)
         model = named(entity, name if name is not None else entity.name, namespace)
         meshes, mesh_issues = collision_meshes(model)
-        # Every message about the attribute is about what was read from it already.
-        issues = [issue for issue in (*issues, *mesh_issues)
-                  if MARK not in issue.message]
+        issues = [*issues, *mesh_issues]
         self._report(issues)
         if errors_of(issues):
             raise InputError(issues)
@@ -155,3 +184,6 @@ class ModelServices:
         return "successfully deleted model"
 
 
+def _label(request: Any, file: str) -> str:
+    """What messages call the document of a request."""
+    return f"model '{request.model_name}', {file or 'model_xml'}"

@@ -1,61 +1,45 @@
-"""What a spawn request asks for, from its text: a description, named, placed and namespaced.
+"""Options, name and namespace of a spawn request.
 
 The description is changed, never the text: no number is rounded and no comment can be in the way.
 """
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Dict, List, Tuple
-from xml.parsers import expat
+import re
+from dataclasses import dataclass, replace
+from typing import List, Mapping
 
 from ...description.model import Link, Model, PluginSpec
 from ...errors import CommandError
 
-MARK = "my_simulations_"
-"""What the names of our own attributes of the root element begin with."""
-
-REPLACE_ATTRIBUTE = MARK + "replace"
-"""Root attribute that asks for a model of the same name to be replaced in one step."""
-
-FILE_ATTRIBUTE = MARK + "file"
-"""Root attribute: where a tool read the document, for messages."""
-
-LAUNCH_ATTRIBUTE = MARK + "launch"
-"""Root attribute: process id of the roslaunch that started the tool."""
+REPLACE_ATTRIBUTE = "my_simulations_replace"
+FILE_ATTRIBUTE = "my_simulations_file"
+LAUNCH_ATTRIBUTE = "my_simulations_launch"
+"""Deprecated attributes of the root element that say what `SpawnObject.srv` has fields for."""
 
 NAMESPACE_ELEMENT = "robotNamespace"
 
 
-class _RootSeen(Exception):
-    """Ends the parse at the first element."""
+@dataclass(frozen=True)
+class SpawnOptions:
+    """What our own tools may add to a spawn request (see `SpawnObject.srv`).
+
+    Attributes:
+        replace: replace a model of that name in one step.
+        file: file that the document was read from, "" if unknown.
+        launch_pid: process id of the roslaunch that runs the caller, 0 if there is none.
+    """
+
+    replace: bool = False
+    file: str = ""
+    launch_pid: int = 0
 
 
-def root_of(text: str) -> Tuple[str, Dict[str, str]]:
-    """Name and attributes of a document's root element; ("", {}) when it has none to read."""
-    found: Tuple[str, Dict[str, str]] = ("", {})
-
-    def start(name: str, attributes: Dict[str, str]) -> None:
-        nonlocal found
-        found = (name, attributes)
-        raise _RootSeen
-
-    reader = expat.ParserCreate()
-    reader.StartElementHandler = start
-    try:
-        reader.Parse(text, True)
-    except (_RootSeen, expat.ExpatError):
-        return found
-    return found
-
-
-def asks_to_replace(attributes: Dict[str, str]) -> bool:
-    """True when the root element's attributes ask for a replacement."""
-    return attributes.get(REPLACE_ATTRIBUTE, "").strip().lower() in ("true", "1", "yes")
-
-
-def launched_by(attributes: Dict[str, str], launcher: int) -> bool:
-    """True when the root element's attributes name this roslaunch (0: none) as the sender's."""
-    return launcher != 0 and attributes.get(LAUNCH_ATTRIBUTE, "") == str(launcher)
+def options_of_attributes(attributes: Mapping[str, str]) -> SpawnOptions:
+    """The options in the deprecated attributes of a document's root element."""
+    pid = attributes.get(LAUNCH_ATTRIBUTE, "")
+    return SpawnOptions(
+        attributes.get(REPLACE_ATTRIBUTE, "").strip().lower() in ("true", "1", "yes"),
+        attributes.get(FILE_ATTRIBUTE, ""), int(pid) if re.fullmatch("[0-9]{1,9}", pid) else 0)
 
 
 def checked_name(name: str) -> str:

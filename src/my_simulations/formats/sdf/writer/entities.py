@@ -9,13 +9,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Callable, Iterable, List, Optional, Union
 
-from ....description.compare import BUILT_IN, differences
+from ....description.compare import differences
+from ....description.light import Light
 from ....description.model import Joint, JointAxis, Link, Mimic, Model, PluginSpec
+from ....description.saved_state import SavedState
 from ....description.shapes import Collision, Visual
-from ....description.world import Light, SavedState, World
+from ....description.world import World
 from ....geometry import Vec3
-from ...xml.binding import Table
-from ...xml.values import FLOAT, TEXT, VECTOR3
+from ...xml.values import FLOAT, VECTOR3
 from ..model_tables import (
     AXIS,
     COLLISION,
@@ -24,16 +25,26 @@ from ..model_tables import (
     JOINT,
     LIGHT,
     LINK,
-    MATERIAL,
     MODEL,
     PHYSICS,
     VISUAL,
     WORLD,
 )
-from .fields import fill_element
+from .fields import fill_element, write_each
 from .geometry_element import write_geometry
+from .material_element import write_material
 from .state_element import write_state
-from .xml_text import append_fragment, document, write_value
+from .surroundings_elements import (
+    write_actor,
+    write_atmosphere,
+    write_gui,
+    write_plugins,
+    write_road,
+    write_scene,
+    write_spherical_coordinates,
+    write_wind,
+)
+from .xml_text import document, write_value
 
 VERSION = "1.7"
 _OLDER = "1.6"
@@ -94,19 +105,26 @@ class _Writer:
         self._included = included
 
     def world(self, parent: Any, world: World, state: Optional[SavedState]) -> None:
-        """`<world>`; a `<state>` that was read gives way to the present one."""
-        extra = [xml for xml in world.extra
-                 if not (state is not None and xml.lstrip().startswith("<state"))]
+        """`<world>`; `state` replaces one that was read."""
         element = _element(parent, "world", world)
         fill_element(element, world, WORLD, {
             "physics": lambda at: self.physics(at, world.physics),
-            "light": lambda at: _each(self.light, at, world.lights),
-            "model": lambda at: _each(self.model_or_include, at, world.models),
-            "plugin": lambda at: _plugins(at, world.plugins, WORLD),
-            "joint": lambda at: _each(self.joint, at, world.joints),
-        }, extra, required=("gravity",))
+            "light": lambda at: write_each(self.light, at, world.lights),
+            "model": lambda at: write_each(self.model_or_include, at, world.models),
+            "plugin": lambda at: write_plugins(at, world.plugins, WORLD),
+            "joint": lambda at: write_each(self.joint, at, world.joints),
+            "gui": lambda at: write_gui(at, world.gui, world.gui_camera),
+            "scene": lambda at: write_scene(at, world.scene),
+            "actor": lambda at: write_each(write_actor, at, world.actors),
+            "road": lambda at: write_each(write_road, at, world.roads),
+            "wind": lambda at: write_wind(at, world.wind),
+            "atmosphere": lambda at: write_atmosphere(at, world.atmosphere),
+            "spherical_coordinates":
+                lambda at: write_spherical_coordinates(at, world.spherical_coordinates),
+        }, world.extra, required=("gravity",))
+        state = state or world.state
         if state is not None:
-            write_state(element, state)
+            write_state(element, state, self.model, self.light)
 
     def physics(self, parent: Any, physics: Any) -> None:
         """`<physics>`, the preset in use."""
@@ -130,7 +148,7 @@ class _Writer:
         plugins = added
         element = _element(parent, "include", None)
         fill_element(element, model, INCLUDE, {
-            "plugin": lambda at: _plugins(at, plugins, INCLUDE),
+            "plugin": lambda at: write_plugins(at, plugins, INCLUDE),
         }, [], required=("uri", "name", "pose", *(
             ("static",) if model.static != bare.static else ())),
             leave_out=() if model.static != bare.static else ("static",))
@@ -139,10 +157,10 @@ class _Writer:
         """`<model>`, in full."""
         element = _element(parent, "model", model)
         fill_element(element, model, MODEL, {
-            "link": lambda at: _each(self.link, at, model.links),
-            "joint": lambda at: _each(self.joint, at, model.joints),
-            "model": lambda at: _each(self.model_or_include, at, model.models),
-            "plugin": lambda at: _plugins(at, model.plugins, MODEL),
+            "link": lambda at: write_each(self.link, at, model.links),
+            "joint": lambda at: write_each(self.joint, at, model.joints),
+            "model": lambda at: write_each(self.model_or_include, at, model.models),
+            "plugin": lambda at: write_plugins(at, model.plugins, MODEL),
         }, model.extra)
 
     def link(self, parent: Any, link: Link) -> None:
@@ -150,8 +168,8 @@ class _Writer:
         element = _element(parent, "link", link)
         fill_element(element, link, LINK, {
             "inertial": lambda at: self.inertial(at, link),
-            "collision": lambda at: _each(self.collision, at, link.collisions),
-            "visual": lambda at: _each(self.visual, at, link.visuals),
+            "collision": lambda at: write_each(self.collision, at, link.collisions),
+            "visual": lambda at: write_each(self.visual, at, link.visuals),
         }, link.extra)
 
     def inertial(self, parent: Any, link: Link) -> None:
@@ -175,18 +193,8 @@ class _Writer:
         element = _element(parent, "visual", visual)
         fill_element(element, visual, VISUAL, {
             "geometry": lambda at: write_geometry(at, visual.geometry),
-            "material": lambda at: self.material(at, visual),
+            "material": lambda at: write_material(at, visual.material),
         }, visual.extra)
-
-    def material(self, parent: Any, visual: Visual) -> None:
-        """`<material>`, where there is one."""
-        if visual.material is not None:
-            element = _element(parent, "material", None)
-            fill_element(element, visual.material, MATERIAL, {}, [])
-            script = element.find("script")
-            if script is not None and script.find("uri") is None:
-                write_value(script, "uri", TEXT, BUILT_IN)  # the format wants one
-                script.insert(0, script[-1])
 
     def joint(self, parent: Any, joint: Joint) -> None:
         """`<joint>`."""
@@ -228,16 +236,6 @@ def _element(parent: Any, tag: str, named: Any) -> Any:
 def _direction(xyz: Vec3) -> Vec3:
     """A unit vector that stays the same text when it is read and made a unit vector again."""
     return (round(xyz[0], 14), round(xyz[1], 14), round(xyz[2], 14))
-
-
-def _each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[Any]) -> None:
-    for item in items:
-        write(parent, item)
-
-
-def _plugins(parent: Any, plugins: Iterable[PluginSpec], table: Table) -> None:
-    for plugin in plugins:
-        append_fragment(parent, plugin.xml, table)
 
 
 def _added_plugins(model: Model, bare: Model) -> Optional[List[PluginSpec]]:

@@ -1,13 +1,13 @@
 """The fields of an object as children and attributes of an element, by the table of the reader."""
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping, Optional, Sequence, Set, Tuple
+from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Set, Tuple
 
 from ...xml.binding import Entry, Group, Kept, Part, Table, Value, default_of
 from .xml_text import append_fragment, write_value
 
 WriteParts = Mapping[str, Callable[[Any], object]]
-"""By tag: writes the children that have a reader of their own."""
+"""By path from the element: writes the children that have a reader of their own."""
 
 
 def fill_element(element: Any, source: Any, table: Table, parts: WriteParts,
@@ -31,6 +31,12 @@ def fill_element(element: Any, source: Any, table: Table, parts: WriteParts,
         append_fragment(element, xml, table)
 
 
+def write_each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[Any]) -> None:
+    """Call `write(parent, item)` for every item."""
+    for item in items:
+        write(parent, item)
+
+
 class _Filler:
     def __init__(self, parts: WriteParts, required: Tuple[str, ...],
                  leave_out: Tuple[str, ...]) -> None:
@@ -52,8 +58,8 @@ class _Filler:
                 self._value(element, source, of, name, entry, here)
             elif isinstance(entry, Group):
                 self._group(element, source, of, name, entry, here)
-            elif isinstance(entry, Part) and not path and name in self._parts:
-                self._parts[name](element)
+            elif isinstance(entry, Part) and here in self._parts:
+                self._parts[here](element)
             else:
                 assert isinstance(entry, (Part, Kept))
 

@@ -1,20 +1,25 @@
 """`<state>`: where everything is at one moment of a run. Source: SDF specification 1.7, state."""
 from __future__ import annotations
 
-from typing import Any, Dict, Sequence
+from typing import Any, Callable, Dict, Sequence
 
+from ....description.light import Light
+from ....description.model import Model
+from ....description.saved_state import LinkState, ModelState, SavedState
 from ....description.scoped_names import SCOPE
-from ....description.world import LinkState, ModelState, SavedState
 from ...xml.values import FLOAT, INT, POSE, TEXT, VECTOR3
 from .xml_text import write_value
 
 _NANO = 1_000_000_000
 
 
-def write_state(parent: Any, state: SavedState) -> None:
+def write_state(parent: Any, state: SavedState, write_model: Callable[[Any, Model], None],
+                write_light: Callable[[Any, Light], None]) -> None:
     """`<state>`.
 
-    Times that are 0 are left out, except sim time. Links and joints of nested models stand in
+    `write_model` and `write_light` write an inserted model or light below an element.
+
+    Times that are 0 are not written, except sim time. Links and joints of nested models stand in
     elements of their own; velocities are six plain numbers, linear then angular, in world axes.
     """
     from lxml import etree
@@ -25,6 +30,16 @@ def write_state(parent: Any, state: SavedState) -> None:
         if time:
             write_value(element, tag, TEXT, _seconds(time))
     write_value(element, "iterations", INT, state.iterations)
+    if state.inserted_models or state.inserted_lights:
+        insertions = etree.SubElement(element, "insertions")
+        for inserted in state.inserted_models:
+            write_model(insertions, inserted)
+        for added in state.inserted_lights:
+            write_light(insertions, added)
+    if state.deletions:
+        deletions = etree.SubElement(element, "deletions")
+        for name in state.deletions:
+            write_value(deletions, "name", TEXT, name)
     for model in state.models:
         _write_model(element, model)
     for light in state.lights:

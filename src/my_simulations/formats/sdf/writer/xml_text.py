@@ -11,7 +11,7 @@ from ...xml.values import Kind, PoseKind
 
 _PREFIX = re.compile(r"[<\s/]([A-Za-z_][\w.-]*):[A-Za-z_][\w.-]*[\s=/>]")
 _DECLARED = re.compile(r"\bxmlns:([A-Za-z_][\w.-]*)\s*=")
-_SETTLED = 16
+_MOST_ROUNDS = 16
 
 
 def write_value(parent: Any, tag: str, kind: Kind, value: Any = None,
@@ -22,11 +22,11 @@ def write_value(parent: Any, tag: str, kind: Kind, value: Any = None,
     if text is None:
         text = kind.format(value)
     if isinstance(kind, PoseKind):
-        text = settled_pose(kind.parse(text))
+        text = stable_pose_text(kind.parse(text))
     etree.SubElement(parent, tag).text = text
 
 
-def settled_pose(pose: Pose) -> str:
+def stable_pose_text(pose: Pose) -> str:
     """The text of a pose whose angles, read and written again, stay what they are.
 
     From angles to a quaternion and back the last digits are noise, so that they are rounded to
@@ -37,7 +37,7 @@ def settled_pose(pose: Pose) -> str:
         angles = _rounded(_locked(angles))
     seen: List[Vec3] = []
     # Near a pitch of 90 degrees the noise is larger; it comes to rest after a few turns.
-    while angles not in seen and len(seen) < _SETTLED:
+    while angles not in seen and len(seen) < _MOST_ROUNDS:
         seen.append(angles)
         angles = _read_again(angles)
     if angles in seen:

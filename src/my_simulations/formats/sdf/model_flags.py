@@ -1,10 +1,10 @@
-"""What a model says of itself as a whole, itself or by a model that it includes.
+"""The flags of a model: `<static>`, `<self_collide>` and `<allow_auto_disable>`.
 
 libsdformat 9 dissolves a model that is included in another one (`addNestedModel`): links, joints,
-frames, nested models, plugins and grippers move out, and so does every other child of it but
-`<pose>`. Gazebo asks for the first `<static>` it finds; of a model that says nothing of it before
-it includes a static one, the whole becomes static. A `<model>` written inside another one is not
-dissolved: it keeps what it says for itself.
+frames, nested models, plugins and grippers move to the outer model, and so does every other child
+but `<pose>`. Gazebo takes the first `<static>` it finds, so a model that includes a static one
+before it has a `<static>` of its own becomes static as a whole. A `<model>` written inside another
+one is not dissolved: it keeps its own flags.
 """
 from __future__ import annotations
 
@@ -17,43 +17,49 @@ from ...errors import Issue, Severity
 from ..xml.source import Source
 
 FLAGS = ("static", "self_collide", "allow_auto_disable")
-"""Children of `<model>` that hold a truth about the whole; `enable_wind` is kept as XML."""
+"""Children of `<model>` that included models may override."""
 
 
 @dataclass(frozen=True)
-class Said:
-    """The words of a model, its includes' among them; None for what nothing is said about."""
+class ModelFlags:
+    """The flags that a model or one of its includes sets; None for a flag that none sets.
+
+    Attributes:
+        static: the model does not move.
+        self_collide: links of the model collide with each other.
+        allow_auto_disable: the physics engine may put the model to sleep.
+    """
 
     static: Optional[bool] = None
     self_collide: Optional[bool] = None
     allow_auto_disable: Optional[bool] = None
 
 
-def says(model: Model, element: Any) -> Said:
-    """What the children of a `<model>` say, of which `model` holds the values."""
+def own_flags(model: Model, element: Any) -> ModelFlags:
+    """The flags that a `<model>` element sets itself; `model` holds their values."""
     own = {flag: getattr(model, flag) for flag in FLAGS if element.find(flag) is not None}
-    return Said(**own)
+    return ModelFlags(**own)
 
 
-def settle(model: Model, element: Any, included: Iterable[Tuple[Any, Said]],
-           source: Source) -> Said:
-    """Give a model the flags of the models it includes where they come first, and say so once.
+def apply_include_flags(model: Model, element: Any, included: Iterable[Tuple[Any, ModelFlags]],
+                        source: Source) -> ModelFlags:
+    """Set the flags of a model from its includes, where these precede the model's own.
 
     Args:
-        model: with its own flags.
+        model: the model, with its own flags; changed in place.
         element: its `<model>`.
-        included: the `<include>`s in it that were read, and what each says.
-        source: what hears of it.
+        included: the `<include>` elements in it that were read, and the flags that each sets.
+        source: receives a note for the first such model.
 
     Returns:
-        what the whole says.
+        The flags that the model and its includes set.
     """
     by_include = dict(included)
-    own = says(model, element)
-    result = Said()
+    own = own_flags(model, element)
+    result = ModelFlags()
     for flag in FLAGS:
         for child in element:
-            value = getattr(own if child.tag == flag else by_include.get(child, Said()), flag)
+            value = getattr(own if child.tag == flag else by_include.get(child, ModelFlags()), flag)
             if value is None:
                 continue
             result = replace(result, **{flag: value})
@@ -69,7 +75,7 @@ def _take_over(model: Model, flag: str, value: bool, element: Any, source: Sourc
     setattr(model, flag, value)
     kind = f"include-flag {flag} {value}"
     if kind in source.log.told:
-        return  # said once: a world may be full of such models
+        return  # one note per flag: a world may contain many such models
     source.log.told.add(kind)
     what = {"static": "static" if value else "able to move",
             "self_collide": "made of links that collide with each other" if value
@@ -77,15 +83,15 @@ def _take_over(model: Model, flag: str, value: bool, element: Any, source: Sourc
             "allow_auto_disable": "allowed to sleep" if value else "kept awake"}[flag]
     source.log.add(Issue(
         Severity.NOTE, "include-flag", f"model {model.name!r} is {what} as a whole, since the model"
-        f" included here says <{flag}>{'true' if value else 'false'}</{flag}>; so are all such",
+        f" included here says <{flag}>{'true' if value else 'false'}</{flag}>; reported once",
         hint=f"say <{flag}> in {model.name!r} itself, before the include",
         **source.where(element)))
 
 
 def first_link(element: Any, included: Mapping[Any, Model]) -> str:
-    """The link of an include that stands before the model's own links; "" where none does.
+    """The canonical link of an include that precedes the model's own links; "" if there is none.
 
-    It is Gazebo's first link, then, and with it the one that the model's frame travels with.
+    Gazebo takes the first link in the file as the canonical one, included links too.
     """
     if element.find("link") is None:
         return ""

@@ -1,0 +1,14 @@
+"""What the resolver and the providers of models that must be downloaded have in common."""
+from __future__ import annotations
+
+from typing import Callable
+
+DATABASE = "GAZEBO_MODEL_DATABASE_URI"
+"""Environment variable with the address of a Gazebo model database."""
+
+Progress = Callable[[str, int, int], None]
+"""Called with a model's name, the bytes received, and the bytes expected (0 if unknown)."""
+
+
+class ModelNotProvidedError(Exception):
+    """A provider of models cannot supply a model; the text says why."""

@@ -1,0 +1,72 @@
+"""The spawn services on an engine without physics: options of requests, and what is logged."""
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+from geometry_msgs.msg import Pose, Quaternion
+
+from my_simulations.description.world import World
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.errors import CommandError, InputError
+from my_simulations.resources.resolver import Resolver
+from my_simulations.ros.services.model_services import ModelServices
+from my_simulations.simulator.simulator import Simulator
+
+BOX = ("<sdf version='1.6'{0}><model name='m'><link name='l'><collision name='c'><geometry><box>"
+       "<size>1 1 1</size></box></geometry></collision></link></model></sdf>")
+
+
+def request(name="a", xml=BOX, **fields):
+    return SimpleNamespace(**{
+        "model_name": name, "model_xml": xml.format(""), "robot_namespace": "",
+        "initial_pose": Pose(orientation=Quaternion(w=1.0)), "reference_frame": "",
+        "replace": False, "file": "", "launch_pid": 0, **fields})
+
+
+@pytest.fixture
+def services():
+    simulator = Simulator(World(), engine_factory=lambda: InlineEngine(KinematicBackend),
+                          paused=True, log=lambda issue: None)
+    simulator.start()
+    issues = []
+    made = ModelServices(simulator, Resolver(), issues.append, launcher=41)
+    yield SimpleNamespace(spawn=made, simulator=simulator, issues=issues)
+    simulator.close()
+
+
+def test_a_model_is_replaced_only_on_request(services):
+    services.spawn.spawn_object(request(), None)
+    with pytest.raises(CommandError, match="already exists"):
+        services.spawn.spawn_object(request(), None)
+    services.spawn.spawn_object(request(replace=True), None)
+    assert services.simulator.models.names() == ["a"]
+
+
+def test_messages_name_the_file_of_the_request(services):
+    with pytest.raises(InputError) as refused:
+        services.spawn.spawn_object(request(xml="<robot name='r'/>", file="/tmp/arm.urdf"), None)
+    assert refused.value.first.file == "model 'a', /tmp/arm.urdf"
+
+
+def test_a_model_of_the_simulators_own_launch_is_known_as_such(services):
+    services.spawn.spawn_object(request("ours", launch_pid=41), None)
+    services.spawn.spawn_object(request("theirs", launch_pid=42), None)
+    services.spawn.spawn_object(request("nobodys"), None)
+    assert services.simulator.models.launched() == ["ours"]
+
+
+def test_deprecated_attributes_mean_the_same_and_are_logged_once(services):
+    marks = " my_simulations_replace='true' my_simulations_launch='41' my_simulations_file='/f.sdf'"
+    for _ in range(2):
+        services.spawn.spawn_sdf(request(model_xml=BOX.format(marks)), None)
+    assert services.simulator.models.launched() == ["a"]
+    [issue] = services.issues
+    assert (issue.code, issue.file) == ("attribute-deprecated", "model 'a', /f.sdf")
+    assert "'my_simulations_replace'" in issue.message and "spawn_object" in issue.hint
+
+
+def test_only_urdf_goes_to_the_urdf_service(services):
+    with pytest.raises(CommandError, match="spawn_sdf_model"):
+        services.spawn.spawn_urdf(request(), None)
