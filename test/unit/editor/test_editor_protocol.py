@@ -13,7 +13,7 @@ from editor_case import Case
 from my_simulations.building import building_plan as plan
 from my_simulations.building.building_folder import About
 from my_simulations.building.plan_json import plan_to_json
-from my_simulations.description import model, shapes, world
+from my_simulations.description import actor, light, model, shapes, surroundings, world
 from my_simulations.editor.scene.plain_json import HIDDEN
 from my_simulations.editor.scene.scene_json import NAMES, Documents
 from my_simulations.editor.transport.http_pages import Pages
@@ -82,17 +82,39 @@ def test_every_request_of_the_protocol_is_handled_and_no_other(protocol, tmp_pat
         case.close()
 
 
-@pytest.mark.parametrize("kind, described", [
-    ("Light", world.Light), ("Inertial", model.Inertial), ("Surface", shapes.Surface),
-    ("Axis", model.JointAxis), ("Mimic", model.Mimic), ("Joint", model.Joint),
-    ("Plugin", model.PluginSpec), ("Physics", world.Physics), ("OdePhysics", world.OdePhysics),
-    ("Scene", world.Scene), ("Sky", world.Sky), ("Fog", world.Fog), ("Wind", world.Wind),
-    ("GuiCamera", world.GuiCamera), ("Atmosphere", world.Atmosphere),
-    ("SphericalCoordinates", world.SphericalCoordinates), ("Road", world.Road),
-    ("Waypoint", world.Waypoint), ("Trajectory", world.Trajectory), ("Plan", plan.Plan),
-    ("Level", plan.Level), ("Wall", plan.Wall), ("Opening", plan.Opening),
-    ("Stairs", plan.Stairs), ("Floor", plan.Floor), ("FloorImage", plan.FloorImage),
-    ("Roof", plan.Roof), ("BuildingAbout", About)])
+@pytest.mark.parametrize(
+    "kind, described",
+    [
+        ("Light", light.Light),
+        ("Inertial", model.Inertial),
+        ("Surface", shapes.Surface),
+        ("Axis", model.JointAxis),
+        ("Mimic", model.Mimic),
+        ("Joint", model.Joint),
+        ("Plugin", model.PluginSpec),
+        ("Physics", world.Physics),
+        ("OdePhysics", world.OdePhysics),
+        ("Scene", surroundings.Scene),
+        ("Sky", surroundings.Sky),
+        ("Fog", surroundings.Fog),
+        ("Wind", surroundings.Wind),
+        ("GuiCamera", surroundings.GuiCamera),
+        ("Atmosphere", surroundings.Atmosphere),
+        ("SphericalCoordinates", surroundings.SphericalCoordinates),
+        ("Road", surroundings.Road),
+        ("Waypoint", actor.Waypoint),
+        ("Trajectory", actor.Trajectory),
+        ("Plan", plan.Plan),
+        ("Level", plan.Level),
+        ("Wall", plan.Wall),
+        ("Opening", plan.Opening),
+        ("Stairs", plan.Stairs),
+        ("Floor", plan.Floor),
+        ("FloorImage", plan.FloorImage),
+        ("Roof", plan.Roof),
+        ("BuildingAbout", About),
+    ],
+)
 def test_the_protocol_names_all_fields_of_the_description(data, kind, described):
     more = {"format"} if kind == "Plan" else set()
     assert set(data["types"][kind]) == more | {field.name for field in fields(described)
@@ -102,17 +124,21 @@ def test_the_protocol_names_all_fields_of_the_description(data, kind, described)
 @pytest.mark.parametrize("kind, described, more", [
     ("Model", model.Model, {"enable_wind", "uri", "scalable"}),
     ("Link", model.Link, {"id"}), ("Visual", shapes.Visual, {"layer"}),
-    ("Collision", shapes.Collision, set()), ("Actor", world.Actor, {"geometry"}),
-    ("Animation", world.Animation, {"geometry"}), ("World", world.World, set())])
+    ("Collision", shapes.Collision, set()), ("Actor", actor.Actor, {"geometry"}),
+    ("Animation", actor.Animation, {"geometry"}), ("World", world.World, set())])
 def test_the_protocol_has_no_field_that_the_description_lacks(data, kind, described, more):
     assert set(data["types"][kind]) - more <= {field.name for field in fields(described)}
 
 
 def test_the_world_of_the_description_follows_the_protocol(protocol):
-    fog = world.Scene(sky=world.Sky(), fog=world.Fog())
-    full = world.World(scene=fog, gui_camera=world.GuiCamera(), roads=[world.Road("road")],
-                       spherical_coordinates=world.SphericalCoordinates(),
-                       actors=[world.Actor("walker", animations=[world.Animation("walk")])])
+    fog = surroundings.Scene(sky=surroundings.Sky(), fog=surroundings.Fog())
+    full = world.World(
+        scene=fog,
+        gui_camera=surroundings.GuiCamera(),
+        roads=[surroundings.Road("road")],
+        spherical_coordinates=surroundings.SphericalCoordinates(),
+        actors=[actor.Actor("walker", animations=[actor.Animation("walk")])],
+    )
     for one in (world.World(), full):
         document = Documents(Resolver()).world(one, one.physics, one.gravity, [])
         protocol.types.check(document, "World", "world")
