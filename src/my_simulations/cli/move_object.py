@@ -7,7 +7,7 @@ import re
 import time
 from typing import Any, Callable, List, Optional, Sequence, Union
 
-from ..errors import InputError
+from ..errors import InputError, SimulationError
 from ..geometry import Pose, quat_from_rpy
 from ..objects.motion_path import Circle, Polygon, parse_numbers, parse_points
 from ..objects.selection import unknown_name
@@ -27,7 +27,7 @@ NEAR = 0.01
 Route = Union[Polygon, Circle]
 
 
-class MotionStoppedError(Exception):
+class MotionStoppedError(SimulationError):
     """ROS shuts this program down."""
 
 
@@ -128,7 +128,7 @@ def _as_node(model: str, remappings: Sequence[str], work: Callable[[], None]) ->
     """Works as a ROS node, which hears the simulation's time.
 
     Raises:
-        Stopped: the node was shut down from elsewhere.
+        MotionStoppedError: the node was shut down from elsewhere.
     """
     import rospy
 
@@ -216,7 +216,7 @@ class _Clock:
         """Waits for the first time: until /clock is heard, simulated ROS time is 0.
 
         Raises:
-            Stopped: ROS shuts down.
+            MotionStoppedError: ROS shuts down.
             ToolError: no time is heard.
         """
         self._limit = limit
@@ -233,7 +233,7 @@ class _Clock:
         """Waits until the next placement is due; the ROS time then.
 
         Raises:
-            Stopped: ROS shuts down.
+            MotionStoppedError: ROS shuts down.
             ToolError: ROS time stands still.
         """
         # A reset world begins again at zero.

@@ -12,7 +12,7 @@ import sys
 import time
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from ..errors import InputError, Issue, Severity
+from ..errors import InputError, Issue, Severity, SimulationError
 from ..geometry import Pose, Vec3, quat_from_rpy
 from ..objects.object_list import ObjectList, parse_objects
 from ..objects.selection import parse_groups
@@ -36,7 +36,7 @@ LIST_MARK = "/my_simulations/object_list"
 CALLER = "/my_simulations_object_tool"
 
 
-class ToolError(Exception):
+class ToolError(SimulationError):
     """The tool cannot go on; the text says what was waited for or asked, and what to do."""
 
 

@@ -12,6 +12,7 @@ import time
 from decimal import Decimal
 from typing import Any, Dict, List, Optional, Sequence
 
+from ..errors import SimulationError
 from ..ros.arguments import Parser, number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle.launch_info import Launch
@@ -25,7 +26,7 @@ OURS = "my_simulations/version"
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class SpawnError(Exception):
+class SpawnError(SimulationError):
     """The model is not in the world; the text says why and what to do."""
 
 

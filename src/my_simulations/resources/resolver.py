@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
+from ..errors import ResourceError
 from .database.fuel_uri import FuelUri, fuel_uri, is_web_address
 from .model_config import description_in
 from .package_files import PACKAGE, package_directories
@@ -24,7 +25,7 @@ Progress = Callable[[str, int, int], None]
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
 
 
-class ResourceNotFoundError(Exception):
+class ResourceNotFoundError(ResourceError):
     """No file for a URI.
 
     Attributes:
@@ -42,7 +43,7 @@ class ResourceNotFoundError(Exception):
         super().__init__(f"{uri!r} was not found: {why}")
 
 
-class ModelNotProvidedError(Exception):
+class ModelNotProvidedError(ResourceError):
     """A model that a source of missing models cannot give; the text says why."""
 
 
@@ -53,7 +54,7 @@ class MissingModels(Protocol):
         """A new document is being read."""
 
     def provide(self, name: str) -> str:
-        """The folder of a model; raises NotProvided."""
+        """The folder of a model; raises ModelNotProvidedError."""
 
 
 class WebModels(Protocol):
@@ -63,7 +64,7 @@ class WebModels(Protocol):
         """A new document is being read."""
 
     def path(self, uri: FuelUri) -> str:
-        """The folder of a model or a file of it; raises NotProvided."""
+        """The folder of a model or a file of it; raises ModelNotProvidedError."""
 
     def beside(self, base_dir: str, rest: str) -> List[str]:
         """Where `model://` and `rest` may lie for a file that lies in a cache."""
@@ -186,7 +187,7 @@ class Resolver:
             base_dir: folder of the file that holds the URI, "" for none.
 
         Raises:
-            NotFound: nothing is there.
+            ResourceNotFoundError: nothing is there.
         """
         uri = uri.strip()
         if not uri or uri == "__default__":
@@ -216,7 +217,7 @@ class Resolver:
             raise ResourceNotFoundError(uri, reason=str(fault)) from None
 
     def _provided(self, uri: str, tried: List[str]) -> str:
-        """The path from the source of missing models, else NotFound."""
+        """The path from the source of missing models, else ResourceNotFoundError."""
         name, inside = _split_package(uri.partition("://")[2])
         if self._missing is not None and uri.startswith("model://") and name:
             try:
@@ -232,7 +233,7 @@ class Resolver:
         """The description file `uri` names: the file itself, or the one its folder's config picks.
 
         Raises:
-            NotFound: nothing is there, or the folder holds no description.
+            ResourceNotFoundError: nothing is there, or the folder holds no description.
         """
         path = self.resolve(uri, base_dir)
         if not os.path.isdir(path):

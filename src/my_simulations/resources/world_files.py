@@ -68,7 +68,7 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
         caller: folder in which the command was typed; "" for the working directory.
 
     Raises:
-        NotFound: it is in none of them; `tried` names every place.
+        ResourceNotFoundError: it is in none of them; `tried` names every place.
     """
     name = os.path.expanduser(name.strip())
     tried: List[str] = []

@@ -4,8 +4,10 @@ from __future__ import annotations
 import threading
 from typing import Any, Callable, Dict
 
+from ..errors import SimulationError
 
-class CallTimeoutError(Exception):
+
+class CallTimeoutError(SimulationError):
     """A call did not come back in time; the text names it and the deadline."""
 
 
@@ -13,7 +15,7 @@ def within(limit: float, what: str, call: Callable[[], Any]) -> Any:
     """Run a call; what it returns or raises.
 
     Raises:
-        NoAnswer: nothing came back within `limit` wall seconds.
+        CallTimeoutError: nothing came back within `limit` wall seconds.
     """
     box: Dict[str, Any] = {}
 

@@ -6,13 +6,15 @@ from typing import Any, Callable
 
 import rospy
 
+from ..errors import SimulationError
+
 SERVICE_SECONDS = 60.0
 """How long a client waits for a service to appear."""
 
 POLL_SECONDS = 0.1
 
 
-class ServiceUnavailableError(Exception):
+class ServiceUnavailableError(SimulationError):
     """Something that was waited for did not come; the text names it and the deadline."""
 
 
@@ -20,7 +22,7 @@ def wait_until(condition: Callable[[], bool], what: str, seconds: float) -> None
     """Wait on the wall clock, since ROS time stands still in a paused world.
 
     Raises:
-        NotThere: the time passed, or the node was shut down.
+        ServiceUnavailableError: the time passed, or the node was shut down.
     """
     until = time.monotonic() + seconds
     while not condition():
@@ -35,7 +37,7 @@ def service(name: str, service_class: Any, seconds: float = SERVICE_SECONDS) -> 
     """A proxy for a service that answers.
 
     Raises:
-        NotThere: it did not appear in time.
+        ServiceUnavailableError: it did not appear in time.
     """
     try:
         rospy.wait_for_service(name, timeout=seconds)

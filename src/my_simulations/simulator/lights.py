@@ -24,7 +24,7 @@ class Lights:
             return list(self._session.world.lights)
 
     def get(self, name: str) -> Light:
-        """The light of that name. Raises UnknownEntity."""
+        """The light of that name. Raises UnknownEntityError."""
         for light in self.all():
             if light.name == name:
                 return light
@@ -63,7 +63,7 @@ class Lights:
                 lights=[light if one.name == name else one for one in self.all()])
 
     def delete(self, name: str) -> Light:
-        """Delete a light; returns what it was. Raises UnknownEntity."""
+        """Delete a light; returns what it was. Raises UnknownEntityError."""
         session = self._session
         with session.structure_lock, session.registry_lock:
             light = self.get(name)

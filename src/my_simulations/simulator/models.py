@@ -59,12 +59,12 @@ class Models:
             return name in self._session.registry
 
     def get(self, name: str) -> Model:
-        """The flattened description of a model. Raises UnknownEntity."""
+        """The flattened description of a model. Raises UnknownEntityError."""
         with self._session.registry_lock:
             return self._session.registry.model(name).model
 
     def link(self, name: str) -> Link:
-        """The description of a link, by plain or scoped name. Raises UnknownEntity."""
+        """The description of a link, by plain or scoped name. Raises UnknownEntityError."""
         with self._session.registry_lock:
             entity, index = self._session.registry.link(name)
             return entity.model.links[index]
@@ -155,7 +155,7 @@ class Models:
     def delete(self, name: str) -> DeletedModel:
         """Delete a model; returns when it is gone, with what brings it back to its place.
 
-        Raises UnknownEntity.
+        Raises UnknownEntityError.
         """
         session = self._session
         with session.structure_lock:
@@ -263,7 +263,7 @@ class Models:
     def pin(self, names: List[str]) -> None:
         """Keep these models at rest where they are put, and release all others.
 
-        Raises UnknownEntity.
+        Raises UnknownEntityError.
         """
         with self._session.structure_lock:
             with self._session.registry_lock:

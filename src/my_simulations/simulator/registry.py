@@ -244,7 +244,7 @@ class Registry:
         return entity
 
     def model(self, name: str) -> Entity:
-        """The entity of a model name. Raises UnknownEntity."""
+        """The entity of a model name. Raises UnknownEntityError."""
         found = self._entities.get(name)
         if found is None:
             raise UnknownEntityError(f"there is no model '{name}'" + self._nearest(name))
@@ -253,7 +253,7 @@ class Registry:
     def link(self, name: str) -> Tuple[Entity, int]:
         """A link by `model::link` or by its plain name (the first in the world).
 
-        Raises UnknownEntity.
+        Raises UnknownEntityError.
         """
         found = self._scoped_link(name) or self._plain_link(name)
         if found is None:
@@ -261,7 +261,7 @@ class Registry:
         return found
 
     def joint_row(self, name: str) -> int:
-        """The row of a movable joint by plain or scoped name. Raises UnknownEntity."""
+        """The row of a movable joint by plain or scoped name. Raises UnknownEntityError."""
         for entity, joint, number in self._joints_named(name):
             row = entity.axis_row(joint.name, number)
             if row is not None:
@@ -272,7 +272,7 @@ class Registry:
     def joint(self, name: str) -> Tuple[Entity, Joint, int]:
         """Model, joint and axis number of a joint by plain or scoped name, fixed ones too.
 
-        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntity.
+        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntityError.
         """
         for entity, joint, number in self._joints_named(name):
             self._joint_taken(name, entity)
@@ -293,7 +293,7 @@ class Registry:
         """What a reference frame name means; None for the world frame.
 
         Entities are searched first (models, links, collisions, lights), then the literals.
-        Raises UnknownFrame.
+        Raises UnknownFrameError.
         """
         entity = self._entities.get(name)
         if entity is not None:

@@ -108,7 +108,7 @@ class Session:
             return self.registry.entities()
 
     def link_row(self, name: str) -> int:
-        """Row of a link by plain or scoped name. Raises UnknownEntity."""
+        """Row of a link by plain or scoped name. Raises UnknownEntityError."""
         with self.registry_lock:
             entity, index = self.registry.link(name)
             return entity.first_link_row + index
@@ -117,7 +117,7 @@ class Session:
         """Row of a joint axis (`joint::1` is the second axis).
 
         Raises:
-            UnknownEntity: no such joint.
+            UnknownEntityError: no such joint.
             CommandError: the joint has no axis.
         """
         with self.registry_lock:

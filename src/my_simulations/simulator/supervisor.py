@@ -14,7 +14,7 @@ import time
 from concurrent.futures import TimeoutError as FutureTimeout
 from typing import Callable, List, Optional, Tuple
 
-from ..engine.api import Engine, EngineGoneError, Reply
+from ..engine.api import Engine, EngineDiedError, Reply
 from ..engine.commands import Advance, Batch, Command, LoadModel
 from ..engine.ring import HEARTBEAT, PROGRESS
 from ..errors import CommandError, EngineLostError, EngineTimeoutError, Issue, error
@@ -73,8 +73,8 @@ class Supervisor:
 
         Raises:
             CommandError: refused, or no engine can be had.
-            NoAnswer: the engine lives, but did not answer in time.
-            EngineLost: engines died over it.
+            EngineTimeoutError: the engine lives, but did not answer in time.
+            EngineLostError: engines died over it.
         """
         deaths: List[str] = []
         while True:
@@ -85,7 +85,7 @@ class Supervisor:
                 raise CommandError(self._failure)
             try:
                 reply = self._answer(engine, command)
-            except EngineGoneError:
+            except EngineDiedError:
                 deaths += self._await_restart(command)
                 if isinstance(command, Advance) and deaths:
                     raise EngineLostError(
@@ -183,7 +183,7 @@ class Supervisor:
         try:
             self._engine.restart()
             self._restore(self._submit, paused)
-        except EngineGoneError:
+        except EngineDiedError:
             return  # it died again: that death is in the queue
         except (OSError, CommandError) as fault:
             self._failure = f"the physics engine could not be restored: {fault}"

@@ -25,6 +25,7 @@ from ...description.shapes import (
     Sphere,
     mesh_key,
 )
+from ...errors import SimulationError
 from ...geometry import IDENTITY, Pose, compose, multiply, transform
 from ..convex.hull_points import hull_points, naming_triangles
 from ..scratch_folder import Scratch
@@ -33,7 +34,7 @@ MAX_SHAPES = 16
 """Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
 
 
-class ShapeError(ValueError):
+class ShapeError(SimulationError):
     """A collision that PyBullet refuses; the message is one sentence for the user."""
 
 

@@ -10,13 +10,14 @@ import tempfile
 import time
 from typing import Callable
 
+from ...errors import ResourceError
 from .http_download import Limits
 
 _WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "archive_worker.py")
 _CONFIGS = ("model.config", "manifest.xml")
 
 
-class ArchiveError(Exception):
+class ArchiveError(ResourceError):
     """An archive that is broken, too large, or reaches out of its folder."""
 
 

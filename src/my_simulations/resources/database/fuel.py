@@ -90,7 +90,7 @@ class FuelModels:
         """The folder of a model, or a file of it, downloaded when no cache holds the model.
 
         Raises:
-            NotProvided: the model cannot be had now, or has no such file.
+            ModelNotProvidedError: the model cannot be had now, or has no such file.
         """
         folder = self.cached(uri) or self._download(uri)
         path = os.path.join(folder, uri.inside) if uri.inside else folder
@@ -170,7 +170,7 @@ class _Downloads:
         self.begin, self.give = self._time.begin, self._time.give
 
     def download(self, uri: FuelUri) -> None:
-        """Put a model into the cache. Raises NotProvided."""
+        """Put a model into the cache. Raises ModelNotProvidedError."""
         self._time.once(uri.archive, uri.server, lambda: self._fetched(uri))
 
     def _fetched(self, uri: FuelUri) -> None:

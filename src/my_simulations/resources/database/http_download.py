@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from email.message import Message
 from typing import IO, Any, Callable, Optional
 
+from ...errors import ResourceError
+
 _CHUNK = 1 << 16
 _TRIES = 4
 _MD5 = re.compile(r'"?([0-9a-f]{32})"?\Z')
@@ -28,7 +30,7 @@ class Limits:
     files: int = 20000
 
 
-class HttpError(Exception):
+class HttpError(ResourceError):
     """A download that failed. `missing`: the server says there is no such thing."""
 
     def __init__(self, message: str, missing: bool = False) -> None:
@@ -51,7 +53,7 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
         The headers of the answer.
 
     Raises:
-        HttpFault: not had; what it would have been is not in `into` as a whole.
+        HttpError: not had; what it would have been is not in `into` as a whole.
     """
     if not url.startswith(("http://", "https://")):
         raise HttpError(f"{url} is no http address")
@@ -64,7 +66,7 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
             missing = fault.code in (404, 410)
             if missing or fault.code < 500 or not left:
                 raise HttpError(f"{url} answers {fault.code} {fault.reason}", missing) from None
-        except (OSError, http.client.HTTPException, _Damaged) as fault:
+        except (OSError, http.client.HTTPException, _DamagedDownloadError) as fault:
             _check_time(url, until)
             if not left or isinstance(getattr(fault, "reason", None), ConnectionRefusedError):
                 reason = getattr(fault, "reason", None) or fault
@@ -72,7 +74,7 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
     raise AssertionError("the last try returns or raises")
 
 
-class _Damaged(Exception):
+class _DamagedDownloadError(ResourceError):
     """What came is not what was sent."""
 
 
@@ -103,15 +105,15 @@ def _once(url: str, into: IO[bytes], largest: int, until: float,
 
 def _check(headers: Any, expected: int, done: int, sums: Any) -> None:
     if expected and done != expected:
-        raise _Damaged(f"{done} of {expected} bytes came")
+        raise _DamagedDownloadError(f"{done} of {expected} bytes came")
     given = headers.get("Content-MD5")
     if given and base64.b64encode(sums.digest()).decode() != given.strip():
-        raise _Damaged("the checksum of the answer (Content-MD5) is wrong")
+        raise _DamagedDownloadError("the checksum of the answer (Content-MD5) is wrong")
     # Object stores give the MD5 as ETag; any other ETag says nothing of the content. Where it has
     # the form of one and differs, the answer's own Content-MD5 counts.
     tag = _MD5.match((headers.get("ETag") or "").strip())
     if tag and not given and tag.group(1) != sums.hexdigest():
-        raise _Damaged("the checksum of the answer (ETag) is wrong")
+        raise _DamagedDownloadError("the checksum of the answer (ETag) is wrong")
 
 
 def _length(text: Optional[str]) -> int:

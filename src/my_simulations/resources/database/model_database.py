@@ -55,7 +55,7 @@ class ModelDatabase(DownloadTime):
         self._listed = None
 
     def names(self) -> Set[str]:
-        """What the database lists. Raises NotProvided."""
+        """What the database lists. Raises ModelNotProvidedError."""
         try:
             return set(self._names())
         except (HttpError, OSError) as fault:
@@ -68,7 +68,7 @@ class ModelDatabase(DownloadTime):
         used.
 
         Raises:
-            NotProvided: the model cannot be had now.
+            ModelNotProvidedError: the model cannot be had now.
         """
         path = self._one(name)
         waiting, seen = _dependencies(path), {name}

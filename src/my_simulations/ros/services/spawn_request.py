@@ -26,7 +26,7 @@ LAUNCH_ATTRIBUTE = MARK + "launch"
 NAMESPACE_ELEMENT = "robotNamespace"
 
 
-class _RootSeen(Exception):
+class _StopParsing(Exception):
     """Ends the parse at the first element."""
 
 
@@ -37,13 +37,13 @@ def root_of(text: str) -> Tuple[str, Dict[str, str]]:
     def start(name: str, attributes: Dict[str, str]) -> None:
         nonlocal found
         found = (name, attributes)
-        raise _RootSeen
+        raise _StopParsing
 
     reader = expat.ParserCreate()
     reader.StartElementHandler = start
     try:
         reader.Parse(text, True)
-    except (_RootSeen, expat.ExpatError):
+    except (_StopParsing, expat.ExpatError):
         return found
     return found
 
