@@ -44,19 +44,33 @@ def modules(folder: pathlib.Path = PACKAGE) -> Iterator[Tuple[str, ast.Module]]:
         yield file.relative_to(folder).as_posix(), ast.parse(file.read_text(encoding="utf-8"))
 
 
-def text_of(node: Optional[ast.expr]) -> str:
-    """The text of a string expression, `{name}` for computed parts; "" for anything else."""
+def text_of(node: Optional[ast.expr], constants: Optional[Dict[str, ast.expr]] = None) -> str:
+    """The text of a string expression, `{name}` for computed parts; "" for anything else.
+
+    Args:
+        node: the expression.
+        constants: values of the module's constants by name.
+    """
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         return node.value
     if isinstance(node, ast.JoinedStr):
-        return "".join(text_of(part) if isinstance(part, ast.Constant) else _placeholder(part)
+        return "".join(text_of(part) if isinstance(part, ast.Constant)
+                       else _constant_part(part, constants) or _placeholder(part)
                        for part in node.values)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-        left, right = text_of(node.left), text_of(node.right)
+        left, right = text_of(node.left, constants), text_of(node.right, constants)
         return (left or "{...}") + (right or "{...}") if left or right else ""
     if isinstance(node, ast.IfExp):
-        return " / ".join(filter(None, (text_of(node.body), text_of(node.orelse))))
+        both = (text_of(node.body, constants), text_of(node.orelse, constants))
+        return "[" + " / ".join(filter(None, both)) + "]" if any(both) else ""
+    if isinstance(node, ast.Name) and constants and node.id in constants:
+        return text_of(constants[node.id])
     return ""
+
+
+def _constant_part(part: ast.expr, constants: Optional[Dict[str, ast.expr]]) -> str:
+    value = part.value if isinstance(part, ast.FormattedValue) else part
+    return text_of(value, constants) if isinstance(value, ast.Name) else ""
 
 
 def _placeholder(part: ast.expr) -> str:
@@ -76,7 +90,7 @@ def code_uses() -> List[Use]:
     positions = _code_positions(tree for _, tree in trees)
     found: List[Use] = []
     for path, tree in trees:
-        constants = dict(_constants(tree))
+        constants = dict(constants_of(tree))
         for node in ast.walk(tree):
             for expression, severity, text in _codes_at(node, positions):
                 found += [Use(pattern, severity, text, path, expression.lineno)
@@ -84,7 +98,7 @@ def code_uses() -> List[Use]:
     return found
 
 
-def _constants(tree: ast.Module) -> Iterator[Tuple[str, ast.expr]]:
+def constants_of(tree: ast.Module) -> Iterator[Tuple[str, ast.expr]]:
     """Names and values that a module assigns, `A, B = ...` too."""
     for node in tree.body:
         for target in node.targets if isinstance(node, ast.Assign) else []:
@@ -120,31 +134,35 @@ def _code_positions(trees: Iterator[ast.Module]) -> Dict[str, Set[int]]:
 def _codes_at(node: ast.AST, positions: Dict[str, Set[int]]
               ) -> Iterator[Tuple[ast.expr, str, str]]:
     """The expressions that give a code here, each with severity and message."""
-    if isinstance(node, ast.Call):
-        name = called(node)
-        if (isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Name)
-                and node.func.value.id in LOGGERS):
-            return
-        for position in positions.get(name, ()):
-            if position < len(node.args):
-                following = node.args[position + 1] if position + 1 < len(node.args) else None
-                if name == "MeshError":
-                    following = node.args[0]
-                yield node.args[position], _severity(name, node), text_of(following)
-        for keyword in node.keywords:
-            if keyword.arg in CARRIERS and name in positions:
-                yield keyword.value, "", text_of(node.args[0]) if node.args else ""
-        if name == "getattr" and len(node.args) == 3 and text_of(node.args[1]) in CARRIERS:
-            yield node.args[2], "", ""
+    if isinstance(node, ast.Call) and not _is_log_call(node):
+        yield from _codes_of_call(node, positions)
     elif isinstance(node, ast.Assign):
-        for target in node.targets:
-            if isinstance(target, ast.Name) and target.id in CARRIERS:
-                yield node.value, "", ""
+        if any(isinstance(target, ast.Name) and target.id in CARRIERS for target in node.targets):
+            yield node.value, "", ""
     elif isinstance(node, ast.FunctionDef):
-        arguments = node.args.args
-        for argument, default in zip(reversed(arguments), reversed(node.args.defaults)):
+        for argument, default in zip(reversed(node.args.args), reversed(node.args.defaults)):
             if argument.arg in CARRIERS:
                 yield default, "", ""
+
+
+def _is_log_call(call: ast.Call) -> bool:
+    return (isinstance(call.func, ast.Attribute) and isinstance(call.func.value, ast.Name)
+            and call.func.value.id in LOGGERS)
+
+
+def _codes_of_call(call: ast.Call, positions: Dict[str, Set[int]]
+                   ) -> Iterator[Tuple[ast.expr, str, str]]:
+    name = called(call)
+    for position in positions.get(name, ()):
+        if position < len(call.args):
+            message = 0 if name == "MeshError" else position + 1
+            text = text_of(call.args[message]) if message < len(call.args) else ""
+            yield call.args[position], _severity(name, call), text
+    for keyword in call.keywords:
+        if keyword.arg in CARRIERS and name in positions:
+            yield keyword.value, "", text_of(call.args[0]) if call.args else ""
+    if name == "getattr" and len(call.args) == 3 and text_of(call.args[1]) in CARRIERS:
+        yield call.args[2], "", ""
 
 
 def called(call: ast.Call) -> str:
