@@ -51,19 +51,19 @@ def _size(value: Any) -> float:
 def _not_negative(value: Any) -> float:
     number = _number(value)
     if number < 0:
-        raise _UnexpectedValueError("a number that is not below 0")
+        raise _UnexpectedValueError("a number of at least 0")
     return number
 
 
 def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise _UnexpectedValueError("a whole number")
+        raise _UnexpectedValueError("an integer")
     return value
 
 
 def _steps(value: Any) -> int:
     if not 1 <= _count(value) <= MOST_STEPS:
-        raise _UnexpectedValueError(f"a whole number from 1 to {MOST_STEPS}")
+        raise _UnexpectedValueError(f"an integer from 1 to {MOST_STEPS}")
     return int(value)
 
 
@@ -93,7 +93,7 @@ def _loops(value: Any) -> List[List[Tuple[float, float]]]:
 
 def _text(value: Any) -> str:
     if not isinstance(value, str) or not _NO_CONTROL.match(value):
-        raise _UnexpectedValueError("a short text")
+        raise _UnexpectedValueError("a string of at most 200 characters")
     return value
 
 
@@ -159,10 +159,11 @@ def plan_from_text(text: Union[str, bytes], file: str = "") -> Plan:
     try:
         tree = json.loads(text)
     except json.JSONDecodeError as fault:
-        raise InputError([error("plan-not-json", f"the plan is no JSON: {fault.msg}", file=file,
+        raise InputError([error("plan-not-json", "the plan is not valid JSON: "
+                                                 f"{fault.msg}", file=file,
                                 line=fault.lineno, column=fault.colno)]) from None
     except (UnicodeDecodeError, RecursionError) as fault:
-        raise InputError([error("plan-not-json", f"the plan is no JSON: {fault}",
+        raise InputError([error("plan-not-json", f"the plan is not valid JSON: {fault}",
                                 file=file)]) from None
     return plan_from_json(tree, file)
 
@@ -266,8 +267,7 @@ class _Reader:
                 for n, item in enumerate(getattr(level, name)):
                     path = f"levels[{at}].{name}[{n}]"
                     if item.id in seen:
-                        self._fault("plan-id-repeated", f"two of the {name} have the number"
-                                    f" {item.id}", path)
+                        self._fault("plan-id-repeated", f"two {name} have the id {item.id}", path)
                     seen[item.id] = path
             given = counters.get(kind)
             start = given if isinstance(given, int) and not isinstance(given, bool) else 0

@@ -39,7 +39,7 @@ class ResourceNotFoundError(ResourceError):
         self.tried: List[str] = list(tried)
         self.reason = reason
         places = ", ".join(self.tried)
-        why = reason or (f"tried {places}" if places else "no place to look in")
+        why = reason or (f"searched {places}" if places else "no search path is set")
         super().__init__(f"{uri!r} was not found: {why}")
 
 
@@ -160,7 +160,7 @@ class Resolver:
     def meant(self, missing: ResourceNotFoundError) -> str:
         """The beginning of a hint: a URI that is there and much like one that is not; or ""."""
         found = suggestion(missing.uri, missing.tried, self._packages)
-        return f"did you mean {found}? Else " if found else ""
+        return f"did you mean {found}? Otherwise " if found else ""
 
     def add_model_folder(self, folder: str) -> None:
         """Look for models in one more folder, after the others."""
@@ -269,7 +269,7 @@ class Resolver:
             yield from self._for_model(rest)
         else:
             known = "model://, package://, file:// or a path"
-            raise ResourceNotFoundError(uri, reason=f"{scheme}:// is not read; use {known}")
+            raise ResourceNotFoundError(uri, reason=f"{scheme}:// is not supported; use {known}")
 
     def _for_model(self, rest: str) -> Iterator[str]:
         for folder in self._all("models"):
@@ -278,7 +278,7 @@ class Resolver:
     def _for_package(self, uri: str, rest: str) -> Iterator[str]:
         name, inside = _split_package(rest)
         if not name:
-            raise ResourceNotFoundError(uri, reason="no name follows ://")
+            raise ResourceNotFoundError(uri, reason="the name after :// is missing")
         folder = self._find_package(name)
         yield os.path.join(folder, inside) if folder else f"ROS package {name}"
         for behind in self._own[1:] if name == PACKAGE else ():

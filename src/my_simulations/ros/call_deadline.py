@@ -1,4 +1,4 @@
-"""Calls that have no time-out of their own, with one on the wall clock."""
+"""Wall-clock timeout for calls that have none of their own."""
 from __future__ import annotations
 
 import threading
@@ -8,14 +8,19 @@ from ..errors import SimulationError
 
 
 class CallTimeoutError(SimulationError):
-    """A call did not come back in time; the text names it and the deadline."""
+    """A call did not return in time; the text names it and the timeout."""
 
 
 def within(limit: float, what: str, call: Callable[[], Any]) -> Any:
-    """Run a call; what it returns or raises.
+    """Run a call in a thread; returns or raises what it does.
+
+    Args:
+        limit: wall seconds.
+        what: name of the call for the error message.
+        call: the call.
 
     Raises:
-        CallTimeoutError: nothing came back within `limit` wall seconds.
+        CallTimeoutError: the call did not return within `limit`; it keeps running.
     """
     box: Dict[str, Any] = {}
 
@@ -32,5 +37,5 @@ def within(limit: float, what: str, call: Callable[[], Any]) -> Any:
     if "fault" in box:
         raise box["fault"]
     if "answer" not in box:
-        raise CallTimeoutError(f"{what} gave no answer within {limit:g} s; is the simulator stuck?")
+        raise CallTimeoutError(f"{what} did not respond within {limit:g} s; is the simulator busy?")
     return box["answer"]

@@ -123,7 +123,7 @@ class Models:
             CommandError: empty or taken name, unknown frame, or the engine refused it.
         """
         if not model.name:
-            raise CommandError("a model needs a name")
+            raise CommandError("the name of a model must not be empty")
         model = flattened(model)
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
@@ -212,7 +212,7 @@ class Models:
             CommandError: unknown or taken name, or the engine refused it; nothing has changed.
         """
         if not model.name:
-            raise CommandError("a model needs a name")
+            raise CommandError("the name of a model must not be empty")
         model = flattened(model)
         session = self._session
         with session.structure_lock:
@@ -295,7 +295,7 @@ class Models:
             try:
                 self.spawn(model, meshes=meshes.get(model.name))
             except CommandError as fault:
-                left_out = f"model '{model.name}' was left out: {fault}"
+                left_out = f"skipped model '{model.name}': {fault}"
                 self._losses.append(left_out)
                 session.log(error("model-refused", left_out, file=session.world.file))
         self._between, issues = self._between.located(session.registry)

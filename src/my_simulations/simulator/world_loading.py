@@ -1,4 +1,4 @@
-"""A world of some name: found, read, its meshes loaded, its simulator started."""
+"""Finds and reads a world, loads its meshes and starts its simulator."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -26,16 +26,16 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
         name: see `load_world`.
         resolver: see `load_world`.
         engines: makes the engine.
-        log: hears every issue of a usable world, and those of the simulator.
+        log: receives every issue of a usable world, and those of the simulator.
         seed: see `load_world`.
         profile: see `load_world`.
-        steps: how many it makes before it stands.
+        steps: pause after this many steps; FOREVER for never.
         caller: see `load_world`.
         read: called when the file has been read.
 
     Raises:
-        InputError: there is no usable world.
-        CommandError: there is no engine.
+        InputError: the world is unusable.
+        CommandError: the engine cannot be started.
     """
     world, meshes = load_world(name, resolver, log, seed=seed, profile=profile, caller=caller)
     read()
@@ -49,22 +49,22 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0,
                profile: str = "", caller: str = "") -> Tuple[World, Dict[str, MeshTable]]:
     """Read a world.
 
-    A collision whose mesh cannot be used collides with nothing, and the rest of the world loads;
-    it stays in the description, so that saving the world does not lose it.
+    A collision whose mesh cannot be used does not collide, and the rest of the world is loaded; it
+    stays in the description, so that saving the world keeps it.
 
     Args:
-        name: what `find_world` takes.
-        resolver: finds the file and what it names.
-        log: hears every issue of a world that is usable.
-        seed: of what the world draws at random.
-        profile: name of the physics preset to use; "" for the world's own choice.
-        caller: folder that relative names start from; "" for the working directory.
+        name: see `find_world`.
+        resolver: resolves the file and its URIs.
+        log: receives every issue of a usable world.
+        seed: random seed.
+        profile: name of the physics preset; "" for the world's default.
+        caller: base folder of relative names; "" for the working directory.
 
     Returns:
         The world, and the collision meshes of its models by model name.
 
     Raises:
-        InputError: there is no usable world.
+        InputError: the world is unusable.
     """
     from ..formats.loading_advice import advised
     from ..formats.reading import read_world

@@ -42,7 +42,7 @@ class _Count:
 
     def _check(self) -> None:
         if self._files > self._most_files or max(self._told, self._size) > self._most_bytes:
-            raise ArchiveRefusedError(f"the archive holds more than {self._most_files} files or"
+            raise ArchiveRefusedError(f"the archive contains more than {self._most_files} files or"
                           f" {self._most_bytes} bytes")
 
 
@@ -100,9 +100,9 @@ def _safe_path(path: str, kind: str, folder: str, name: str) -> Optional[str]:
     """Where a file goes; None for a folder, which is made at once."""
     parts = [part for part in path.split("/") if part not in ("", ".")]
     if path.startswith("/") or ".." in parts or "\0" in path or "\\" in path:
-        raise ArchiveRefusedError(f"the archive reaches out of its folder: {path!r}")
+        raise ArchiveRefusedError(f"the archive contains a path outside its folder: {path!r}")
     if name and parts and parts[0] != name:
-        raise ArchiveRefusedError(f"the archive holds {parts[0]!r} besides {name!r}")
+        raise ArchiveRefusedError(f"the archive contains {parts[0]!r} besides {name!r}")
     target = os.path.join(folder, *parts)
     if kind == "folder":
         os.makedirs(target, exist_ok=True)
@@ -137,7 +137,7 @@ def _read_to_end(archive: str, largest: int) -> None:
                 return
             size += len(chunk)
             if size > largest:
-                raise ArchiveRefusedError("the archive goes on after its end")
+                raise ArchiveRefusedError("the archive has data after its end")
 
 
 def _limit(memory: int, seconds: int, size: int) -> None:

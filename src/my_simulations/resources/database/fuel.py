@@ -95,7 +95,7 @@ class FuelModels:
         folder = self.cached(uri) or self._download(uri)
         path = os.path.join(folder, uri.inside) if uri.inside else folder
         if not os.path.exists(path):
-            raise ModelNotProvidedError(f"{path} is not there")
+            raise ModelNotProvidedError(f"{path} does not exist")
         return path
 
     def cached(self, uri: FuelUri) -> Optional[str]:
@@ -144,8 +144,8 @@ class FuelModels:
     def _download(self, uri: FuelUri) -> str:
         if uri.server not in self._servers:
             raise ModelNotProvidedError(
-                f"no cache of {', '.join(self.caches)} holds it, and {uri.server} is"
-                " no server that is asked (config.yaml of the cache names more)"
+                f"not found in the caches {', '.join(self.caches)}, and {uri.server} is not a"
+                " configured server (add it to config.yaml of the cache)"
             )
         if self._time is None:
             self._time = _Downloads(self.caches[0], self._progress, self._seconds)
@@ -153,7 +153,7 @@ class FuelModels:
         found = self.cached(uri)
         if found is None:
             raise ModelNotProvidedError(
-                f"{uri.model} was downloaded and is not in {self.caches[0]}"
+                f"{uri.model} was downloaded, but is not in {self.caches[0]}"
             )
         return found
 
