@@ -36,7 +36,7 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
 
     engines = EngineSupply(ProcessEngine)
     profile.mark("engine process started")
-    from ..ros.lifecycle.server import Server
+    from ..ros.lifecycle.server_process import Server
     from .front_ends import FrontEnds
 
     def say(line: str) -> None:

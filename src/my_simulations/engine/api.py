@@ -35,8 +35,8 @@ class Reply:
 class Event:
     """Something the engine reports by itself.
 
-    `kind`: `horizon` (reached), `diverged` (a model's state became non-finite and it was put back
-    where it last was finite, at rest), `log` (what is only approximately so).
+    `kind`: `diverged` (a model's state became non-finite; it was restored to its last finite pose,
+    at rest) or `log` (a setting is simulated approximately).
     """
 
     kind: str

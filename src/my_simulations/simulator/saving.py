@@ -22,7 +22,7 @@ from ..formats.sdf.writer.entities import write_world
 from ..geometry import STILL, compose, inverse
 from ..resources.package_files import package_directories
 from ..resources.resolver import Resolver, ResourceNotFoundError
-from ..resources.world_files import ENDINGS, folder_of_users, ships, users_folder
+from ..resources.world_lookup import ENDINGS, folder_of_users, ships, users_folder
 from .registry import Entity
 from .safe_file import write_whole
 from .simulator import Simulator

@@ -11,7 +11,7 @@ from ..engine.api import Engine
 from ..engine.commands import FOREVER
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver, ResourceNotFoundError
-from ..resources.world_files import advice_on, find_world
+from ..resources.world_lookup import advice_on, find_world
 from .simulator import Simulator
 
 Log = Callable[[Issue], None]
