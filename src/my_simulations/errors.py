@@ -1,8 +1,17 @@
-"""What can go wrong for a user, as data.
+"""Errors that users can cause: issues as data, and one hierarchy of exceptions.
 
 A fault in a user's file or request is an `Issue`; readers collect all they meet in one pass.
-`InputError` carries them where nothing usable is left. Programming errors raise ordinary
-exceptions and are never turned into issues.
+`InputError` carries them where nothing usable is left. Every exception that a user can cause
+derives from `SimulationError`:
+
+    SimulationError
+      InputError             a file or document that cannot be used
+      CommandError           a request that cannot be carried out
+        UnknownEntityError, UnknownFrameError, EngineTimeoutError, EngineLostError, ...
+      ResourceError          a file, model or download that cannot be found or fetched
+      MeshError, FrameError, BodyPlanError, ShapeError, ...   raised and handled in one package
+
+Programming errors raise Python's own exceptions and are never turned into issues.
 """
 from __future__ import annotations
 
@@ -12,7 +21,7 @@ from typing import Iterable, List, Optional, Sequence
 
 
 class Severity(enum.Enum):
-    """How much of the input survives the fault."""
+    """Severity of an issue."""
 
     ERROR = "error"      # the element (or the file) is not usable
     WARNING = "warning"  # used, but not as written
@@ -24,8 +33,8 @@ class Issue:
     """One fault of one input.
 
     Attributes:
-        severity: what it means for the input.
-        code: stable identifier in kebab-case, e.g. `mesh-not-found`.
+        severity: ERROR, WARNING or NOTE.
+        code: stable identifier in kebab-case, listed in `issue_codes`, e.g. `mesh-not-found`.
         message: one sentence, with what was expected and what was found.
         file: path of the file, or a name such as `robot_description` for text from elsewhere.
         line, column: 1-based; 0 where unknown.
@@ -85,8 +94,12 @@ def strictly(issues: Iterable[Issue]) -> List[Issue]:
             for issue in issues]
 
 
-class InputError(Exception):
-    """A user's input leaves nothing to work with.
+class SimulationError(Exception):
+    """Root of all errors that a user can cause; the text is one sentence for people."""
+
+
+class InputError(SimulationError):
+    """An input file or document that cannot be used.
 
     Attributes:
         issues: every fault found, at least one of severity ERROR.
@@ -106,21 +119,25 @@ class InputError(Exception):
         """The first error and how many more there are, in one line."""
         first = self.first
         if first is None:
-            return "unknown fault"
+            return "unknown error"
         more = len(errors_of(self.issues)) - 1
         return str(first) + (f" (and {more} more)" if more > 0 else "")
 
 
-class CommandError(Exception):
-    """A request that cannot be carried out: unknown entity, duplicate name, bad value.
+class ResourceError(SimulationError):
+    """A file, model or download that cannot be found or fetched."""
+
+
+class CommandError(SimulationError):
+    """A request that cannot be carried out: unknown entity, duplicate name, invalid value.
 
     The message is one sentence for the user, without a prefix.
     """
 
 
 class EngineTimeoutError(CommandError):
-    """The engine lives, but has not answered in time; the request may still be carried out."""
+    """The engine runs but has not answered in time; the request may still be carried out."""
 
 
 class EngineLostError(CommandError):
-    """The engine process died while it worked on this command; the world was restored."""
+    """The engine process crashed while executing this command; the world was restored."""

@@ -149,7 +149,7 @@ def test_a_model_that_kills_every_engine_is_left_out_by_name_and_the_rest_is_loa
     sim = start(*[box(name) for name in names[:9]], paused=False)
     assert sim.models.names() == ["ground", *names[:5], *names[6:9]] and len(died) == 2
     (loss,) = sim.models.losses
-    assert "model 'killer' was left out" in loss and "2 times" in loss
+    assert "skipped model 'killer'" in loss and "2 times" in loss
     assert [issue.message for issue in sim.issues if issue.code == "model-refused"] == [loss]
     for _ in range(4):   # nor is it the world that is to blame
         with pytest.raises(EngineLostError):

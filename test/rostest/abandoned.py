@@ -40,7 +40,7 @@ class Abandoned(unittest.TestCase):
             stream.write(LAUNCH)
         with Launched(folder.name, folder.name, file) as launched:
             launched.names()
-            node = master_api.living_node(launched.uri, "/gazebo")[1]
+            node = master_api.running_node(launched.uri, "/gazebo")[1]
             engine = rosgraph.Master("/abandoned", launched.uri).getParam(
                 "/gazebo/my_simulations/engine_pid")
             core = master_api.call(launched.uri, "getPid", "/abandoned")
@@ -61,11 +61,11 @@ class Abandoned(unittest.TestCase):
                                              "/gazebo/save_world"), "the server")
                 core.process.kill()
                 self.assertEqual(server.ended(), 1)
-                self.assertIn("has been gone for 1 s; the simulator ends", server.text)
+                self.assertIn("has been gone for 1 s; shutting down", server.text)
 
     def end_orphans(self, uri, core):
         """What a killed roslaunch leaves besides the simulator: rosout and the master."""
-        found = master_api.living_node(uri, "/rosout")
+        found = master_api.running_node(uri, "/rosout")
         for pid in (found[1] if found else 0, core):
             if pid:
                 os.kill(pid, signal.SIGTERM)

@@ -12,10 +12,10 @@ import rosservice
 import support
 
 from my_simulations.ros import interface
-from my_simulations.ros.interface import HEARS, PUBLISHES, SERVES
+from my_simulations.ros.interface import PUBLISHES, SERVES, SUBSCRIBES
 
 NODE = "/gazebo"
-INDEX = {PUBLISHES: 0, HEARS: 1, SERVES: 2}
+INDEX = {PUBLISHES: 0, SUBSCRIBES: 1, SERVES: 2}
 """Where the master's system state lists what."""
 
 
@@ -45,7 +45,7 @@ class ApiSurface(unittest.TestCase):
 
     def test_topic_types_are_the_tables(self):
         types = dict(self.master.getTopicTypes())
-        for direction in (PUBLISHES, HEARS):
+        for direction in (PUBLISHES, SUBSCRIBES):
             for row in self.rows(direction):
                 self.assertEqual(types[row.under(NODE)], row.type, row.name)
 

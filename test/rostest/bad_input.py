@@ -154,7 +154,7 @@ REFUSED = [
       for changes in ({"ixx": 0.0}, {"izz": -1.0}, {"ixy": 5.0})],
 
     *numbers("set_light_properties", [f"{colour}.{part}" for colour in ("diffuse", "specular")
-                                      for part in "rgba"], 1e30, "must be in|finite"),
+                                      for part in "rgba"], 1e30, "must be between|finite"),
     *numbers("set_light_properties", [f"attenuation_{name}"
                                       for name in ("constant", "linear", "quadratic")], ABSURD),
     *numbers("set_light_properties", axes("direction"), ABSURD, "direction"),
@@ -268,7 +268,7 @@ class BadInput(unittest.TestCase):
 def refusal(service, changes, word):
     def judge(case, answer):
         case.assertFalse(answer.success)
-        case.assertNotIn("internal fault", answer.status_message)
+        case.assertNotIn("internal error", answer.status_message)
         case.assertTrue(any(part in answer.status_message for part in word.split("|")),
                         answer.status_message)
         case.assertGreater(len(answer.status_message), len(word))

@@ -147,7 +147,7 @@ class NodeLife(unittest.TestCase):
                       self.world(WORLD.format("")), "__name:=second"]) as program:
             gazebo = support.Gazebo("/second", persistent=False)
             wait_for(lambda: gazebo.sim_time() > 0.0, "a step")
-            wait_for(lambda: "no state log is recorded" in program.text, "the reason")
+            wait_for(lambda: "cannot record a state log" in program.text, "the reason")
             self.assertEqual(program.text.count("Not a directory"), 1)
 
     def test_an_interrupt_while_meshes_are_divided_ends_it_with_all_it_started(self):
@@ -193,7 +193,7 @@ class NodeLife(unittest.TestCase):
     def test_a_second_node_of_the_name_is_refused_and_the_first_goes_on(self):
         with Program([self.server, "__name:=gazebo"]) as program:
             self.assertEqual(program.ended(), 1)
-            self.assertIn("a node /gazebo already runs", program.text)
+            self.assertIn("a node /gazebo is already running", program.text)
         before = self.gazebo.sim_time()
         wait_for(lambda: self.gazebo.sim_time() > before, "a step of the first node")
 
@@ -277,16 +277,16 @@ class NodeLife(unittest.TestCase):
             service = graph.lookupService("/gazebo/get_world_properties")
             first.process.kill()
             first.process.wait()
-            wait_for(lambda: "does not answer" in server.text, "a word about the loss")
+            wait_for(lambda: "does not respond" in server.text, "a word about the loss")
             with Program(start):
                 wait_for(is_whole, "everything on the new master")
-                wait_for(lambda: "has registered again" in server.text, "a word about it")
+                wait_for(lambda: "registered the node" in server.text, "a word about it")
                 self.assertEqual(graph.lookupService("/gazebo/get_world_properties"), service)
                 wait_for(lambda: self.has_param(graph, "/gazebo/time_step"), "the settings")
                 server.interrupt()
                 self.assertEqual(server.ended(), 0, server.text)
                 wait_for(lambda: not self.is_there(graph, "/gazebo/pause_physics"), "its end")
-            self.assertEqual(server.text.count("does not answer"), 1)
+            self.assertEqual(server.text.count("does not respond"), 1)
 
     @staticmethod
     def is_there(graph, service):

@@ -61,12 +61,12 @@ class Faults(flow.ToolCase, unittest.TestCase):
                      "no_such_property")
 
     def test_a_document_the_simulator_refuses_is_named(self):
-        self.refused({"bad": entry(f"{FILES}/not_a_robot.urdf")}, "bad was not spawned",
+        self.refused({"bad": entry(f"{FILES}/not_a_robot.urdf")}, "cannot spawn bad",
                      "<house>")
 
     def test_an_unknown_name_comes_with_the_closest_known_ones(self):
         text = self.run_tool("spawn_object.py", "MY_OBJEKT", "barrel", status=1)
-        self.assertIn("no object 'MY_OBJEKT'", text)
+        self.assertIn("unknown object 'MY_OBJEKT'", text)
         self.assertIn("did you mean MY_OBJECT?", text)
         self.assertIn("barrel", self.gazebo.names())
         text = self.run_tool("remove_object.py", "barel", status=1)
@@ -92,7 +92,7 @@ class Faults(flow.ToolCase, unittest.TestCase):
         self.assertEqual(len(text.strip().splitlines()), 1, text)
         self.assertIsNone(rospy.get_param("/objects", None))
         text = self.run_tool("spawn_object.py", "MY_OBJECT", status=1)
-        self.assertIn("the world 'no_such_world' has no object list", text)
+        self.assertIn("world 'no_such_world' has no object list", text)
 
     def test_a_list_of_another_world_is_dropped_by_the_upload(self):
         rospy.set_param("/objects", {"stale": entry()})

@@ -97,12 +97,12 @@ class Moving(flow.ToolCase, unittest.TestCase):
         self.gazebo.pause_physics()
         text = self.run_tool("move_object.py", "-m", "circle", "-n", "block", "-r", "1",
                              "-c", "[0,0]", "--timeout", "0.5", status=1)
-        self.assertIn("stood still for 0.5 s", text)
+        self.assertIn("did not advance for 0.5 s", text)
 
     def test_an_unknown_model_is_named_with_the_closest_known_one(self):
         text = self.run_tool("move_object.py", "-m", "circle", "-n", "blok", "-r", "1",
                              "-c", "[0,0]", "--timeout", "0.5", status=1)
-        self.assertIn("no model 'blok'", text)
+        self.assertIn("model 'blok' does not exist", text)
         self.assertIn("did you mean block?", text)
 
 

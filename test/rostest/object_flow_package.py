@@ -69,7 +69,7 @@ class OtherPackage(flow.ToolCase, unittest.TestCase):
         self.assertIn("package:=PACKAGE", text)
         self.assertIn("--package PACKAGE", text)
         text = self.run_here("spawn_object.py", "MY_OBJECT", status=1)
-        self.assertIn("has no object list in the package 'my_simulations'", text)
+        self.assertIn("has no object list in package 'my_simulations'", text)
         self.assertIn("package:=PACKAGE", text)
 
     def test_messages_about_a_spawned_file_name_model_file_and_line(self):

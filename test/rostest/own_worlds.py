@@ -106,7 +106,7 @@ class OwnWorlds(unittest.TestCase):
                                  path=os.path.join(self.typed, "test.world"))
             self.assertTrue(saved.success, saved.status_message)
         with self.my_world("world:=test.world") as launched:
-            launched.says("holds 'robo' already, as described")
+            launched.says("already contains an identical model 'robo'")
             state = launched.ask("get_model_state", GetModelState, model_name="robo")
             self.assertAlmostEqual(state.pose.position.x, 1.0, 3)
             # It belongs to the world now, which is saved beside itself.
@@ -118,8 +118,8 @@ class OwnWorlds(unittest.TestCase):
             other = file.read().replace("<mass>", "<mass>1", 1)
         self.write("test.world", other)
         with self.my_world("world:=test.world") as launched:
-            launched.says("robot_description was not spawned")
-            launched.says("is described otherwise")
+            launched.says("cannot spawn robot_description")
+            launched.says("that differs in")
 
     def spawners(self, world):
         return self.write("spawners.launch", SPAWNERS.format(

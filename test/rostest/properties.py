@@ -138,7 +138,7 @@ class Properties(unittest.TestCase):
         config.hiStop, config.loStop, config.damping = [0.2], [0.0], [0.5]
         config.fudge_factor = [1.0]
         answer = self.done(self.gazebo.set_joint_properties(request))
-        self.assertIn("without effect: fudge_factor", answer.status_message)
+        self.assertIn("not supported by Bullet: fudge_factor", answer.status_message)
         self.assertEqual(list(self.gazebo.get_joint_properties("rail").damping), [0.5])
         self.done(self.gazebo.apply_joint_effort("arm::rail", 40.0, rospy.Time(),
                                                  rospy.Duration(-1)))

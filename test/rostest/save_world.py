@@ -56,7 +56,7 @@ class Saving(unittest.TestCase):
         self.assertTrue(self.save(path="w.world", overwrite=False, inline=True).success)
         refused = self.save(path="w.world", overwrite=False, inline=True)
         self.assertFalse(refused.success)
-        self.assertIn("exists already", refused.status_message)
+        self.assertIn("already exists", refused.status_message)
         self.assertTrue(self.save(path="w.world", overwrite=True, inline=True).success)
 
     def test_other_places_are_refused(self):

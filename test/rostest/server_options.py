@@ -64,8 +64,9 @@ class ServerOptions(unittest.TestCase):
         rospy.set_param("/arm", ARM)
         text = self.run_spawn_model("-urdf", "-param", "arm", "-model", "arm_2",
                                     "-J", "no_such_joint", "1", status=1)
-        self.assertIn("no joints that can be set: no_such_joint; those that can are hinge", text)
-        self.assertIn("has no joint 'no_such_joint'; it has hinge", text)
+        self.assertIn("skipped unknown or non-settable joints: no_such_joint; "
+                      "settable joints: hinge", text)
+        self.assertIn("has no joint 'no_such_joint'; its joints are hinge", text)
 
 
 if __name__ == "__main__":

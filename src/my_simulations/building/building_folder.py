@@ -57,10 +57,10 @@ def checked_name(name: str) -> str:
     """
     made = model_name(name)
     if not made:
-        raise CommandError("the building needs a name")
+        raise CommandError("the name of the building must not be empty")
     if _FORBIDDEN.search(made) or made.startswith(".") or ".." in made:
-        raise CommandError(f"{name!r} is no name for a building: it must not contain"
-                           " / \\ : * ? \" < > | or .. nor begin with a dot")
+        raise CommandError(f"{name!r} is not a valid building name: it must not contain"
+                           " / \\ : * ? \" < > | or .. or start with a dot")
     if len(made.encode()) > 100:
         raise CommandError("the name of the building is longer than 100 bytes")
     return made
@@ -85,7 +85,7 @@ def save_building(plan: Plan, folder: str, about: Optional[About] = None,
     """
     about = about or About()
     if os.path.lexists(folder) and not overwrite:
-        raise CommandError(f"{folder} exists already; ask for it to be replaced, or choose another"
+        raise CommandError(f"{folder} already exists; confirm overwriting, or choose another"
                            " name")
     plan, files = _with_image_files(plan, folder)
     files["model.sdf"] = write_entity(building_model(plan))
@@ -113,11 +113,11 @@ def load_building(path: str) -> Tuple[Plan, List[Issue]]:
             issues += [replace(issue, severity=Severity.WARNING) for issue in fault.issues]
     file = description_in(path) if os.path.isdir(path) else path
     if file is None:
-        raise InputError([*issues, error("building-not-found", f"{path} holds no building",
+        raise InputError([*issues, error("building-not-found", f"{path} contains no building",
                                          file=path)])
     model, found = read_file(file, Resolver())
     if not isinstance(model, Model):
-        raise InputError([error("building-unknown", f"{file} holds no model", file=file)])
+        raise InputError([error("building-unknown", f"{file} contains no model", file=file)])
     plan, more = plan_from_model(model, file)
     return plan, [*issues, *found, *more]
 
@@ -201,7 +201,7 @@ def image_kind(content: bytes, name: str) -> str:
                     return str(image.format)
                 why = f"it is {image.format}, not PNG or JPEG"
         except UnidentifiedImageError:
-            why = "it is no picture"
+            why = "it is not an image"
         except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as fault:
             why = str(fault)
     raise InputError([error("image-unreadable", f"the floor plan {name!r} cannot be used: {why}",
@@ -223,7 +223,7 @@ def _with_image_files(plan: Plan, folder: str) -> Tuple[Plan, Dict[str, bytes]]:
             name = os.path.basename(image.file)
             if name != image.file or not os.path.isfile(os.path.join(folder, name)):
                 raise InputError([error("image-not-found", f"the floor plan {image.file!r} of"
-                                        f" {level.name!r} is not there")])
+                                        f" {level.name!r} was not found")])
         levels.append(replace(level, image=image))
     return replace(plan, levels=levels), files
 
@@ -235,7 +235,7 @@ def _decoded(image: FloorImage) -> bytes:
             raise ValueError
         return base64.b64decode(image.data[head.end():], validate=True)
     except (ValueError, binascii.Error):
-        raise InputError([error("image-unreadable", f"the floor plan {image.file!r} is no PNG or"
+        raise InputError([error("image-unreadable", f"the floor plan {image.file!r} is not a PNG or"
                                 " JPEG picture", hint="import it again")]) from None
 
 
@@ -285,7 +285,7 @@ def _write_all(folder: str, files: Dict[str, bytes]) -> None:
             os.replace(temporary, target)
             del staged[0]
     except OSError as fault:
-        raise CommandError(f"{folder} cannot be written: {fault.strerror or fault}") from fault
+        raise CommandError(f"cannot write {folder}: {fault.strerror or fault}") from fault
     finally:
         for temporary, _ in staged:
             if os.path.lexists(temporary):

@@ -90,6 +90,6 @@ def _allowed(path: str, roots: Sequence[str]) -> str:
     real = os.path.realpath(os.path.join(places[0], os.path.expanduser(path.replace("\0", ""))))
     if "\0" in path or not any(real == place or real.startswith(place.rstrip("/") + "/")
                                for place in places):
-        raise CommandError(f"{path!r} leads to {real}, where no building may be; allowed are "
+        raise CommandError(f"{path!r} resolves to {real}, which is outside the allowed folders: "
                            + ", ".join(places))
     return real

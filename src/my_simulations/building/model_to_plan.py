@@ -75,13 +75,13 @@ def plan_from_model(model: Model, file: str = "") -> Tuple[Plan, List[Issue]]:
     for link in model.links:
         item = _item(link, model.pose)
         if item is None or item.kind == "Roof" or not (item.blocks or item.polygons):
-            issues.append(warning("building-link-left-out", f"link {link.name!r} is not read back"
-                                  " into the plan", file=file))
+            issues.append(warning("building-link-left-out", f"link {link.name!r} cannot be"
+                                  " converted to the plan", file=file))
         else:
             items.append(item)
     if not items:
         raise InputError([error("building-unknown", f"model {model.name!r} has no links such as"
-                                " Wall_0, Floor_0 or Stairs_0, from which a plan could be read",
+                                " Wall_0, Floor_0 or Stairs_0, from which a plan can be made",
                                 file=file)])
     plan = Plan(model.name, _levels(items))
     _number(plan, items)

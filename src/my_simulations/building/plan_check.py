@@ -32,7 +32,7 @@ def _walls(level: Level, path: str) -> Iterator[Issue]:
         if wall.length < SHORTEST:
             yield error("wall-zero-length", f"Wall_{wall.id} on {level.name!r} is"
                         f" {wall.length:g} m long; a wall needs at least {SHORTEST:g} m",
-                        xpath=f"{path}.walls[{number}]", hint="remove it or move one of its ends")
+                        xpath=f"{path}.walls[{number}]", hint="delete it, or move one of its ends")
         else:
             sound.append(number)
     for a, b in _touching([level.walls[number] for number in sound]):
@@ -136,6 +136,6 @@ def _floors(level: Level, path: str) -> Iterator[Issue]:
         shape = Polygon(floor.outline, floor.holes)
         if not shape.is_valid or shape.area < SHORTEST ** 2:
             why = explain_validity(shape) if not shape.is_valid else "it has no area"
-            yield error("floor-outline", f"the outline of Floor_{floor.id} on {level.name!r} is no"
-                        f" simple polygon: {why}", xpath=f"{path}.floors[{number}]",
+            yield error("floor-outline", f"the outline of Floor_{floor.id} on {level.name!r} is"
+                        f" not a simple polygon: {why}", xpath=f"{path}.floors[{number}]",
                         hint="its edges must not cross")

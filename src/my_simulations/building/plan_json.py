@@ -26,7 +26,7 @@ _COLOR = re.compile(r"#[0-9a-f]{6}\Z")
 _NO_CONTROL = re.compile(r"[^\x00-\x1f\x7f]{0,200}\Z")
 
 
-class _Wrong(ValueError):
+class _UnexpectedValueError(ValueError):
     """What was expected, for one value."""
 
 
@@ -35,77 +35,77 @@ Kind = Callable[[Any], Any]
 
 def _number(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise _Wrong("a number")
+        raise _UnexpectedValueError("a number")
     if abs(value) > FARTHEST:
-        raise _Wrong(f"a number within {FARTHEST:g}")
+        raise _UnexpectedValueError(f"a number within {FARTHEST:g}")
     return float(value)
 
 
 def _size(value: Any) -> float:
     number = _number(value)
     if number <= 0:
-        raise _Wrong("a number above 0")
+        raise _UnexpectedValueError("a number above 0")
     return number
 
 
 def _not_negative(value: Any) -> float:
     number = _number(value)
     if number < 0:
-        raise _Wrong("a number that is not below 0")
+        raise _UnexpectedValueError("a number of at least 0")
     return number
 
 
 def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise _Wrong("a whole number")
+        raise _UnexpectedValueError("an integer")
     return value
 
 
 def _steps(value: Any) -> int:
     if not 1 <= _count(value) <= MOST_STEPS:
-        raise _Wrong(f"a whole number from 1 to {MOST_STEPS}")
+        raise _UnexpectedValueError(f"an integer from 1 to {MOST_STEPS}")
     return int(value)
 
 
 def _pitch(value: Any) -> float:
     if not 0 < _number(value) < math.radians(80):
-        raise _Wrong("an angle in radians between 0 and 1.39")
+        raise _UnexpectedValueError("an angle in radians between 0 and 1.39")
     return float(value)
 
 
 def _point(value: Any) -> Tuple[float, float]:
     if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise _Wrong("a point [x, y]")
+        raise _UnexpectedValueError("a point [x, y]")
     return (_number(value[0]), _number(value[1]))
 
 
 def _loop(value: Any) -> List[Tuple[float, float]]:
     if not isinstance(value, list) or len(value) < 3:
-        raise _Wrong("a list of at least 3 points")
+        raise _UnexpectedValueError("a list of at least 3 points")
     return [_point(point) for point in value]
 
 
 def _loops(value: Any) -> List[List[Tuple[float, float]]]:
     if not isinstance(value, list):
-        raise _Wrong("a list of outlines")
+        raise _UnexpectedValueError("a list of outlines")
     return [_loop(loop) for loop in value]
 
 
 def _text(value: Any) -> str:
     if not isinstance(value, str) or not _NO_CONTROL.match(value):
-        raise _Wrong("a short text")
+        raise _UnexpectedValueError("a string of at most 200 characters")
     return value
 
 
 def _data(value: Any) -> str:
     if not isinstance(value, str):
-        raise _Wrong("a text")
+        raise _UnexpectedValueError("a text")
     return value
 
 
 def _color(value: Any) -> str:
     if not isinstance(value, str) or not _COLOR.match(value.lower()):
-        raise _Wrong("a colour such as #c2a9a0")
+        raise _UnexpectedValueError("a colour such as #c2a9a0")
     return value.lower()
 
 
@@ -116,7 +116,7 @@ def _wall_id(value: Any) -> Optional[int]:
 def _one_of(*words: str) -> Kind:
     def read(value: Any) -> str:
         if value not in words:
-            raise _Wrong(" or ".join(repr(word) for word in words))
+            raise _UnexpectedValueError(" or ".join(repr(word) for word in words))
         return str(value)
 
     return read
@@ -159,10 +159,11 @@ def plan_from_text(text: Union[str, bytes], file: str = "") -> Plan:
     try:
         tree = json.loads(text)
     except json.JSONDecodeError as fault:
-        raise InputError([error("plan-not-json", f"the plan is no JSON: {fault.msg}", file=file,
+        raise InputError([error("plan-not-json", "the plan is not valid JSON: "
+                                                 f"{fault.msg}", file=file,
                                 line=fault.lineno, column=fault.colno)]) from None
     except (UnicodeDecodeError, RecursionError) as fault:
-        raise InputError([error("plan-not-json", f"the plan is no JSON: {fault}",
+        raise InputError([error("plan-not-json", f"the plan is not valid JSON: {fault}",
                                 file=file)]) from None
     return plan_from_json(tree, file)
 
@@ -253,7 +254,7 @@ class _Reader:
                 continue
             try:
                 values[name] = read(tree[name])
-            except _Wrong as fault:
+            except _UnexpectedValueError as fault:
                 self._wrong(at, str(fault), tree[name])
         return of(**values) if len(self.issues) == known else None
 
@@ -266,8 +267,7 @@ class _Reader:
                 for n, item in enumerate(getattr(level, name)):
                     path = f"levels[{at}].{name}[{n}]"
                     if item.id in seen:
-                        self._fault("plan-id-repeated", f"two of the {name} have the number"
-                                    f" {item.id}", path)
+                        self._fault("plan-id-repeated", f"two {name} have the id {item.id}", path)
                     seen[item.id] = path
             given = counters.get(kind)
             start = given if isinstance(given, int) and not isinstance(given, bool) else 0

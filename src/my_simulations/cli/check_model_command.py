@@ -1,4 +1,4 @@
-"""`check_model`: everything wrong with world, SDF, URDF and xacro files and model folders."""
+"""`check_model`: checks world, SDF, URDF and xacro files and model folders."""
 from __future__ import annotations
 
 import argparse
@@ -31,29 +31,36 @@ Loaded = Union[World, Model, Light, Actor]
 def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = Parser(
-        prog=NAME, description="Read worlds, models and robots as the simulator does, and say what"
-        " is wrong with them. Needs no ROS master.",
-        epilog="Exit code: 0 when there are no errors (warnings may be), 1 when there are, 2 for a"
-        " wrong command line.")
-    made.add_argument("files", nargs="+", metavar="FILE",
-                      help=".world, .sdf, .urdf or .xacro, or the folder of a model")
-    made.add_argument("--strict", action="store_true", help="count what is read as Gazebo reads it,"
-                      " although the format forbids it, as errors")
-    made.add_argument("--json", action="store_true", help="print one JSON object a file, a line"
-                      " each, with counts and issues")
+        prog=NAME, description="Check worlds, models and robots as the simulator reads them. Needs"
+        " no ROS master.",
+        epilog="Exit code: 0 without errors (warnings are allowed), 1 with errors, 2 for an"
+        " invalid command line.")
+    made.add_argument("files", nargs="*", metavar="FILE",
+                      help=".world, .sdf, .urdf or .xacro file, or a model folder")
+    made.add_argument("--strict", action="store_true", help="report as errors what Gazebo accepts"
+                      " although the format forbids it")
+    made.add_argument("--json", action="store_true", help="print one JSON object per file, one per"
+                      " line, with counts and issues")
+    made.add_argument("--explain", metavar="CODE", help="print meaning and remedy of an issue code"
+                      " (listed in doc/issue_codes.md) and exit")
     return made
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Runs the check.
+    """Run the check.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
 
     Returns:
-        0 clean or warnings only, 1 errors, 2 wrong usage.
+        0 without errors, 1 with errors, 2 for an invalid command line.
     """
-    options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
+    made = parser()
+    options = made.parse_args((sys.argv if argv is None else list(argv))[1:])
+    if options.explain:
+        return _explain(options.explain, made)
+    if not options.files:
+        made.error("the following arguments are required: FILE")
     resolver = Resolver.from_environment(DownloadNotes(lambda note: print(note, file=sys.stderr)))
     failed = False
     for file in options.files:
@@ -69,8 +76,18 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     return 1 if failed else 0
 
 
+def _explain(code: str, made: argparse.ArgumentParser) -> int:
+    from ..issue_codes import CODES
+
+    entry = CODES.get(code)
+    if entry is None:
+        made.error(f"unknown issue code {code!r}")
+    print(f"{entry.code} ({entry.severity}): {entry.meaning}\n{entry.action}")
+    return 0
+
+
 def check(file: str, resolver: Resolver) -> Tuple[Optional[Loaded], List[Issue]]:
-    """What a file describes, None where nothing usable, and all that is to be said about it."""
+    """The content of a file, None if it is unusable, and all issues found in it."""
     try:
         path, text = _document(file)
         return read_any(text, resolver, path)
@@ -83,8 +100,8 @@ def _document(file: str) -> Tuple[str, Union[str, bytes]]:
     if os.path.isdir(file):
         found = description_in(file)
         if found is None:
-            raise InputError([error("model-missing", "the folder holds no model.config that names a"
-                                    " file, and no model.sdf", file=file)])
+            raise InputError([error("model-missing", "the folder contains neither a model.config"
+                                    " that names a file nor a model.sdf", file=file)])
         path = found
     if path.endswith(".xacro"):
         return path, run_xacro(path, XACRO_SECONDS)
@@ -102,7 +119,7 @@ def _models(loaded: Loaded) -> List[Model]:
 
 
 def counts(loaded: Optional[Loaded]) -> Dict[str, Any]:
-    """How much of what a file describes, for `--json`."""
+    """Number of entities by kind, for `--json`."""
     models = [] if loaded is None else _models(loaded)
     flat = [flattened(model) for model in models]
     links = [link for model in flat for link in model.links]

@@ -1,4 +1,4 @@
-"""What a server shows and keeps besides ROS: the world editor, and state logs for it."""
+"""Front ends besides ROS: the world editor and state logs."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Callable, Dict, List
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
 
 
 class FrontEnds:
-    """Starts them; nothing of them is imported before."""
+    """Starts editor and recorder; imports them on first use."""
 
     def __init__(self) -> None:
         self._logs: List[str] = []
 
     def edit(self, simulator: "Simulator", resolver: "Resolver",
              settings: Dict[str, Any]) -> "EditorServer":
-        """Start the world editor, which knows of the log that was begun before.
+        """Start the world editor; it lists logs that were started before.
 
-        Raises CommandError: it cannot listen, or what it needs is not installed.
+        Raises CommandError: the port is in use, or a dependency is not installed.
         """
         from ..errors import CommandError
 
@@ -33,13 +33,13 @@ class FrontEnds:
             return editor.start(simulator, resolver, options)
         except ImportError as missing:
             raise CommandError(
-                f"{missing}; tools/run installs what the editor needs") from missing
+                f"{missing}; run tools/run to install the dependencies of the editor") from missing
 
     def record(self, simulator: "Simulator", resolver: "Resolver", wanted: "Recording",
                tell: "Callable[[Issue], None]") -> "Recorder":
-        """Begin a state log where it is wanted, or else among the editor's logs.
+        """Start a state log in the given folder, else in the editor's log folder.
 
-        Raises CommandError: it cannot be written, or what it needs is not installed.
+        Raises CommandError: it cannot be written, or a dependency is not installed.
         """
         from ..errors import CommandError
 
@@ -50,6 +50,6 @@ class FrontEnds:
             path = path_of(wanted.path, EditorOptions().data_dir)
             recorder = Recorder(simulator, resolver, path, wanted.period, tell)
         except ImportError as missing:
-            raise CommandError(f"{missing}; tools/run installs what a log needs") from missing
+            raise CommandError(f"{missing}; run tools/run to install it") from missing
         self._logs.append(recorder.path)
         return recorder

@@ -1,4 +1,4 @@
-"""`gazebo`: server and editor in one; with a ROS master as a node, without one on its own."""
+"""`gazebo`: server and editor together; a ROS node if there is a master, else without ROS."""
 from __future__ import annotations
 
 import sys
@@ -13,7 +13,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     """Run a world with its editor until a signal ends it.
 
     Returns:
-        As `gzserver`.
+        0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     words = sys.argv if argv is None else argv
     end_quietly()
@@ -28,7 +28,7 @@ def main(argv: Optional[List[str]] = None) -> int:
 
 
 def _show(words: List[str]) -> None:
-    """Show the editor's address as soon as the node has one."""
+    """Show the editor's URL as soon as the node has set it."""
     import time
 
     from ..ros.lifecycle import master_api
@@ -41,7 +41,7 @@ def _show(words: List[str]) -> None:
             found = master_api.call(uri, "getParam", name, f"{name}/my_simulations/editor_url")
         except OSError:
             return
-        if isinstance(found, str) and master_api.living_node(uri, name) is not None:
+        if isinstance(found, str) and master_api.running_node(uri, name) is not None:
             show(found, "gazebo")
             return
         time.sleep(0.25)

@@ -1,4 +1,4 @@
-"""The commands of `gz` that ask a running simulator, through its ROS services."""
+"""The commands of `gz` that call the ROS services of a running simulator."""
 from __future__ import annotations
 
 import argparse
@@ -16,20 +16,20 @@ from . import object_client as client
 OK = client.OK
 FIND_SECONDS = 10.0
 STATS_SECONDS = 0.2
-"""Between two lines of `gz stats` (Gazebo behaviour)."""
+"""Wall seconds between two lines of `gz stats` (Gazebo behaviour)."""
 
 
 class Running:
-    """The simulator that a command is about."""
+    """The running simulator."""
 
     def __init__(self, node: str, remappings: Sequence[str]) -> None:
-        """Finds it. Raises ToolError where there is none."""
+        """Connect to the simulator. Raises ToolError if it does not run."""
         self.node = client.full_name(node, remappings)
         self.parameters = client.Parameters(remappings)
         self.simulator = client.SimulatorClient(self.parameters, self.node, FIND_SECONDS)
 
     def ask(self, service: str, kind: str, **fields: Any) -> Any:
-        """The answer of a service. Raises ToolError when it fails."""
+        """The response of a service. Raises ToolError if it fails."""
         answer = self.simulator.ask(service, kind, **fields)
         if not getattr(answer, "success", True):
             raise client.ToolError(answer.status_message)
@@ -69,8 +69,8 @@ def model(options: argparse.Namespace, running: Running) -> int:
     known = running.simulator.model_names()
     if name not in known:
         near = closest(name, known)
-        raise client.ToolError(f"there is no model '{name}' in the world" + (
-            f"; did you mean {' or '.join(near)}?" if near else "; gz model -l lists them"))
+        raise client.ToolError(f"unknown model '{name}'" + (
+            f"; did you mean {' or '.join(near)}?" if near else "; run gz model -l for a list"))
     given = [getattr(options, axis) for axis in "xyzRPY"]
     if options.delete:
         running.simulator.delete(name)
@@ -132,7 +132,7 @@ def topic(options: argparse.Namespace, running: Running) -> int:
             try:
                 os.execvp("rostopic", ["rostopic", word, name])
             except OSError as fault:
-                raise client.ToolError(f"rostopic does not start: {fault}") from fault
+                raise client.ToolError(f"cannot start rostopic: {fault}") from fault
     if not options.list:
         raise client.ToolError("give -l, -e TOPIC, -i TOPIC, -z TOPIC or -b TOPIC")
     state = master_api.call(running.parameters.uri, "getSystemState", client.CALLER) or ((), (), ())
@@ -142,7 +142,7 @@ def topic(options: argparse.Namespace, running: Running) -> int:
 
 
 def _measured(running: Running, duration: float) -> Iterator[Tuple[float, float, float, bool]]:
-    """Factor, sim time, real time (s) and whether time stands still, until the time is over."""
+    """Real-time factor, sim time (s), real time (s) and paused, for `duration` wall seconds."""
     began = before = time.monotonic()
     sim_before = running.ask("get_world_properties", "GetWorldProperties").sim_time
     while before - began < duration:
@@ -160,7 +160,7 @@ def _spawn(options: argparse.Namespace, running: Running) -> int:
             with open(options.spawn_file, encoding="utf-8") as file:
                 text = file.read()
         except (OSError, UnicodeDecodeError) as fault:
-            raise client.ToolError(f"{options.spawn_file} cannot be read: {fault}") from fault
+            raise client.ToolError(f"cannot read {options.spawn_file}: {fault}") from fault
     else:
         text = sys.stdin.read()
     x, y, z, roll, pitch, yaw = (getattr(options, axis) or 0.0 for axis in "xyzRPY")
@@ -184,7 +184,7 @@ def _place(running: Running, name: str, numbers: Sequence[float]) -> None:
 
 
 def _show(running: Running, name: str) -> None:
-    """Prints a model's parts as YAML."""
+    """Print a model's links, collisions, joints and nested models as YAML."""
     found = running.ask("get_model_properties", "GetModelProperties", model_name=name)
     position, rpy = _pose(running, name)
     print(f"name: {name}\nis_static: {str(found.is_static).lower()}\n"
@@ -199,7 +199,7 @@ def _vector(text: str) -> Vec3:
     try:
         x, y, z = (float(word) for word in text.replace(",", " ").split())
     except ValueError as fault:
-        raise client.ToolError(f"{text!r} is not three numbers: -g 0,0,-9.8") from fault
+        raise client.ToolError(f"-g takes three numbers such as 0,0,-9.8, not {text!r}") from fault
     return x, y, z
 
 

@@ -1,4 +1,4 @@
-"""`gzclient`: finds the world editor of a running server and shows it."""
+"""`gzclient`: opens the world editor of a running server."""
 from __future__ import annotations
 
 import signal
@@ -11,26 +11,26 @@ from .web_browser import show
 
 PROGRAM = "gzclient"
 SERVER_SECONDS = 60.0
-"""How long a server may take to come."""
+"""Longest wait for the server, wall seconds."""
 
 POLL_SECONDS = 0.25
 WATCH_SECONDS = 5.0
 
 OK, FAILED = 0, 1
 
-USAGE = """usage: gzclient [-h] [options of Gazebo's client, which do nothing] [name:=value ...]
+USAGE = """usage: gzclient [-h] [options of Gazebo's client, ignored] [name:=value ...]
 
-Show the world editor of the running node `gazebo`: in a browser where there is a display, else by
-its address. Ends with the node."""
+Open the world editor of the running node `gazebo` in a browser, or print its URL if there is no
+display. Exits when the node exits."""
 
 
 def main(argv: Optional[List[str]] = None) -> int:
-    """Show the editor of the node `gazebo`, and stay until that node or we are ended.
+    """Open the editor of the node `gazebo`, and wait until that node or this program ends.
 
-    Options of Gazebo's client are accepted and do nothing.
+    Options of Gazebo's client are accepted and ignored.
 
     Returns:
-        0 after a signal or the server's end, 1 when there is no server or it has no editor.
+        0 after a signal or the end of the server, 1 without a server or editor.
     """
     words = sys.argv if argv is None else argv
     if "-h" in words[1:] or "--help" in words[1:]:
@@ -43,7 +43,7 @@ def main(argv: Optional[List[str]] = None) -> int:
 
 
 class _Client:
-    """Asks the master, without a node of its own."""
+    """Finds the editor through the master, without a node of its own."""
 
     def __init__(self, words: List[str]) -> None:
         self.ended = threading.Event()
@@ -61,11 +61,11 @@ class _Client:
             self._stay()
         except OSError as fault:
             if not self.ended.is_set():
-                _complain(f"the ROS master at {self._master} stopped answering: {fault}")
+                _complain(f"the ROS master at {self._master} stopped responding: {fault}")
         return OK
 
     def _find(self) -> Optional[str]:
-        """The editor's address; None after having said why there is none."""
+        """URL of the editor; None, with a printed reason, if there is none."""
         import time
 
         until = time.monotonic() + SERVER_SECONDS
@@ -73,15 +73,15 @@ class _Client:
             return None
         told = False
         while not self.ended.is_set():
-            server = master_api.living_node(self._master, self._server)
+            server = master_api.running_node(self._master, self._server)
             if server is not None:
                 url = self._parameter() or self._ask()
                 if url:
                     return url
             if time.monotonic() > until:
-                _complain(f"there is no world editor: the node {self._server} on {self._master} "
-                          + ("has none; it was started without `gui`, and without extensions"
-                             if server is not None else "does not run"))
+                _complain(f"no world editor: the node {self._server} on {self._master} "
+                          + ("was started without `gui` and without extensions"
+                             if server is not None else "is not running"))
                 return None
             if not told:
                 told = True
@@ -95,7 +95,7 @@ class _Client:
         return found if isinstance(found, str) else ""
 
     def _ask(self) -> str:
-        """Have the server start its editor, where it offers that."""
+        """Have the server start its editor, if it supports that; returns the URL."""
         service = f"{self._server}/open_editor"
         if not master_api.call(self._master, "lookupService", self._name, service):
             return ""
@@ -105,15 +105,15 @@ class _Client:
         try:
             answer = rospy.ServiceProxy(service, OpenEditor)()
         except rospy.ServiceException:
-            return ""  # it is ending, or starting anew
+            return ""  # it is shutting down, or restarting
         if not answer.success:
             _complain(answer.status_message)
         return str(answer.url)
 
     def _stay(self) -> None:
-        """Until a signal, or until the server has gone: launch files may require us."""
+        """Wait for a signal or the end of the server: launch files may set `required`."""
         while not self.ended.wait(WATCH_SECONDS):
-            if master_api.living_node(self._master, self._server) is None:
+            if master_api.running_node(self._master, self._server) is None:
                 return
 
 

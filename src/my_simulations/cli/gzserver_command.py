@@ -13,11 +13,11 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
-        program: the name in usage and messages.
-        gui: start the world editor at once; else when the parameter `~gui` or a service asks.
+        program: name in usage and messages.
+        gui: start the world editor with the node; else on `~gui` or by service.
 
     Returns:
-        0 after SIGINT or SIGTERM, 1 when the node could not start.
+        0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     words = sys.argv if argv is None else argv
     end_quietly()
@@ -36,14 +36,15 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
 
     engines = EngineSupply(ProcessEngine)
     profile.mark("engine process started")
-    from ..ros.lifecycle.server import Server
+    from ..ros.lifecycle.server_process import Server
     from .front_ends import FrontEnds
 
     def say(line: str) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
-    faces = FrontEnds()
-    return Server(options, words, say, engines, profile, faces.edit, gui, faces.record).run()
+    front_ends = FrontEnds()
+    return Server(options, words, say, engines, profile, front_ends.edit, gui,
+                  front_ends.record).run()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""`move_object.py`: put a model somewhere, or move it along a polygon or a circle."""
+"""`move_object.py`: sets the pose of a model, or moves it along a polygon or circle."""
 from __future__ import annotations
 
 import argparse
@@ -7,7 +7,7 @@ import re
 import time
 from typing import Any, Callable, List, Optional, Sequence, Union
 
-from ..errors import InputError
+from ..errors import InputError, SimulationError
 from ..geometry import Pose, quat_from_rpy
 from ..objects.motion_path import Circle, Polygon, parse_numbers, parse_points
 from ..objects.selection import unknown_name
@@ -16,57 +16,57 @@ from . import object_client as client
 
 NAME = "move_object.py"
 RATE = 100.0
-"""Placements a second of ROS time."""
+"""Pose updates per second of ROS time."""
 
 BLOCKED_SECONDS = 60.0
-"""ROS time after which a blocked object begins again (Care-O-bot tools)."""
+"""Seconds of ROS time after which a blocked object starts again (Care-O-bot tools)."""
 
 NEAR = 0.01
-"""Metres within which an initial pose counts as reached (Care-O-bot tools)."""
+"""Distance (m) within which an initial pose counts as reached (Care-O-bot tools)."""
 
-Route = Union[Polygon, Circle]
+Path = Union[Polygon, Circle]
 
 
-class MotionStoppedError(Exception):
-    """ROS shuts this program down."""
+class MotionStoppedError(SimulationError):
+    """The program is being shut down by ROS."""
 
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = Parser(
-        prog=NAME, description="Move a model of the running world. Polygons and circles go round "
+        prog=NAME, description="Move a model of the running world. Polygons and circles repeat "
         "until Ctrl-C.",
-        epilog="Exit code: 0 when all went well (also when ended by Ctrl-C on its way), 1 when "
-        "something failed, 2 for a wrong command line.")
+        epilog="Exit code: 0 on success (also after Ctrl-C), 1 on failure, 2 for an invalid "
+        "command line.")
     made.add_argument("-m", "--mode", required=True, choices=("initialpose", "polygon", "circle"))
-    made.add_argument("-n", "--name", required=True, help="the model")
+    made.add_argument("-n", "--name", required=True, help="name of the model")
     made.add_argument("-i", "--initialpose", metavar="[X,Y,Z,R,P,Y]",
-                      help="pose for mode initialpose, metres and radians")
-    made.add_argument("-p", "--polygon", metavar="[[X,Y],...]", help="corners for mode polygon")
-    made.add_argument("-c", "--center", metavar="[X,Y]", help="centre for mode circle")
-    made.add_argument("-r", "--radius", type=float, help="radius for mode circle, metres")
+                      help="pose in mode initialpose (m, rad)")
+    made.add_argument("-p", "--polygon", metavar="[[X,Y],...]", help="corners in mode polygon (m)")
+    made.add_argument("-c", "--center", metavar="[X,Y]", help="centre in mode circle (m)")
+    made.add_argument("-r", "--radius", type=float, help="radius in mode circle (m)")
     made.add_argument("-v", "--velocity", type=float, default=0.5,
-                      help="metres a second of ROS time (default %(default)g)")
+                      help="speed in m/s of ROS time (default %(default)g)")
     made.add_argument("-z", "--height", type=float, default=0.0,
-                      help="height of the path, metres (default %(default)g)")
+                      help="height of the path (m, default %(default)g)")
     made.add_argument("-o", "--stop-objects", default="", metavar="\"NAME ...\"",
-                      help="wait while one of these models is near the next point")
+                      help="stop while one of these models is near the next point")
     made.add_argument("-d", "--distance", type=float, default=2.0,
-                      help="what near means, metres (default %(default)g)")
+                      help="distance for --stop-objects (m, default %(default)g)")
     made.add_argument("--laps", type=int, default=0,
-                      help="end after so many rounds (default: never)")
+                      help="exit after this many rounds (default: never)")
     client.common_options(made)
     return made
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Runs the tool.
+    """Run the tool.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
 
     Returns:
-        0 when the model was moved, 1 when it was not, 2 for wrong usage.
+        0 if the model was moved, 1 if not, 2 for an invalid command line.
     """
     words, remappings = client.plain_words(argv)
     made = parser()
@@ -78,18 +78,18 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     return client.run(NAME, lambda: _move(options, target, remappings))
 
 
-def target_of(options: argparse.Namespace) -> Union[Pose, Route]:
-    """The pose or the route that the options describe.
+def target_of(options: argparse.Namespace) -> Union[Pose, Path]:
+    """The pose or path given by the options.
 
     Raises:
-        InputError: an option that the mode needs is missing or wrong.
+        InputError: an option that the mode needs is missing or invalid.
     """
     from ..errors import error
 
     if not all(map(math.isfinite, (options.velocity, options.height, options.distance))) \
             or options.velocity <= 0.0 or options.laps < 0:
-        raise InputError([error("argument", "the velocity must be greater than 0, laps not "
-                                "negative, and every number finite")])
+        raise InputError([error("argument", "velocity must be greater than 0, laps not "
+                                "negative, and all values finite")])
 
     def given(value: Any, option: str) -> Any:
         if value is None:
@@ -105,7 +105,7 @@ def target_of(options: argparse.Namespace) -> Union[Pose, Route]:
     return Circle((cx, cy), given(options.radius, "-r"))
 
 
-def _move(options: argparse.Namespace, target: Union[Pose, Route],
+def _move(options: argparse.Namespace, target: Union[Pose, Path],
           remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
     simulator = client.SimulatorClient(
@@ -114,21 +114,21 @@ def _move(options: argparse.Namespace, target: Union[Pose, Route],
     _wait_for_models(simulator, parameters, [options.name, *stops], options.timeout)
     if isinstance(target, Pose):
         _place(simulator, parameters, options, target)
-        print(f"{options.name} is at its pose")
+        print(f"{options.name} moved to its pose")
         return client.OK
     try:
         _as_node(options.name, remappings,
                  lambda: _follow(simulator, options, target, stops))
     except (MotionStoppedError, KeyboardInterrupt):
-        print(f"{NAME}: ended")
+        print(f"{NAME}: stopped")
     return client.OK
 
 
 def _as_node(model: str, remappings: Sequence[str], work: Callable[[], None]) -> None:
-    """Works as a ROS node, which hears the simulation's time.
+    """Run `work` as a ROS node, to receive sim time.
 
     Raises:
-        Stopped: the node was shut down from elsewhere.
+        MotionStoppedError: the node was shut down from elsewhere.
     """
     import rospy
 
@@ -158,7 +158,7 @@ def _wait_for_models(simulator: client.SimulatorClient, parameters: client.Param
         if not missing:
             return
         hint = unknown_name(missing[0], world, "in the world").hint
-        raise client.ToolError(f"there is no model '{missing[0]}' in the world after "
+        raise client.ToolError(f"model '{missing[0]}' does not exist after waiting "
                                f"{timeout:g} s; {hint}") from None
 
 
@@ -168,41 +168,41 @@ def _place(simulator: client.SimulatorClient, parameters: client.Parameters,
         simulator.place(options.name, pose)
         state = simulator.model_state(options.name)
         if state is None:
-            raise client.ToolError(f"the model '{options.name}' is gone")
+            raise client.ToolError(f"model '{options.name}' was deleted")
         at = state.pose.position
         return math.dist((at.x, at.y, at.z), pose.position) < NEAR
 
-    parameters.wait(reached, options.timeout, f"'{options.name}' at its pose",
-                    "something holds it back")
+    parameters.wait(reached, options.timeout, f"'{options.name}' to reach its pose",
+                    "is it blocked by another model?")
 
 
-def _follow(simulator: client.SimulatorClient, options: argparse.Namespace, route: Route,
+def _follow(simulator: client.SimulatorClient, options: argparse.Namespace, path: Path,
             stops: List[str]) -> None:
     clock = _Clock(options.timeout)
     distance, last = 0.0, clock.now()
-    end = options.laps * route.length or math.inf
+    end = options.laps * path.length or math.inf
     blocked_since: Optional[float] = None
     while distance < end:
         now = clock.tick()
         ahead = min(end, distance + options.velocity * max(0.0, now - last))
         last = now
-        if _blocked(simulator, route, ahead, stops, options):
+        if _blocked(simulator, path, ahead, stops, options):
             blocked_since = now if blocked_since is None or now < blocked_since else blocked_since
             if now - blocked_since >= BLOCKED_SECONDS:
-                distance, blocked_since = route.restart(distance), now
+                distance, blocked_since = path.restart(distance), now
         else:
             distance, blocked_since = ahead, None
-        place = route.at(distance)
+        place = path.at(distance)
         simulator.place(options.name, Pose((place.x, place.y, options.height),
                                            quat_from_rpy(0.0, 0.0, place.yaw)))
 
 
-def _blocked(simulator: client.SimulatorClient, route: Route, ahead: float, stops: List[str],
+def _blocked(simulator: client.SimulatorClient, path: Path, ahead: float, stops: List[str],
              options: argparse.Namespace) -> bool:
-    point = route.at(ahead)
+    point = path.at(ahead)
     for name in stops:
         state = simulator.model_state(name)
-        # A stop object that was deleted stands in nobody's way.
+        # A deleted stop object blocks nothing.
         if state is not None and math.hypot(state.pose.position.x - point.x,
                                             state.pose.position.y - point.y) < options.distance:
             return True
@@ -210,14 +210,14 @@ def _blocked(simulator: client.SimulatorClient, route: Route, ahead: float, stop
 
 
 class _Clock:
-    """ROS time, with a wall-clock limit on its standing still."""
+    """ROS time, with a wall-clock timeout in case it does not advance."""
 
     def __init__(self, limit: float) -> None:
-        """Waits for the first time: until /clock is heard, simulated ROS time is 0.
+        """Wait for the first `/clock` message; ROS time is 0 until then.
 
         Raises:
-            Stopped: ROS shuts down.
-            ToolError: no time is heard.
+            MotionStoppedError: ROS shuts down.
+            ToolError: no `/clock` message within `limit` wall seconds.
         """
         self._limit = limit
         self._next = 0.0
@@ -230,11 +230,11 @@ class _Clock:
         return rospy.get_time()
 
     def tick(self) -> float:
-        """Waits until the next placement is due; the ROS time then.
+        """Wait until the next pose update is due; returns ROS time (s).
 
         Raises:
-            Stopped: ROS shuts down.
-            ToolError: ROS time stands still.
+            MotionStoppedError: ROS shuts down.
+            ToolError: ROS time does not advance.
         """
         # A reset world begins again at zero.
         now = self._wait_until(lambda now: now >= self._next or now < self._next - 1.0)
@@ -255,6 +255,6 @@ class _Clock:
                 seen, since = now, time.monotonic()
             elif time.monotonic() - since > self._limit:
                 raise client.ToolError(
-                    f"ROS time stood still for {self._limit:g} s; is the world paused? "
-                    "rosservice call /gazebo/unpause_physics lets it run")
+                    f"ROS time did not advance for {self._limit:g} s; is the world paused? "
+                    "rosservice call /gazebo/unpause_physics resumes it")
             time.sleep(0.001)

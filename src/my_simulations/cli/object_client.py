@@ -1,7 +1,7 @@
-"""What the object tools need of ROS: parameters and services, each with a wall-clock deadline.
+"""Parameters and services for the object tools, each with a wall-clock timeout.
 
-No rospy node is made here: a tool that only asks and ends needs no registration, and starts in a
-fraction of the time.
+No rospy node is created: a tool that only calls services needs no registration, and starts much
+faster without.
 """
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import sys
 import time
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from ..errors import InputError, Issue, Severity
+from ..errors import InputError, Issue, Severity, SimulationError
 from ..geometry import Pose, Vec3, quat_from_rpy
 from ..objects.object_list import ObjectList, parse_objects
 from ..objects.selection import parse_groups
@@ -27,24 +27,24 @@ OK, FAILED, USAGE = 0, 1, 2
 TIMEOUT = 30.0
 POLL_SECONDS = 0.05
 LIST_SECONDS = 10.0
-"""How long a list may take to appear once the simulator is there."""
+"""Longest wait for the object list, once the simulator is running."""
 
 OBJECTS = "/objects"
 GROUPS = "/object_groups"
 LIST_MARK = "/my_simulations/object_list"
-"""Written last by the upload: world, file and package of the list that is loaded."""
+"""Parameter with world, file and package of the loaded list; written last by the upload."""
 
 CALLER = "/my_simulations_object_tool"
 
 
-class ToolError(Exception):
-    """The tool cannot go on; the text says what was waited for or asked, and what to do."""
+class ToolError(SimulationError):
+    """A tool failed; the text says what failed and what to do."""
 
 
 def common_options(parser: argparse.ArgumentParser) -> None:
-    """Adds the options that all object tools have."""
+    """Add the options common to all object tools."""
     parser.add_argument("--timeout", type=seconds, default=TIMEOUT, metavar="SECONDS",
-                        help="wall-clock limit of every wait (default %(default)g)")
+                        help="wall-clock timeout of each call (default %(default)g)")
     parser.add_argument("--gazebo-namespace", default="gazebo", metavar="NS",
                         help="name of the simulator node (default %(default)s)")
 
@@ -53,19 +53,19 @@ def seconds(text: str) -> float:
     """A positive finite number of seconds, for argparse."""
     value = number(text)
     if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
+        raise argparse.ArgumentTypeError(f"must be a positive number of seconds, is {text}")
     return value
 
 
 def plain_words(argv: Optional[Sequence[str]]) -> Tuple[List[str], List[str]]:
-    """The command line without the program's name: (own words, ROS remappings)."""
+    """The command line without the program's name: (arguments, ROS remappings)."""
     words = list(sys.argv if argv is None else argv)[1:]
     return ([word for word in words if ":=" not in word],
             [word for word in words if ":=" in word])
 
 
 def run(name: str, work: Callable[[], int]) -> int:
-    """Runs a tool; expected faults become one message and exit code 1."""
+    """Run a tool; a ToolError or InputError is printed and gives exit code 1."""
     try:
         return work()
     except ToolError as fault:
@@ -78,7 +78,7 @@ def run(name: str, work: Callable[[], int]) -> int:
 
 
 def show(issues: Sequence[Issue]) -> None:
-    """Prints faults, one a line, on standard error."""
+    """Print issues to standard error, one per line."""
     for issue in issues:
         print(issue, file=sys.stderr, flush=True)
 
@@ -89,13 +89,13 @@ def has_errors(issues: Sequence[Issue]) -> bool:
 
 
 class Parameters:
-    """The parameter server and the names registered at the master."""
+    """Access to the parameter server and the master."""
 
     def __init__(self, remappings: Sequence[str] = ()) -> None:
-        """Reaches the master.
+        """Connect to the master.
 
         Raises:
-            ToolError: there is none.
+            ToolError: no master responds.
         """
         self.uri = master_api.uri(remappings)
         fault = master_api.fault_of(self.uri, CALLER)
@@ -104,26 +104,26 @@ class Parameters:
                             "roslaunch, or set ROS_MASTER_URI")
 
     def get(self, name: str) -> Any:
-        """A parameter's value, None where it is not set."""
+        """The value of a parameter, None if it is not set."""
         return self._call("getParam", name)
 
     def set(self, name: str, value: Any) -> None:
-        """Replaces a parameter, or the whole tree below it."""
+        """Set a parameter, replacing the whole tree below it."""
         self._call("setParam", name, value)
 
     def delete(self, name: str) -> None:
-        """Removes a parameter or tree; nothing happens where it is not set."""
+        """Delete a parameter or tree, if it is set."""
         self._call("deleteParam", name)
 
-    def service_is_there(self, name: str) -> bool:
+    def has_service(self, name: str) -> bool:
         """Whether a node offers the service."""
         return bool(self._call("lookupService", name))
 
     def wait(self, condition: Callable[[], Any], limit: float, what: str, hint: str) -> Any:
-        """Waits on the wall clock until the condition gives something true.
+        """Wait on the wall clock until the condition returns something true; returns that.
 
         Raises:
-            ToolError: the time is over; the text names it, with `what` and `hint`.
+            ToolError: `limit` wall seconds passed; the text contains `what` and `hint`.
         """
         until = time.monotonic() + limit
         while True:
@@ -131,19 +131,19 @@ class Parameters:
             if found:
                 return found
             if time.monotonic() >= until:
-                raise ToolError(f"{what} did not come within {limit:g} s; {hint}")
+                raise ToolError(f"timed out after {limit:g} s waiting for {what}; {hint}")
             time.sleep(POLL_SECONDS)
 
     def _call(self, method: str, *arguments: Any) -> Any:
         try:
             return master_api.call(self.uri, method, CALLER, *arguments)
         except OSError as fault:
-            raise ToolError(f"the ROS master at {self.uri} does not answer any more ({fault}); "
-                            "is roscore still up?") from fault
+            raise ToolError(f"the ROS master at {self.uri} stopped responding ({fault}); "
+                            "is roscore still running?") from fault
 
 
 def full_name(name: str, remappings: Sequence[str]) -> str:
-    """A name resolved in the namespace the tool was started in."""
+    """A name resolved in the namespace of the tool."""
     if name.startswith("/"):
         return name.rstrip("/")
     return master_api.node_name([word for word in remappings if word.startswith("__ns:=")], name)
@@ -153,43 +153,43 @@ class SimulatorClient:
     """The services of a running simulator, ours or a real Gazebo."""
 
     def __init__(self, parameters: Parameters, name: str, timeout: float) -> None:
-        """Waits until the simulator `name` (a full node name) offers its services.
+        """Wait until the simulator `name` (a full node name) has advertised its services.
 
         Raises:
-            ToolError: it does not within `timeout` seconds.
+            ToolError: not within `timeout` wall seconds.
         """
         self.name = name
         self._timeout = timeout
         self._proxies: Dict[str, Any] = {}
         probe = f"{name}/get_world_properties"
-        parameters.wait(lambda: parameters.service_is_there(probe), timeout,
-                        f"the simulator (service {probe})",
-                        "is the node running? roslaunch my_simulations my_world.launch starts it")
+        parameters.wait(lambda: parameters.has_service(probe), timeout,
+                        f"simulator (service {probe})",
+                        "start it with roslaunch my_simulations my_world.launch")
         self.replaces = spawns_objects(parameters.get, name)
         """Whether a spawn request may replace a model in one step."""
         if self.replaces:
             offered = f"{name}/spawn_object"
-            parameters.wait(lambda: parameters.service_is_there(offered), timeout,
-                            f"the service {offered}", "is the simulator still starting?")
+            parameters.wait(lambda: parameters.has_service(offered), timeout,
+                            f"service {offered}", "is the simulator still starting?")
 
     def model_names(self) -> List[str]:
-        """The models of the world."""
+        """Names of the models in the world."""
         answer = self._call("get_world_properties", "GetWorldProperties")
         return list(answer.model_names)
 
     def ask(self, service: str, kind: str, **fields: Any) -> Any:
-        """The answer of a service of the node, of a class in gazebo_msgs or one of ours.
+        """The response of a service of the node, with a type of gazebo_msgs or my_simulations_msgs.
 
         Raises:
-            ToolError: it is not offered or did not answer.
+            ToolError: it is not available or did not respond.
         """
         return self._call(service, kind, **fields)
 
     def spawn(self, name: str, xml: str, sdf: bool, position: Vec3, rpy: Vec3) -> str:
-        """Puts a model into the world; the simulator's words.
+        """Spawn a model; returns the status message.
 
         Raises:
-            ToolError: it was refused or did not answer.
+            ToolError: it failed or did not respond.
         """
         return self._checked("spawn_sdf_model" if sdf else "spawn_urdf_model", "SpawnModel",
                              model_name=name, model_xml=xml,
@@ -207,23 +207,23 @@ class SimulatorClient:
                              replace=replace, file=file, launch_pid=launch_pid)
 
     def delete(self, name: str) -> str:
-        """Takes a model out of the world; the simulator's words.
+        """Delete a model; returns the status message.
 
         Raises:
-            ToolError: it was refused or did not answer.
+            ToolError: it failed or did not respond.
         """
         return self._checked("delete_model", "DeleteModel", model_name=name)
 
     def model_state(self, name: str) -> Any:
-        """A `GetModelState` response in the world frame, None where there is no such model."""
+        """A `GetModelState` response in the world frame, None if the model does not exist."""
         answer = self._call("get_model_state", "GetModelState", model_name=name)
         return answer if answer.success else None
 
     def place(self, name: str, pose: Pose) -> None:
-        """Moves a model, at rest, to a pose in the world frame.
+        """Set the pose of a model in the world frame, with zero twist.
 
         Raises:
-            ToolError: it was refused or did not answer.
+            ToolError: it failed or did not respond.
         """
         from gazebo_msgs.msg import ModelState
 
@@ -231,18 +231,18 @@ class SimulatorClient:
         self._checked("set_model_state", "SetModelState", model_state=state)
 
     @contextlib.contextmanager
-    def standing_still(self) -> Iterator[None]:
-        """Lets time stand still meanwhile, where it runs and the simulator is ours.
+    def paused(self) -> Iterator[None]:
+        """Pause the world in the `with` block, unless it is paused or the simulator is Gazebo.
 
-        For the main thread: SIGTERM becomes a KeyboardInterrupt meanwhile.
+        Use in the main thread: SIGTERM raises KeyboardInterrupt in the block.
 
         Raises:
-            ToolError: the simulator did not answer.
+            ToolError: the simulator did not respond.
         """
         if not self.replaces or self._call("get_physics_properties", "GetPhysicsProperties").pause:
             yield
             return
-        # A request to end must not leave the world as it is meanwhile.
+        # SIGTERM must not leave the world paused.
         before = signal.signal(signal.SIGTERM, signal.default_int_handler)
         try:
             self._call("pause_physics", "Empty")
@@ -278,8 +278,8 @@ def _service_class(kind: str) -> Any:
         from gazebo_msgs import srv
         from std_srvs.srv import Empty
     except ImportError as fault:
-        raise ToolError("the ROS package gazebo_msgs is not there; source the workspace's "
-                        "devel/setup.bash first") from fault
+        raise ToolError("the ROS package gazebo_msgs was not found; source the workspace's "
+                        "devel/setup.bash") from fault
     if kind == "Empty":
         return Empty
     if kind in ("SpawnObject", "StepWorld"):
@@ -299,15 +299,15 @@ def pose_message(pose: Pose) -> Any:
 
 def read_list(parameters: Parameters, package: str, wait: float
               ) -> Tuple[Optional[ObjectList], Mapping[str, List[str]], List[Issue]]:
-    """Reads the object list and the groups from the parameter server.
+    """Read the object list and the groups from the parameter server.
 
     Args:
         parameters: the parameter server.
-        package: where a 2012 entry's file is looked for; "" for where the list came from.
-        wait: wall seconds to wait for a list that is not there yet.
+        package: package for the files of 2012-style entries; "" for the package of the list.
+        wait: wall seconds to wait for a list that is not loaded yet.
 
     Returns:
-        The list (None where none is loaded), the members by group name, faults of the groups.
+        The list (None if none is loaded), the members by group name, issues of the groups.
     """
     until = time.monotonic() + wait
     tree = parameters.get(OBJECTS)
@@ -315,7 +315,7 @@ def read_list(parameters: Parameters, package: str, wait: float
         time.sleep(POLL_SECONDS)
         tree = parameters.get(OBJECTS)
     if tree is None:
-        # The mark is written after the list: look once more.
+        # The mark is written after the list: read once more.
         tree = parameters.get(OBJECTS)
     listing = None if tree is None else parse_objects(
         tree, Source(OBJECTS), package or _package_of_list(parameters))
@@ -329,14 +329,14 @@ def _package_of_list(parameters: Parameters) -> str:
     return found if isinstance(found, str) and found else PACKAGE
 
 
-def no_list(parameters: Parameters) -> str:
-    """Why there is no object list, and what to do."""
+def missing_list_message(parameters: Parameters) -> str:
+    """Why no object list is loaded, and what to do."""
     mark = parameters.get(LIST_MARK)
     if isinstance(mark, Mapping) and mark.get("world"):
-        return (f"the world '{mark['world']}' has no object list in the package "
-                f"'{mark.get('package') or PACKAGE}'; write "
-                f"config/{mark['world']}/object_locations.yaml there and load it with "
-                "roslaunch my_simulations upload_param.launch, or with package:=PACKAGE where it "
-                "lies in another one")
-    return (f"no objects are loaded to {OBJECTS}; load them with "
+        return (f"world '{mark['world']}' has no object list in package "
+                f"'{mark.get('package') or PACKAGE}'; create "
+                f"config/{mark['world']}/object_locations.yaml there and run "
+                "roslaunch my_simulations upload_param.launch, with package:=PACKAGE for another "
+                "package")
+    return (f"parameter {OBJECTS} is not set; load an object list with "
             "roslaunch my_simulations upload_param.launch")

@@ -1,4 +1,4 @@
-"""From an object of the list to the XML text that is spawned."""
+"""Reads the XML document of an object of the list, through xacro if needed."""
 from __future__ import annotations
 
 import importlib.util
@@ -25,7 +25,7 @@ FindPackage = Callable[[str], Optional[str]]
 
 
 def package_finder() -> FindPackage:
-    """From a package's name to its folder; this package is found without rospack too."""
+    """A function from a package name to its folder; finds this package without rospack, too."""
     index = PackageIndex()
 
     def find(name: str) -> Optional[str]:
@@ -39,11 +39,11 @@ class Document:
     """An object's XML text.
 
     Attributes:
-        xml: the text, after xacro where its file needs that.
-        sdf: whether it is SDF; URDF otherwise.
+        xml: the text, after xacro expansion.
+        sdf: whether it is SDF, else URDF.
         path: its file.
-        other: a file of that name in this package, which was not taken; "" for none.
-        origin: what messages call the text.
+        other: a file of the same name in this package that was not used; "" for none.
+        origin: name of the document in messages.
     """
 
     xml: str
@@ -54,15 +54,14 @@ class Document:
 
 
 def package_names() -> List[str]:
-    """The ROS packages there are, as their folders are called."""
+    """Names of all ROS packages."""
     return sorted(os.path.basename(folder) for folder in PackageIndex().folders())
 
 
 def locate(placed: PlacedObject, find: FindPackage) -> Tuple[str, str]:
-    """The path of the object's file, and of another one that its entry could mean.
+    """The path of the object's file, and that of a second candidate, "" for none.
 
-    An entry that names no package is looked for in that of its list, then in this one; "" where
-    there is no second file.
+    An entry without a package is searched in the package of its list, then in this one.
 
     Raises:
         InputError: the package or the file does not exist.
@@ -75,19 +74,19 @@ def locate(placed: PlacedObject, find: FindPackage) -> Tuple[str, str]:
         near = closest(placed.file.package, package_names(), 1)
         raise InputError([error(
             "unknown-package",
-            f"object '{placed.name}': there is no ROS package '{placed.file.package}'",
+            f"object '{placed.name}': ROS package '{placed.file.package}' was not found",
             xpath=f"{placed.param}/model",
-            hint=(f"did you mean {near[0]}? Else " if near else "")
-            + "source the workspace that holds it, or correct the name")])
+            hint=(f"did you mean {near[0]}? Otherwise " if near else "")
+            + "source its workspace, or correct the name")])
     raise InputError([error(
-        "object-file-missing", f"object '{placed.name}': there is no file "
-        + " and no ".join(_candidates(placed, find)), xpath=f"{placed.param}/model",
-        hint="" if placed.file.named else "write the file, or name its package: "
+        "object-file-missing", f"object '{placed.name}': file not found: "
+        + ", ".join(_candidates(placed, find)), xpath=f"{placed.param}/model",
+        hint="" if placed.file.named else "create the file, or give its package: "
              "model: PACKAGE/objects/FILE, or --package PACKAGE")])
 
 
 def _candidates(placed: PlacedObject, find: FindPackage) -> List[str]:
-    """Where its file may be, best first; each file once, though several links may lead to it."""
+    """Candidate paths of its file, best first, without duplicates through links."""
     packages = [placed.file.package] + ([] if placed.file.named else [PACKAGE])
     paths: Dict[str, str] = {}
     for package in packages:
@@ -99,20 +98,20 @@ def _candidates(placed: PlacedObject, find: FindPackage) -> List[str]:
 
 
 class Documents:
-    """The XML of objects. Use as a context manager.
+    """The XML documents of objects. Use as a context manager.
 
-    A file that several objects are made from is read once. What must go through xacro, does so
-    ahead of its turn, several files at a time: xacro takes far longer than a spawn.
+    A file used by several objects is read once. xacro, which takes far longer than a spawn, runs
+    in advance for several files in parallel.
     """
 
     def __init__(self, objects: Iterable[PlacedObject], find: FindPackage,
                  timeout: float) -> None:
-        """Begin with the files of `objects`.
+        """Start to read the files of `objects`.
 
         Args:
-            objects: in the order in which they will be asked for.
-            find: from a package's name to its folder.
-            timeout: wall seconds that xacro may take for one file.
+            objects: the objects, in the order in which they will be requested.
+            find: returns the folder of a package name.
+            timeout: wall seconds for one run of xacro.
         """
         self._find, self._timeout = find, timeout
         self._pool = ThreadPoolExecutor(max(2, os.cpu_count() or 1), "xacro")
@@ -121,7 +120,7 @@ class Documents:
             try:
                 self._text(locate(placed, find)[0], placed.file.xacro)
             except InputError:
-                continue  # raised when its turn comes
+                continue  # raised by `of`
 
     def __enter__(self) -> Documents:
         return self
@@ -132,10 +131,10 @@ class Documents:
         self._pool.shutdown()
 
     def of(self, placed: PlacedObject) -> Document:
-        """The object's XML, through xacro where its file needs it.
+        """The document of an object.
 
         Raises:
-            InputError: the file is missing, unreadable, empty, or xacro fails.
+            InputError: the file is missing, unreadable or empty, or xacro fails.
         """
         path, other = locate(placed, self._find)
         text = self._text(path, placed.file.xacro).result()
@@ -152,19 +151,19 @@ class Documents:
 
 
 def run_xacro(path: str, timeout: float) -> str:
-    """What xacro makes of a file.
+    """The output of xacro for a file.
 
     Raises:
-        InputError: xacro is not installed, fails, or takes longer than `timeout` wall seconds.
+        InputError: xacro is not installed, fails, or runs longer than `timeout` wall seconds.
     """
     try:
         done = subprocess.run([*_xacro_command(path), path], capture_output=True, timeout=timeout,
                               check=False)
     except subprocess.TimeoutExpired as fault:
-        raise InputError([error("xacro-timeout", f"xacro did not end within {timeout:g} s",
+        raise InputError([error("xacro-timeout", f"xacro did not finish within {timeout:g} s",
                                 file=path)]) from fault
     except OSError as fault:
-        raise InputError([error("xacro-failed", f"xacro does not start: {fault}",
+        raise InputError([error("xacro-failed", f"cannot start xacro: {fault}",
                                 file=path)]) from fault
     text = done.stdout.decode("utf-8", "replace")
     if done.returncode != 0 or not text.strip():
@@ -178,13 +177,14 @@ def _xacro_command(path: str) -> List[str]:
         return [sys.executable, "-c", _RUN_XACRO]
     command = shutil.which("xacro")
     if command is None:
-        raise InputError([error("xacro-missing", "xacro is needed for this file and not installed",
+        raise InputError([error("xacro-missing", "xacro is required for this file, but not "
+                                                 "installed",
                                 file=path, hint="source the workspace's devel/setup.bash")])
     return [command]
 
 
 def _reason(stderr: bytes) -> str:
-    """What xacro says, without its deprecation notes and tracebacks' frames."""
+    """The error output of xacro without deprecation notes and traceback frames."""
     lines = [line.strip() for line in stderr.decode("utf-8", "replace").splitlines()]
     said = [line for line in lines if line and not line.lower().startswith("xacro: in-order")]
     if any(line.startswith("Traceback") for line in said):

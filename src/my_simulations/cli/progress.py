@@ -1,4 +1,4 @@
-"""How far a tool is: a bar on a terminal when there is much to do, plain lines otherwise."""
+"""Progress of a tool: a bar on a terminal for many items, else one line per item."""
 from __future__ import annotations
 
 import shutil
@@ -6,7 +6,7 @@ import sys
 from typing import Optional, TextIO
 
 MANY = 10
-"""Up to this many pieces of work, the lines themselves show the progress."""
+"""Up to this many items, there is no progress bar, and the world is not paused meanwhile."""
 
 
 def bar(done: int, total: int, label: str, columns: int) -> str:
@@ -18,7 +18,7 @@ def bar(done: int, total: int, label: str, columns: int) -> str:
 
 
 class Progress:
-    """Writes lines to `out`, and a bar to `err` where that is a terminal."""
+    """Writes lines to `out`, and a bar to `err` if that is a terminal."""
 
     def __init__(self, total: int, out: Optional[TextIO] = None,
                  err: Optional[TextIO] = None) -> None:
@@ -29,26 +29,26 @@ class Progress:
         self._bar = total > MANY and self._err.isatty()
 
     def start(self, label: str) -> None:
-        """Shows what is being worked on."""
+        """Show the current item."""
         if self._bar:
             columns = shutil.get_terminal_size().columns
             self._err.write("\r\033[K" + bar(self._done, self._total, label, columns))
             self._err.flush()
 
     def done(self, line: str) -> None:
-        """Counts one piece; its line is left out where the bar shows it."""
+        """Count an item; prints its line unless there is a bar."""
         self._done += 1
         if not self._bar:
             print(line, file=self._out, flush=True)
 
     def failed(self, line: str) -> None:
-        """Counts one piece that went wrong; its line always shows."""
+        """Count a failed item; always prints its line."""
         self._done += 1
         self._clear()
         print(line, file=self._err, flush=True)
 
     def end(self, line: str) -> None:
-        """Replaces the bar by a last line; without a bar nothing is written."""
+        """Replace the bar by a final line; prints nothing without a bar."""
         if self._bar:
             self._clear()
             print(line, file=self._out, flush=True)

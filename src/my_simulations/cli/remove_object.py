@@ -1,4 +1,4 @@
-"""`remove_object.py`: take objects out of the running world."""
+"""`remove_object.py`: deletes objects from the running world."""
 from __future__ import annotations
 
 import argparse
@@ -18,11 +18,10 @@ NAME = "remove_object.py"
 def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = Parser(
-        prog=NAME, description="Remove objects from the world. A name may be any model of the "
-        "world; 'all' and groups mean the objects of the list that are there. While more than ten "
-        "are removed, time stands still.",
-        epilog="Exit code: 0 when all went well, 1 when something failed, 2 for a wrong command "
-        "line.")
+        prog=NAME, description="Delete objects from the world. A name may be any model of the "
+        "world; 'all' and groups mean those objects of the list that exist. The world is paused "
+        "while more than ten are deleted.",
+        epilog="Exit code: 0 on success, 1 on failure, 2 for an invalid command line.")
     made.add_argument("names", nargs="+", metavar="NAME",
                       help="a model, a group of /object_groups, or 'all'")
     client.common_options(made)
@@ -30,14 +29,14 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Runs the tool.
+    """Run the tool.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
 
     Returns:
-        0 when no object asked for is in the world any more and every name was known, 1 otherwise,
-        2 for wrong usage.
+        0 if every name was known and none of the objects is left, 1 if not, 2 for an invalid
+        command line.
     """
     words, remappings = client.plain_words(argv)
     options = parser().parse_args(words)
@@ -46,10 +45,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def chosen_models(words: Sequence[str], world: Sequence[str], listing: ObjectList,
                   groups: Mapping[str, Sequence[str]]) -> Tuple[List[str], List[Issue]]:
-    """The models to remove, each once, and the words that mean none.
+    """The models to delete, without repeats, and issues for unknown names.
 
-    A model of the world comes before a group of the same name. Objects that `all` or a group
-    names and the world does not hold are already as asked for, and no fault.
+    A model of the world takes precedence over a group of the same name. Objects of `all` or of a
+    group that are not in the world are no error.
     """
     names: Dict[str, None] = {}
     issues: List[Issue] = []
@@ -60,7 +59,7 @@ def chosen_models(words: Sequence[str], world: Sequence[str], listing: ObjectLis
         selection = select([word], listing, groups)
         names.update(dict.fromkeys(name for name in selection.names if name in world))
         if word == ALL or word in groups:
-            # A member may be a model that is in the world, but in no list.
+            # A member may be a model of the world that is in no list.
             names.update(dict.fromkeys(name for name in selection.unknown if name in world))
         elif not any(name in world for name in selection.names):
             issues.append(unknown_name(word, [*world, *groups], "in the world"))
@@ -73,14 +72,14 @@ def _remove_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
     listing, groups, issues = client.read_list(parameters, "", 0.0)
     if listing is None and ALL in options.names:
-        raise client.ToolError(client.no_list(parameters))
+        raise client.ToolError(client.missing_list_message(parameters))
     names, unknown = chosen_models(options.names, simulator.model_names(),
                                    listing or ObjectList(), groups)
     issues = [*issues, *unknown]
     client.show(issues)
     if not names and not unknown:
-        print(f"{NAME}: none of these objects is in the world")
-    with simulator.standing_still() if len(names) > MANY else contextlib.nullcontext():
+        print(f"{NAME}: nothing to remove: none of these objects exists")
+    with simulator.paused() if len(names) > MANY else contextlib.nullcontext():
         wrong = _remove_each(names, simulator)
     return client.FAILED if wrong or client.has_errors(issues) else client.OK
 
@@ -95,6 +94,6 @@ def _remove_each(names: Sequence[str], simulator: client.SimulatorClient) -> int
             progress.done(f"{name} removed")
         except client.ToolError as fault:
             wrong += 1
-            progress.failed(f"{NAME}: {name} was not removed: {fault}")
+            progress.failed(f"{NAME}: cannot remove {name}: {fault}")
     progress.end(f"{NAME}: {len(names) - wrong} of {len(names)} objects removed")
     return wrong

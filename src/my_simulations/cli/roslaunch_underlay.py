@@ -1,9 +1,9 @@
-"""roslaunch, for a workspace that has a package my_simulations of its own.
+"""roslaunch for a workspace that has a package my_simulations of its own.
 
-roslaunch resolves `$(find my_simulations)/FILE` by looking for that file in every catkin prefix:
-the workspace's file is found first and ours, in the last prefix, where there is none. Two cases are
-left, and are added here: a file followed by a quote, `command="cat '$(find my_simulations)/FILE'"`,
-and `roslaunch my_simulations FILE`, which looks in one package folder alone.
+roslaunch resolves `$(find my_simulations)/FILE` by searching every catkin prefix: it finds the
+workspace's file first, else ours in the last prefix. Two cases are not covered and are added here:
+a path followed by a quote, `command="cat '$(find my_simulations)/FILE'"`, and
+`roslaunch my_simulations FILE`, which searches one package folder only.
 """
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _PATH = re.compile(r"[^ '\"]*")
 
 
 def separate_first_path(value: str) -> Tuple[str, str]:
-    """What follows `$(find PKG)`, up to a blank or a quote, and the rest."""
+    """The path after `$(find PKG)`, up to a blank or quote, and the rest."""
     found = _PATH.match(value)
     end = found.end() if found else 0
     return value[:end], value[end:]
 
 
 def with_own_files(find: Callable[..., List[str]]) -> Callable[..., List[str]]:
-    """`roslib.packages.find_resource`, which then finds our launch files behind the user's."""
+    """`roslib.packages.find_resource`, extended to find our launch files after the user's."""
 
     def find_resource(package: str, name: str, *more: Any, **options: Any) -> List[str]:
         found = find(package, name, *more, **options)
@@ -34,7 +34,7 @@ def with_own_files(find: Callable[..., List[str]]) -> Callable[..., List[str]]:
         ours = os.path.join(own_directory(), "launch", name)
         if os.path.dirname(name) or not os.path.isfile(ours):
             return []
-        print(f"the workspace's package {PACKAGE} has no {name}; this is {ours}", file=sys.stderr,
+        print(f"package {PACKAGE} of the workspace has no {name}; using {ours}", file=sys.stderr,
               flush=True)
         return [ours]
 
@@ -42,7 +42,7 @@ def with_own_files(find: Callable[..., List[str]]) -> Callable[..., List[str]]:
 
 
 def main() -> int:
-    """Runs roslaunch with the words of the command line; returns its exit status."""
+    """Run roslaunch with the command line; returns its exit status."""
     import roslaunch
     import roslib.packages
     from roslaunch import substitution_args

@@ -1,4 +1,4 @@
-"""`spawn_model`: put a model into a running world."""
+"""`spawn_model`: spawns a model in a running world."""
 from __future__ import annotations
 
 import argparse
@@ -12,6 +12,7 @@ import time
 from decimal import Decimal
 from typing import Any, Dict, List, Optional, Sequence
 
+from ..errors import SimulationError
 from ..ros.arguments import Parser, number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle.launch_info import Launch
@@ -23,17 +24,17 @@ MASTER_SECONDS = 10.0
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class SpawnError(Exception):
-    """The model is not in the world; the text says why and what to do."""
+class SpawnError(SimulationError):
+    """The model was not spawned; the text says why and what to do."""
 
 
 def plain_numbers(words: Sequence[str]) -> List[str]:
-    """Negative numbers as argparse knows them: `-1e-5` becomes `-0.00001`, `-2.` becomes `-2`."""
+    """Negative numbers as argparse accepts them: `-1e-5` becomes `-0.00001`, `-2.` `-2`."""
     return [format(Decimal(word), "f") if _NEGATIVE.fullmatch(word) else word for word in words]
 
 
 def parser() -> argparse.ArgumentParser:
-    """The options, spelt with one dash as Gazebo's."""
+    """The options, with one dash as Gazebo's."""
     made = Parser(prog="spawn_model", description="Spawn a model in the world.")
     kind = made.add_mutually_exclusive_group(required=True)
     kind.add_argument("-urdf", action="store_true", help="the description is URDF")
@@ -41,45 +42,46 @@ def parser() -> argparse.ArgumentParser:
     # What the options were called before ROS Lunar.
     kind.add_argument("-gazebo", dest="sdf", action="store_true", help=argparse.SUPPRESS)
     source = made.add_mutually_exclusive_group(required=True)
-    source.add_argument("-file", metavar="FILE", help="read it from a file")
-    source.add_argument("-param", metavar="NAME", help="read it from a ROS parameter")
-    source.add_argument("-database", metavar="MODEL", help="a model of the model database")
-    source.add_argument("-stdin", action="store_true", help="read it from standard input")
+    source.add_argument("-file", metavar="FILE", help="read the description from a file")
+    source.add_argument("-param", metavar="NAME", help="read the description from a ROS parameter")
+    source.add_argument("-database", metavar="MODEL", help="name of a model in the model database")
+    source.add_argument("-stdin", action="store_true", help="read the description from standard "
+                                                            "input")
     made.add_argument("-model", required=True, metavar="NAME",
                       help="name of the model in the world")
     made.add_argument("-reference_frame", default="", metavar="ENTITY",
-                      help="model or link that the pose is relative to (default: the world)")
+                      help="model or link that the pose is relative to (default: world frame)")
     made.add_argument("-gazebo_namespace", default="/gazebo", metavar="NS",
                       help="namespace of the server (default %(default)s)")
     made.add_argument("-robot_namespace", default=None, metavar="NS",
                       help="namespace for the model's plugins (default: this node's)")
     made.add_argument("-namespace", dest="robot_namespace", help=argparse.SUPPRESS)
-    made.add_argument("-unpause", action="store_true", help="unpause the world after the spawn")
-    made.add_argument("-wait", metavar="MODEL", help="first wait until this model is in the world")
+    made.add_argument("-unpause", action="store_true", help="unpause physics after spawning")
+    made.add_argument("-wait", metavar="MODEL", help="wait until this model exists before spawning")
     made.add_argument("-timeout", type=_seconds, default=WAIT_SECONDS, metavar="SECONDS",
-                      help="wall-clock limit of every wait (default %(default)g)")
+                      help="wall-clock timeout of each call (default %(default)g)")
     for axis, unit in zip(("x", "y", "z", "R", "P", "Y"), ("m",) * 3 + ("rad",) * 3):
         made.add_argument(f"-{axis}", type=number, default=0.0, metavar=unit.upper(),
-                          help=f"initial pose, {unit}")
+                          help=f"initial pose ({unit})")
     made.add_argument("-J", dest="joints", nargs=2, action="append", default=[],
                       metavar=("JOINT", "POSITION"),
-                      help="initial position of a joint, rad or m; may be repeated")
+                      help="initial position of a joint (rad or m); may be repeated")
     made.add_argument("-package_to_model", action="store_true",
-                      help="read package:// of mesh file names as model://")
+                      help="convert package:// URIs of meshes to model://")
     made.add_argument("-b", dest="bond", action="store_true",
-                      help="stay, and delete the model when this program ends")
+                      help="keep running, and delete the model on exit")
     return made
 
 
 def _seconds(text: str) -> float:
     value = number(text)
     if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
+        raise argparse.ArgumentTypeError(f"must be a positive number of seconds, is {text}")
     return value
 
 
 def joint_positions(options: argparse.Namespace) -> Dict[str, float]:
-    """What `-J` asks for, by joint; of a joint named twice the last.
+    """Joint positions (rad or m) of the options `-J` by joint; the last one per joint counts.
 
     Raises:
         ValueError: a position is not a finite number.
@@ -91,7 +93,7 @@ def joint_positions(options: argparse.Namespace) -> Dict[str, float]:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise ValueError(f"argument -J: the position of {joint} is not a number: {text}")
+            raise ValueError(f"argument -J: position of {joint} must be a number, is {text}")
         positions[joint] = value
     return positions
 
@@ -103,7 +105,7 @@ def main(argv: Optional[List[str]] = None) -> int:
         argv: the whole command line, program name first; default `sys.argv`.
 
     Returns:
-        0 when the model is in the world, 1 when it is not, 2 for a wrong command line.
+        0 if the model was spawned, 1 if not, 2 for an invalid command line.
     """
     words = sys.argv if argv is None else argv
     reader = parser()
@@ -153,7 +155,7 @@ def _spawn(options: argparse.Namespace, words: List[str]) -> None:
     except (service_client.ServiceUnavailableError, CallTimeoutError, rospy.ROSException) as fault:
         raise SpawnError(str(fault)) from fault
     except rospy.ServiceException as fault:
-        raise SpawnError(f"the call failed: {fault}") from fault
+        raise SpawnError(f"service call failed: {fault}") from fault
 
 
 def _reach_master(words: List[str]) -> None:
@@ -165,11 +167,11 @@ def _reach_master(words: List[str]) -> None:
     uri = master_api.uri(words)
     deadline = time.monotonic() + MASTER_SECONDS
     if not master_api.wait(uri, "/spawn_model", threading.Event(), say, deadline):
-        raise SpawnError(f"no ROS master answered at {uri} within {MASTER_SECONDS:g} s")
+        raise SpawnError(f"no ROS master responded at {uri} within {MASTER_SECONDS:g} s")
 
 
 def _document(options: argparse.Namespace) -> str:
-    """The description's text from a file, the database or standard input."""
+    """The description from a file, the database or standard input."""
     if options.database:
         from xml.sax.saxutils import escape
 
@@ -186,14 +188,14 @@ def _document(options: argparse.Namespace) -> str:
 
 def _file_text(path: str) -> str:
     if not os.path.exists(path):
-        raise SpawnError(f"there is no file {path}")
+        raise SpawnError(f"file not found: {path}")
     if not os.path.isfile(path):
         raise SpawnError(f"{path} is not a file")
     try:
         with open(path, encoding="utf-8") as file:
             return file.read()
     except (OSError, UnicodeDecodeError) as fault:
-        raise SpawnError(f"{path} cannot be read: {fault}") from fault
+        raise SpawnError(f"cannot read {path}: {fault}") from fault
 
 
 def _parameter(name: str) -> str:
@@ -203,11 +205,11 @@ def _parameter(name: str) -> str:
     full = rospy.resolve_name(name)
     if value is None:
         near = difflib.get_close_matches(full, rospy.get_param_names(), 1, 0.8)
-        meant = f"did you mean {near[0]}? Else " if near else ""
-        raise SpawnError(f'there is no parameter {full}; {meant}load it with <param '
+        meant = f"did you mean {near[0]}? Otherwise " if near else ""
+        raise SpawnError(f'parameter {full} is not set; {meant}load it with <param '
                           f'name="{name}" textfile=.../> or command=...')
     if not isinstance(value, str):
-        raise SpawnError(f"parameter {full} is not text but {type(value).__name__}")
+        raise SpawnError(f"parameter {full} must be a string, is {type(value).__name__}")
     if not value.strip():
         raise SpawnError(f"parameter {full} is empty")
     return value
@@ -232,7 +234,7 @@ def _wait_for_model(options: argparse.Namespace) -> None:
 
 
 def _origin(options: argparse.Namespace) -> str:
-    """What messages call the description."""
+    """Name of the description in messages."""
     if options.param:
         return f"parameter {options.param}"
     return "" if options.database or options.stdin else os.path.abspath(options.file)
@@ -284,7 +286,7 @@ def _set_joints(options: argparse.Namespace) -> None:
 
 
 def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
-    """Raises SpawnFailed for a joint that the model has not got; Gazebo passes over those."""
+    """Raise SpawnError for a joint that does not exist; Gazebo ignores those."""
     from gazebo_msgs.srv import GetModelProperties, GetModelPropertiesRequest
 
     answer = _answer(options, "get_model_properties", GetModelProperties,
@@ -296,18 +298,18 @@ def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
             continue  # joints of nested models are not in Gazebo's list
         near = difflib.get_close_matches(plain, known, 1)
         hint = (f"did you mean {near[0]}?" if near else
-                f"it has {', '.join(known)}" if known else "it has none")
-        raise SpawnError(f"the model {options.model!r} is in the world, but has no joint "
+                f"its joints are {', '.join(known)}" if known else "it has no joints")
+        raise SpawnError(f"model {options.model!r} was spawned, but has no joint "
                           f"{joint!r}; {hint}")
 
 
 def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> str:
-    """What a service of the server says, once it has succeeded."""
+    """Call a service; returns its status message. Raises SpawnError if it fails."""
     return str(getattr(_answer(options, name, kind, request), "status_message", ""))
 
 
 def _answer(options: argparse.Namespace, name: str, kind: Any, request: Any) -> Any:
-    """The answer of a service of the server that has succeeded; raises SpawnFailed."""
+    """Call a service; returns its response. Raises SpawnError if it fails."""
     from ..ros import service_client
 
     full = service_client.api_name(options.gazebo_namespace, name)
@@ -319,7 +321,7 @@ def _answer(options: argparse.Namespace, name: str, kind: Any, request: Any) -> 
 
 
 def _package_to_model(text: str) -> str:
-    """Every `<mesh filename="package://…">` as `model://…`."""
+    """Convert every `<mesh filename="package://…">` to `model://…`."""
     import xml.etree.ElementTree as ElementTree
 
     try:
@@ -334,7 +336,7 @@ def _package_to_model(text: str) -> str:
 
 
 def _bond(options: argparse.Namespace) -> None:
-    """Stay until the shutdown, then delete the model."""
+    """Wait for the shutdown, then delete the model."""
     import rospy
     from gazebo_msgs.srv import DeleteModel
 
@@ -347,7 +349,7 @@ def _bond(options: argparse.Namespace) -> None:
         try:
             proxy(options.model)
         except rospy.ServiceException as fault:
-            print(f"spawn_model: {options.model} was not deleted: {fault}", file=sys.stderr)
+            print(f"spawn_model: cannot delete {options.model}: {fault}", file=sys.stderr)
 
     rospy.on_shutdown(delete)
     rospy.spin()

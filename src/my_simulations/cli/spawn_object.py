@@ -1,4 +1,4 @@
-"""`spawn_object.py`: put objects of the list into the running world."""
+"""`spawn_object.py`: spawns objects of the list in the running world."""
 from __future__ import annotations
 
 import argparse
@@ -20,29 +20,26 @@ NAME = "spawn_object.py"
 def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = Parser(
-        prog=NAME, description="Spawn objects of the list at /objects. An object that is already "
-        "there is replaced at its listed place. While more than ten are spawned, time stands "
-        "still.",
-        epilog="Exit code: 0 when all went well, 1 when something failed, 2 for a wrong command "
-        "line.")
+        prog=NAME, description="Spawn objects of the list in parameter /objects. Existing objects "
+        "are replaced at their listed pose. The world is paused while more than ten are spawned.",
+        epilog="Exit code: 0 on success, 1 on failure, 2 for an invalid command line.")
     made.add_argument("names", nargs="+", metavar="NAME",
                       help="an object, a group of /object_groups, or 'all'")
     made.add_argument("--package", default="", metavar="PKG",
-                      help="package whose folder 'objects' holds the files of entries with "
-                      "model_type (default: the one the list was loaded from, then "
-                      "my_simulations)")
+                      help="package whose folder 'objects' contains the files of entries with "
+                      "model_type (default: the package of the list, then my_simulations)")
     client.common_options(made)
     return made
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Runs the tool.
+    """Run the tool.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
 
     Returns:
-        0 when every object asked for is in the world, 1 when one is not, 2 for wrong usage.
+        0 if all objects were spawned, 1 if not, 2 for an invalid command line.
     """
     words, remappings = client.plain_words(argv)
     options = parser().parse_args(words)
@@ -56,7 +53,7 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: L
     listing, groups, issues = client.read_list(
         parameters, options.package, min(options.timeout, client.LIST_SECONDS))
     if listing is None:
-        raise client.ToolError(client.no_list(parameters))
+        raise client.ToolError(client.missing_list_message(parameters))
     selection = select(options.names, listing, groups)
     issues = [*issues, *selection.issues]
     client.show(issues)
@@ -65,17 +62,17 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: L
         if not failed:
             print(f"{NAME}: nothing to spawn")
         return client.FAILED if failed else client.OK
-    # Many objects appear at one moment: what stands on another one does not fall meanwhile, and a
-    # world that grows heavy does not take the time that the spawning needs.
+    # Paused, objects that stand on others do not fall before those are spawned, and the engine
+    # does not spend its time on stepping.
     many = len(selection.objects) > MANY
-    with simulator.standing_still() if many else contextlib.nullcontext():
+    with simulator.paused() if many else contextlib.nullcontext():
         wrong = _spawn_each(selection.objects, simulator, options.timeout, launch)
     return client.FAILED if failed or wrong else client.OK
 
 
 def _spawn_each(objects: List[PlacedObject], simulator: client.SimulatorClient, timeout: float,
                 launch: Launch) -> int:
-    """Spawns one after the other; how many failed."""
+    """Spawn one after the other; returns how many failed."""
     there = set(simulator.model_names())
     progress = Progress(len(objects))
     wrong = 0
@@ -90,7 +87,7 @@ def _spawn_each(objects: List[PlacedObject], simulator: client.SimulatorClient, 
                 progress.failed("\n".join(map(str, fault.issues)))
             except client.ToolError as fault:
                 wrong += 1
-                progress.failed(f"{NAME}: {placed.name} was not spawned: {fault}")
+                progress.failed(f"{NAME}: cannot spawn {placed.name}: {fault}")
     progress.end(f"{NAME}: {len(objects) - wrong} of {len(objects)} objects spawned")
     return wrong
 

@@ -1,4 +1,4 @@
-"""A world and its editor without ROS."""
+"""Runs a world and its editor without ROS."""
 from __future__ import annotations
 
 import signal
@@ -24,7 +24,7 @@ def main(words: List[str], program: str) -> int:
     """Run the world of the command line with its editor until a signal ends it.
 
     Returns:
-        0 after SIGINT or SIGTERM, 1 when the world or the editor could not be started.
+        0 after SIGINT or SIGTERM, 1 if the world or the editor could not be started.
     """
     from ..ros.lifecycle.server_options import parse
 
@@ -33,7 +33,7 @@ def main(words: List[str], program: str) -> int:
     def say(line: object) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
-    say("no ROS master answers; this world runs without ROS")
+    say("no ROS master found; running without ROS")
     for notice in options.notices:
         say(notice)
     from ..engine.commands import FOREVER
@@ -64,12 +64,12 @@ def main(words: List[str], program: str) -> int:
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: ended.set())
-    faces = FrontEnds()
-    recorder = _record(faces, simulator, resolver, options.recording, say)
+    front_ends = FrontEnds()
+    recorder = _record(front_ends, simulator, resolver, options.recording, say)
     try:
         if not options.paused:
             simulator.clock.unpause()
-        editor = faces.edit(simulator, resolver, {"log": lambda issue: say(issue)})
+        editor = front_ends.edit(simulator, resolver, {"log": lambda issue: say(issue)})
         log.also(editor.tell)
         show(editor.url, program)
         ended.wait()
@@ -83,16 +83,16 @@ def main(words: List[str], program: str) -> int:
         simulator.close()
 
 
-def _record(faces: FrontEnds, simulator: "Simulator", resolver: "Resolver", wanted: "Recording",
-            say: Callable[[object], None]) -> "Optional[Recorder]":
+def _record(front_ends: FrontEnds, simulator: "Simulator", resolver: "Resolver",
+            wanted: "Recording", say: Callable[[object], None]) -> "Optional[Recorder]":
     if not wanted.on:
         return None
     try:
-        recorder = faces.record(simulator, resolver, wanted, say)
+        recorder = front_ends.record(simulator, resolver, wanted, say)
     except CommandError as fault:
-        say(f"no state log is recorded: {fault}")
+        say(f"cannot record a state log: {fault}")
         return None
-    say(f"the state log is {recorder.path}")
+    say(f"recording state log: {recorder.path}")
     return recorder
 
 
@@ -101,4 +101,4 @@ def _finish(recorder: "Optional[Recorder]", say: Callable[[object], None]) -> No
         if recorder is not None:
             recorder.stop()
     except CommandError as fault:
-        say(f"the state log ends early: {fault}")
+        say(f"state log is incomplete: {fault}")

@@ -1,4 +1,4 @@
-"""`upload_objects.py`: load a world's object list to the parameter server."""
+"""`upload_objects.py`: loads the object list of a world to the parameter server."""
 from __future__ import annotations
 
 import argparse
@@ -24,25 +24,26 @@ def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = Parser(
         prog=NAME, description="Load config/WORLD_NAME/object_locations.yaml to /objects and "
-        "object_groups.yaml to /object_groups; what was there before is dropped.",
-        epilog="Exit code: 0 when all went well (a world without a list is a warning), 1 when "
-        "something failed, 2 for a wrong command line.")
+        "object_groups.yaml to /object_groups, replacing both parameters.",
+        epilog="Exit code: 0 on success (a world without a list is a warning), 1 on failure, 2 "
+        "for an invalid command line.")
     made.add_argument("--world", default="", metavar="NAME",
-                      help="the world's name or its file (default: the world that runs now)")
+                      help="name or file of the world (default: the running world)")
     made.add_argument("--package", default="my_simulations", metavar="PKG",
-                      help="package whose folder 'config' holds the list (default %(default)s)")
+                      help="package whose folder 'config' contains the list (default %(default)s)")
     client.common_options(made)
     return made
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Runs the tool.
+    """Run the tool.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
 
     Returns:
-        0 when the list is loaded whole or there is none, 1 otherwise, 2 for wrong usage.
+        0 if the whole list was loaded or there is none, 1 otherwise, 2 for an invalid command
+        line.
     """
     words, remappings = client.plain_words(argv)
     options = parser().parse_args(words)
@@ -50,14 +51,14 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def world_name(world: str) -> str:
-    """A world's base name, from its name or the path of its file."""
+    """The base name of a world, from its name or the path of its file."""
     base = os.path.basename(world.strip())
     root, ending = os.path.splitext(base)
     return root if ending in (".world", ".sdf", ".xml") else base
 
 
 def transferable(tree: Mapping[Any, Any], source_where: Any) -> Tuple[Dict[str, Any], List[Issue]]:
-    """The entries of a list that the parameter server can hold.
+    """The entries of a list that can be stored on the parameter server.
 
     Args:
         tree: the entries by name.
@@ -74,7 +75,7 @@ def transferable(tree: Mapping[Any, Any], source_where: Any) -> Tuple[Dict[str, 
             xmlrpc.client.dumps(({name: value},))
         except (TypeError, OverflowError, RecursionError, ValueError) as fault:
             issues.append(error("not-a-parameter",
-                                f"'{name}' cannot be sent to the parameter server: {fault}",
+                                f"cannot set '{name}' on the parameter server: {fault}",
                                 **source_where((str(name),))))
         else:
             kept[name] = value
@@ -86,9 +87,9 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     name = world_name(options.world) or _running_world(parameters, options, remappings)
     folder = package_finder()(options.package)
     if folder is None:
-        raise client.ToolError(f"there is no ROS package '{options.package}'"
-                               f"{_meant(options.package, package_names())}; source the workspace "
-                               "that holds it, or correct --package")
+        raise client.ToolError(f"ROS package '{options.package}' was not found"
+                               f"{_meant(options.package, package_names())}; source its "
+                               "workspace, or correct --package")
     parameters.delete(client.LIST_MARK)
     file = file_in_package(folder, options.package, os.path.join("config", name, LOCATIONS))
     if os.path.isfile(file):
@@ -104,10 +105,10 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     else:
         parameters.delete(client.OBJECTS)
         parameters.delete(client.GROUPS)
-        issues = [warning("no-object-list", f"the world '{name}' has no object list"
+        issues = [warning("no-object-list", f"world '{name}' has no object list"
                           f"{_meant(name, _listed(os.path.join(folder, 'config')))}", file=file,
-                          hint="write one to spawn objects by name, or give the package that has"
-                               " one: package:=PACKAGE (launch file) or --package PACKAGE")]
+                          hint="create one to spawn objects by name, or give its package:"
+                               " package:=PACKAGE (launch file) or --package PACKAGE")]
         file = ""
     parameters.set(client.LIST_MARK, {"world": name, "file": file,
                                       "package": options.package})
@@ -133,16 +134,15 @@ def _running_world(parameters: client.Parameters, options: argparse.Namespace,
     param = f"{node}/world_base_name"
     return str(parameters.wait(
         lambda: parameters.get(param), options.timeout,
-        f"the name of the running world (parameter {param})",
-        "is the simulator running? Otherwise give the world: world_name:=NAME"))
+        f"name of the running world (parameter {param})",
+        "start the simulator, or give the world with world_name:=NAME"))
 
 
 def _load(parameters: client.Parameters, file: str, param: str, package: str
           ) -> Tuple[int, List[Issue]]:
-    """Loads one file to a parameter tree; how many sound entries, and what is wrong with others.
+    """Load a file to a parameter tree; returns the number of valid entries, and all issues.
 
-    Faulty entries are loaded as well where that is possible, so that spawning one of them says
-    what is wrong instead of not knowing it.
+    Invalid entries are loaded too if possible, so that spawning one reports its errors.
     """
     try:
         tree, source, issues = read_yaml(file, param)

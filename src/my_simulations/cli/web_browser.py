@@ -1,4 +1,4 @@
-"""Showing an address: in a browser where there is a display, in words everywhere."""
+"""Prints the URL of the editor, and opens it in a browser if there is a display."""
 from __future__ import annotations
 
 import os
@@ -6,18 +6,18 @@ import sys
 from typing import Mapping
 
 NO_BROWSER = "MY_SIMULATIONS_NO_BROWSER"
-"""Variable: set to anything, no browser is started."""
+"""Environment variable; if set, no browser is started."""
 
 
 def has_display(environment: Mapping[str, str] = os.environ) -> bool:
-    """Whether a window could be shown."""
+    """Whether a browser window can be opened."""
     if environment.get(NO_BROWSER):
         return False
     return bool(environment.get("DISPLAY") or environment.get("WAYLAND_DISPLAY"))
 
 
 def show(url: str, program: str) -> None:
-    """Print where the editor is, and open it where there is a display."""
+    """Print the URL, and open it if there is a display."""
     print(f"{program}: the world editor is at {url}", flush=True)
     if not has_display():
         return
@@ -28,5 +28,5 @@ def show(url: str, program: str) -> None:
     except webbrowser.Error:
         opened = False
     if not opened:
-        print(f"{program}: no browser could be started; open the address yourself",
+        print(f"{program}: cannot start a browser; open the URL yourself",
               file=sys.stderr, flush=True)

@@ -9,6 +9,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Callable, List, Protocol, Tuple
 
+from ..errors import SimulationError
 from .commands import Command, PhysicsSettings
 from .ring import RingReader
 
@@ -34,8 +35,8 @@ class Reply:
 class Event:
     """Something the engine reports by itself.
 
-    `kind`: `horizon` (reached), `diverged` (a model's state became non-finite and it was put back
-    where it last was finite, at rest), `log` (what is only approximately so).
+    `kind`: `diverged` (a model's state became non-finite; it was restored to its last finite pose,
+    at rest) or `log` (a setting is simulated approximately).
     """
 
     kind: str
@@ -52,7 +53,7 @@ class Engine(Protocol):
         """Where the states are read."""
 
     def submit(self, command: Command) -> "Future[Reply]":
-        """Queue a command. The future fails with `EngineGoneError` when the engine died first."""
+        """Queue a command. The future fails with `EngineDiedError` when the engine died first."""
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
         """Set who hears of events (called from the engine's reader thread)."""
@@ -80,15 +81,15 @@ class Engine(Protocol):
         """End it and wait for the end."""
 
 
-class EngineGoneError(Exception):
+class EngineDiedError(SimulationError):
     """The engine died before it answered."""
 
 
-class CommandRefusedError(Exception):
+class CommandRefusedError(SimulationError):
     """A command that cannot be carried out; the message is one sentence for the user."""
 
 
-class EngineBrokenError(Exception):
+class EngineBrokenError(SimulationError):
     """The world is lost half way through a change: this engine ends, and another takes over."""
 
 

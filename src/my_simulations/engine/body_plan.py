@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Deque, Dict, List, Optional, Set, Tuple
 
 from ..description.model import WORLD, Joint, Link, Model
+from ..errors import SimulationError
 from ..geometry import IDENTITY, Pose, Vec3, compose, inverse, scale
 from .ring_rows import AXES
 
@@ -71,7 +72,7 @@ class BodyPlan:
         return len(self.links) == 1 and not self.fixed_base
 
 
-class PlanError(ValueError):
+class BodyPlanError(SimulationError):
     """The model cannot be built; the message is one sentence for the user."""
 
 
@@ -81,7 +82,7 @@ def plan_bodies(model: Model) -> List[BodyPlan]:
     Joints of types the engine does not move, and joints that would close a loop, connect nothing.
 
     Raises:
-        PlanError: a joint names a link that is not there, or a tree is longer than Bullet takes.
+        BodyPlanError: a joint names a link that does not exist, or a tree exceeds Bullet's limit.
     """
     by_name = {link.name: index for index, link in enumerate(model.links)}
     if model.static:
@@ -94,7 +95,7 @@ def plan_bodies(model: Model) -> List[BodyPlan]:
         count = len(body.links) - (0 if body.fixed_base else 1)
         if count > MAX_TREE_LINKS:
             first = model.links[body.links[0].index].name
-            raise PlanError(f"the links joined to '{first}' are {count + 1}, more than the "
+            raise BodyPlanError(f"the links joined to '{first}' are {count + 1}, more than the "
                             f"{MAX_TREE_LINKS + 1} that one articulated body may have")
     return bodies
 
@@ -103,8 +104,9 @@ def _check_ends(model: Model, joints: List[Joint], by_name: Dict[str, int]) -> N
     for joint in joints:
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name != WORLD and name not in by_name:
-                raise PlanError(f"joint '{joint.name}' of model '{model.name}' names the {role} "
-                                f"link '{name}', which the model does not have")
+                raise BodyPlanError(
+                    f"joint '{joint.name}' of model '{model.name}' names the {role} link "
+                    f"'{name}', which the model does not have")
 
 
 class _Planner:

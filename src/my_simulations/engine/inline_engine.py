@@ -6,7 +6,7 @@ import threading
 from concurrent.futures import Future
 from typing import Callable, Dict, List, Tuple
 
-from .api import Backend, EngineGoneError, Event, Reply
+from .api import Backend, EngineDiedError, Event, Reply
 from .commands import Command
 from .ring import Memory, RingReader, RingWriter
 from .runner import Runner
@@ -90,7 +90,7 @@ class InlineEngine:
         future: "Future[Reply]" = Future()
         with self._lock:
             if not self._alive:
-                future.set_exception(EngineGoneError("the engine is not running"))
+                future.set_exception(EngineDiedError("the engine is not running"))
                 return future
             self._numbers += 1
             self._waiting[self._numbers] = (command, future)
@@ -122,7 +122,7 @@ class InlineEngine:
             waiting, self._waiting = self._waiting, {}
         self._on_death(reason, [command for command, _ in waiting.values()])
         for _, future in waiting.values():
-            future.set_exception(EngineGoneError(reason))
+            future.set_exception(EngineDiedError(reason))
 
     def close(self) -> None:
         """End it."""

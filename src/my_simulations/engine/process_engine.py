@@ -15,7 +15,7 @@ from typing import Callable, Dict, List, Optional, Tuple
 
 from . import child_process
 from . import ring as ring_module
-from .api import EngineGoneError, Event, Reply
+from .api import EngineDiedError, Event, Reply
 from .commands import Command, SetJoints, SetLinkState, SetModelState
 from .message_pipe import Wire
 from .ring import RingReader
@@ -88,11 +88,11 @@ class ProcessEngine:
         self._reader.start()
 
     def submit(self, command: Command) -> "Future[Reply]":
-        """Queue a command; the future fails with `EngineGoneError` when the child dies first."""
+        """Queue a command; the future fails with `EngineDiedError` when the child dies first."""
         future: "Future[Reply]" = Future()
         with self._lock:
             if self._wire is None:
-                future.set_exception(EngineGoneError("the physics engine is not running"))
+                future.set_exception(EngineDiedError("the physics engine is not running"))
                 return future
             self._numbers += 1
             self._waiting[self._numbers] = (command, future)
@@ -168,7 +168,7 @@ class ProcessEngine:
         for future, reply in shown:
             future.set_result(reply)
         for _, future in waiting.values():
-            future.set_exception(EngineGoneError(reason))
+            future.set_exception(EngineDiedError(reason))
 
 
 def answer_shown(ring: RingReader, waiting: "Dict[int, Tuple[Command, Future[Reply]]]"

@@ -80,7 +80,7 @@ class Runner:
         self._applied = 0
         self._running = False
         self._horizon = 0
-        self._reported_horizon = -1
+        self._horizon_written = -1
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
         self._due = 0.0
         self._burst = 1
@@ -105,7 +105,7 @@ class Runner:
                     self._serve(0.0)
                     self._advance_burst()
                 elif not self._running or self._step >= self._horizon:
-                    self._report_horizon()
+                    self._write_at_horizon()
                     self._serve(_IDLE_S)
                 elif self._settings.rate > 0.0:
                     self._paced_step()
@@ -304,13 +304,11 @@ class Runner:
     def _moving(self) -> bool:
         return self._advance is not None or self._running
 
-    def _report_horizon(self) -> None:
-        """Say once that the world stands at the horizon."""
-        if not self._running or self._reported_horizon == self._step:
-            return
-        self._reported_horizon = self._step
-        self._write(force=True)
-        self._channel.event(Event("horizon", "", step=self._step))
+    def _write_at_horizon(self) -> None:
+        """Write one snapshot when the horizon is reached."""
+        if self._running and self._horizon_written != self._step:
+            self._horizon_written = self._step
+            self._write(force=True)
 
     def _report_events(self) -> None:
         for event in self._backend.events():

@@ -8,9 +8,9 @@ import yaml
 
 DEEPEST = 64
 MOST_VALUES = 100_000
-"""Of a document, aliases counted as often as they are used."""
+"""Most values of a document, aliases expanded."""
 LARGEST = 8 << 20
-"""Bytes of a file."""
+"""Largest file in bytes."""
 
 # What XML cannot hold: names and paths of a list end up in descriptions of models.
 _BAD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
@@ -51,31 +51,31 @@ class GuardedLoader(yaml.SafeLoader):
         start = self.peek_event().start_mark
         self._depth += 1
         if self._depth > DEEPEST:
-            raise _fault(f"this is nested deeper than {DEEPEST} levels", start)
+            raise _fault(f"nested deeper than {DEEPEST} levels", start)
         is_alias = self.check_event(yaml.AliasEvent)
         node = super().compose_node(parent, index)
         self._depth -= 1
         if is_alias:
             if id(node) not in self._values:
-                raise _fault("this alias is part of what it stands for", start)
+                raise _fault("alias refers to itself", start)
             return node
         count = 1 + sum(self._values[id(child)] for child in _children(node))
         if count > MOST_VALUES:
-            raise _fault(f"with its aliases this is more than {MOST_VALUES} values", start)
+            raise _fault(f"more than {MOST_VALUES} values, aliases expanded", start)
         self._values[id(node)] = count
         return node
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
         """A node's value; what Python cannot make of it is a fault of the file."""
         if isinstance(node, yaml.ScalarNode) and _BAD.search(node.value):
-            raise _fault("this text holds a control character or half a surrogate pair",
+            raise _fault("text contains a control character or an unpaired surrogate",
                          node.start_mark)
         try:
             return super().construct_object(node, deep)
         except (ValueError, ArithmeticError, LookupError, TypeError,
                 AttributeError) as fault:
             kind = node.tag.rpartition(":")[2]
-            raise _fault(f"this is no {kind}: {fault}", node.start_mark) from None
+            raise _fault(f"invalid {kind}: {fault}", node.start_mark) from None
 
 
 def _children(node: Any) -> Any:

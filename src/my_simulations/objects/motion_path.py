@@ -33,7 +33,7 @@ class Polygon:
             if length > 0.0:
                 edges.append((start, end, length))
         if not edges:
-            raise InputError([error("polygon", "a polygon needs two different corners at least")])
+            raise InputError([error("polygon", "a polygon needs at least two different corners")])
         self._edges = edges
         self.length = sum(edge[2] for edge in edges)
 
@@ -69,7 +69,7 @@ class Circle:
             InputError: the radius is not a positive number.
         """
         if not (math.isfinite(radius) and radius > 0.0):
-            raise InputError([error("circle", f"the radius is greater than 0, found {radius}")])
+            raise InputError([error("circle", f"the radius must be greater than 0, is {radius}")])
         self._centre = centre
         self._radius = radius
         self.length = 2.0 * math.pi * radius
@@ -127,4 +127,4 @@ def _numbers(value: Any, count: int, what: str, text: str) -> List[float]:
 
 
 def _not(what: str, wanted: str, text: str) -> InputError:
-    return InputError([error("argument", f"{what} takes {wanted}, found {text!r}")])
+    return InputError([error("argument", f"{what} must be {wanted}, is {text!r}")])

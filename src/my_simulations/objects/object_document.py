@@ -25,10 +25,10 @@ def read_document(file: str) -> str:
             raw = stream.read()
     except OSError as fault:
         raise InputError([error("object-unreadable",
-                                f"cannot read the object's file: {fault.strerror}",
+                                f"cannot read the file of the object: {fault.strerror}",
                                 file=file)]) from fault
     if not raw.strip():
-        raise InputError([error("object-empty", "the object's file is empty", file=file)])
+        raise InputError([error("object-empty", "the file of the object is empty", file=file)])
     declared = _DECLARATION.match(raw)
     encoding = declared.group(1).decode("ascii") if declared else "utf-8"
     try:

@@ -106,7 +106,7 @@ def parse_objects(tree: Any, source: Source, package: str = "my_simulations") ->
         return result
     if not isinstance(tree, Mapping):
         result.faults[""] = [error(
-            "list-wrong-type", f"an object list maps names to objects, found {_kind(tree)}",
+            "list-wrong-type", f"an object list must map names to objects, is {_kind(tree)}",
             **source.where(()))]
         return result
     _Reader(source, package, result).entries(tree, (), (), (0.0, 0.0, 0.0), 0.0)
@@ -126,7 +126,7 @@ class _Reader:
         for key, value in tree.items():
             if not isinstance(key, str) or not key.strip():
                 self._fault("_".join([*chain, str(key)]), error(
-                    "object-name", f"an object's name is a text, found {key!r}",
+                    "object-name", f"the name of an object must be a string, is {key!r}",
                     **self._source.where((*path, str(key))), hint="put the name in quotes"))
                 continue
             self._entry(value, (*path, key), (*chain, key), origin, yaw)
@@ -138,7 +138,7 @@ class _Reader:
         if not isinstance(value, Mapping):
             self._fault(name, error(
                 "object-wrong-type",
-                f"object '{name}' needs model, position and orientation, found {_kind(value)}",
+                f"object '{name}' must have model, position and orientation, is {_kind(value)}",
                 **where))
             return
         if name in self._result.objects:
@@ -179,11 +179,12 @@ class _Reader:
         if not isinstance(children, Mapping):
             self._fault(name, error(
                 "children-wrong-type",
-                f"object '{name}': children maps names to objects, found {_kind(children)}",
+                f"object '{name}': children must map names to objects, is {_kind(children)}",
                 **self._source.where(below)))
         elif len(chain) >= MAX_DEPTH:
             self._fault(name, error(
-                "children-too-deep", f"object '{name}': children nest deeper than {MAX_DEPTH}",
+                "children-too-deep", f"object '{name}': children are nested deeper than "
+                                     f"{MAX_DEPTH} levels",
                 **self._source.where(below)))
         else:
             self.entries(children, below, chain, placed, yaw)
@@ -195,7 +196,7 @@ class _Reader:
             below = (*chain, str(key))
             self._fault("_".join(below), error(
                 "parent-faulty",
-                f"object '{'_'.join(below)}' cannot be placed: its parent '{parent}' is faulty"))
+                f"object '{'_'.join(below)}' cannot be placed: its parent '{parent}' has errors"))
             if isinstance(child, Mapping):
                 self._orphans(child.get("children"), below, parent)
 
@@ -227,7 +228,7 @@ class _Reader:
         if kind is None:
             hint = f"use one of {', '.join(ENDINGS)}"
             if ending == "model":
-                hint = "Gazebo XML from before SDF is not read; convert it to SDF or URDF"
+                hint = "Gazebo XML from before SDF is not supported; convert it to SDF or URDF"
             self._fault(name, error(
                 "model-type", f"object '{name}': files of type '{ending}' cannot be spawned",
                 **self._source.where(path), hint=hint))
@@ -239,7 +240,7 @@ class _Reader:
         found = value.get(key)
         if isinstance(found, str) and found.strip():
             return found.strip()
-        self._fault(name, self._bad(path, name, key, found, key in value, "a text"))
+        self._fault(name, self._bad(path, name, key, found, key in value, "a string"))
         return None
 
     def _triple(self, value: Mapping[Any, Any], path: KeyPath, name: str,
@@ -261,8 +262,8 @@ class _Reader:
         where = self._source.where((*path, key))
         if not present:
             return error("missing-key", f"object '{name}' has no {key}", **where,
-                         hint=f"{key} takes {wanted}")
-        return error("wrong-value", f"object '{name}': {key} takes {wanted}, found {_kind(found)}",
+                         hint=f"{key} must be {wanted}")
+        return error("wrong-value", f"object '{name}': {key} must be {wanted}, is {_kind(found)}",
                      **where)
 
     def _fault(self, name: str, issue: Issue) -> None:

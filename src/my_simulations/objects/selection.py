@@ -42,19 +42,21 @@ def parse_groups(tree: Any, source: Source) -> Tuple[Dict[str, List[str]], List[
     if tree is None:
         return {}, []
     if not isinstance(tree, Mapping):
-        return {}, [error("groups-wrong-type", "object groups map a name to a list of objects",
+        return {}, [error("groups-wrong-type", "object groups must map names to lists of objects",
                           **source.where(()))]
     groups: Dict[str, List[str]] = {}
     issues: List[Issue] = []
     for name, members in tree.items():
         where = source.where((str(name),))
         if not isinstance(name, str) or not name.strip():
-            issues.append(error("group-name", f"a group's name is a text, found {name!r}", **where))
+            issues.append(error("group-name", "the name of a group must be a string, is "
+                                              f"{name!r}", **where))
         elif not isinstance(members, (list, tuple)):
             issues.append(error("group-wrong-type",
-                                f"group '{name}' is a list of object names", **where))
+                                f"group '{name}' must be a list of object names", **where))
         elif not all(isinstance(member, str) for member in members):
-            issues.append(error("group-member", f"group '{name}': every member is a text", **where))
+            issues.append(error("group-member", f"group '{name}': every member must be a "
+                                                "string", **where))
         else:
             groups[name] = list(members)
     return groups, issues
@@ -76,9 +78,9 @@ def unknown_name(name: str, known: Sequence[str], where: str) -> Issue:
         hint = "did you mean " + " or ".join(near) + "?"
     elif known:
         listed = ", ".join(known[:10]) + (", ..." if len(known) > 10 else "")
-        hint = f"known are: {listed}"
+        hint = f"available: {listed}"
     else:
-        hint = "none is known"
+        hint = "none are available"
     return error("unknown-object", f"there is no object '{name}' {where}", hint=hint)
 
 

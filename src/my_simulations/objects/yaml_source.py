@@ -80,7 +80,7 @@ def _text(file: str) -> str:
         raise InputError([error("list-unreadable", f"cannot read the list: {fault.strerror}",
                                 file=file)]) from fault
     if len(data) > LARGEST:
-        raise InputError([error("list-too-large", f"the list has more than {LARGEST} bytes",
+        raise InputError([error("list-too-large", f"the list is larger than {LARGEST} bytes",
                                 file=file)])
     try:
         return data.decode("utf-8")
@@ -100,7 +100,7 @@ def _collect_lines(node: yaml.Node, path: KeyPath, lines: Dict[KeyPath, int],
         below = (*path, str(key.value))
         if below in lines and key.value != "<<":
             issues.append(warning(
-                "repeated-key", f"'{key.value}' is given twice; the last one counts",
+                "repeated-key", f"'{key.value}' is given twice; the last one is used",
                 file=source.file, line=key.start_mark.line + 1, xpath=source.param(below),
                 hint=f"the first is on line {lines[below]}"))
         lines[below] = key.start_mark.line + 1
@@ -117,9 +117,9 @@ def _yaml_issue(fault: yaml.YAMLError, text: str, source: Source,
     key = max(above, key=lambda path: (source.lines[path], len(path)), default=())
     if not above and loader is not None:
         key = tuple(loader.keys)
-    return error("list-not-yaml", f"not well-formed YAML: {problem}", file=source.file, line=line,
+    return error("list-not-yaml", f"invalid YAML: {problem}", file=source.file, line=line,
                  column=column, xpath=source.param(key),
-                 hint="check indentation (blanks, no tabs), brackets and colons")
+                 hint="check indentation (spaces, no tabs), brackets and colons")
 
 
 def _place(fault: yaml.YAMLError, text: str) -> Tuple[int, int]:

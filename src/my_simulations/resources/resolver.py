@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
+from ..errors import ResourceError
 from .database.fuel_uri import FuelUri, fuel_uri, is_web_address
 from .model_config import description_in
 from .model_provider import DATABASE, ModelNotProvidedError, Progress
@@ -20,7 +21,7 @@ from .suggestions import suggestion
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
 
 
-class ResourceNotFoundError(Exception):
+class ResourceNotFoundError(ResourceError):
     """No file for a URI.
 
     Attributes:
@@ -34,7 +35,7 @@ class ResourceNotFoundError(Exception):
         self.tried: List[str] = list(tried)
         self.reason = reason
         places = ", ".join(self.tried)
-        why = reason or (f"tried {places}" if places else "no place to look in")
+        why = reason or (f"searched {places}" if places else "no search path is set")
         super().__init__(f"{uri!r} was not found: {why}")
 
 
@@ -45,7 +46,7 @@ class MissingModels(Protocol):
         """A new document is being read."""
 
     def provide(self, name: str) -> str:
-        """The folder of a model; raises NotProvided."""
+        """The folder of a model; raises ModelNotProvidedError."""
 
 
 class WebModels(Protocol):
@@ -55,7 +56,7 @@ class WebModels(Protocol):
         """A new document is being read."""
 
     def path(self, uri: FuelUri) -> str:
-        """The folder of a model or a file of it; raises NotProvided."""
+        """The folder of a model or a file of it; raises ModelNotProvidedError."""
 
     def beside(self, base_dir: str, rest: str) -> List[str]:
         """Where `model://` and `rest` may lie for a file that lies in a cache."""
@@ -151,7 +152,7 @@ class Resolver:
     def meant(self, missing: ResourceNotFoundError) -> str:
         """The beginning of a hint: a URI that is there and much like one that is not; or ""."""
         found = suggestion(missing.uri, missing.tried, self._packages)
-        return f"did you mean {found}? Else " if found else ""
+        return f"did you mean {found}? Otherwise " if found else ""
 
     def add_model_folder(self, folder: str) -> None:
         """Look for models in one more folder, after the others."""
@@ -178,7 +179,7 @@ class Resolver:
             base_dir: folder of the file that holds the URI, "" for none.
 
         Raises:
-            NotFound: nothing is there.
+            ResourceNotFoundError: nothing is there.
         """
         uri = uri.strip()
         if not uri or uri == "__default__":
@@ -208,7 +209,7 @@ class Resolver:
             raise ResourceNotFoundError(uri, reason=str(fault)) from None
 
     def _provided(self, uri: str, tried: List[str]) -> str:
-        """The path from the source of missing models, else NotFound."""
+        """The path from the source of missing models, else ResourceNotFoundError."""
         name, inside = _split_package(uri.partition("://")[2])
         if self._missing is not None and uri.startswith("model://") and name:
             try:
@@ -224,7 +225,7 @@ class Resolver:
         """The description file `uri` names: the file itself, or the one its folder's config picks.
 
         Raises:
-            NotFound: nothing is there, or the folder holds no description.
+            ResourceNotFoundError: nothing is there, or the folder holds no description.
         """
         path = self.resolve(uri, base_dir)
         if not os.path.isdir(path):
@@ -260,7 +261,7 @@ class Resolver:
             yield from self._for_model(rest)
         else:
             known = "model://, package://, file:// or a path"
-            raise ResourceNotFoundError(uri, reason=f"{scheme}:// is not read; use {known}")
+            raise ResourceNotFoundError(uri, reason=f"{scheme}:// is not supported; use {known}")
 
     def _for_model(self, rest: str) -> Iterator[str]:
         for folder in self._all("models"):
@@ -269,7 +270,7 @@ class Resolver:
     def _for_package(self, uri: str, rest: str) -> Iterator[str]:
         name, inside = _split_package(rest)
         if not name:
-            raise ResourceNotFoundError(uri, reason="no name follows ://")
+            raise ResourceNotFoundError(uri, reason="the name after :// is missing")
         folder = self._find_package(name)
         yield os.path.join(folder, inside) if folder else f"ROS package {name}"
         for behind in self._own[1:] if name == PACKAGE else ():

@@ -1,4 +1,4 @@
-"""Command lines whose mistakes are answered with what was probably meant."""
+"""Command line parser that suggests similar options for unknown ones."""
 from __future__ import annotations
 
 import argparse
@@ -12,7 +12,7 @@ class Parser(argparse.ArgumentParser):
     """An argument parser that suggests options and choices much like an unknown one."""
 
     def error(self, message: str) -> NoReturn:
-        """End with the usage, what is wrong, and what may have been meant; status 2."""
+        """Print usage, error and suggestion, and exit with status 2."""
         super().error(message + self._meant(message))
 
     def _meant(self, message: str) -> str:
@@ -32,5 +32,5 @@ def number(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        comma = "; write a point, not a comma" if "," in text else ""
+        comma = "; use a decimal point" if "," in text else ""
         raise argparse.ArgumentTypeError(f"{text!r} is not a number{comma}") from None

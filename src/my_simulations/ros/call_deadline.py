@@ -1,19 +1,26 @@
-"""Calls that have no time-out of their own, with one on the wall clock."""
+"""Wall-clock timeout for calls that have none of their own."""
 from __future__ import annotations
 
 import threading
 from typing import Any, Callable, Dict
 
+from ..errors import SimulationError
 
-class CallTimeoutError(Exception):
-    """A call did not come back in time; the text names it and the deadline."""
+
+class CallTimeoutError(SimulationError):
+    """A call did not return in time; the text names it and the timeout."""
 
 
 def within(limit: float, what: str, call: Callable[[], Any]) -> Any:
-    """Run a call; what it returns or raises.
+    """Run a call in a thread; returns or raises what it does.
+
+    Args:
+        limit: wall seconds.
+        what: name of the call for the error message.
+        call: the call.
 
     Raises:
-        NoAnswer: nothing came back within `limit` wall seconds.
+        CallTimeoutError: the call did not return within `limit`; it keeps running.
     """
     box: Dict[str, Any] = {}
 
@@ -30,5 +37,5 @@ def within(limit: float, what: str, call: Callable[[], Any]) -> Any:
     if "fault" in box:
         raise box["fault"]
     if "answer" not in box:
-        raise CallTimeoutError(f"{what} gave no answer within {limit:g} s; is the simulator stuck?")
+        raise CallTimeoutError(f"{what} did not respond within {limit:g} s; is the simulator busy?")
     return box["answer"]

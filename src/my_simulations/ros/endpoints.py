@@ -1,4 +1,4 @@
-"""How a handler's outcome becomes an answer."""
+"""Turns the outcome of a service handler into a response."""
 from __future__ import annotations
 
 import socket
@@ -18,8 +18,8 @@ class Endpoint:
     """One service.
 
     Attributes:
-        name: under the node's own name.
-        title: starts every status message, e.g. `SpawnModel`.
+        name: below the node's own name.
+        title: prefix of every status message, e.g. `SpawnModel`.
         type: service class.
         handler: gets the request and the response to fill; returns the status message without its
             title, or raises `CommandError` or `InputError` for a failure.
@@ -34,10 +34,10 @@ class Endpoint:
 
 
 def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
-    """The function rospy calls: always an answer, whatever the handler does.
+    """The callback for rospy; it responds whatever the handler raises.
 
-    A response without `success` (std_srvs/Empty) has no room for a fault; it fails at transport
-    level, so that the client gets an exception with the text.
+    A response without `success` (std_srvs/Empty) cannot report an error; the call fails at
+    transport level instead, so the client gets an exception with the text.
     """
     response_class = endpoint.response or endpoint.type._response_class
     has_status = "status_message" in response_class.__slots__
@@ -49,10 +49,10 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
             succeeded = True
         except (CommandError, InputError) as fault:
             text, succeeded = str(fault), False
-        except Exception as fault:  # a defect of ours: the client still gets an answer
-            rospy.logerr("%s: a defect in %s:\n%s", endpoint.title, endpoint.name,
+        except Exception as fault:  # an internal error: the client still gets a response
+            rospy.logerr("%s: internal error in %s:\n%s", endpoint.title, endpoint.name,
                          traceback.format_exc())
-            text, succeeded = f"internal fault: {type(fault).__name__}: {fault}", False
+            text, succeeded = f"internal error: {type(fault).__name__}: {fault}", False
         if has_status:
             response.success = succeeded
             response.status_message = f"{endpoint.title}: {text}"
@@ -64,10 +64,10 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
 
 
 class LastingService(rospy.Service):
-    """A rospy service that answers at once and survives bytes that are no request.
+    """A rospy service with TCP_NODELAY that survives malformed requests.
 
-    rospy leaves Nagle's algorithm on, which holds small answers back behind unacknowledged ones,
-    and a request that cannot be deserialised ends its thread with the client left waiting.
+    rospy leaves Nagle's algorithm on, which delays small responses behind unacknowledged ones,
+    and a request that cannot be deserialised ends its thread while the client keeps waiting.
     """
 
     def handle(self, transport: Any, header: Any) -> None:
@@ -78,13 +78,13 @@ class LastingService(rospy.Service):
         except TransportTerminated:
             transport.close()
         except (TransportException, struct.error, OSError) as fault:
-            rospy.logwarn("[%s] refused a request that cannot be read: %s",
+            rospy.logwarn("[%s] rejected a malformed request: %s",
                           self.resolved_name, fault)
-            self._refuse(transport, f"the request cannot be read: {fault}")
+            self._refuse(transport, f"malformed request: {fault}")
 
     def _refuse(self, transport: Any, text: str) -> None:
         try:
             self._write_service_error(transport, text)
         except (TransportException, OSError) as fault:
-            rospy.logdebug("[%s] the client is gone: %s", self.resolved_name, fault)
+            rospy.logdebug("[%s] client disconnected: %s", self.resolved_name, fault)
         transport.close()

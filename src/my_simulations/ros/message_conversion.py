@@ -1,4 +1,4 @@
-"""Message fields to poses and twists and back; no number that is not finite gets past here."""
+"""Converts message fields to poses and twists and back; rejects NaN and infinite values."""
 from __future__ import annotations
 
 from typing import Any, Tuple
@@ -9,33 +9,33 @@ from ..geometry import Pose, Twist, Vec3, is_finite, normalised
 NANOSECONDS = 1000000000
 
 LENGTH, SPEED, SPIN = 1e6, 1e6, 1e5
-"""The largest coordinate in m, speed in m/s and rate in rad/s that a request may name.
+"""Largest accepted coordinate (m), speed (m/s) and rate (rad/s) of a request.
 
-Beyond them nothing is simulated that means anything, and doubles lose what is small beside them.
+Beyond them doubles are too coarse for a useful simulation.
 """
 
 FORCE = 1e9
-"""The largest component of a force or torque, N or N m."""
+"""Largest accepted component of a force (N) or torque (N m)."""
 
 
 def pose_from_message(message: Any, field: str = "pose") -> Pose:
     """A geometry_msgs/Pose as a pose with a unit quaternion.
 
-    The all-zero quaternion, which a client sends that fills the position only, is identity, as in
-    Gazebo.
+    The all-zero quaternion of a client that sets the position only is read as identity (Gazebo
+    behaviour).
 
     Args:
         message: the geometry_msgs/Pose.
-        field: its name in the request, for the error.
+        field: its name in the request, for error messages.
 
     Raises:
-        CommandError: a number is NaN, infinite or absurdly large.
+        CommandError: a number is NaN, infinite or beyond the limits above.
     """
     p, q = message.position, message.orientation
     position, orientation = (p.x, p.y, p.z), (q.x, q.y, q.z, q.w)
     within(position, LENGTH, "m", f"{field}.position")
     if not is_finite(*orientation):
-        raise CommandError(f"{field}.orientation has a number that is not finite: {orientation}")
+        raise CommandError(f"{field}.orientation contains NaN or infinity: {orientation}")
     largest = max(abs(number) for number in orientation)
     if largest > LENGTH:   # its square would not be a number
         orientation = (q.x / largest, q.y / largest, q.z / largest, q.w / largest)
@@ -46,7 +46,7 @@ def twist_from_message(message: Any, field: str = "twist") -> Twist:
     """A geometry_msgs/Twist as a twist, m/s and rad/s, in the axes it was given in.
 
     Raises:
-        CommandError: a number is NaN, infinite or absurdly large.
+        CommandError: a number is NaN, infinite or beyond the limits above.
     """
     linear = within(vector(message.linear), SPEED, "m/s", f"{field}.linear")
     angular = within(vector(message.angular), SPIN, "rad/s", f"{field}.angular")
@@ -59,39 +59,39 @@ def vector(message: Any) -> Vec3:
 
 
 def within(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
-    """The vector itself.
+    """The vector.
 
     Raises:
         CommandError: a number is NaN, infinite or beyond the limit.
     """
     if not is_finite(*values):
-        raise CommandError(f"{field} has a number that is not finite: {values}")
+        raise CommandError(f"{field} contains NaN or infinity: {values}")
     if any(abs(value) > limit for value in values):
-        raise CommandError(f"{field} has a number beyond {limit:g} {unit}: {values}")
+        raise CommandError(f"{field} contains a value beyond {limit:g} {unit}: {values}")
     return values
 
 
 def between(value: float, low: float, high: float, field: str, unit: str = "") -> float:
-    """The value itself.
+    """The value.
 
     Raises:
-        CommandError: it is NaN, infinite or not in `low` to `high`.
+        CommandError: it is NaN, infinite or not between `low` and `high`.
     """
     finite(value, field)
     if not low <= value <= high:
         unit = f" {unit}" if unit else ""
-        raise CommandError(f"{field} must be in {low:g} to {high:g}{unit}, it is {value:g}")
+        raise CommandError(f"{field} must be between {low:g} and {high:g}{unit}, is {value:g}")
     return value
 
 
 def finite(value: float, field: str) -> float:
-    """The value itself.
+    """The value.
 
     Raises:
         CommandError: it is NaN or infinite.
     """
     if not is_finite(value):
-        raise CommandError(f"{field} is not a finite number: {value}")
+        raise CommandError(f"{field} must be finite, is {value}")
     return value
 
 

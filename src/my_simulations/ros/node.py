@@ -1,4 +1,4 @@
-"""The node `gazebo`: one simulator behind services, topics and parameters."""
+"""The ROS side of a simulator: services, topics and parameters of the node `gazebo`."""
 from __future__ import annotations
 
 import os
@@ -24,25 +24,25 @@ if TYPE_CHECKING:
     from .services.model_services import ModelServices
 
 ROSOUT_SECONDS = 1.0
-"""How long a node that is about to end waits for /rosout to hear why."""
+"""Longest wait for /rosout to connect before the node exits with an error."""
 
 
 class Node:
-    """Owns the ROS side of a running simulator."""
+    """Owns services, topics and parameters of a running simulator."""
 
     def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher,
                  open_editor: Optional[Open] = None, master_uri: str = "",
                  announce_editor: Callable[[], None] = lambda: None,
                  launch: Optional[Launch] = None) -> None:
-        """Take over a simulator that does not run yet.
+        """Take over a started, paused simulator.
 
         Args:
-            simulator: started, paused.
-            resolver: finds what spawned models name.
+            simulator: the simulator.
+            resolver: resolves URIs of spawned models.
             clock: the advertised `/clock`.
-            open_editor: starts the world editor and returns its address.
-            master_uri: of the ROS master, whose restarts are looked after; "" for not at all.
-            announce_editor: sets the parameter with the editor's address, if there is one.
+            open_editor: starts the world editor and returns its URL; None for no editor.
+            master_uri: URI of the ROS master, to register again after it restarts; "" for never.
+            announce_editor: sets the parameter with the editor's URL, if the editor runs.
             launch: how this process was started.
         """
         self._simulator = simulator
@@ -63,23 +63,34 @@ class Node:
                                       self._set_parameters) if master_uri else None
 
     def advertise(self) -> None:
-        """Offer topics, services and parameters."""
-        from .lifecycle.tcpros_handshake import take_side_by_side
+        """Advertise topics and services, and set parameters."""
+        from .lifecycle.tcpros_handshake import parallelise_handshakes
         from .registration import register
         from .topics.state_publishers import Publishers
 
-        if _flag(self._parameters, "lockstep", False):
+        if self._manual_stepping():
             self._simulator.clock.set_manual_stepping(True)
         self._publishers = Publishers(
             self._simulator, self._clock, states=self._network,
             clock_hz=_number(self._parameters, "pub_clock_frequency", 0.0),
             states_hz=_number(self._parameters, "model_states_rate", 0.0))
-        take_side_by_side()
-        # Tools ask for it to know whose services they call: before there are any.
+        parallelise_handshakes()
+        # Set before any service: tools read it to tell this node from Gazebo.
         rospy.set_param("~my_simulations/version", __version__)
         if self._network:
-            self._registered = register(self._rows(late=False), self._faces())
+            self._registered = register(self._rows(late=False), self._handlers())
         self._set_world_parameters()
+
+    def _manual_stepping(self) -> bool:
+        """Parameter `~manual_stepping`, or its deprecated alias `~lockstep`."""
+        name = "manual_stepping"
+        if "lockstep" in self._parameters:
+            rospy.logwarn("parameter ~lockstep is deprecated; use ~manual_stepping")
+            if name in self._parameters:
+                rospy.delete_param("~lockstep")  # else the next node would warn again
+            else:
+                name = "lockstep"
+        return _flag(self._parameters, name, False)
 
     def _set_world_parameters(self) -> None:
         rospy.set_param("~world_base_name", base_name(self._simulator.world.file))
@@ -88,7 +99,7 @@ class Node:
             rospy.set_param("/use_sim_time", True)
 
     def _set_parameters(self) -> None:
-        """All that this node has set, for a master that knows nothing of it."""
+        """Set all parameters of this node again, on a restarted master."""
         self._engine_pid = 0
         self._set_world_parameters()
         rospy.set_param("~my_simulations/version", __version__)
@@ -97,7 +108,7 @@ class Node:
             self._reconfigure.forget_stored()
 
     def advertise_late(self) -> None:
-        """Offer what the start does not wait for; call it once the world runs."""
+        """Advertise services and topics that the start does not wait for; call it last."""
         if not self._network:
             return
         from .registration import register
@@ -107,27 +118,27 @@ class Node:
 
             self._metrics = Metrics(self._simulator)
             self._metrics.start()
-        faces = self._late_faces()
-        self._reconfigure = faces["reconfigure"]
-        self._registered += register(self._rows(late=True), faces)
+        handlers = self._late_handlers()
+        self._reconfigure = handlers["reconfigure"]
+        self._registered += register(self._rows(late=True), handlers)
 
     def _rows(self, late: bool) -> List[Row]:
         return [row for row in rows(extensions=self._extensions) if row.late == late]
 
-    def _faces(self) -> Dict[str, Any]:
-        """Who handles what, by the first half of the table's handlers."""
+    def _handlers(self) -> Dict[str, Any]:
+        """Handler objects by the first half of `Row.handler`."""
         from .services.joint_services import JointServices
         from .services.light_services import LightServices
         from .services.link_services import LinkServices
         from .services.state_services import StateServices
-        from .services.wrench_services import LoadServices
+        from .services.wrench_services import WrenchServices
 
         simulator = self._simulator
         return {
             "joints": JointServices(simulator), "lights": LightServices(simulator),
-            "links": LinkServices(simulator), "loads": LoadServices(simulator),
-            "models": self._models(),
+            "links": LinkServices(simulator), "models": self._models(),
             "states": StateServices(simulator), "world": WorldServices(simulator),
+            "wrenches": WrenchServices(simulator),
         }
 
     def _models(self) -> ModelServices:
@@ -135,32 +146,32 @@ class Node:
 
         return ModelServices(self._simulator, self._resolver, log_issue, self._launch.pid)
 
-    def _late_faces(self) -> Dict[str, Any]:
+    def _late_handlers(self) -> Dict[str, Any]:
         from .services.editor_service import EditorService
         from .services.save_service import SaveService
-        from .services.step_service import SteppingService
+        from .services.step_service import StepService
 
         simulator = self._simulator
         return {
             "models": self._models(), "editor": EditorService(self._open_editor),
             "reconfigure": _reconfigure(simulator),
             "saving": SaveService(simulator, self._resolver, self._launch.folder),
-            "stepping": SteppingService(simulator), "world": WorldServices(simulator),
+            "stepping": StepService(simulator), "world": WorldServices(simulator),
         }
 
     def seconds_alone(self) -> float:
-        """How long the master or the launch may be gone before the node ends; 0 for ever."""
+        """Parameter `~master_timeout`: wall seconds without master or roslaunch; 0 for never."""
         found = _number(self._parameters, "master_timeout", abandoned.SECONDS)
         if found < 0.0:
-            rospy.logerr("parameter ~master_timeout must not be negative, it is %g; %g is used",
+            rospy.logerr("parameter ~master_timeout must not be negative, is %g; using %g",
                          found, abandoned.SECONDS)
             return abandoned.SECONDS
         return found
 
     def keep_up(self) -> None:
-        """Keep the registration, and the parameters that follow the world; call it now and then.
+        """Keep the registration and the parameters up to date; call it about once a second.
 
-        A master that is away is asked again the next time.
+        While the master is unreachable, the next call tries again.
         """
         try:
             if self._membership is not None and not self._membership.keep_up():
@@ -169,7 +180,7 @@ class Node:
             if self._reconfigure is not None:
                 self._reconfigure.keep_up()
         except OSError as fault:
-            rospy.logdebug("the master does not answer: %s", fault)
+            rospy.logdebug("the ROS master does not respond: %s", fault)
 
     def _keep_engine_pid(self) -> None:
         pid = self._simulator.engine_pid
@@ -178,23 +189,23 @@ class Node:
             self._engine_pid = pid
 
     def start_publishing(self) -> None:
-        """Begin to publish `/clock` and the states."""
+        """Start to publish `/clock` and the state topics."""
         if self._publishers is not None:
             self._publishers.start()
 
     def spawn_robot(self) -> None:
-        """Spawn the parameter `robot_description` when `~spawn_robot` says so.
+        """Spawn the parameter `robot_description` if `~spawn_robot` is true.
 
-        Faults are logged with what to do; the node runs on.
+        Errors are logged with what to do; the node keeps running.
         """
         if not _flag(self._parameters, "spawn_robot", False):
             return
-        # It was meant for this start: a master that lives on would hand it to the next one.
+        # Valid for this start only: the master keeps parameters for the next node.
         rospy.delete_param("~spawn_robot")
         where = [_number(self._parameters, f"robot_{axis}", 0.0) for axis in "xyz"]
         text = rospy.get_param("robot_description", None)
         if not isinstance(text, str) or not text.strip():
-            rospy.logerr("~spawn_robot is true, but the parameter %s holds no URDF; load it with "
+            rospy.logerr("~spawn_robot is true, but parameter %s is not set; load a URDF with "
                          '<param name="robot_description" textfile="..."/> before the node starts',
                          rospy.resolve_name("robot_description"))
             return
@@ -203,25 +214,25 @@ class Node:
                                              file="robot_description", launched=True)
             rospy.loginfo("robot_description: %s", said)
         except (CommandError, InputError) as fault:
-            rospy.logerr("robot_description was not spawned: %s; correct it and spawn it with "
+            rospy.logerr("cannot spawn robot_description: %s; correct it and run "
                          "rosrun gazebo_ros spawn_model -urdf -param robot_description "
                          "-model NAME", fault)
 
     def stop(self) -> None:
-        """Stop publishing; rospy's own shutdown takes the services off the graph."""
+        """Stop publishing; rospy's own shutdown unregisters the services."""
         for publishers in (self._publishers, self._metrics):
             if publishers is not None:
                 publishers.stop()
 
 
 def _reconfigure(simulator: Simulator) -> Optional[Any]:
-    """The dynamic_reconfigure server; None where its messages are not installed."""
+    """The dynamic_reconfigure server; None if its messages are not installed."""
     try:
-        from .services.physics_reconfigure import Reconfigure
+        from .services.physics_reconfigure import ReconfigureServer
     except ImportError as fault:
-        rospy.logwarn("the physics settings are not offered to dynamic_reconfigure: %s", fault)
+        rospy.logwarn("dynamic_reconfigure is not available: %s", fault)
         return None
-    return Reconfigure(simulator)
+    return ReconfigureServer(simulator)
 
 
 def base_name(world_file: str) -> str:
@@ -230,7 +241,7 @@ def base_name(world_file: str) -> str:
 
 
 def fail(lines: List[str]) -> None:
-    """Say why the node ends, on standard error and on /rosout, and wait until it is out."""
+    """Log why the node exits, on standard error and /rosout, and wait until it is sent."""
     from rosgraph_msgs.msg import Log
 
     out = rospy.Publisher("/rosout", Log, queue_size=100)
@@ -253,7 +264,7 @@ def _flag(parameters: Dict[str, Any], name: str, default: bool) -> bool:
         return value
     if isinstance(value, str) and value.strip().lower() in ("true", "false", "1", "0"):
         return value.strip().lower() in ("true", "1")
-    rospy.logerr("parameter ~%s must be true or false, it is %r; %r is used", name, value, default)
+    rospy.logerr("parameter ~%s must be true or false, is %r; using %r", name, value, default)
     return default
 
 
@@ -267,6 +278,6 @@ def _number(parameters: Dict[str, Any], name: str, default: float) -> float:
             raise ValueError
         return number
     except (TypeError, ValueError):
-        rospy.logerr("parameter ~%s must be a finite number, it is %r; %r is used",
+        rospy.logerr("parameter ~%s must be a finite number, is %r; using %r",
                      name, value, default)
         return default

@@ -1,4 +1,4 @@
-"""From rows of the interface table to services and topics on the graph."""
+"""Registers rows of the interface table as services and topics."""
 from __future__ import annotations
 
 import importlib
@@ -7,9 +7,9 @@ from typing import Any, Callable, Dict, Iterable, List
 import rospy
 
 from .endpoints import Endpoint, LastingService, answering
-from .interface import BY_ROSPY, HEARS, SERVES, Direction, Row, row_of
+from .interface import BY_ROSPY, SERVES, SUBSCRIBES, Direction, Row, row_of
 
-HEARD_QUEUE = 10
+SUBSCRIBER_QUEUE = 10
 
 
 def class_of(row: Row) -> Any:
@@ -25,35 +25,36 @@ def publisher(name: str, **options: Any) -> rospy.Publisher:
     return rospy.Publisher(row.graph_name, class_of(row), **options)
 
 
-def register(rows: Iterable[Row], faces: Dict[str, Any]) -> List[Any]:
-    """Offer the services and hear the topics among `rows`.
+def register(rows: Iterable[Row], handlers: Dict[str, Any]) -> List[Any]:
+    """Advertise the services and subscribe to the topics among `rows`.
 
-    Publishers are advertised by those who publish.
+    Published topics are advertised by their publishers. A service whose class is not installed is
+    skipped with a warning.
 
     Args:
-        rows: of the table.
-        faces: objects with the handlers, by the first half of `Row.handler`.
+        rows: rows of the table.
+        handlers: objects with the handlers, by the first half of `Row.handler`.
 
     Returns:
-        rospy's objects, to be kept.
+        The services and subscribers; keep a reference to them.
     """
     found: List[Any] = []
     for row in rows:
-        if row.handler == BY_ROSPY or row.direction not in (SERVES, HEARS):
+        if row.handler == BY_ROSPY or row.direction not in (SERVES, SUBSCRIBES):
             continue
         try:
             kind = class_of(row)
         except ImportError:
-            rospy.logwarn("%s is not offered: %s is missing; tools/run installs or builds it",
+            rospy.logwarn("service %s is not available: %s is not installed; run tools/run",
                           row.name, row.type)
             continue
-        face, method = row.handler.split(".")
-        handler = getattr(faces[face], method)
+        group, method = row.handler.split(".")
+        handler = getattr(handlers[group], method)
         if row.direction is SERVES:
-            found.append(_service(row, kind, handler, getattr(faces[face], "responses", {})))
+            found.append(_service(row, kind, handler, getattr(handlers[group], "responses", {})))
         else:
-            found.append(rospy.Subscriber(row.graph_name, kind, handler, queue_size=HEARD_QUEUE,
-                                          tcp_nodelay=True))
+            found.append(rospy.Subscriber(row.graph_name, kind, handler, tcp_nodelay=True,
+                                          queue_size=SUBSCRIBER_QUEUE))
     return found
 
 

@@ -1,4 +1,4 @@
-"""Calling a running server: services with deadlines on the wall clock."""
+"""Service clients with wall-clock timeouts."""
 from __future__ import annotations
 
 import time
@@ -6,44 +6,46 @@ from typing import Any, Callable
 
 import rospy
 
+from ..errors import SimulationError
+
 SERVICE_SECONDS = 60.0
 """How long a client waits for a service to appear."""
 
 POLL_SECONDS = 0.1
 
 
-class ServiceUnavailableError(Exception):
-    """Something that was waited for did not come; the text names it and the deadline."""
+class ServiceUnavailableError(SimulationError):
+    """A service or condition did not become available; the text names it and the timeout."""
 
 
 def wait_until(condition: Callable[[], bool], what: str, seconds: float) -> None:
-    """Wait on the wall clock, since ROS time stands still in a paused world.
+    """Wait on the wall clock, since ROS time does not advance in a paused world.
 
     Raises:
-        NotThere: the time passed, or the node was shut down.
+        ServiceUnavailableError: `seconds` passed, or the node was shut down.
     """
     until = time.monotonic() + seconds
     while not condition():
         if rospy.is_shutdown():
             raise ServiceUnavailableError(f"interrupted while waiting for {what}")
         if time.monotonic() > until:
-            raise ServiceUnavailableError(f"{what} did not come within {seconds:g} s")
+            raise ServiceUnavailableError(f"{what} not available within {seconds:g} s")
         time.sleep(POLL_SECONDS)
 
 
 def service(name: str, service_class: Any, seconds: float = SERVICE_SECONDS) -> Any:
-    """A proxy for a service that answers.
+    """A proxy for a service; waits until it is available.
 
     Raises:
-        NotThere: it did not appear in time.
+        ServiceUnavailableError: it did not appear in time.
     """
     try:
         rospy.wait_for_service(name, timeout=seconds)
     except rospy.ROSInterruptException as fault:
         raise ServiceUnavailableError(f"interrupted while waiting for service {name}") from fault
     except rospy.ROSException as fault:
-        raise ServiceUnavailableError(f"service {name} did not appear within {seconds:g} s; "
-                       "is the simulation running?") from fault
+        raise ServiceUnavailableError(f"service {name} not available within {seconds:g} s; "
+                       "is the simulator running?") from fault
     return rospy.ServiceProxy(name, service_class)
 
 

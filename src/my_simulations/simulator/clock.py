@@ -1,4 +1,4 @@
-"""Sim time: pausing, stepping, and how far the engine may run by itself."""
+"""Sim time: pausing, stepping, and the step limit of the engine."""
 from __future__ import annotations
 
 import contextlib
@@ -10,7 +10,7 @@ from .session import Session
 
 
 class SimClock:
-    """Owns whether time goes on. Changes take the session's structure lock; reads take none.
+    """Owns pausing and stepping. Changes take the session's structure lock; reads take none.
 
     Args:
         session: the running world.
@@ -58,20 +58,20 @@ class SimClock:
             return self._session.call(Pause()).step
 
     def unpause(self) -> None:
-        """Let time go on, unless it is stepped manually."""
+        """Resume, unless the world is stepped manually."""
         with self._session.structure_lock:
             self._paused = False
             for command in self.resume_commands():
                 self._session.call(command)
 
     def set_manual_stepping(self, manual: bool) -> None:
-        """Let time go on by `advance` alone, whether paused or not; or by itself again."""
+        """Turn manual stepping on or off: the world then advances by `advance` alone."""
         with self._session.structure_lock:
             self._manual_stepping = manual
             self._session.call((self.resume_commands() or [Pause()])[0])
 
     def advance(self, steps: int) -> int:
-        """Make exactly `steps` steps as fast as possible; returns the step count after them."""
+        """Execute `steps` steps as fast as possible; returns the step count after them."""
         return self._session.call(Advance(steps)).step
 
     def wait_step(self, after_step: int, timeout: float) -> bool:
@@ -91,13 +91,13 @@ class SimClock:
     # -- for the other parts -----------------------------------------------------------------------
 
     def resume_commands(self) -> List[Command]:
-        """`Run`, if time goes on by itself, else nothing."""
+        """`Run`, unless paused, stepped manually or loading."""
         stands = self._paused or self._manual_stepping or self._loading
         return [] if stands else [Run(self._horizon)]
 
     @contextlib.contextmanager
     def stopped_while_loading(self) -> Iterator[None]:
-        """Keep time from going on, a new engine's too, until a world is loaded as a whole."""
+        """Keep the world, also after a restart of the engine, paused until it is loaded."""
         self._loading = True
         try:
             yield
@@ -105,7 +105,7 @@ class SimClock:
             self._loading = False
 
     def pause_after_recovery(self) -> None:
-        """Stay paused when the engine is restored: it keeps crashing while time runs."""
+        """Stay paused after a restart of the engine, because it keeps crashing while running."""
         self._paused = True
 
     def start_command(self, start_ns: int, step_size: float) -> Command:

@@ -1,4 +1,4 @@
-"""Meshes of bodies that move, divided into convex parts before the engine sees them."""
+"""Convex decomposition of the meshes of moving bodies."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -12,7 +12,7 @@ _MOST_KEPT = 1000
 
 
 class ConvexParts:
-    """Divides meshes, each once."""
+    """Decomposes meshes, each once."""
 
     def __init__(self, log: Callable[[Issue], None], progress: Callable[[str], None]) -> None:
         self._log = log
@@ -20,9 +20,9 @@ class ConvexParts:
         self._divided: Dict[int, MeshData] = {}
 
     def of(self, model: Model, meshes: MeshTable) -> MeshTable:
-        """The meshes that a flattened model needs, those of moving links with their parts.
+        """The collision meshes of a flattened model, those of moving links with convex parts.
 
-        Blocks while a mesh is divided for the first time.
+        Blocks while a mesh is decomposed for the first time.
         """
         self.prepare([(model, meshes)], gently=True)
         found = dict(meshes)
@@ -31,9 +31,9 @@ class ConvexParts:
         return found
 
     def prepare(self, models: Iterable[Tuple[Model, MeshTable]], gently: bool = False) -> None:
-        """Divide what several flattened models need, all at once; blocks until it is done.
+        """Decompose the meshes of several flattened models in parallel; blocks until done.
 
-        With `gently`, a world that runs meanwhile comes first.
+        With `gently`, at low priority, for a world that is running.
         """
         wanted: Dict[int, Tuple[str, MeshData]] = {}
         for model, meshes in models:
@@ -57,7 +57,7 @@ class ConvexParts:
 
 
 def _moving(model: Model, meshes: MeshTable) -> Iterator[Tuple[str, MeshData, str]]:
-    """Key, mesh and owner's name of the meshes of moving links that have no parts yet."""
+    """Key, mesh and scoped link name of the meshes of moving links without convex parts."""
     if not meshes or model.static:
         return
     for link in model.links:

@@ -1,14 +1,14 @@
-"""States of the whole world as rows of numbers, for whoever reads them many times a second."""
+"""States of the whole world as rows of numbers, for readers at high rates."""
 from __future__ import annotations
 
 from typing import Dict, Optional, Tuple
 
 from ..engine.ring import BELL, DEMAND_NS, LINK_WIDTH, POSE_DEMAND_NS
-from .row_layout import Layout, lay_out
+from .row_layout import RowLayout, layout_of
 from .session import Session
 
 ROW_WIDTH = LINK_WIDTH
-"""Doubles in a row: position, orientation x, y, z, w, linear and angular velocity."""
+"""Doubles per row: position (m), orientation x, y, z, w, velocity (m/s), angular (rad/s)."""
 
 
 class StateFeed:
@@ -19,12 +19,12 @@ class StateFeed:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._layout: Optional[Layout] = None
+        self._layout: Optional[RowLayout] = None
         self._requests: Dict[str, Tuple[float, float, bool]] = {}
 
     def request(self, who: str, *, states_hz: float = 0.0, poses_hz: float = 0.0,
                 notify: bool = False) -> None:
-        """Say how often a reader wants states, or poses only; 0 for not at all.
+        """Set the rate at which a reader needs states, or poses only; 0 for never.
 
         Args:
             who: the reader; a later request of the same reader replaces this one.
@@ -40,20 +40,20 @@ class StateFeed:
                 words[word] = int(1e9 / most) if most > 0.0 else 0
             words[BELL] = int(any(notified for _, _, notified in self._requests.values()))
 
-    def states(self) -> Tuple[Layout, int, bytes]:
-        """Who is in which row, the snapshot's sequence number, and its rows of `ROW_WIDTH` doubles.
+    def states(self) -> Tuple[RowLayout, int, bytes]:
+        """The layout, the snapshot's sequence number, and its rows of `ROW_WIDTH` doubles.
 
-        The layout is the same object until a name changes.
+        The layout is the same object until models change.
         """
         with self._session.registry_lock:
             return (self._current_layout(), *self._session.ring.raw_links())
 
     def earlier_states(self, sequence: int) -> Optional[Tuple[int, bytes]]:
-        """Step and rows of an earlier snapshot; None once it has been overwritten."""
+        """Step and rows of an earlier snapshot; None if it was overwritten."""
         return self._session.ring.earlier_links(sequence)
 
-    def poses(self) -> Tuple[Layout, bytes]:
-        """Who is in which row, and rows as in `states` of which only the poses are the newest."""
+    def poses(self) -> Tuple[RowLayout, bytes]:
+        """The layout, and rows as in `states`, of which only the poses are current."""
         with self._session.registry_lock:
             return self._current_layout(), self._session.ring.raw_poses()
 
@@ -64,11 +64,11 @@ class StateFeed:
 
     @property
     def changes(self) -> int:
-        """Grows whenever `poses` may return others."""
+        """Increases whenever the result of `poses` may have changed."""
         return self._session.ring.changes
 
-    def _current_layout(self) -> Layout:
+    def _current_layout(self) -> RowLayout:
         registry = self._session.registry
         if self._layout is None or self._layout.revision != registry.revision:
-            self._layout = lay_out(registry.entities(), registry.revision)
+            self._layout = layout_of(registry.entities(), registry.revision)
         return self._layout

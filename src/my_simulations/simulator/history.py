@@ -1,4 +1,4 @@
-"""Undo and redo: the operations done, in words, each with its inverse."""
+"""Undo and redo: labels of the operations done, each with its inverse."""
 from __future__ import annotations
 
 import threading
@@ -10,12 +10,18 @@ from .operations import Operation
 from .simulator import Simulator
 
 LONGEST = 500
-"""Steps that can be taken back; older ones are forgotten."""
+"""Most steps that can be undone."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """`inverse` takes it back; `number` tells steps with the same words apart."""
+    """One entry.
+
+    Attributes:
+        label: text for the history menu.
+        inverse: operation that undoes it.
+        number: unique id.
+    """
 
     label: str
     inverse: Operation
@@ -23,7 +29,7 @@ class Step:
 
 
 class History:
-    """What was done to one world through `do`. Safe from any thread."""
+    """Operations carried out on one world through `do`. Safe from any thread."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
@@ -35,13 +41,13 @@ class History:
 
     @property
     def undo_labels(self) -> List[str]:
-        """What can be undone, newest first."""
+        """Labels of steps that can be undone, newest first."""
         with self._lock:
             return [step.label for step in reversed(self._done)]
 
     @property
     def redo_labels(self) -> List[str]:
-        """What can be done again, next first."""
+        """Labels of steps that can be redone, next first."""
         with self._lock:
             return [step.label for step in reversed(self._undone)]
 
@@ -53,7 +59,7 @@ class History:
 
     @property
     def state(self) -> int:
-        """A number that tells one state of editing from another."""
+        """Id of the current state of editing."""
         with self._lock:
             return self._top
 
@@ -62,7 +68,7 @@ class History:
         return self._done[-1].number if self._done else 0
 
     def do(self, label: str, operation: Operation) -> None:
-        """Carry an operation out and remember it; what was undone is forgotten.
+        """Carry out an operation and record it; clears the steps to redo.
 
         Raises CommandError; then nothing has changed.
         """
@@ -76,24 +82,24 @@ class History:
                     self._saved = None  # cannot be reached any more
 
     def undo(self, to: int = 0) -> str:
-        """Take back the newest step, or all down to the `to`-th newest; returns its words.
+        """Undo the newest step, or all down to the `to`-th newest; returns its label.
 
-        Raises CommandError: nothing to undo, or the world has not got what a step needs any more;
-        such a step is forgotten.
+        Raises CommandError: nothing to undo, or an entity that the step needs was deleted; such a
+        step is dropped.
         """
         return self._move(self._done, self._undone, to, "undo")
 
     def redo(self, to: int = 0) -> str:
-        """Do again what was undone last, or all up to the `to`-th. Raises CommandError."""
+        """Redo the step undone last, or all up to the `to`-th. Raises CommandError."""
         return self._move(self._undone, self._done, to, "redo")
 
     def saved(self) -> None:
-        """The world is on disk as it is now."""
+        """Note that the current state was saved to a file."""
         with self._lock:
             self._saved = self._top
 
     def clear(self, dirty: bool = False) -> None:
-        """Another world: nothing can be undone."""
+        """Forget all steps, for another world."""
         with self._lock:
             self._done.clear()
             self._undone.clear()
@@ -102,13 +108,12 @@ class History:
     def _move(self, source: List[Step], target: List[Step], to: int, verb: str) -> str:
         with self._lock:
             if not 0 <= to < len(source):
-                raise CommandError(f"there is nothing to {verb}")
+                raise CommandError(f"nothing to {verb}")
             for _ in range(to + 1):
                 step = source.pop()
                 try:
                     inverse = step.inverse.apply(self._simulator)
                 except CommandError as fault:
-                    how = "undone" if verb == "undo" else "done again"
-                    raise CommandError(f"{step.label!r} cannot be {how}: {fault}") from fault
+                    raise CommandError(f"cannot {verb} {step.label!r}: {fault}") from fault
                 target.append(Step(step.label, inverse, step.number))
             return step.label

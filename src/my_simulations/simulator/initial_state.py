@@ -1,4 +1,4 @@
-"""What a model starts with besides its pose: joint positions and velocities of a saved state."""
+"""Joint positions and velocities that a model starts with, from a saved state."""
 from __future__ import annotations
 
 from typing import List, Optional
@@ -10,10 +10,10 @@ from .registry import Entity
 
 
 def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Command]:
-    """The commands that give a model just loaded what the saved state says.
+    """The commands that apply the saved state to a model just loaded.
 
-    A model without joints gets the velocity of each link, an articulated one that of its canonical
-    link as a rigid body's; its joints are at rest.
+    A model without joints gets the twist of each link, an articulated one that of its canonical
+    link, as one rigid body; its joint rates are zero.
     """
     if start is None or entity.model.static:
         return []

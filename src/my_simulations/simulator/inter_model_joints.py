@@ -71,8 +71,9 @@ class InterModelJoints:
             child, parent = (_initial(registry, name) for name in (joint.child, joint.parent))
             if joint.type not in TIE_TYPES:
                 issues.append(warning("joint-not-held", f"joint '{joint.name}' of type "
-                                      f"{joint.type} connects two models; it holds nothing",
-                                      hint="put both into one model"))
+                                      f"{joint.type} connects two models, which is not "
+                                      "supported; ignored",
+                                      hint="put both links into one model"))
             elif child is not None and parent is not None:
                 at = compose(child, joint.pose)
                 found.append(_Connection(joint, compose(inverse(parent), at)))

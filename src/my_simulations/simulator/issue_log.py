@@ -1,4 +1,4 @@
-"""Issues that come before anybody listens."""
+"""Buffers issues until a log is available."""
 from __future__ import annotations
 
 import threading
@@ -11,7 +11,7 @@ RECENT_ISSUES = 100
 
 
 class IssueLog:
-    """Keeps issues until there is somebody to tell, and the last ones for one who comes later."""
+    """Buffers issues until `open` is called, and keeps recent ones for `also`."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -26,19 +26,19 @@ class IssueLog:
             self._recent.append(issue)
             if sink is None:
                 self._kept.append(issue)
-        for hears in (sink, also):
-            if hears is not None:
-                hears(issue)
+        for receiver in (sink, also):
+            if receiver is not None:
+                receiver(issue)
 
     def also(self, sink: Callable[[Issue], None]) -> None:
-        """Tell one more, from the last `RECENT_ISSUES` on."""
+        """Add a second receiver; it also gets the last `RECENT_ISSUES` issues."""
         with self._lock:
             self._also, recent = sink, list(self._recent)
         for issue in recent:
             sink(issue)
 
     def open(self, sink: Callable[[Issue], None]) -> None:
-        """From now on, and for what was kept, use `sink`."""
+        """Set the receiver; it gets all buffered issues first."""
         with self._lock:
             self._sink, kept, self._kept = sink, self._kept, []
         for issue in kept:

@@ -20,7 +20,7 @@ class Joints:
     def find(self, name: str) -> Tuple[str, Joint, int]:
         """Model name, joint and axis number of a joint, fixed ones too.
 
-        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntity.
+        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntityError.
         """
         with self._session.registry_lock:
             entity, joint, number = self._session.registry.joint(name)
@@ -29,7 +29,7 @@ class Joints:
     def states(self, name: str) -> List[Tuple[float, float]]:
         """Position (rad or m) and rate (rad/s or m/s) of each axis of a joint; none of a fixed one.
 
-        Raises UnknownEntity.
+        Raises UnknownEntityError.
         """
         with self._session.registry_lock:
             entity, joint, _ = self._session.registry.joint(name)
@@ -38,7 +38,12 @@ class Joints:
                                                     for number in (0, 1)) if row is not None]
 
     def set_positions(self, positions: Dict[str, float]) -> None:
-        """Move joint axes to positions (rad or m), at rest. Raises UnknownEntity, CommandError."""
+        """Move joint axes to positions (rad or m), at rest.
+
+        Raises:
+            UnknownEntityError: a joint does not exist.
+            CommandError: the engine rejected a position.
+        """
         with self._session.registry_lock:
             rows = tuple((self._session.registry.joint_row(name), value, 0.0)
                          for name, value in positions.items())

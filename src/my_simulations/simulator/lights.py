@@ -24,11 +24,11 @@ class Lights:
             return list(self._session.world.lights)
 
     def get(self, name: str) -> Light:
-        """The light of that name. Raises UnknownEntity."""
+        """The light of that name. Raises UnknownEntityError."""
         for light in self.all():
             if light.name == name:
                 return light
-        raise UnknownEntityError(f"there is no light '{name}'")
+        raise UnknownEntityError(f"unknown light '{name}'")
 
     def add(self, light: Light, frame: str = "", slot: Optional[OrderSlot] = None) -> None:
         """Add a light, its pose given in `frame`; last, or at its former place in the order.
@@ -36,7 +36,7 @@ class Lights:
         Raises CommandError: empty or taken name, unknown frame, a pose that is not finite.
         """
         if not light.name:
-            raise CommandError("a light needs a name")
+            raise CommandError("the name of a light must not be empty")
         session = self._session
         with session.structure_lock, session.registry_lock:
             session.check_name_is_free(light.name)
@@ -55,7 +55,7 @@ class Lights:
         with session.structure_lock, session.registry_lock:
             self.get(name)
             if not light.name:
-                raise CommandError("a light needs a name")
+                raise CommandError("the name of a light must not be empty")
             if light.name != name:
                 session.check_name_is_free(light.name)
             light = replace(light, pose=_usable_pose(light))
@@ -63,7 +63,7 @@ class Lights:
                 lights=[light if one.name == name else one for one in self.all()])
 
     def delete(self, name: str) -> Light:
-        """Delete a light; returns what it was. Raises UnknownEntity."""
+        """Delete a light; returns what it was. Raises UnknownEntityError."""
         session = self._session
         with session.structure_lock, session.registry_lock:
             light = self.get(name)
@@ -73,5 +73,5 @@ class Lights:
 
 def _usable_pose(light: Light) -> Pose:
     if not pose_is_finite(light.pose):
-        raise CommandError(f"the pose of light '{light.name}' is not finite")
+        raise CommandError(f"the pose of light '{light.name}' contains NaN or infinity")
     return Pose(light.pose.position, normalised(light.pose.orientation))

@@ -59,12 +59,12 @@ class Models:
             return name in self._session.registry
 
     def get(self, name: str) -> Model:
-        """The flattened description of a model. Raises UnknownEntity."""
+        """The flattened description of a model. Raises UnknownEntityError."""
         with self._session.registry_lock:
             return self._session.registry.model(name).model
 
     def link(self, name: str) -> Link:
-        """The description of a link, by plain or scoped name. Raises UnknownEntity."""
+        """The description of a link, by plain or scoped name. Raises UnknownEntityError."""
         with self._session.registry_lock:
             entity, index = self._session.registry.link(name)
             return entity.model.links[index]
@@ -123,7 +123,7 @@ class Models:
             CommandError: empty or taken name, unknown frame, or the engine refused it.
         """
         if not model.name:
-            raise CommandError("a model needs a name")
+            raise CommandError("the name of a model must not be empty")
         model = flattened(model)
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
@@ -155,7 +155,7 @@ class Models:
     def delete(self, name: str) -> DeletedModel:
         """Delete a model; returns when it is gone, with what brings it back to its place.
 
-        Raises UnknownEntity.
+        Raises UnknownEntityError.
         """
         session = self._session
         with session.structure_lock:
@@ -212,7 +212,7 @@ class Models:
             CommandError: unknown or taken name, or the engine refused it; nothing has changed.
         """
         if not model.name:
-            raise CommandError("a model needs a name")
+            raise CommandError("the name of a model must not be empty")
         model = flattened(model)
         session = self._session
         with session.structure_lock:
@@ -263,7 +263,7 @@ class Models:
     def pin(self, names: List[str]) -> None:
         """Keep these models at rest where they are put, and release all others.
 
-        Raises UnknownEntity.
+        Raises UnknownEntityError.
         """
         with self._session.structure_lock:
             with self._session.registry_lock:
@@ -295,7 +295,7 @@ class Models:
             try:
                 self.spawn(model, meshes=meshes.get(model.name))
             except CommandError as fault:
-                left_out = f"model '{model.name}' was left out: {fault}"
+                left_out = f"skipped model '{model.name}': {fault}"
                 self._losses.append(left_out)
                 session.log(error("model-refused", left_out, file=session.world.file))
         self._between, issues = self._between.located(session.registry)

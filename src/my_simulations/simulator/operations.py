@@ -291,7 +291,7 @@ class Push:
         pose, _ = world.states.link_state(self.link)
         back = world.states.capture()
         if com is None:
-            raise CommandError(f"there is no link '{self.link}'")
+            raise CommandError(f"unknown link '{self.link}'")
         lever = ZERO3 if self.point is None else subtract(self.point, com)
         duration = round(self.steps * world.physics.settings.max_step_size * 1e9)
         if self.in_link_axes:

@@ -1,4 +1,4 @@
-"""Places in an order of names, for what goes and comes back."""
+"""Positions in the order of models and lights, for entities that are deleted and restored."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -7,9 +7,13 @@ from typing import Sequence
 
 @dataclass(frozen=True)
 class OrderSlot:
-    """A place in an order: behind a neighbour, "" for none, or at `index` when that has gone.
+    """A position in an order: after the entity `behind`, or at `index` if that is gone.
 
-    A neighbour says it better than a number does when others came or went meanwhile.
+    A neighbour stays valid when other entities are added or deleted meanwhile.
+
+    Attributes:
+        index: position, from 0.
+        behind: name of the entity before it; "" for none.
     """
 
     index: int
@@ -17,12 +21,12 @@ class OrderSlot:
 
     @classmethod
     def of(cls, names: Sequence[str], name: str) -> "OrderSlot":
-        """The place of a name that is among `names`."""
+        """The slot of a name in `names`."""
         index = names.index(name)
         return cls(index, names[index - 1] if index else "")
 
     def among(self, names: Sequence[str]) -> int:
-        """The index at which it belongs into `names`, where it is not."""
+        """The index at which to insert it into `names`."""
         if self.behind in names:
             return names.index(self.behind) + 1
         return min(self.index, len(names))

@@ -1,4 +1,4 @@
-"""Poses and twists in reference frames, as Gazebo's services mean them."""
+"""Poses and twists in reference frames, as defined by Gazebo's services."""
 from __future__ import annotations
 
 from typing import Optional, Tuple
@@ -17,37 +17,37 @@ from ..geometry import (
     rotate,
     subtract,
 )
-from .registry import Anchor
+from .registry import ReferenceFrame
 
 
 def usable(pose: Pose, twist: Twist) -> Pose:
-    """The pose with a unit quaternion. Raises CommandError when a number is not finite."""
+    """The pose with a unit quaternion. Raises CommandError for NaN or infinity."""
     if not pose_is_finite(pose):
-        raise CommandError("the pose holds a number that is not finite")
+        raise CommandError("the pose contains NaN or infinity")
     if not pose_is_finite(Pose(twist.linear, (*twist.angular, 0.0))):
-        raise CommandError("the twist holds a number that is not finite")
+        raise CommandError("the twist contains NaN or infinity")
     return Pose(pose.position, normalised(pose.orientation))
 
 
 def in_frame(pose: Pose, twist: Twist,
-              anchor: Optional[Anchor]) -> Tuple[Pose, Twist, Optional[Frame]]:
-    """What the engine is to be told: a fixed frame is resolved here, a moving one there."""
-    if anchor is None:
+              frame: Optional[ReferenceFrame]) -> Tuple[Pose, Twist, Optional[Frame]]:
+    """Arguments of an engine command: fixed frames are resolved here, moving ones there."""
+    if frame is None:
         return pose, twist, None
-    if anchor.row >= 0:
-        return pose, twist, Frame(anchor.row, anchor.offset)
-    turn = anchor.offset.orientation
-    return (compose(anchor.offset, pose),
+    if frame.row >= 0:
+        return pose, twist, Frame(frame.row, frame.offset)
+    turn = frame.offset.orientation
+    return (compose(frame.offset, pose),
             Twist(rotate(turn, twist.linear), rotate(turn, twist.angular)), None)
 
 
-def relative(state: Tuple[Pose, Twist], anchor: Optional[Anchor],
+def relative(state: Tuple[Pose, Twist], frame: Optional[ReferenceFrame],
               snapshot: Snapshot) -> Tuple[Pose, Twist]:
     """Gazebo's relative state: pose in the frame, velocity differences turned, no w x r term."""
-    if anchor is None:
+    if frame is None:
         return state
     (position, turn), (linear, angular) = state
-    (at, axes), (frame_linear, frame_angular) = anchor.state(snapshot)
+    (at, axes), (frame_linear, frame_angular) = frame.state(snapshot)
     back = conjugate(axes)
     pose = Pose(rotate(back, subtract(position, at)), multiply(back, turn))
     return pose, Twist(rotate(back, subtract(linear, frame_linear)),

@@ -1,4 +1,4 @@
-"""Who is in the world: models by name, their rows in the ring, and what a name means."""
+"""Entities of the world by name, their rows in the ring, and name resolution."""
 from __future__ import annotations
 
 import difflib
@@ -28,17 +28,17 @@ from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
 from .order_slot import OrderSlot
 
 _FEW = 3
-"""Names that a message suggests."""
+"""Most names that a message suggests."""
 
 _MOST_LISTED = 8
-"""Names that a message lists where none is like the one that was asked for."""
+"""Most names that a message lists if none is similar."""
 
 WORLD_FRAMES = ("", "world", "map", "/map")
 """The names of the world frame (Gazebo behaviour)."""
 
 
 class UnknownEntityError(CommandError):
-    """No model, link or joint of that name."""
+    """A model, link, joint or light that does not exist."""
 
 
 class UnknownFrameError(CommandError):
@@ -50,14 +50,14 @@ class Entity:
     """A model in the world.
 
     Attributes:
-        model_id: its number in the engine.
+        model_id: its id in the engine.
         model: flattened description.
         initial_pose: world pose of the model frame that a reset restores.
-        first_link_row, first_joint_row: where its rows begin.
-        meshes: what its collisions need, kept for a restart of the engine.
-        pose: world pose of a model without links; others are where their canonical link is.
-        articulated: built so that a sliding joint can connect it with another model.
-        launched: the launch file that started the simulator spawned it, and will do so again.
+        first_link_row, first_joint_row: its first rows in the ring's tables.
+        meshes: its collision meshes, kept for a restart of the engine.
+        pose: world pose of a model without links; that of others is in the ring.
+        articulated: built as an articulated body, for a prismatic joint to another model.
+        launched: spawned by the launch file that started the simulator, as at its next start.
     """
 
     model_id: int
@@ -95,7 +95,7 @@ class Entity:
         return 0 <= row - self.first_joint_row < len(self.joint_names)
 
     def axis_row(self, joint: str, number: int) -> Optional[int]:
-        """Row of an axis of a joint; None for one that does not move."""
+        """Row of an axis of a joint; None for a fixed joint."""
         name = row_name(joint, number)
         return (self.first_joint_row + self.joint_names.index(name)
                 if name in self.joint_names else None)
@@ -110,7 +110,7 @@ class Entity:
         return pose, twist
 
     def saved(self, snapshot: Snapshot) -> ModelState:
-        """Everything the engine needs to put the model back as it is in `snapshot`."""
+        """State of all links and joints in `snapshot`, for the engine to restore."""
         links = tuple(LinkState(*snapshot.link(self.first_link_row + n))
                       for n in range(len(self.link_names)))
         joints = tuple(snapshot.joint(self.first_joint_row + n)
@@ -119,8 +119,13 @@ class Entity:
 
 
 @dataclass(frozen=True)
-class Anchor:
-    """What a reference name means: a link's row and an offset, or a fixed pose (row -1)."""
+class ReferenceFrame:
+    """A resolved reference frame: an offset from a link, or a fixed pose.
+
+    Attributes:
+        row: row of the link; -1 for a fixed pose.
+        offset: pose in the link frame; world pose if `row` is -1.
+    """
 
     row: int
     offset: Pose = IDENTITY
@@ -133,8 +138,8 @@ class Anchor:
         return compose(pose, self.offset), twist
 
 
-class Rows:
-    """Hands out contiguous rows of a table, first fit."""
+class RowAllocator:
+    """Allocates contiguous rows of a table, first fit."""
 
     def __init__(self, size: int) -> None:
         self._free: List[Tuple[int, int]] = [(0, size)]
@@ -166,7 +171,7 @@ class Rows:
 
 
 class Registry:
-    """The entities in the order in which they came. Not thread safe: its owner locks.
+    """The entities in load order. Not thread safe: its owner locks.
 
     Args:
         lights: returns the lights of the world, which are reference frames too.
@@ -194,19 +199,19 @@ class Registry:
         """All entities, in order."""
         return list(self._entities.values())
 
-    def add(self, entity: Entity, turn: Optional[OrderSlot] = None) -> None:
-        """A model has come: where its turn is, or last, also when it replaces one of its name."""
+    def add(self, entity: Entity, slot: Optional[OrderSlot] = None) -> None:
+        """Add a model at a slot, else last; replaces a model of the same name."""
         if entity.model.name in self._entities:
             self.remove(entity.model.name)
         self._entities[entity.model.name] = entity
         for index, link in enumerate(entity.link_names):
             self._plain_links.setdefault(link, []).append((entity, index))
-        if turn is not None:
-            self._put(entity, turn)
+        if slot is not None:
+            self._insert(entity, slot)
         self.revision += 1
 
     def swap(self, old: Entity, new: Entity) -> None:
-        """A model has become another, in the same place of the order."""
+        """Replace an entity, at the same position in the order."""
         self._entities = {(new if entity is old else entity).model.name:
                           new if entity is old else entity
                           for entity in self._entities.values()}
@@ -219,21 +224,21 @@ class Registry:
         self._sort_links(new)
         self.revision += 1
 
-    def _put(self, entity: Entity, turn: OrderSlot) -> None:
+    def _insert(self, entity: Entity, slot: OrderSlot) -> None:
         name = entity.model.name
         names = [one for one in self._entities if one != name]
-        names.insert(turn.among(names), name)
+        names.insert(slot.among(names), name)
         self._entities = {one: self._entities[one] for one in names}
         self._sort_links(entity)
 
     def _sort_links(self, moved: Entity) -> None:
-        """The first model in the order is the one that a plain link name means."""
+        """An unscoped link name refers to the first model in the order."""
         places = {name: place for place, name in enumerate(self._entities)}
         for link in moved.link_names:
             self._plain_links[link].sort(key=lambda pair: places[pair[0].model.name])
 
     def remove(self, name: str) -> Entity:
-        """A model has gone."""
+        """Remove a model."""
         entity = self._entities.pop(name)
         for link in entity.link_names:
             left = [pair for pair in self._plain_links[link] if pair[0] is not entity]
@@ -245,40 +250,40 @@ class Registry:
         return entity
 
     def model(self, name: str) -> Entity:
-        """The entity of a model name. Raises UnknownEntity."""
+        """The entity of a model name. Raises UnknownEntityError."""
         found = self._entities.get(name)
         if found is None:
-            raise UnknownEntityError(f"there is no model '{name}'" + self._nearest(name))
+            raise UnknownEntityError(f"unknown model '{name}'" + self._nearest(name))
         return found
 
     def link(self, name: str) -> Tuple[Entity, int]:
         """A link by `model::link` or by its plain name (the first in the world).
 
-        Raises UnknownEntity.
+        Raises UnknownEntityError.
         """
         found = self._scoped_link(name) or self._plain_link(name)
         if found is None:
-            raise UnknownEntityError(f"there is no link '{name}'" + self._nearest_link(name))
+            raise UnknownEntityError(f"unknown link '{name}'" + self._nearest_link(name))
         return found
 
     def joint_row(self, name: str) -> int:
-        """The row of a movable joint by plain or scoped name. Raises UnknownEntity."""
+        """The row of a movable joint by plain or scoped name. Raises UnknownEntityError."""
         for entity, joint, number in self._joints_named(name):
             row = entity.axis_row(joint.name, number)
             if row is not None:
                 self._joint_taken(name, entity)
                 return row
-        raise UnknownEntityError(f"there is no movable joint '{name}'" + self._nearest_joint(name))
+        raise UnknownEntityError(f"unknown movable joint '{name}'" + self._nearest_joint(name))
 
     def joint(self, name: str) -> Tuple[Entity, Joint, int]:
         """Model, joint and axis number of a joint by plain or scoped name, fixed ones too.
 
-        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntity.
+        `joint::1` is the second axis. Models are searched in order. Raises UnknownEntityError.
         """
         for entity, joint, number in self._joints_named(name):
             self._joint_taken(name, entity)
             return entity, joint, number
-        raise UnknownEntityError(f"there is no joint '{name}'" + self._nearest_joint(name))
+        raise UnknownEntityError(f"unknown joint '{name}'" + self._nearest_joint(name))
 
     def _joints_named(self, name: str) -> Iterator[Tuple[Entity, Joint, int]]:
         """The joint of a scoped name first, then those of that plain name, in order of models."""
@@ -290,29 +295,29 @@ class Registry:
                     if row_name(joint.name, number) == plain:
                         yield entity, joint, number
 
-    def frame(self, name: str) -> Optional[Anchor]:
+    def frame(self, name: str) -> Optional[ReferenceFrame]:
         """What a reference frame name means; None for the world frame.
 
         Entities are searched first (models, links, collisions, lights), then the literals.
-        Raises UnknownFrame.
+        Raises UnknownFrameError.
         """
         entity = self._entities.get(name)
         if entity is not None:
             if not entity.link_names:
-                return Anchor(-1, entity.pose)
-            return Anchor(entity.canonical_row, entity.link_from_model)
+                return ReferenceFrame(-1, entity.pose)
+            return ReferenceFrame(entity.canonical_row, entity.link_from_model)
         link = self._scoped_link(name) or self._plain_link(name)
         if link is not None:
-            return Anchor(link[0].first_link_row + link[1])
+            return ReferenceFrame(link[0].first_link_row + link[1])
         collision = self._collision(name)
         if collision is not None:
             return collision
         for light in self._lights():
             if light.name == name:
-                return Anchor(-1, light.pose)
+                return ReferenceFrame(-1, light.pose)
         if name in WORLD_FRAMES:
             return None
-        raise UnknownFrameError(f"there is no model, link or frame '{name}'" + self._nearest(name))
+        raise UnknownFrameError(f"unknown reference frame '{name}'" + self._nearest(name))
 
     def _scoped_link(self, name: str) -> Optional[Tuple[Entity, int]]:
         model, link = split_scoped(name, self._entities.__contains__)
@@ -344,11 +349,11 @@ class Registry:
         self._told.add((kind, name))
         others = f"'{owners[1]}'" if len(owners) == 2 else f"{len(owners) - 1} other models"
         self._on_ambiguous_name(
-            f"'{owners[0]}' and {others} have a {kind} '{name}'; that of '{owners[0]}' "
-            f"is taken; write '{owners[0]}::{name}' or another model's name before it"
+            f"'{owners[0]}' and {others} have a {kind} '{name}'; using that of "
+            f"'{owners[0]}'; write '{owners[0]}::{name}' to avoid this warning"
         )
 
-    def _collision(self, name: str) -> Optional[Anchor]:
+    def _collision(self, name: str) -> Optional[ReferenceFrame]:
         head, _, last = name.rpartition("::")
         link = self._scoped_link(head) if head else None
         if link is None:
@@ -356,7 +361,7 @@ class Registry:
         entity, index = link
         for collision in entity.model.links[index].collisions:
             if collision.name == last:
-                return Anchor(entity.first_link_row + index, collision.pose)
+                return ReferenceFrame(entity.first_link_row + index, collision.pose)
         return None
 
     def _nearest(self, name: str) -> str:

@@ -1,4 +1,4 @@
-"""Which rows of the ring belong to whom, for who copies whole snapshots many times a second."""
+"""Rows of the ring by model and link, for readers of whole snapshots."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -7,30 +7,30 @@ from typing import List, Optional, Tuple
 from ..geometry import IDENTITY, Pose
 from .registry import Entity
 
-Place = Tuple[int, Optional[Pose]]
-"""A link's row and the frame in that link, None for the link's own; row -1: a world pose."""
+FrameLocation = Tuple[int, Optional[Pose]]
+"""Row of a link and pose of the frame in it, None for identity; row -1: a fixed world pose."""
 
 
 @dataclass(frozen=True)
-class Layout:
-    """Names and places, all models in load order and all their links; see `States`.
+class RowLayout:
+    """Names and locations of all models, in load order, and of all their links.
 
     Attributes:
-        revision: grows when anything of this changes.
-        model_names, model_places: parallel.
-        link_names, link_places: parallel.
+        revision: increases with every change.
+        model_names, model_places: parallel lists.
+        link_names, link_places: parallel lists; link names are scoped.
     """
 
     revision: int
     model_names: List[str]
-    model_places: List[Place]
+    model_places: List[FrameLocation]
     link_names: List[str]
-    link_places: List[Place]
+    link_places: List[FrameLocation]
 
 
-def lay_out(entities: List[Entity], revision: int) -> Layout:
+def layout_of(entities: List[Entity], revision: int) -> RowLayout:
     """The layout of these entities."""
-    layout = Layout(revision, [], [], [], [])
+    layout = RowLayout(revision, [], [], [], [])
     for entity in entities:
         name = entity.model.name
         layout.model_names.append(name)

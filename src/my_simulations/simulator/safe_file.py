@@ -1,4 +1,4 @@
-"""Files that are whole or not there: written beside, then renamed."""
+"""Atomic file writes: to a temporary file, then renamed."""
 from __future__ import annotations
 
 import errno
@@ -10,12 +10,12 @@ from ..errors import CommandError
 
 
 def write_whole(path: str, data: bytes, overwrite: bool) -> None:
-    """Write a file in one piece; missing folders are made.
+    """Write a file atomically; creates missing folders.
 
-    Whatever goes wrong, a file that was there stays as it was and nothing half-written is left.
+    On any error an existing file is unchanged, and no partial file is left.
 
     Raises:
-        CommandError: it exists and must not be replaced; no space, no permission, or the like.
+        CommandError: it exists and `overwrite` is False, or it cannot be written.
     """
     folder = os.path.dirname(path)
     temporary: Optional[str] = None
@@ -31,11 +31,11 @@ def write_whole(path: str, data: bytes, overwrite: bool) -> None:
         _sync_folder(folder)
     except FileExistsError as fault:
         if not os.path.isdir(folder):
-            raise CommandError(f"{path} cannot be written: {folder} is no folder") from fault
-        raise CommandError(f"{path} exists already; ask for it to be replaced, or choose another"
+            raise CommandError(f"cannot write {path}: {folder} is not a folder") from fault
+        raise CommandError(f"{path} already exists; confirm overwriting, or choose another"
                            " name") from None
     except OSError as fault:
-        raise CommandError(f"{path} cannot be written: {fault.strerror or fault}") from fault
+        raise CommandError(f"cannot write {path}: {fault.strerror or fault}") from fault
     finally:
         if temporary is not None and os.path.lexists(temporary):
             os.unlink(temporary)
@@ -48,7 +48,7 @@ def _put(temporary: str, path: str, overwrite: bool) -> None:
         os.replace(temporary, path)
         return
     try:
-        # Unlike a rename, a link never replaces a file that came into being just now.
+        # Unlike a rename, a link never replaces a file that was created meanwhile.
         os.link(temporary, path)
     except FileExistsError:
         raise
@@ -59,7 +59,7 @@ def _put(temporary: str, path: str, overwrite: bool) -> None:
 
 
 def _mode(path: str) -> int:
-    """That of the file to be replaced, else what the umask leaves."""
+    """Mode of the existing file, else the default of the umask."""
     try:
         return os.stat(path).st_mode & 0o777
     except OSError:

@@ -23,7 +23,7 @@ from ..formats.sdf.writer.entities import write_world
 from ..geometry import STILL, compose, inverse
 from ..resources.package_files import package_directories
 from ..resources.resolver import Resolver, ResourceNotFoundError
-from ..resources.world_files import ENDINGS, folder_of_users, ships, users_folder
+from ..resources.world_lookup import ENDINGS, folder_of_users, ships, users_folder
 from .registry import Entity
 from .safe_file import write_whole
 from .simulator import Simulator
@@ -151,8 +151,8 @@ def _refuse_losses(simulator: Simulator, target: str) -> None:
     losses, file = simulator.models.losses, simulator.world.file
     if losses and file and os.path.realpath(file) == target:
         more = f" (and {len(losses) - 1} more)" if len(losses) > 1 else ""
-        raise CommandError(f"not everything in {target} could be loaded, and saving over it would "
-                           f"lose that: {losses[0]}{more}; save under another name")
+        raise CommandError(f"{target} was not loaded completely, overwriting it would lose "
+                           f"content: {losses[0]}{more}; save under another name")
 
 
 class _Includes:
@@ -178,7 +178,7 @@ class _Includes:
 def refuse_shipped(target: str) -> None:
     """Raise CommandError for a file that came with this package."""
     if ships(target):
-        raise CommandError(f"{target} ships with my_simulations and is not written over; choose "
+        raise CommandError(f"{target} ships with my_simulations and is never overwritten; choose "
                            "another name or folder")
 
 
@@ -212,13 +212,13 @@ def allowed_path(path: str, roots: Sequence[str]) -> str:
     """
     path = os.path.expanduser(path.strip())
     if not roots:
-        raise CommandError("there is no folder in which worlds may be saved")
+        raise CommandError("no folder is allowed for saving worlds; set parameter ~save_roots")
     if "\0" in path or os.path.splitext(path)[1].lower() not in EXTENSIONS:
-        raise CommandError(f"{path!r} is no name for a world; it must end in .world or .sdf")
+        raise CommandError(f"invalid file name {path!r}: it must end in .world or .sdf")
     target = os.path.realpath(os.path.join(os.path.expanduser(roots[0]), path))
     for root in roots:
         real = os.path.realpath(os.path.expanduser(root))
         if target.startswith(real.rstrip(os.sep) + os.sep):
             return target
-    raise CommandError(f"{path!r} leads to {target}, where no world may be saved; allowed are "
+    raise CommandError(f"{path!r} resolves to {target}, which is outside the allowed folders: "
                        + ", ".join(roots))

@@ -15,7 +15,7 @@ from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
 from ..geometry import Pose
-from .registry import Entity, Registry, Rows
+from .registry import Entity, Registry, RowAllocator
 from .supervisor import Supervisor
 
 
@@ -44,8 +44,8 @@ class Session:
         self.registry_lock = threading.RLock()
         self.registry = Registry(lambda: self.world.lights,
                                  lambda text: log(warning("name-ambiguous", text)))
-        self._link_rows = Rows(LINKS)
-        self._joint_rows = Rows(JOINTS)
+        self._link_rows = RowAllocator(LINKS)
+        self._joint_rows = RowAllocator(JOINTS)
         self._last_id = 0
 
     def call(self, command: Command) -> Reply:
@@ -61,7 +61,7 @@ class Session:
         """A copy of the newest snapshot. Raises CommandError before the first one."""
         found = self.ring.read()
         if found is None:
-            raise CommandError("the physics engine has not started")
+            raise CommandError("the physics engine is not running yet")
         return found
 
     def new_id(self) -> int:
@@ -81,8 +81,8 @@ class Session:
         if first_link is None or first_joint is None:
             if first_link is not None:
                 self._link_rows.give(first_link, links)
-            raise CommandError(f"the world is full: it can hold {LINKS} links and {JOINTS} "
-                               "joint axes")
+            raise CommandError(f"limit of {LINKS} links and {JOINTS} joint axes per world "
+                               "exceeded")
         return Entity(self.new_id(), model, initial_pose, first_link, first_joint, meshes,
                       articulated=articulated)
 
@@ -108,7 +108,7 @@ class Session:
             return self.registry.entities()
 
     def link_row(self, name: str) -> int:
-        """Row of a link by plain or scoped name. Raises UnknownEntity."""
+        """Row of a link by plain or scoped name. Raises UnknownEntityError."""
         with self.registry_lock:
             entity, index = self.registry.link(name)
             return entity.first_link_row + index
@@ -117,12 +117,12 @@ class Session:
         """Row of a joint axis (`joint::1` is the second axis).
 
         Raises:
-            UnknownEntity: no such joint.
+            UnknownEntityError: no such joint.
             CommandError: the joint has no axis.
         """
         with self.registry_lock:
             entity, found, number = self.registry.joint(joint)
             row: Optional[int] = entity.axis_row(found.name, number)
         if row is None:
-            raise CommandError(f"joint '{joint}' is {found.type} and has no axis")
+            raise CommandError(f"joint '{joint}' of type {found.type} has no axis")
         return row

@@ -1,4 +1,4 @@
-"""What is to be said about a model that has just been put into a running world."""
+"""Warnings about a model that was just spawned."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -11,17 +11,17 @@ from .registry import UnknownEntityError
 from .simulator import Simulator
 
 NEIGHBOURS = 64
-"""In a world of more models the others are not looked at: a request is not held up for advice."""
+"""Most models for which overlaps are checked, so that spawning stays fast."""
 
 
 def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable]) -> List[Issue]:
-    """Warnings about odd inertia, shapes without thickness, and what it stands inside of."""
+    """Warnings about implausible inertia, thin shapes, and overlaps with other models."""
     if len(simulator.models.names()) > NEIGHBOURS:
         try:
             models = [replace(simulator.models.get(name),
                               pose=simulator.states.model_state(name)[0])]
         except UnknownEntityError:
-            return []  # somebody has taken it out meanwhile
+            return []  # it was deleted meanwhile
     else:
         entities, snapshot = simulator.states.latest()
         models = [replace(entity.model, pose=entity.state(snapshot)[0]) for entity in entities]

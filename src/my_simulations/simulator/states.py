@@ -38,7 +38,7 @@ class States:
     def model_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
         """Pose and twist of a model frame in `frame` (see `Registry.frame`).
 
-        Raises UnknownEntity, UnknownFrame.
+        Raises UnknownEntityError, UnknownFrameError.
         """
         session = self._session
         with session.registry_lock:
@@ -53,7 +53,7 @@ class States:
         return relative(entity.state(snapshot), anchor, snapshot)
 
     def link_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
-        """Pose and twist of a link in `frame`. Raises UnknownEntity, UnknownFrame."""
+        """Pose and twist of a link in `frame`. Raises UnknownEntityError, UnknownFrameError."""
         session = self._session
         with session.registry_lock:
             row = session.link_row(name)

@@ -1,10 +1,9 @@
-"""Keeps an engine alive: restarts it after a death and has the world put back.
+"""Supervises the engine: restarts it after a crash and has the world restored.
 
-What had no answer when an engine died is sent again. Where that kills the next one, too, the
-command is answered with an error: a death that somebody else caused costs nothing, one that a
-command causes costs this command. An advance is not sent again: some of its steps are made. All
-engines are started from the supervisor's own thread, because the kernel ends a child with the
-thread that started it.
+Commands without a reply are sent again after a crash. If a command crashes the next engine, too,
+it fails: only a command that causes crashes is lost. `Advance` is not sent again, because some of
+its steps were executed. All engines are started from the supervisor's own thread, because the
+kernel ends a child with the thread that started it.
 """
 from __future__ import annotations
 
@@ -14,29 +13,29 @@ import time
 from concurrent.futures import TimeoutError as FutureTimeout
 from typing import Callable, List, Optional, Tuple
 
-from ..engine.api import Engine, EngineGoneError, Reply
+from ..engine.api import Engine, EngineDiedError, Reply
 from ..engine.commands import Advance, Batch, Command, LoadModel
 from ..engine.ring import HEARTBEAT, PROGRESS
 from ..errors import CommandError, EngineLostError, EngineTimeoutError, Issue, error
 from .watchdog import PERIOD_S, Watchdog
 
-_COMMAND_S = 120.0    # how long a command may take (a heavy mesh takes a while)
-_RAPID_S = 10.0       # this many seconds, so many deaths: the world itself kills the engine
+_COMMAND_S = 120.0    # time limit of a command (a large mesh takes long)
+_RAPID_S = 10.0       # _RAPID_DEATHS crashes in this time: stepping the world crashes the engine
 _RAPID_DEATHS = 3
-_TRIES = 2            # what kills so many engines is not sent again
+_TRIES = 2            # a command that crashes this many engines is not sent again
 
 
 class Supervisor:
-    """The only one who talks to the engine.
+    """Sends commands to the engine and restarts it.
 
     Args:
         engine_factory: makes the engine; called once, in the supervisor's thread.
-        restore: called in that thread after each restart with a submit function; puts the world
-            back. With `paused` True it must leave it paused.
-        log: who is told of deaths.
-        patience: seconds that a command may take without progress while the engine shows signs of
-            life. `Advance` may take for ever.
-        watchdog: tells an engine that hangs.
+        restore: called in that thread after each restart with a submit function; restores the
+            world. With `paused` True it must leave it paused.
+        log: receives issues about crashes.
+        patience: wall seconds that a command may take without progress while the engine responds.
+            `Advance` has no limit.
+        watchdog: detects an engine that hangs.
     """
 
     def __init__(self, engine_factory: Callable[[], Engine],
@@ -62,40 +61,41 @@ class Supervisor:
 
     @property
     def engine(self) -> Engine:
-        """The engine; waits until it has been made."""
+        """The engine; waits until it has been created."""
         self._made.wait()
         if self._engine is None:
-            raise CommandError(self._failure or "the physics engine could not be started")
+            raise CommandError(self._failure or "cannot start the physics engine")
         return self._engine
 
     def call(self, command: Command) -> Reply:
-        """Have a command carried out and wait for its answer.
+        """Send a command and wait for the reply.
 
         Raises:
-            CommandError: refused, or no engine can be had.
-            NoAnswer: the engine lives, but did not answer in time.
-            EngineLost: engines died over it.
+            CommandError: the engine rejected it, or cannot be started.
+            EngineTimeoutError: the engine runs, but did not reply in time.
+            EngineLostError: the command crashed the engine.
         """
         deaths: List[str] = []
         while True:
             engine = self.engine
             if not self._ready.wait(self._patience):
-                raise CommandError("the physics engine has not come back")
+                raise CommandError("the physics engine did not restart within "
+                                   f"{self._patience:g} s")
             if self._failure:
                 raise CommandError(self._failure)
             try:
                 reply = self._answer(engine, command)
-            except EngineGoneError:
+            except EngineDiedError:
                 deaths += self._await_restart(command)
                 if isinstance(command, Advance) and deaths:
                     raise EngineLostError(
-                        f"{deaths[0]} over this request; the world was put back as "
-                        f"it was at step {engine.ring.step}"
+                        f"{deaths[0]} during this request; the world was restored to "
+                        f"its state at step {engine.ring.step}"
                     ) from None
                 if len(deaths) >= _TRIES:
                     raise EngineLostError(
-                        f"{deaths[-1]} over this request, {_TRIES} times; the world "
-                        "was put back as it was before"
+                        f"{deaths[-1]} during this request, {_TRIES} times; the world "
+                        "was restored to its state before the request"
                     ) from None
                 continue
             if reply.error:
@@ -103,7 +103,7 @@ class Supervisor:
             return reply
 
     def close(self) -> None:
-        """End the engine and the thread."""
+        """Stop the engine and the thread."""
         self._closing = True
         self._ready.set()
         self._deaths.put(None)
@@ -111,9 +111,9 @@ class Supervisor:
             self._thread.join(10.0)
 
     def _await_restart(self, command: Command) -> List[str]:
-        """Why the engine died, if it was at this command that it did."""
+        """Why the engine crashed, if this command caused it."""
         if self._closing:
-            raise CommandError("the simulator is ending")
+            raise CommandError("the simulator is shutting down")
         for killer, why in list(self._killers):
             if killer is command:
                 self._killers.remove((killer, why))
@@ -130,7 +130,7 @@ class Supervisor:
             self._engine.on_death(self._on_death)
             self._ready.set()
         except OSError as fault:
-            self._failure = f"the physics engine could not be started: {fault}"
+            self._failure = f"cannot start the physics engine: {fault}"
         self._made.set()
         while self._engine is not None:
             try:
@@ -148,9 +148,9 @@ class Supervisor:
         words = engine.ring.words
         silence = self._watchdog.look(engine.pid, (words[HEARTBEAT], words[PROGRESS]))
         if silence:
-            self._log(error("engine-stalled", "the physics engine has shown no sign of life for "
-                            f"{silence}; it is started anew"))
-            engine.kill(f"the physics engine hung: it showed no sign of life for {silence}")
+            self._log(error("engine-stalled", "the physics engine did not respond for "
+                            f"{silence}; restarting it"))
+            engine.kill(f"the physics engine hung: no response for {silence}")
             self._watchdog.begin()
 
     def _on_death(self, reason: str, unanswered: List[Command]) -> None:
@@ -170,23 +170,22 @@ class Supervisor:
             self._recent.append(now)
         paused = len(self._recent) >= _RAPID_DEATHS
         if len(self._recent) > 3 * _RAPID_DEATHS:
-            self._failure = f"{reason} again and again; the simulator must be started anew"
+            self._failure = f"{reason} repeatedly; restart the simulator"
             self._log(error("engine-lost", self._failure))
             self._ready.set()
             return
-        self._log(error("engine-died", f"{reason}; a new one continues from the last snapshot"
-                        + (", paused, because this is happening again and again" if paused
-                           else "")))
+        self._log(error("engine-died", f"{reason}; restarting from the last snapshot"
+                        + (", paused because of repeated crashes" if paused else "")))
         assert self._engine is not None
         self._watchdog.begin()
         self._restoring = True
         try:
             self._engine.restart()
             self._restore(self._submit, paused)
-        except EngineGoneError:
+        except EngineDiedError:
             return  # it died again: that death is in the queue
         except (OSError, CommandError) as fault:
-            self._failure = f"the physics engine could not be restored: {fault}"
+            self._failure = f"cannot restore the world after a crash: {fault}"
             self._log(error("engine-lost", self._failure))
         finally:
             self._restoring = False
@@ -208,8 +207,8 @@ class Supervisor:
                 if words[HEARTBEAT] == beat and words[PROGRESS] != progress:
                     continue  # it is still at one long row of commands, and gets on
                 raise EngineTimeoutError(
-                    f"the physics engine has not answered for {self._patience:g} s; "
-                    f"{type(command).__name__} may still be carried out") from late
+                    f"the physics engine did not respond for {self._patience:g} s; "
+                    f"{type(command).__name__} may still be executed") from late
 
 
 def _brings_models(command: Command) -> bool:

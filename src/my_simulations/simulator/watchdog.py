@@ -1,4 +1,4 @@
-"""Whether an engine that shows no sign of life hangs, or only gets no processor time."""
+"""Detects an engine that hangs, as opposed to one that gets no processor time."""
 from __future__ import annotations
 
 import os
@@ -6,7 +6,7 @@ import time
 from typing import Callable, Optional, Tuple
 
 PERIOD_S = 2.0
-"""Longest time between two looks; a longer one means that this process stood still, too."""
+"""Longest time between two checks; a longer one means that this process was stopped, too."""
 
 _STALL_S = 30.0     # of processor time without a sign of life, or asleep
 _START_S = 90.0     # the same until the first sign of life: the imports show none
@@ -28,10 +28,10 @@ def process_time(pid: int) -> Optional[Tuple[float, str]]:
 
 
 class Watchdog:
-    """Looks at an engine now and then.
+    """Checks an engine periodically.
 
-    Time counts against an engine only while it computes or sleeps: one that waits for a processor
-    on a busy machine, or is stopped together with the whole node, does not hang.
+    Time counts against an engine only while it computes or sleeps: an engine that waits for a
+    processor on a busy machine, or is stopped together with the whole node, does not hang.
     """
 
     def __init__(self, probe: Probe = process_time,
@@ -44,17 +44,17 @@ class Watchdog:
         self._cpu = self._used = self._asleep = self._wall = 0.0
 
     def begin(self) -> None:
-        """A new engine: it starts, and may take longer for that."""
+        """Start over for a new engine, which may take longer to start."""
         self._starting = True
         self._forget(0.0)
         self._looked = self._clock()
 
     def look(self, pid: int, sign: object) -> str:
-        """Why the engine is taken to hang; "" while it is not.
+        """For how long the engine has hung; "" if it does not.
 
         Args:
-            pid: of its process; 0 where there is none, then wall time counts.
-            sign: whatever changes as long as it lives.
+            pid: of its process; 0 without one, then wall time counts.
+            sign: a value that changes while it works.
         """
         now = self._clock()
         passed, self._looked = min(now - self._looked, 2.0 * PERIOD_S), now
@@ -73,7 +73,7 @@ class Watchdog:
         if self._used > limit:
             return f"{limit:.0f} s of processor time"
         if self._asleep > limit:
-            return f"{limit:.0f} s, in which it did nothing"
+            return f"{limit:.0f} s while idle"
         return f"{_WALL_S:.0f} s" if self._wall > _WALL_S else ""
 
     def _forget(self, cpu: float) -> None:

@@ -8,7 +8,7 @@ from ..engine.commands import FOREVER
 from ..errors import InputError, Issue, error
 from ..formats.reading import LoadedWorld, read_world
 from ..resources.resolver import Resolver, ResourceNotFoundError
-from ..resources.world_files import advice_on, find_world
+from ..resources.world_lookup import advice_on, find_world
 from .simulator import Simulator
 
 Log = Callable[[Issue], None]
@@ -23,16 +23,16 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
         name: see `load_world`.
         resolver: see `load_world`.
         engines: makes the engine.
-        log: hears every issue of a usable world, and those of the simulator.
+        log: receives every issue of a usable world, and those of the simulator.
         seed: see `load_world`.
         profile: see `load_world`.
-        steps: how many it makes before it stands.
+        steps: pause after this many steps; FOREVER for never.
         caller: see `load_world`.
         read: called when the file has been read.
 
     Raises:
-        InputError: there is no usable world.
-        CommandError: there is no engine.
+        InputError: the world is unusable.
+        CommandError: the engine cannot be started.
     """
     loaded = load_world(name, resolver, log, seed=seed, profile=profile, caller=caller)
     read()
@@ -55,7 +55,7 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profil
         caller: folder that relative names start from; "" for the working directory.
 
     Raises:
-        InputError: there is no usable world.
+        InputError: the world is unusable.
     """
     try:
         path = find_world(name, resolver, caller)

@@ -1,4 +1,4 @@
-"""What moves, remembered: states of models at one moment, to be put back later."""
+"""States of all models at one time, to be restored later."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from .registry import Entity
 
 @dataclass(frozen=True)
 class RememberedState:
-    """A model: world pose of its frame, twist of its canonical link, and all there is below."""
+    """A model: world pose of its frame, twist of its canonical link, and its links and joints."""
 
     pose: Pose
     twist: Twist
@@ -31,7 +31,7 @@ class WorldState:
     @classmethod
     def of(cls, entities: Sequence[Entity], snapshot: Snapshot,
            now: Tuple[int, Clock]) -> "WorldState":
-        """The moment of a snapshot; `now`: the step count, since when nothing may have moved."""
+        """The state in a snapshot; `now`: the step count, at which nothing has moved since."""
         step, clock = now
         return cls(step, clock.sim_ns(step), {
             entity.model.name: RememberedState(*entity.state(snapshot), tuple(entity.link_names),
@@ -39,7 +39,7 @@ class WorldState:
             for entity in entities})
 
     def commands(self, entities: Sequence[Entity]) -> List[Command]:
-        """What puts these models back, as far as they are the same ones still."""
+        """Commands that restore these models, if their links are still the same."""
         commands: List[Command] = []
         for entity in entities:
             was = self.models.get(entity.model.name)
@@ -53,7 +53,7 @@ class WorldState:
 
 
 def _commands(entity: Entity, was: RememberedState) -> List[Command]:
-    """An articulated model goes back by its frame and its joints, others link by link."""
+    """An articulated model is restored by frame and joints, others link by link."""
     model = entity.model
     if model.static or len(entity.link_names) == 1:
         return [SetModelState(entity.model_id, was.pose, None if model.static else was.twist)]

@@ -51,7 +51,7 @@ class Wrenches:
                 is cleared.
 
         Raises:
-            UnknownEntity, UnknownFrame: no such link or frame.
+            UnknownEntityError, UnknownFrameError: no such link or frame.
         """
         session = self._session
         with session.structure_lock:
@@ -75,7 +75,7 @@ class Wrenches:
         """Apply an effort to a joint axis for a time; see `apply_wrench` for the times.
 
         Raises:
-            UnknownEntity: no such joint.
+            UnknownEntityError: no such joint.
             CommandError: the joint has no axis.
         """
         with self._session.structure_lock:
@@ -95,7 +95,7 @@ class Wrenches:
                      and force.stop == FOREVER)
 
     def clear_wrenches(self, link: str) -> None:
-        """Clear every wrench on a link. Raises UnknownEntity."""
+        """Clear every wrench on a link. Raises UnknownEntityError."""
         with self._session.structure_lock:
             self._clear_row(TimedWrench, self._session.link_row(link))
 

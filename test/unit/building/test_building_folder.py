@@ -107,7 +107,7 @@ def test_a_broken_plan_gives_way_to_the_model_and_is_mentioned():
 def test_an_existing_folder_is_kept_unless_it_may_be_replaced():
     path = save()["path"]
     before = content(path)
-    with pytest.raises(CommandError, match="exists already"):
+    with pytest.raises(CommandError, match="already exists"):
         save(one_wall())
     assert content(path) == before
     with open(os.path.join(path, "notes.txt"), "w") as stream:
@@ -123,18 +123,18 @@ def test_a_name_that_would_lead_elsewhere_is_refused(home, name):
     if name == "tab\there\x07" or name.strip():
         match = "name"
     else:
-        match = "needs a name"
+        match = "must not be empty"
     with pytest.raises(CommandError, match=match):
         save(name=name)
     assert not (home / "building_editor_models").exists()
 
 
 def test_a_place_outside_of_the_allowed_folders_is_refused(tmp_path):
-    with pytest.raises(CommandError, match="no building may be"):
+    with pytest.raises(CommandError, match="outside the allowed folders"):
         save(folder="/etc")
-    with pytest.raises(CommandError, match="no building may be"):
+    with pytest.raises(CommandError, match="outside the allowed folders"):
         building_load("/etc/passwd")
-    with pytest.raises(CommandError, match="no building may be"):
+    with pytest.raises(CommandError, match="outside the allowed folders"):
         building_load("/etc\0/passwd")
     saved = building_save(plan_to_json(two_rooms()), "Far",
                           {"folder": str(tmp_path / "projects" / "one")},
@@ -180,14 +180,14 @@ def test_a_full_disk_leaves_what_was_there(count, monkeypatch):
 
 def test_a_full_disk_leaves_no_half_building(home, monkeypatch):
     failing_after(1, errno.ENOSPC, monkeypatch)
-    with pytest.raises(CommandError, match="cannot be written"):
+    with pytest.raises(CommandError, match="cannot write"):
         save()
     assert building_list() == [] and not (home / "building_editor_models/Two_rooms").exists()
 
 
 def test_a_place_that_cannot_be_written_is_named(home):
     (home / "building_editor_models").write_text("I am a file")
-    with pytest.raises(CommandError, match="cannot be written"):
+    with pytest.raises(CommandError, match="cannot write"):
         save()
 
 

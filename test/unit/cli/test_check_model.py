@@ -156,7 +156,7 @@ def test_a_wrong_command_line_gives_2(argv, capsys):
 def test_a_file_that_is_not_there_and_a_folder_without_model_are_errors(tmp_path, capsys):
     assert main(["check_model", str(tmp_path / "none.sdf"), str(tmp_path)]) == 1
     out = capsys.readouterr().out
-    assert "none.sdf: error: cannot be read" in out and "holds no model.config" in out
+    assert "none.sdf: error: cannot be read" in out and "contains neither a model.config" in out
 
 
 def test_json_counts_what_a_file_holds(capsys):

@@ -20,7 +20,7 @@ def test_no_command_lists_them_all(capsys):
 
 def test_unknown_command_is_wrong_usage(capsys):
     assert gz_command.main(["gz", "wrold"]) == gz_command.USAGE
-    assert "no command 'wrold'" in capsys.readouterr().err
+    assert "unknown command 'wrold'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", sorted(gz_command.INSTEAD))

@@ -27,4 +27,4 @@ def test_an_input_error_says_its_first_error_and_how_many_more():
 
 def test_an_input_error_without_errors_says_what_it_has():
     assert InputError([warning("w", "w")]).first.code == "w"
-    assert str(InputError([])) == "unknown fault"
+    assert str(InputError([])) == "unknown error"

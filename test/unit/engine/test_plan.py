@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
-from my_simulations.engine.body_plan import BASE, PlanError, open_joints, plan_bodies
+from my_simulations.engine.body_plan import BASE, BodyPlanError, open_joints, plan_bodies
 from my_simulations.geometry import Pose
 
 
@@ -66,7 +66,7 @@ def test_a_child_with_two_parents_hangs_the_second_parent_on_the_reversed_joint(
 
 @pytest.mark.parametrize("text", ["nobody>a", "a>nobody"])
 def test_a_joint_to_a_missing_link_is_an_error_that_names_it(text):
-    with pytest.raises(PlanError, match="nobody"):
+    with pytest.raises(BodyPlanError, match="nobody"):
         plan_bodies(model("a", text))
 
 

@@ -235,4 +235,4 @@ def test_an_included_model_of_a_misspelt_name_is_answered_with_one_that_is_there
     text = ("<sdf version='1.7'><world name='w'><include><uri>model://sunn</uri></include>"
             "</world></sdf>")
     _, issues = parse_world(text, Resolver([str(tmp_path)]))
-    assert issues[0].hint.startswith("did you mean model://sun? Else install it")
+    assert issues[0].hint.startswith("did you mean model://sun? Otherwise install it")

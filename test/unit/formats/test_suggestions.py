@@ -49,7 +49,7 @@ def test_a_mesh_that_is_not_there_is_answered_with_one_that_is(tmp_path):
     text = sdf('<model name="m"><link name="l"><visual name="v"><geometry><mesh><uri>'
                f"{tmp_path}/prat.stl</uri></mesh></geometry></visual></link></model>")
     _, issues = read_entity(text, Resolver())
-    assert issues[0].hint.startswith(f"did you mean {tmp_path}/part.stl? Else check the path")
+    assert issues[0].hint.startswith(f"did you mean {tmp_path}/part.stl? Otherwise check the path")
 
 
 def test_a_joint_at_a_misspelt_link_is_answered_with_the_link():
@@ -73,10 +73,10 @@ def test_numbers_that_are_parted_by_commas_are_told_how_to_be():
     (lambda: parse(["--puase"]), "did you mean --pause?"),
     (lambda: parse(["--seed", "x"]), "'x' is not a number"),
     (lambda: parse(["--iters", "many"]), "'many' is not a number of steps"),
-    (lambda: parse(["--record_period", "1,5"]), "write a point, not a comma"),
+    (lambda: parse(["--record_period", "1,5"]), "use a decimal point"),
     (lambda: check_model_command.main(["check_model", "--jsn", "a"]), "did you mean --json?"),
     (lambda: spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-x", "1,5"]),
-     "'1,5' is not a number; write a point, not a comma"),
+     "'1,5' is not a number; use a decimal point"),
     (lambda: spawn_model.main(["spawn_model", "-urdf", "-param", "p", "-model", "m", "-timeut",
                                "5"]), "did you mean -timeout?")])
 def test_a_wrong_word_of_a_command_line_is_answered_with_the_right_one(run, meant, capsys):

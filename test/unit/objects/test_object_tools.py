@@ -208,7 +208,7 @@ def test_an_entry_without_a_package_is_of_its_lists_and_another_file_of_the_name
     assert locate(listing.objects["B"], find) == (str(files["my_simulations", "B"]), "")
     with pytest.raises(InputError) as caught:
         locate(listing.objects["C"], find)
-    assert "theirs/objects/C.urdf and no" in caught.value.issues[0].message
+    assert "theirs/objects/C.urdf, " in caught.value.issues[0].message
     assert "--package" in caught.value.issues[0].hint
     os.unlink(files["my_simulations", "A"])
     os.symlink(files["theirs", "A"], files["my_simulations", "A"])

@@ -19,7 +19,7 @@ ARGUMENTS = {
 }
 """Arguments of gazebo_ros' empty_world.launch, with their defaults."""
 
-OURS = {"extensions": "true", "lockstep": "false", "editor_port": "11346",
+OURS = {"extensions": "true", "manual_stepping": "false", "lockstep": "", "editor_port": "11346",
         "editor_host": "127.0.0.1"}
 """What Gazebo's has not."""
 

@@ -16,6 +16,6 @@ def test_a_call_in_time_raises_its_fault():
 
 def test_a_call_that_never_answers_ends_at_its_deadline_which_is_named():
     never = threading.Event()
-    with pytest.raises(CallTimeoutError, match="the call gave no answer within 0.05 s"):
+    with pytest.raises(CallTimeoutError, match="the call did not respond within 0.05 s"):
         within(0.05, "the call", never.wait)
     never.set()

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from my_simulations.ros import interface
-from my_simulations.ros.interface import BY_ROSPY, HEARS, PUBLISHES, SERVES, TABLE
+from my_simulations.ros.interface import BY_ROSPY, PUBLISHES, SERVES, SUBSCRIBES, TABLE
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 ROS = REPOSITORY / "src" / "my_simulations" / "ros"
@@ -39,7 +39,7 @@ def test_without_extensions_the_topics_are_gazebos():
     assert names(PUBLISHES, extensions=False) == [
         "/clock", "model_states", "link_states", "parameter_descriptions", "parameter_updates",
         "/rosout"]
-    assert names(HEARS, extensions=False) == ["set_model_state", "set_link_state"]
+    assert names(SUBSCRIBES, extensions=False) == ["set_model_state", "set_link_state"]
 
 
 def test_without_a_network_there_is_a_clock_and_what_every_node_has():
@@ -67,7 +67,7 @@ def test_every_handler_of_the_table_is_a_method_and_every_service_has_a_title():
         if row.handler == BY_ROSPY or row.direction is PUBLISHES:
             continue
         assert row.handler.split(".")[1] in methods, row
-        assert row.title or row.direction is HEARS, row
+        assert row.title or row.direction is SUBSCRIBES, row
 
 
 def test_the_page_has_the_present_table():

@@ -73,12 +73,12 @@ def test_a_uri_that_cannot_be_read_is_a_fault(uri):
 
 
 def test_a_living_node_of_the_name_is_found(graph):
-    assert master_api.living_node(graph, "/alive") == (graph, 42)
+    assert master_api.running_node(graph, "/alive") == (graph, 42)
 
 
 def test_a_dead_or_unknown_node_is_none(graph):
-    assert master_api.living_node(graph, "/dead") is None
-    assert master_api.living_node(graph, "/nobody") is None
+    assert master_api.running_node(graph, "/dead") is None
+    assert master_api.running_node(graph, "/nobody") is None
 
 
 @pytest.mark.parametrize("argv, environment, name", [

@@ -66,12 +66,12 @@ def test_a_state_log_alone_needs_no_word():
 def test_what_changes_nothing_in_a_state_log_is_said_in_one_line():
     (notice,) = parse(["-r", "--record_encoding", "bz2", "--record_filter", "box*",
                        "--record_resources"]).notices
-    assert notice == ("without effect: --record_encoding, --record_filter, --record_resources")
+    assert notice == ("ignoring options: --record_encoding, --record_filter, --record_resources")
 
 
 def test_words_on_a_state_log_that_nobody_asked_for_are_said_in_one_line():
     (notice,) = parse(["--record_path", "/tmp/logs", "--record_period", "0"]).notices
-    assert notice == "without effect unless --record is given: --record_path, --record_period"
+    assert notice == "ignoring options, which need --record: --record_path, --record_period"
 
 
 def test_steps_seed_and_physics_preset_are_numbers_and_a_name():

@@ -1,4 +1,4 @@
-from my_simulations.ros.topics.publish_pacing import StateGate, StepSelector
+from my_simulations.ros.topics.publish_pacing import StateSchedule, StepSelector
 
 MS = 1000000
 
@@ -71,25 +71,25 @@ def running():
 
 
 def test_states_go_out_at_every_step_by_default():
-    gate = StateGate(0.0)
+    gate = StateSchedule(0.0)
     assert all(gate.due(step, one_ms(step), False, running) for step in range(1, 20))
 
 
 def test_states_are_limited_in_sim_time():
-    gate = StateGate(50.0)
+    gate = StateSchedule(50.0)
     sent = [step for step in range(1, 101) if gate.due(step, one_ms(step), False, running)]
     assert sent == [1, 21, 41, 61, 81]
 
 
 def test_a_new_listener_gets_one_message_of_a_paused_world():
-    gate = StateGate(0.0)
+    gate = StateSchedule(0.0)
     assert gate.due(7, one_ms(7), True, lambda: (1, 1))
     gate.sent((1, 1))
     assert not gate.due(7, one_ms(7), False, lambda: (1, 1))
 
 
 def test_each_change_of_a_paused_world_is_shown_once_whatever_the_rate():
-    gate = StateGate(1.0)
+    gate = StateSchedule(1.0)
     assert gate.due(7, one_ms(7), True, lambda: (1, 1))
     gate.sent((1, 1))
     assert gate.due(7, one_ms(7), False, lambda: (1, 2))
@@ -98,7 +98,7 @@ def test_each_change_of_a_paused_world_is_shown_once_whatever_the_rate():
 
 
 def test_where_a_limited_world_came_to_stand_is_shown():
-    gate = StateGate(50.0)
+    gate = StateSchedule(50.0)
     assert gate.due(1, one_ms(1), False, running)
     gate.sent((1, 1))
     assert not gate.due(9, one_ms(9), False, running)
@@ -106,6 +106,6 @@ def test_where_a_limited_world_came_to_stand_is_shown():
 
 
 def test_states_go_on_after_a_reset():
-    gate = StateGate(50.0)
+    gate = StateSchedule(50.0)
     assert gate.due(5000, one_ms(5000), False, running)
     assert gate.due(1, one_ms(1), False, running)

@@ -16,7 +16,7 @@ from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
 from my_simulations.simulator.feeds import ROW_WIDTH
-from my_simulations.simulator.registry import Rows, UnknownEntityError, UnknownFrameError
+from my_simulations.simulator.registry import RowAllocator, UnknownEntityError, UnknownFrameError
 from my_simulations.simulator.simulator import Simulator
 
 
@@ -163,7 +163,7 @@ def test_a_plain_name_of_several_models_is_warned_about_once(case):
         sim.joints.find("hinge")
     assert [str(issue.severity.name) for issue in made.issues] == ["WARNING"] * 3
     links, base, joints = (issue.message for issue in made.issues)
-    assert "'a' and 'b' have a link 'y'; that of 'a' is taken; write 'a::y'" in links
+    assert "'a' and 'b' have a link 'y'; using that of 'a'; write 'a::y'" in links
     assert "'c' and 'd' have a link 'base'" in base
     assert "'c' and 'd' have a joint 'hinge'" in joints
 
@@ -221,9 +221,9 @@ def test_a_model_moves_relative_to_its_own_link(case):
 def test_numbers_that_are_none_are_refused_and_nothing_moves(case, bad):
     sim = case(box("a", pose=Pose((1, 0, 0)))).sim
     for setter in (sim.states.set_model_state, sim.states.set_link_state):
-        with pytest.raises(CommandError, match="finite"):
+        with pytest.raises(CommandError, match="NaN"):
             setter("a" if setter == sim.states.set_model_state else "a::link", bad, STILL)
-    with pytest.raises(CommandError, match="finite"):
+    with pytest.raises(CommandError, match="NaN"):
         sim.states.set_model_state("a", IDENTITY, Twist((math.nan, 0, 0)))
     close(sim.states.model_state("a")[0], (1, 0, 0))
 
@@ -366,7 +366,7 @@ def test_many_threads_may_spawn_move_and_delete_at_once(case):
 
 
 def test_rows_are_handed_out_first_fit_and_merge_when_freed():
-    rows = Rows(10)
+    rows = RowAllocator(10)
     assert [rows.take(4), rows.take(4), rows.take(4)] == [0, 4, None]
     rows.give(0, 4)
     rows.give(4, 4)

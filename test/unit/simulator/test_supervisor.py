@@ -45,7 +45,7 @@ def watch():
 
 def test_a_command_without_an_answer_is_a_named_error(watch):
     supervisor = watch(lambda: _Silent(KinematicBackend), 0.1)
-    with pytest.raises(EngineTimeoutError, match=r"not answered for 0\.1 s; Ping may still"):
+    with pytest.raises(EngineTimeoutError, match=r"did not respond for 0\.1 s; Ping may still"):
         supervisor.call(Ping())
     assert issubclass(EngineTimeoutError, CommandError)
     assert supervisor.call(Advance(3)).step == 3   # the engine is still there
@@ -64,14 +64,14 @@ def test_a_restore_without_an_answer_is_told_and_ends_no_thread(watch):
 
     def log(issue):
         told.append(issue.message)
-        if "could not be restored" in issue.message:
+        if "cannot restore" in issue.message:
             finished.set()
 
     supervisor = Supervisor(lambda: _Silent(KinematicBackend), restore, log, 0.1)
     try:
         supervisor.engine.kill()
         assert finished.wait(10), told
-        with pytest.raises(CommandError, match="could not be restored"):
+        with pytest.raises(CommandError, match="cannot restore"):
             supervisor.call(Advance(1))
     finally:
         supervisor.close()
@@ -125,7 +125,7 @@ def test_an_engine_that_hangs_is_replaced_and_the_reason_is_told_not_the_signal(
             assert time.monotonic() < deadline
             time.sleep(0.01)
         assert [issue.code for issue in told] == ["engine-stalled", "engine-died"]
-        assert all("no sign of life for a test's time" in issue.message for issue in told)
+        assert all("for a test's time" in issue.message for issue in told)
         assert "hung" in told[1].message and "SIGKILL" not in told[1].message
         assert supervisor.call(Advance(1)).step >= 0
     finally:

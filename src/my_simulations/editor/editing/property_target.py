@@ -63,7 +63,7 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
 
 
 def split_target(world: Simulator, target: str) -> Tuple[Model, str]:
-    """The model a scoped name begins with, and what follows. Raises UnknownEntity."""
+    """The model a scoped name begins with, and what follows. Raises UnknownEntityError."""
     model, rest = split_scoped(target, world.models.has)
     return (world.models.get(model), rest) if model else (world.models.get(target), "")
 

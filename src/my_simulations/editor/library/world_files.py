@@ -10,7 +10,7 @@ from ...description.world import World
 from ...errors import Issue, Severity
 from ...formats.sdf.writer.entities import write_world
 from ...resources.resolver import Resolver
-from ...resources.world_files import ships
+from ...resources.world_lookup import ships
 from ...simulator.history import History
 from ...simulator.saving import (
     EXTENSIONS,

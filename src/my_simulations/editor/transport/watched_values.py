@@ -6,7 +6,7 @@ from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 from ...description.scoped_names import split_scoped
 from ...engine.commands import JointPid
 from ...engine.ring import Snapshot
-from ...errors import CommandError
+from ...errors import CommandError, SimulationError
 from ...geometry import Pose, Twist, rpy_from_quat
 from ...simulator.registry import Entity
 from ...simulator.simulator import Simulator
@@ -21,7 +21,7 @@ _JOINT = {"position": (0, 0), "rate": (0, 1), "position2": (1, 0), "rate2": (1, 
 _WORLD = ("sim_time", "real_time", "real_time_factor", "iterations")
 
 
-class WatchedEntityGoneError(Exception):
+class WatchedEntityGoneError(SimulationError):
     """What a topic is about is not there (any more)."""
 
 

@@ -9,7 +9,7 @@ import pybullet
 from ...description.model import Model
 from ...geometry import Pose, pose_is_finite
 from ..api import CommandRefusedError, EngineBrokenError, Event
-from ..body_plan import PlanError, open_joints
+from ..body_plan import BodyPlanError, open_joints
 from ..commands import (
     AddTimedForces,
     Clear,
@@ -219,7 +219,7 @@ class BulletBackend:
         self._check_load(command)
         try:
             builder = Builder(command, self._shapes)
-        except (PlanError, ShapeError) as fault:
+        except (BodyPlanError, ShapeError) as fault:
             raise CommandRefusedError(str(fault)) from fault
         entry = self._enter(builder, command.model, command.pose)
         state = self._inherited(command) if command.inherit else command.state

@@ -66,7 +66,7 @@ class Builder:
     """
 
     def __init__(self, command: LoadModel, shapes: ShapeFactory) -> None:
-        """Raises PlanError, ShapeError."""
+        """Raises BodyPlanError, ShapeError."""
         self._model: Model = command.model
         self.model_id = command.model_id
         self._first_row = command.first_link_row

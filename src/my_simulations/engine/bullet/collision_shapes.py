@@ -25,6 +25,7 @@ from ...description.shapes import (
     Sphere,
     mesh_key,
 )
+from ...errors import SimulationError
 from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
 from ..convex.hull_points import hull_points, naming_triangles
 from ..scratch_folder import Scratch
@@ -37,7 +38,7 @@ _FLOOR = 1e6
 """Half the edge of the box that stands below a plane, m."""
 
 
-class ShapeError(ValueError):
+class ShapeError(SimulationError):
     """A collision that PyBullet refuses; the message is one sentence for the user."""
 
 

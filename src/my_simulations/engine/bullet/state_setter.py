@@ -64,7 +64,7 @@ class StateSetter:
                        inverse(entry.model.links[lead].pose))
 
     def set_model(self, command: SetModelState, entry: Entry) -> None:
-        """Move all bodies of a model. Raises Refused."""
+        """Move all bodies of a model. Raises CommandRefusedError."""
         self._readout.read()
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         if not entry.model.links:
@@ -76,7 +76,7 @@ class StateSetter:
         self._waker.around(entry.bodies)
 
     def set_link(self, command: SetLinkState) -> None:
-        """Move the body of a link. Raises Refused."""
+        """Move the body of a link. Raises CommandRefusedError."""
         if command.row not in self._rows:
             raise CommandRefusedError("the link is not there any more")
         self._readout.read()
@@ -90,7 +90,7 @@ class StateSetter:
         self._waker.around([body])
 
     def set_joints(self, command: SetJoints) -> None:
-        """Set joint axes; all are looked at before the first is moved. Raises Refused."""
+        """Set joint axes; all are checked before the first moves. Raises CommandRefusedError."""
         for row, position, rate in command.joints:
             if row not in self._axes:
                 raise CommandRefusedError("the joint is not there any more")

@@ -4,11 +4,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Iterator, List, Tuple
 
+from ...errors import SimulationError
+
 MOST_TRIANGLES = 10_000_000
 """Of a file, what it uses several times counted as often."""
 
 
-class MeshError(Exception):
+class MeshError(SimulationError):
     """A mesh file that cannot be read.
 
     Attributes:

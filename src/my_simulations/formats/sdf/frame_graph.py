@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
+from ...errors import SimulationError
 from ...geometry import IDENTITY, Pose, compose
 
 
@@ -20,7 +21,7 @@ class Placed(NamedTuple):
     attached_to: str
 
 
-class FrameError(Exception):
+class FrameError(SimulationError):
     """A frame that does not exist, or that is defined by itself."""
 
 

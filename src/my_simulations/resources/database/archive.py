@@ -10,13 +10,14 @@ import tempfile
 import time
 from typing import Callable
 
+from ...errors import ResourceError
 from .http_download import Limits
 
 _WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "archive_worker.py")
 _CONFIGS = ("model.config", "manifest.xml")
 
 
-class ArchiveError(Exception):
+class ArchiveError(ResourceError):
     """An archive that is broken, too large, or reaches out of its folder."""
 
 
@@ -50,14 +51,14 @@ def unpack(kind: str, archive: str, folder: str, name: str, limits: Limits, unti
                               stdin=subprocess.DEVNULL, capture_output=True, timeout=left,
                               check=False)
     except subprocess.TimeoutExpired:
-        raise ArchiveError("it was not unpacked in time") from None
+        raise ArchiveError("timed out while unpacking the archive") from None
     if done.returncode != 0:
         said = done.stdout.decode("utf-8", "replace").strip()
-        raise ArchiveError(said or "the archive could not be read within 256 MB of memory and the"
-                           f" time there was (status {done.returncode})")
+        raise ArchiveError(said or "unpacking the archive exceeded 256 MB of memory or the time"
+                           f" limit (status {done.returncode})")
     unpacked = os.path.join(folder, name)
     if not any(os.path.isfile(os.path.join(unpacked, config)) for config in _CONFIGS):
-        raise ArchiveError(f"the archive holds no {os.path.join(name, _CONFIGS[0])}")
+        raise ArchiveError(f"the archive does not contain {os.path.join(name, _CONFIGS[0])}")
     return unpacked
 
 

@@ -21,7 +21,7 @@ Entry = Tuple[str, str, int, Any]
 """Name, kind (`file`, `folder`, `other`), size by the header, and what opens it."""
 
 
-class Refused(Exception):
+class ArchiveRefusedError(Exception):
     """The archive is broken, too large, or reaches out of its folder."""
 
 
@@ -42,7 +42,7 @@ class _Count:
 
     def _check(self) -> None:
         if self._files > self._most_files or max(self._told, self._size) > self._most_bytes:
-            raise Refused(f"the archive holds more than {self._most_files} files or"
+            raise ArchiveRefusedError(f"the archive contains more than {self._most_files} files or"
                           f" {self._most_bytes} bytes")
 
 
@@ -58,7 +58,7 @@ def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: in
         size: at most so many bytes in all.
 
     Raises:
-        Refused: nothing of it is to be used.
+        ArchiveRefusedError: nothing of it is to be used.
     """
     count = _Count(files, size)
     if kind == "zip":
@@ -100,21 +100,21 @@ def _safe_path(path: str, kind: str, folder: str, name: str) -> Optional[str]:
     """Where a file goes; None for a folder, which is made at once."""
     parts = [part for part in path.split("/") if part not in ("", ".")]
     if path.startswith("/") or ".." in parts or "\0" in path or "\\" in path:
-        raise Refused(f"the archive reaches out of its folder: {path!r}")
+        raise ArchiveRefusedError(f"the archive contains a path outside its folder: {path!r}")
     if name and parts and parts[0] != name:
-        raise Refused(f"the archive holds {parts[0]!r} besides {name!r}")
+        raise ArchiveRefusedError(f"the archive contains {parts[0]!r} besides {name!r}")
     target = os.path.join(folder, *parts)
     if kind == "folder":
         os.makedirs(target, exist_ok=True)
         return None
     if kind != "file" or len(parts) < (2 if name else 1):
-        raise Refused(f"{path!r} is neither a file nor a folder")
+        raise ArchiveRefusedError(f"{path!r} is neither a file nor a folder")
     return target
 
 
 def _write(stream: Optional[IO[bytes]], path: str, target: str, count: _Count) -> None:
     if stream is None:
-        raise Refused(f"{path!r} has no content")
+        raise ArchiveRefusedError(f"{path!r} has no content")
     os.makedirs(os.path.dirname(target), exist_ok=True)
     with stream, open(target, "wb") as out:
         while True:
@@ -137,7 +137,7 @@ def _read_to_end(archive: str, largest: int) -> None:
                 return
             size += len(chunk)
             if size > largest:
-                raise Refused("the archive goes on after its end")
+                raise ArchiveRefusedError("the archive has data after its end")
 
 
 def _limit(memory: int, seconds: int, size: int) -> None:
@@ -155,7 +155,7 @@ def main(argv: List[str]) -> int:
     _limit(MEMORY, int(task.pop("seconds")) + 1, int(task["size"]) + _CHUNK)
     try:
         unpack(**task)
-    except Refused as fault:
+    except ArchiveRefusedError as fault:
         said = str(fault)
     except MemoryError:
         said = f"the archive needs more than {MEMORY >> 20} MB of memory to be read"

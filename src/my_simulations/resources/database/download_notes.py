@@ -25,4 +25,4 @@ class DownloadNotes:
         self._name, self._next = name, now + _EVERY_S
         of = f" of {expected / 1e6:.1f}" if expected else ""
         self._log(Issue(Severity.NOTE, "model-download",
-                        f"model {name!r} is being downloaded: {done / 1e6:.1f}{of} MB"))
+                        f"downloading model {name!r}: {done / 1e6:.1f}{of} MB"))

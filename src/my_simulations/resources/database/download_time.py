@@ -42,7 +42,7 @@ class DownloadTime:
         return self._deadline
 
     def once(self, name: str, source: str, download: Callable[[], None]) -> None:
-        """Download, unless that has failed for this world. Raises NotProvided, which says why."""
+        """Download, unless that has failed for this world. Raises ModelNotProvidedError."""
         from .archive import ArchiveError
         from .http_download import HttpError
 

@@ -90,12 +90,12 @@ class FuelModels:
         """The folder of a model, or a file of it, downloaded when no cache holds the model.
 
         Raises:
-            NotProvided: the model cannot be had now, or has no such file.
+            ModelNotProvidedError: the model cannot be had now, or has no such file.
         """
         folder = self.cached(uri) or self._download(uri)
         path = os.path.join(folder, uri.inside) if uri.inside else folder
         if not os.path.exists(path):
-            raise ModelNotProvidedError(f"{path} is not there")
+            raise ModelNotProvidedError(f"{path} does not exist")
         return path
 
     def cached(self, uri: FuelUri) -> Optional[str]:
@@ -144,8 +144,8 @@ class FuelModels:
     def _download(self, uri: FuelUri) -> str:
         if uri.server not in self._servers:
             raise ModelNotProvidedError(
-                f"no cache of {', '.join(self.caches)} holds it, and {uri.server} is"
-                " no server that is asked (config.yaml of the cache names more)"
+                f"not found in the caches {', '.join(self.caches)}, and {uri.server} is not a"
+                " configured server (add it to config.yaml of the cache)"
             )
         if self._time is None:
             self._time = _Downloads(self.caches[0], self._progress, self._seconds)
@@ -153,7 +153,7 @@ class FuelModels:
         found = self.cached(uri)
         if found is None:
             raise ModelNotProvidedError(
-                f"{uri.model} was downloaded and is not in {self.caches[0]}"
+                f"{uri.model} was downloaded, but is not in {self.caches[0]}"
             )
         return found
 
@@ -170,7 +170,7 @@ class _Downloads:
         self.begin, self.give = self._time.begin, self._time.give
 
     def download(self, uri: FuelUri) -> None:
-        """Put a model into the cache. Raises NotProvided."""
+        """Put a model into the cache. Raises ModelNotProvidedError."""
         self._time.once(uri.archive, uri.server, lambda: self._fetched(uri))
 
     def _fetched(self, uri: FuelUri) -> None:

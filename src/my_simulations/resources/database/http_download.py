@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from email.message import Message
 from typing import IO, Any, Callable, Optional
 
+from ...errors import ResourceError
+
 _CHUNK = 1 << 16
 _TRIES = 4
 _MD5 = re.compile(r'"?([0-9a-f]{32})"?\Z')
@@ -28,7 +30,7 @@ class Limits:
     files: int = 20000
 
 
-class HttpError(Exception):
+class HttpError(ResourceError):
     """A download that failed. `missing`: the server says there is no such thing."""
 
     def __init__(self, message: str, missing: bool = False) -> None:
@@ -51,10 +53,10 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
         The headers of the answer.
 
     Raises:
-        HttpFault: not had; what it would have been is not in `into` as a whole.
+        HttpError: not had; what it would have been is not in `into` as a whole.
     """
     if not url.startswith(("http://", "https://")):
-        raise HttpError(f"{url} is no http address")
+        raise HttpError(f"{url} is not an HTTP URL")
     for left in range(_TRIES - 1, -1, -1):
         into.seek(0)
         into.truncate()
@@ -63,16 +65,16 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
         except urllib.error.HTTPError as fault:
             missing = fault.code in (404, 410)
             if missing or fault.code < 500 or not left:
-                raise HttpError(f"{url} answers {fault.code} {fault.reason}", missing) from None
-        except (OSError, http.client.HTTPException, _Damaged) as fault:
+                raise HttpError(f"{url}: HTTP error {fault.code} {fault.reason}", missing) from None
+        except (OSError, http.client.HTTPException, _DamagedDownloadError) as fault:
             _check_time(url, until)
             if not left or isinstance(getattr(fault, "reason", None), ConnectionRefusedError):
                 reason = getattr(fault, "reason", None) or fault
-                raise HttpError(f"{url} cannot be had: {reason}") from None
+                raise HttpError(f"cannot download {url}: {reason}") from None
     raise AssertionError("the last try returns or raises")
 
 
-class _Damaged(Exception):
+class _DamagedDownloadError(ResourceError):
     """What came is not what was sent."""
 
 
@@ -82,7 +84,7 @@ def _once(url: str, into: IO[bytes], largest: int, until: float,
     with urllib.request.urlopen(request, timeout=_left(url, until)) as answer:
         expected = _length(answer.headers.get("Content-Length"))
         if expected > largest:
-            raise HttpError(f"{url} has {expected} bytes; at most {largest} are taken")
+            raise HttpError(f"{url} has {expected} bytes, the limit is {largest}")
         sums, done = hashlib.md5(), 0
         while True:
             _set_timeout(answer, _left(url, until))
@@ -92,7 +94,7 @@ def _once(url: str, into: IO[bytes], largest: int, until: float,
                 break
             done += len(chunk)
             if done > largest:
-                raise HttpError(f"{url} has more than {largest} bytes, which are not taken")
+                raise HttpError(f"{url} is larger than the limit of {largest} bytes")
             into.write(chunk)
             sums.update(chunk)
             if progress is not None:
@@ -103,15 +105,15 @@ def _once(url: str, into: IO[bytes], largest: int, until: float,
 
 def _check(headers: Any, expected: int, done: int, sums: Any) -> None:
     if expected and done != expected:
-        raise _Damaged(f"{done} of {expected} bytes came")
+        raise _DamagedDownloadError(f"received {done} of {expected} bytes")
     given = headers.get("Content-MD5")
     if given and base64.b64encode(sums.digest()).decode() != given.strip():
-        raise _Damaged("the checksum of the answer (Content-MD5) is wrong")
+        raise _DamagedDownloadError("wrong checksum (Content-MD5)")
     # Object stores give the MD5 as ETag; any other ETag says nothing of the content. Where it has
     # the form of one and differs, the answer's own Content-MD5 counts.
     tag = _MD5.match((headers.get("ETag") or "").strip())
     if tag and not given and tag.group(1) != sums.hexdigest():
-        raise _Damaged("the checksum of the answer (ETag) is wrong")
+        raise _DamagedDownloadError("wrong checksum (ETag)")
 
 
 def _length(text: Optional[str]) -> int:
@@ -125,7 +127,7 @@ def _left(url: str, until: float) -> float:
 
 def _check_time(url: str, until: float) -> None:
     if time.monotonic() >= until:
-        raise HttpError(f"{url} did not come in time")
+        raise HttpError(f"timed out downloading {url}")
 
 
 def _set_timeout(answer: Any, seconds: float) -> None:

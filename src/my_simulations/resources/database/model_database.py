@@ -55,7 +55,7 @@ class ModelDatabase(DownloadTime):
         self._listed = None
 
     def names(self) -> Set[str]:
-        """What the database lists. Raises NotProvided."""
+        """What the database lists. Raises ModelNotProvidedError."""
         try:
             return set(self._names())
         except (HttpError, OSError) as fault:
@@ -68,7 +68,7 @@ class ModelDatabase(DownloadTime):
         used.
 
         Raises:
-            NotProvided: the model cannot be had now.
+            ModelNotProvidedError: the model cannot be had now.
         """
         path = self._one(name)
         waiting, seen = _dependencies(path), {name}
@@ -85,7 +85,7 @@ class ModelDatabase(DownloadTime):
 
     def _one(self, name: str) -> str:
         if not _NAME.match(name) or name.strip(" .") != name:
-            raise ModelNotProvidedError(f"{name!r} is no name of a model")
+            raise ModelNotProvidedError(f"{name!r} is not a valid model name")
         path = os.path.join(self._folder, name)
         if os.path.isdir(path):
             return path
@@ -94,7 +94,7 @@ class ModelDatabase(DownloadTime):
 
     def _download(self, name: str, path: str) -> None:
         if name not in self._names():
-            raise HttpError(f"the database has no model {name!r}")
+            raise HttpError(f"the database does not contain model {name!r}")
 
         def make(work: str) -> str:
             archive = os.path.join(work, "model.tar.gz")
@@ -124,7 +124,7 @@ class ModelDatabase(DownloadTime):
                 self._listed = _uris(stream.getvalue())
                 break
             if self._listed is None:
-                raise fault or HttpError("it has no list of models")
+                raise fault or HttpError("no list of models found")
         return self._listed
 
 
@@ -139,7 +139,7 @@ def _uris(text: bytes) -> Set[str]:
     except (etree.XMLSyntaxError, ValueError):
         root = None
     if root is None:
-        raise HttpError("its list of models is not XML")
+        raise HttpError("the list of models is not valid XML")
     found = (re.sub(r"^\w+://", "", (uri.text or "").strip()).strip("/")
              for uri in root.iter("uri"))
     return {name for name in found if name}

@@ -1,4 +1,4 @@
-"""When a node has outlived the master, or the roslaunch, that it was started for."""
+"""Detects that the ROS master or the roslaunch that started this node is gone."""
 from __future__ import annotations
 
 import time
@@ -8,21 +8,21 @@ from . import master_api
 from .launch_info import Launch
 
 SECONDS = 60.0
-"""How long both may be gone before the node ends, unless the parameter says otherwise."""
+"""Default of `~master_timeout`: wall seconds until the node exits without either of them."""
 
 ASK_SECONDS = 5.0
-"""Between two questions to the master."""
+"""Wall seconds between two queries of the master."""
 
 
 class Abandonment:
-    """Watches the master and the launch; asked now and then from one thread.
+    """Watches master and roslaunch; call `reason` periodically from one thread.
 
     Args:
-        uri: of the master.
-        name: of the node.
+        uri: URI of the master.
+        name: name of this node.
         launch: how this process was started.
-        limit: seconds that one of them may be gone; 0 for ever.
-        clock: seconds, for tests.
+        limit: wall seconds that one of them may be gone; 0 for no limit.
+        clock: source of wall time in seconds, for tests.
     """
 
     def __init__(self, uri: str, name: str, launch: Launch, limit: float,
@@ -33,7 +33,7 @@ class Abandonment:
         self._asked = clock()
 
     def reason(self) -> str:
-        """Why the node shall end, as a sentence; "" while it shall not."""
+        """Why the node must exit, as a sentence; "" if it must not."""
         if self._limit <= 0.0:
             return ""
         now = self._clock()

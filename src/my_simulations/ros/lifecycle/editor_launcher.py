@@ -1,4 +1,4 @@
-"""The node's door to the world editor, which is another face and is handed in by who starts us."""
+"""Starts the world editor for the node; the function that does so is passed in by `cli`."""
 from __future__ import annotations
 
 import threading
@@ -12,33 +12,34 @@ from ...simulator.simulator import Simulator
 from ..issue_logging import log_issue
 
 URL = "~my_simulations/editor_url"
-"""Parameter: the editor's address, while it runs."""
+"""Parameter: URL of the editor while it runs."""
 
 
 class RunningEditor(Protocol):
-    """What is needed of a running editor."""
+    """Interface of a running editor."""
 
     url: str
 
     def stop(self, reason: str = "") -> None:
-        """End it."""
+        """Stop it; `reason` is shown on open pages."""
 
     def tell(self, issue: Issue) -> None:
         """Show an issue."""
 
 
 StartEditor = Callable[[Simulator, Resolver, Dict[str, Any]], RunningEditor]
-"""Starts an editor with settings by name (`editor.EditorOptions`). Raises CommandError."""
+"""Starts an editor with settings as in `editor.EditorOptions`. Raises CommandError."""
 
 
 class EditorLauncher:
-    """Starts the editor when it is first wanted, with the settings of the parameter server.
+    """Starts the editor on first use, with settings from the parameter server.
 
     Args:
         start: starts it.
-        simulator, resolver: what it shows.
-        listen: given a function that wants all issues, those of the start included.
-        caller: folder in which the command was typed.
+        simulator: the world it shows.
+        resolver: resolves URIs of models.
+        listen: subscribes a function to all issues, including earlier ones.
+        caller: working directory of the user who started the node.
     """
 
     def __init__(self, start: StartEditor, simulator: Simulator, resolver: Resolver,
@@ -49,20 +50,20 @@ class EditorLauncher:
         self._caller = caller
         self._lock = threading.Lock()
         self._editor: Optional[RunningEditor] = None
-        if rospy.has_param(URL):  # of a node that was killed
+        if rospy.has_param(URL):  # left behind by a node that was killed
             rospy.delete_param(URL)
 
     @staticmethod
     def wanted() -> bool:
-        """Whether the launch file asks for the editor at once: parameter `~gui`."""
+        """Parameter `~gui`: whether to start the editor with the node."""
         return rospy.get_param("~gui", False) is True
 
     def open_soon(self) -> None:
-        """Start it in the background; a fault is logged."""
+        """Start it in the background; errors are logged."""
         threading.Thread(target=self._try, name="editor start", daemon=True).start()
 
     def open(self) -> str:
-        """The address of the editor, which runs then. Raises CommandError."""
+        """Start the editor unless it runs; returns its URL. Raises CommandError."""
         with self._lock:
             if self._editor is None:
                 self._editor = self._start(*self._world, {
@@ -73,29 +74,29 @@ class EditorLauncher:
             return self._editor.url
 
     def announce(self) -> None:
-        """Set the parameter with its address once more, if it runs."""
+        """Set the parameter with its URL again, if it runs."""
         with self._lock:
             if self._editor is not None:
                 rospy.set_param(URL, self._editor.url)
 
     def close(self) -> None:
-        """End it."""
+        """Stop it."""
         with self._lock:
             if self._editor is not None:
-                self._editor.stop("the simulator ends")
+                self._editor.stop("the simulator is shutting down")
                 self._editor = None
                 try:
                     rospy.delete_param(URL)
                 except (OSError, KeyError):
-                    return  # the master has gone, too
+                    return  # the master is gone, too
 
     def _try(self) -> None:
         try:
             self.open()
         except CommandError as fault:
-            rospy.logerr("the world editor is not there: %s", fault)
+            rospy.logerr("cannot start the world editor: %s", fault)
         except OSError as fault:
-            rospy.logwarn("the master does not answer: %s", fault)
+            rospy.logwarn("the ROS master does not respond: %s", fault)
 
 
 def _settings() -> Dict[str, Any]:
@@ -107,8 +108,8 @@ def _settings() -> Dict[str, Any]:
     port = rospy.get_param("~editor_port", None)
     if port is not None:
         if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port < 65536:
-            raise CommandError(f"the parameter {rospy.resolve_name('~editor_port')} must be a port"
-                               f" number, 0 for any; it is {port!r}")
+            raise CommandError(f"parameter {rospy.resolve_name('~editor_port')} must be a port"
+                               f" number (0 for any free port), is {port!r}")
         found["port"] = port
     roots = rospy.get_param("~save_roots", None)
     if isinstance(roots, list) and all(isinstance(root, str) for root in roots):

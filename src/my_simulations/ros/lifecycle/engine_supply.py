@@ -1,4 +1,4 @@
-"""Engines for the simulator, the first one started ahead of need."""
+"""Creates engines for the simulator; starts the first one in advance."""
 from __future__ import annotations
 
 from typing import Callable, Optional
@@ -7,18 +7,18 @@ from ...engine.api import Engine
 
 
 class EngineSupply:
-    """Makes engines for the simulator; the first is on its way before it is asked for."""
+    """Engine factory that starts the first engine before it is requested."""
 
     def __init__(self, make: Callable[[], Engine]) -> None:
         self._make = make
         self._first: Optional[Engine] = make()
 
     def __call__(self) -> Engine:
-        """The next engine; the simulator calls this again after a crash."""
+        """The next engine; called once per simulator."""
         engine, self._first = self._first or self._make(), None
         return engine
 
     def close(self) -> None:
-        """End an engine that nobody took."""
+        """Stop an engine that was never requested."""
         if self._first is not None:
             self._first.close()

@@ -1,4 +1,4 @@
-"""How this process was started: by roslaunch or rostest, or by hand, and from which folder."""
+"""How this process was started: by roslaunch, rostest or from a shell, and in which folder."""
 from __future__ import annotations
 
 import os
@@ -7,7 +7,7 @@ from typing import Sequence
 
 _LAUNCHERS = ("roslaunch", "rostest")
 _FEW = 4
-"""Programs between roslaunch and its node (`launch-prefix`) that are looked through."""
+"""Most processes between roslaunch and its node (`launch-prefix`) that are searched."""
 
 
 @dataclass(frozen=True)
@@ -15,11 +15,11 @@ class Launch:
     """Who started this process.
 
     Attributes:
-        pid: process id of the roslaunch or rostest; 0 for a start by hand.
-        parent: process id of the parent; another one adopts us when that is killed.
-        folder: absolute path of the folder in which the command was typed. roslaunch starts nodes
-            in ROS_HOME, so it is the working directory of roslaunch itself; where that cannot be
-            read, that of the variable PWD, which roslaunch hands on.
+        pid: process id of the roslaunch or rostest; 0 when started from a shell.
+        parent: process id of the parent, which changes when the parent is killed.
+        folder: absolute path of the user's working directory. roslaunch starts nodes in ROS_HOME,
+            so it is the working directory of roslaunch itself; if that cannot be read, the value
+            of the variable PWD, which roslaunch passes on.
     """
 
     pid: int
@@ -28,9 +28,9 @@ class Launch:
 
     @classmethod
     def of(cls, argv: Sequence[str]) -> "Launch":
-        """From a node's whole command line; ask early, while the parent lives."""
+        """From a node's command line; call it early, while the parent runs."""
         parent = os.getppid()
-        # Only roslaunch tells nodes where to log.
+        # Only roslaunch passes __log.
         if not any(word.startswith("__log:=") for word in argv):
             return cls(0, parent, os.getcwd())
         pid = _launcher(parent)
@@ -38,12 +38,12 @@ class Launch:
 
     @property
     def alive(self) -> bool:
-        """False once the roslaunch that started us has gone without having ended us."""
+        """False once the roslaunch that started this node is gone."""
         return self.pid == 0 or os.getppid() == self.parent
 
 
 def _launcher(parent: int) -> int:
-    """The nearest ancestor that is roslaunch or rostest; the parent where there is none."""
+    """The nearest ancestor that is roslaunch or rostest; else the parent."""
     pid = parent
     for _ in range(_FEW):
         words = _read(pid, "cmdline").split("\0")[:4]
@@ -61,7 +61,7 @@ def _read(pid: int, name: str) -> str:
         with open(f"/proc/{pid}/{name}", encoding="utf-8", errors="replace") as file:
             return file.read()
     except OSError:
-        return ""  # it has gone, or is another user's
+        return ""  # it is gone, or belongs to another user
 
 
 def _folder(pid: int) -> str:

@@ -1,15 +1,15 @@
-"""Importing rospy without what the node never uses."""
+"""Imports rospy without NumPy, which the node does not need."""
 from __future__ import annotations
 
 import sys
 
 
 def import_genpy() -> None:
-    """Import ROS's message library without NumPy, which it takes when it can and does without.
+    """Import ROS's message library without NumPy, which is optional for it.
 
-    NumPy would cost the node 14 MB and 40 ms; only its number types in message fields go missing,
-    and those the node never sends. Call this before any other import of ROS or NumPy, while there
-    is one thread.
+    NumPy would cost the node 14 MB and 40 ms; without it only NumPy types in message fields are
+    not supported, which the node never sends. Call this before any other import of ROS or NumPy,
+    while there is one thread.
     """
     if "numpy" in sys.modules or "genpy" in sys.modules:
         return

@@ -1,4 +1,4 @@
-"""The state log of `--record`, which is another face's and is handed in by who starts us."""
+"""Records the state log of `--record`; the function that starts it is passed in by `cli`."""
 from __future__ import annotations
 
 from typing import Callable, Optional, Protocol
@@ -13,34 +13,34 @@ from .server_options import Recording
 
 
 class RunningRecorder(Protocol):
-    """What is needed of a log that is being written."""
+    """Interface of a log that is being written."""
 
     path: str
 
     def stop(self) -> None:
-        """Finish it. Raises CommandError."""
+        """Close the log. Raises CommandError: it could not be completed."""
 
 
 StartRecording = Callable[[Simulator, Resolver, Recording, Callable[[Issue], None]],
                           RunningRecorder]
-"""Begins a log; the function hears when it ends early. Raises CommandError."""
+"""Starts a log; the function receives an issue if it stops early. Raises CommandError."""
 
 
 def begin(start: StartRecording, simulator: Simulator, resolver: Resolver,
           wanted: Recording) -> Optional[RunningRecorder]:
-    """The log, begun; None, with an error said, when there can be none."""
+    """Start the log; None, with a logged error, if it cannot be written."""
     try:
         recorder = start(simulator, resolver, wanted, log_issue)
     except CommandError as fault:
-        rospy.logerr("no state log is recorded: %s", fault)
+        rospy.logerr("cannot record a state log: %s", fault)
         return None
-    rospy.loginfo("the state log is %s", recorder.path)
+    rospy.loginfo("recording state log: %s", recorder.path)
     return recorder
 
 
 def finish(recorder: RunningRecorder) -> None:
-    """End it; a fault is said."""
+    """Close the log; an error is logged."""
     try:
         recorder.stop()
     except CommandError as fault:
-        rospy.logerr("the state log ends early: %s", fault)
+        rospy.logerr("state log is incomplete: %s", fault)

@@ -1,7 +1,7 @@
-"""Asking the ROS master before rospy does, with deadlines.
+"""XML-RPC calls to the ROS master and to nodes, with timeouts, without rospy.
 
-`rospy.init_node` waits for a master for ever and without a word that helps, and it pushes a node of
-the same name off the graph. Both are settled here first.
+`rospy.init_node` waits for a master for ever without a helpful message, and shuts down a running
+node of the same name. Both are checked here first.
 """
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any, Callable, Optional, Sequence, Tuple
 from urllib.parse import urlparse
 
 CALL_SECONDS = 3.0
-"""How long one question to the master or to a node may take."""
+"""Wall seconds that one call may take."""
 
 POLL_SECONDS = 0.25
 REMIND_SECONDS = 4.0
@@ -24,7 +24,7 @@ DEFAULT_URI = "http://localhost:11311"
 
 
 class _Transport(xmlrpc.client.Transport):
-    """An XML-RPC transport with a time-out on its socket."""
+    """An XML-RPC transport with a timeout on its socket."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__()
@@ -37,21 +37,21 @@ class _Transport(xmlrpc.client.Transport):
 
 
 def call(uri: str, method: str, *arguments: Any, seconds: float = CALL_SECONDS) -> Any:
-    """Call a ROS XML-RPC method; the value of a (1, message, value) answer, None of any other.
+    """Call a ROS XML-RPC method; returns the value if the status code is 1 (success), else None.
 
     Raises:
-        OSError: nobody answers there in time.
+        OSError: no response in time.
     """
     try:
         with xmlrpc.client.ServerProxy(uri, transport=_Transport(seconds)) as proxy:
             code, _, value = getattr(proxy, method)(*arguments)
     except (xmlrpc.client.Error, http.client.HTTPException, TypeError, ValueError) as fault:
-        raise OSError(f"{uri} does not answer as a ROS master or node: {fault}") from fault
+        raise OSError(f"{uri} does not respond like a ROS master or node: {fault}") from fault
     return value if code == 1 else None
 
 
 def uri(argv: Sequence[str] = ()) -> str:
-    """Where the master is: `__master:=`, else ROS_MASTER_URI, else the default."""
+    """URI of the master: `__master:=`, else ROS_MASTER_URI, else the default."""
     for word in argv:
         if word.startswith("__master:="):
             return word[len("__master:="):]
@@ -59,17 +59,17 @@ def uri(argv: Sequence[str] = ()) -> str:
 
 
 def fault_of(master: str, caller: str) -> str:
-    """Why the master does not answer, in a few words; "" when it does."""
+    """Why the master does not respond, in a few words; "" if it does."""
     try:
         found = urlparse(master)
         if not found.hostname or not found.port:
-            return "ROS_MASTER_URI is not of the form http://host:port"
+            return "ROS_MASTER_URI must have the form http://host:port"
     except ValueError as fault:
-        return f"ROS_MASTER_URI cannot be read: {fault}"
+        return f"invalid ROS_MASTER_URI: {fault}"
     try:
         call(master, "getPid", caller)
     except socket.gaierror:
-        return f"the host name {found.hostname!r} is not known"
+        return f"unknown host name {found.hostname!r}"
     except (OSError, TypeError) as fault:
         return str(fault)
     return ""
@@ -77,17 +77,17 @@ def fault_of(master: str, caller: str) -> str:
 
 def wait(master: str, caller: str, stop: threading.Event, say: Callable[[str], None],
          deadline: Optional[float] = None) -> bool:
-    """Wait until the master answers.
+    """Wait until the master responds.
 
     Args:
         master: its URI.
-        caller: name of the asking node.
+        caller: name of the calling node.
         stop: ends the wait when set.
-        say: gets a line at once, and again every few seconds.
+        say: called with a message at once, and again every few seconds.
         deadline: `time.monotonic()` at which to give up; None for never.
 
     Returns:
-        True when the master answers, False when stopped or too late.
+        True if the master responds, False after `stop` or the deadline.
     """
     next_word = 0.0
     while True:
@@ -101,13 +101,13 @@ def wait(master: str, caller: str, stop: threading.Event, say: Callable[[str], N
             return False
         if now >= next_word:
             say(f"waiting for the ROS master at {master} ({fault}); "
-                "start roscore or roslaunch, or set ROS_MASTER_URI; Ctrl-C ends this")
+                "start roscore or roslaunch, or set ROS_MASTER_URI; press Ctrl-C to abort")
             next_word = now + REMIND_SECONDS
         stop.wait(POLL_SECONDS)
 
 
 def node_name(argv: Sequence[str], default: str) -> str:
-    """The full name that `rospy.init_node(default)` will take with these arguments."""
+    """The full name of the node that `rospy.init_node(default)` creates with these arguments."""
     namespace, name = os.environ.get("ROS_NAMESPACE", "/"), default
     for word in argv:
         key, _, value = word.partition(":=")
@@ -118,11 +118,11 @@ def node_name(argv: Sequence[str], default: str) -> str:
     return "/" + "/".join(part for part in (namespace + "/" + name).split("/") if part)
 
 
-def living_node(master: str, name: str) -> Optional[Tuple[str, int]]:
-    """URI and process id of the node of that name, None when there is none or it is dead.
+def running_node(master: str, name: str) -> Optional[Tuple[str, int]]:
+    """URI and process id of the running node of that name; None if there is none.
 
     Raises:
-        OSError: the master does not answer.
+        OSError: the master does not respond.
     """
     found = call(master, "lookupNode", name, name)
     if not found:

@@ -1,7 +1,7 @@
-"""A node's place on the graph: registered again when a new master has taken over.
+"""Registers the node again after a restart of the ROS master.
 
-A master that is started anew knows nobody, and rospy does not look after that: the node would go on
-without anyone finding it.
+A restarted master has no registrations, and rospy does not renew them: no other node could find
+this one.
 """
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from . import master_api
 
 
 class Membership:
-    """Looks now and then whether the master knows this node, and registers it again if not.
+    """Checks whether the node is registered, and registers it again if not.
 
     Args:
-        uri: of the master.
-        name: of this node.
-        renewed: called after the node has been registered again, to set its parameters.
+        uri: URI of the master.
+        name: name of this node.
+        renewed: called after the node was registered again, to set its parameters.
     """
 
     def __init__(self, uri: str, name: str, renewed: Callable[[], None]) -> None:
@@ -34,22 +34,24 @@ class Membership:
         self._owed = False
 
     def keep_up(self) -> bool:
-        """Whether the master answers and knows this node; a fault is logged once.
+        """Whether the node is registered; an unreachable master is logged once.
 
         Raises:
-            OSError: it went away in the middle; the next call goes on.
+            OSError: the master became unreachable meanwhile; the next call continues.
         """
         try:
             known = master_api.call(self._uri, "lookupNode", self._name, self._name)
         except OSError as fault:
             if not self._away:
-                rospy.logwarn("the ROS master at %s does not answer (%s); the world runs on, and "
-                              "the node registers again when there is a master", self._uri, fault)
+                rospy.logwarn("the ROS master at %s does not respond (%s); the simulation "
+                              "continues,"
+                              " and the node registers again once a master is "
+                              "available", self._uri, fault)
             self._away = True
             return False
         if known and not self._owed:
             if self._away:
-                rospy.loginfo("the ROS master at %s answers again", self._uri)
+                rospy.loginfo("the ROS master at %s responds again", self._uri)
             self._away = False
             return True
         if known and known != rospy.get_node_uri():
@@ -58,7 +60,7 @@ class Membership:
         self._register()
         self._renewed()
         self._owed = self._away = False
-        rospy.logwarn("a new ROS master is at %s; the node %s has registered again with all its "
+        rospy.logwarn("the ROS master at %s was restarted; registered the node %s again with its "
                       "topics, services and parameters", self._uri, self._name)
         return True
 

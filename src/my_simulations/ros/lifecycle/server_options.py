@@ -1,4 +1,4 @@
-"""The server's command line: the options of Gazebo's gzserver."""
+"""Command line of the server: the options of Gazebo's gzserver."""
 from __future__ import annotations
 
 import argparse
@@ -9,27 +9,27 @@ from typing import List, Optional, Sequence
 from ..arguments import Parser, number
 
 DEFAULT_WORLD = "worlds/empty.world"
-"""What gzserver loads when it is given no world."""
+"""Default world file, as in gzserver."""
 
 ENGINES = ("ode", "bullet", "dart", "simbody")
-"""The physics engines that Gazebo's `-e` knows."""
+"""Values of Gazebo's option `-e`."""
 
 
 RECORD_ENCODINGS = ("zlib", "bz2", "txt")
-"""How Gazebo packs a state log (`--record_encoding`)."""
+"""Values of Gazebo's option `--record_encoding`."""
 
 
 @dataclass(frozen=True)
 class Recording:
-    """What `-r` and its companions ask for.
+    """Options of the state log.
 
     Attributes:
-        on: record at all.
-        encoding: one of RECORD_ENCODINGS; not used.
-        path: folder of the log; "" for the usual place.
-        period: least seconds of sim time between states; negative for all that are shown.
-        filter: which models; not used.
-        resources: put meshes and textures into the log too; not used.
+        on: record a log.
+        encoding: one of RECORD_ENCODINGS; ignored.
+        path: folder of the log; "" for the default.
+        period: least seconds of sim time between states; negative for every state.
+        filter: names of models; ignored.
+        resources: include meshes and textures; ignored.
     """
 
     on: bool = False
@@ -42,17 +42,17 @@ class Recording:
 
 @dataclass(frozen=True)
 class ServerOptions:
-    """What the command line asks for.
+    """The parsed command line.
 
     Attributes:
-        world: the world file as typed; looked up like any resource.
-        paused: start without stepping.
+        world: world file as typed; searched in the resource paths.
+        paused: start paused.
         verbose: log at debug level.
-        notices: one line each on options that are accepted and do nothing.
-        seed: of what a world draws at random; None for the usual one.
-        iterations: steps after which the world stands still; 0 for never.
-        profile: name of the physics preset to use; "" for the world's own choice.
-        recording: the state log that is asked for.
+        notices: log lines about options without effect.
+        seed: random seed, used by <population>; None for the default.
+        iterations: number of steps after which the world pauses; 0 for never.
+        profile: name of the physics preset; "" for the world's default.
+        recording: options of the state log.
     """
 
     world: str = DEFAULT_WORLD
@@ -66,56 +66,57 @@ class ServerOptions:
 
 
 def is_remapping(word: str) -> bool:
-    """True for ROS's `name:=value` words, which rospy reads by itself."""
+    """Whether a word is a ROS remapping `name:=value`, which rospy handles."""
     return ":=" in word and not word.startswith("-")
 
 
 def parser(program: str = "gzserver") -> argparse.ArgumentParser:
-    """The argument parser; an unknown option ends the program with the usage and status 2."""
+    """The argument parser; unknown options print the usage and exit with status 2."""
     made = Parser(
         prog=program, allow_abbrev=False,
         description="Run a simulated world as the ROS node /gazebo.",
         epilog="ROS remappings (name:=value, _param:=value, __name:=name) are accepted anywhere.")
     made.add_argument("world", nargs="?", default=DEFAULT_WORLD,
-                      help=f"world file; looked up in the resource paths (default {DEFAULT_WORLD})")
-    made.add_argument("more", nargs="*", help="for plugins of the command line; not used")
-    made.add_argument("-v", "--version", action="store_true", help="print the version and end")
-    made.add_argument("--verbose", action="store_true", help="log more")
+                      help=f"world file, searched in the resource paths (default {DEFAULT_WORLD})")
+    made.add_argument("more", nargs="*", help="arguments for system plugins; ignored")
+    made.add_argument("-v", "--version", action="store_true", help="print the version and exit")
+    made.add_argument("--verbose", action="store_true", help="log debug messages")
     made.add_argument("-u", "--pause", action="store_true", help="start paused")
     made.add_argument("-e", "--physics", metavar="ENGINE", default="bullet",
-                      help=f"one of {', '.join(ENGINES)}; Bullet moves the world in any case")
+                      help=f"one of {', '.join(ENGINES)}; ignored, Bullet is always used")
     made.add_argument("-o", "--profile", metavar="NAME", default="",
-                      help="physics preset of the world file to use")
+                      help="name of the physics preset to use")
     made.add_argument("--seed", type=_seed, metavar="N",
-                      help="for what the world draws at random (default 0)")
+                      help="random seed (default 0)")
     made.add_argument("--iters", type=_count, default=0, metavar="N",
-                      help="let time stand still after N steps")
+                      help="pause after N steps")
     made.add_argument("-s", "--server-plugin", metavar="FILE", action="append", default=[],
-                      help="accepted and not loaded: the ROS API is built in")
+                      help="ignored: the ROS API is built in")
     made.add_argument("-g", "--gui-plugin", "--gui-client-plugin", dest="gui_plugin",
                       metavar="FILE", action="append", default=[], help=argparse.SUPPRESS)
     made.add_argument("--lockstep", action="store_true",
-                      help="accepted: no sensor is ever behind the world here")
+                      help="ignored: sensors are always in step with the world")
     made.add_argument("--minimal_comms", action="store_true",
-                      help="accepted: nothing is sent that nobody hears")
-    made.add_argument("-p", "--play", metavar="LOG", help="refused: logs are not played here")
+                      help="ignored: messages are sent to subscribers only")
+    made.add_argument("-p", "--play", metavar="LOG", help="not supported: open logs in the world "
+                                                          "editor")
     _add_recording(made)
     return made
 
 
 def _add_recording(made: argparse.ArgumentParser) -> None:
     made.add_argument("-r", "--record", action="store_true",
-                      help="write a state log, which the world editor plays")
+                      help="record a state log, to be played in the world editor")
     made.add_argument("--record_path", metavar="FOLDER", default="",
                       help="folder of the log (default ~/.gazebo/log/DATE_AND_TIME)")
     made.add_argument("--record_period", type=_period, default=-1.0, metavar="SECONDS",
-                      help="least sim time between recorded states")
+                      help="minimum sim time between recorded states")
     made.add_argument("--record_encoding", choices=RECORD_ENCODINGS, default="zlib",
-                      help="accepted: logs have one form here")
+                      help="ignored: there is one log format")
     made.add_argument("--record_filter", metavar="NAME", default="",
-                      help="accepted: everything is recorded")
+                      help="ignored: all models are recorded")
     made.add_argument("--record_resources", action="store_true",
-                      help="accepted: meshes and textures stay where they are")
+                      help="ignored: logs do not contain meshes and textures")
 
 
 def _count(text: str) -> int:
@@ -144,21 +145,21 @@ def _seed(text: str) -> int:
 
 
 def parse(argv: Sequence[str], program: str = "gzserver") -> ServerOptions:
-    """Read the words after the program's name.
+    """Parse the command line without the program's name.
 
     Raises:
-        SystemExit: status 2 after the usage for a word that is not understood, 0 after `--help`.
+        SystemExit: status 2 for an invalid command line, 0 after `--help` and `--version`.
     """
     reader = parser(program)
     words = [word for word in argv if not is_remapping(word)]
-    # What follows the world may stand among options, as roslaunch's `extra_gazebo_args` do.
+    # Positional arguments may follow options, as roslaunch's `extra_gazebo_args` do.
     given = reader.parse_intermixed_args(words)
     if given.version:
         from ... import __version__
 
         reader.exit(0, f"my_simulations {__version__}\n")
     if given.play:
-        reader.error(f"argument -p/--play: {given.play} cannot be played; name the world file")
+        reader.error(f"argument -p/--play: not supported; open {given.play} in the world editor")
     recording = Recording(
         given.record, given.record_encoding, given.record_path, given.record_period,
         given.record_filter, given.record_resources)
@@ -170,24 +171,24 @@ def parse(argv: Sequence[str], program: str = "gzserver") -> ServerOptions:
 def _notices(given: argparse.Namespace) -> List[str]:
     notices: List[str] = []
     if given.physics not in ENGINES:
-        notices.append(f"physics engine {given.physics!r} is none of {', '.join(ENGINES)}; "
-                       "Bullet moves this world")
+        notices.append(f"unknown physics engine {given.physics!r} (one of {', '.join(ENGINES)}); "
+                       "using Bullet")
     elif given.physics != "bullet":
-        notices.append(f"physics engine {given.physics!r} was asked for; Bullet moves this world")
+        notices.append(f"physics engine {given.physics!r} is not available; using Bullet")
     plugins = given.server_plugin + given.gui_plugin
     if plugins:
-        notices.append(f"plugins of the command line are not loaded: {', '.join(plugins)}")
+        notices.append(f"ignoring plugins of the command line: {', '.join(plugins)}")
     idle = _idle_recording(given)
     if idle:
-        notices.append(f"without effect{'' if given.record else ' unless --record is given'}: "
+        notices.append(f"ignoring options{'' if given.record else ', which need --record'}: "
                        + ", ".join(idle))
     if given.more:
-        notices.append(f"arguments for plugins are not used: {' '.join(given.more)}")
+        notices.append(f"ignoring arguments for plugins: {' '.join(given.more)}")
     return notices
 
 
 def _idle_recording(given: argparse.Namespace) -> List[str]:
-    """The words on recording that change nothing."""
+    """Recording options without effect."""
     idle = [name for name, used in (
         ("--record_encoding", given.record_encoding != "zlib"),
         ("--record_filter", given.record_filter), ("--record_resources", given.record_resources),

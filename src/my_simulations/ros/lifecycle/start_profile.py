@@ -1,4 +1,4 @@
-"""Where start-up time goes, for the bench."""
+"""Measures the phases of the start, for benchmarks."""
 from __future__ import annotations
 
 import os
@@ -6,7 +6,7 @@ import time
 from typing import List, Tuple
 
 VARIABLE = "MY_SIMULATIONS_PROFILE"
-"""Set to 1, the node writes its phase times to standard error."""
+"""Environment variable; if 1, the node prints its phase times to standard error."""
 
 
 class StartProfile:
@@ -18,12 +18,12 @@ class StartProfile:
         self.phases: List[Tuple[str, float]] = []
 
     def mark(self, phase: str) -> None:
-        """The named phase ends now."""
+        """Mark the end of a phase."""
         if self.wanted:
             self.phases.append((phase, time.clock_gettime(time.CLOCK_BOOTTIME) - self._zero))
 
     def lines(self) -> List[str]:
-        """One line a phase: when it ended, and the time since the one before."""
+        """One line per phase: time of its end, and its duration, in s."""
         found, last = [], 0.0
         for phase, at in self.phases:
             found.append(f"{at:7.3f} s  +{at - last:.3f}  {phase}")
@@ -32,7 +32,7 @@ class StartProfile:
 
 
 def _process_start() -> float:
-    """When this process was started, in seconds since boot (proc(5), stat, field 22)."""
+    """Start time of this process, in seconds since boot (proc(5), stat, field 22)."""
     with open("/proc/self/stat", encoding="ascii", errors="replace") as stat:
         fields = stat.read().rpartition(")")[2].split()
     return int(fields[19]) / os.sysconf("SC_CLK_TCK")

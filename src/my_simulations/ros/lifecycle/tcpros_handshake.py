@@ -1,8 +1,8 @@
-"""Taking connections so that no client can keep the others out.
+"""Handles TCPROS handshakes in parallel, so that no client can block the others.
 
-rospy reads the handshake of a new connection in the thread that accepts them all: one client that
-connects and says nothing (a port scanner, a process that is stopped) blocks every service and topic
-of the node for ever. Here each handshake has a thread and a deadline of its own.
+rospy reads the handshake of a new connection in the thread that accepts all connections: a client
+that connects and sends nothing (a port scanner, a stopped process) blocks every service and topic
+of the node for ever. Here each handshake has a thread and a timeout of its own.
 """
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from rospy.impl import tcpros_base
 HANDSHAKE_SECONDS = 10.0
 
 
-def take_side_by_side() -> None:
+def parallelise_handshakes() -> None:
     """Give every handshake its own thread; call it once, after the first publisher or service.
 
-    rospy has no interface for this, so its server object is changed (rospy 1.14 to 1.17, the
-    versions of ROS 1's last distributions, have it in the same place).
+    rospy has no interface for this, so its server object is patched (rospy 1.14 to 1.17, the
+    versions of the last ROS 1 distributions, have it in the same place).
     """
     server = tcpros_base._tcpros_server.tcp_ros_server
     shake_hands = server.inbound_handler

@@ -1,4 +1,4 @@
-"""open_editor: where the world editor is."""
+"""Service open_editor."""
 from __future__ import annotations
 
 from typing import Any, Callable, Optional
@@ -10,14 +10,14 @@ Open = Callable[[], str]
 
 
 class EditorService:
-    """Tells clients where to look; the editor itself is another face."""
+    """Starts the world editor on request and returns its URL."""
 
     def __init__(self, open_editor: Optional[Open]) -> None:
         self._open = open_editor
 
     def open(self, _request: Any, response: Any) -> str:
-        """The editor's address."""
+        """Start the editor if needed. Raises CommandError: it is not installed or cannot listen."""
         if self._open is None:
-            raise CommandError("this server has no editor")
+            raise CommandError("this node was started without a world editor")
         response.url = self._open()
-        return f"the editor is at {response.url}"
+        return f"the world editor is at {response.url}"

@@ -1,6 +1,6 @@
-"""Gazebo's words for names that are not in the world, with the simulator's reason behind them.
+"""Gazebo's status messages for unknown names, followed by the simulator's own.
 
-Clients match the beginnings; the rest says which name it was and which ones are near.
+Clients match Gazebo's text at the beginning; the rest names the entity and suggests similar ones.
 """
 from __future__ import annotations
 
@@ -12,11 +12,15 @@ from ...simulator.registry import UnknownEntityError, UnknownFrameError
 
 
 @contextmanager
-def in_gazebos_words(entity: str, frame: str = "") -> Iterator[None]:
-    """Put `entity` or `frame` before the text of an unknown name.
+def gazebo_prefix(entity: str, frame: str = "") -> Iterator[None]:
+    """Prefix errors about unknown names with Gazebo's status message.
+
+    Args:
+        entity: prefix for an unknown model, link or joint.
+        frame: prefix for an unknown reference frame; "" for none.
 
     Raises:
-        CommandError: with the words in front.
+        CommandError: the prefixed error.
     """
     try:
         yield

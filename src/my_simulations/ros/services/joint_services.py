@@ -12,7 +12,7 @@ from ...engine.ring_rows import AXES
 from ...errors import CommandError
 from ...simulator.simulator import Simulator
 from ..message_conversion import FORCE, SPIN, between
-from .entity_errors import in_gazebos_words
+from .entity_errors import gazebo_prefix
 
 TYPES = {
     "revolute": srv.GetJointPropertiesResponse.REVOLUTE,
@@ -25,30 +25,30 @@ TYPES = {
     "screw": srv.GetJointPropertiesResponse.REVOLUTE,
     "gearbox": srv.GetJointPropertiesResponse.REVOLUTE,
 }
-"""The service knows fewer kinds than SDF."""
+"""Joint types of the service by those of SDF, which has more."""
 
 CONFIGURABLE = ("revolute", "continuous", "prismatic", "universal")
-"""Joints that set_model_configuration moves, by their first axis (Gazebo behaviour)."""
+"""Types of joints that set_model_configuration moves, along their first axis (Gazebo behaviour)."""
 
 ACTING = ("damping", "hiStop", "loStop", "fmax", "vel")
-KEPT_OUT = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor")
-"""What ODE's solver is told and Bullet's does not know."""
+ODE_ONLY = ("erp", "cfm", "stop_erp", "stop_cfm", "fudge_factor")
+"""Parameters of ODE that Bullet does not have."""
 
 NO_JOINT = "joint not found"
 
 
 class JointServices:
-    """What joints are like, and putting them elsewhere."""
+    """Reads and sets joint properties and positions."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
 
     def get(self, request: Any, response: Any) -> str:
-        """Type, and damping, position and rate of each axis.
+        """Type, and damping (N m s/rad or N s/m), position and rate of each axis.
 
-        A joint without an axis has the one position NaN and the one rate 0 (Gazebo behaviour).
+        A joint without axes has the position NaN and the rate 0 (Gazebo behaviour).
         """
-        with in_gazebos_words(NO_JOINT):
+        with gazebo_prefix(NO_JOINT):
             _, joint, _ = self._simulator.joints.find(request.joint_name)
             states = self._simulator.joints.states(request.joint_name)
         response.type = TYPES["continuous" if _is_continuous(joint) else joint.type]
@@ -58,29 +58,30 @@ class JointServices:
         return "got properties"
 
     def set(self, request: Any, _response: Any) -> str:
-        """Only arrays that hold something act, one element an axis."""
+        """Set joint properties; arrays have one element per axis, empty ones change nothing."""
         config = request.ode_joint_config
-        with in_gazebos_words(NO_JOINT):
+        with gazebo_prefix(NO_JOINT):
             owner, joint, _ = self._simulator.joints.find(request.joint_name)
         count = AXES.get(joint.type, 0)
-        for name in (*ACTING, *KEPT_OUT):
+        for name in (*ACTING, *ODE_ONLY):
             values = getattr(config, name)
             if len(values) > count:
                 raise CommandError(f"{name} has {len(values)} elements, the {joint.type} joint "
                                    f"{joint.name!r} has {count or 'no'} "
                                    f"{'axis' if count == 1 else 'axes'}")
             if not all(math.isfinite(value) for value in values):
-                raise CommandError(f"{name} has a number that is not finite: {tuple(values)}")
+                raise CommandError(f"{name} contains NaN or infinity: {tuple(values)}")
         axes = [_changed(axis, config, number) for number, axis in enumerate(_axes(joint)[:count])]
         if any(getattr(config, name) for name in ACTING):
             self._simulator.joints.edit(f"{owner}::{joint.name}", _with_axes(joint, axes))
-        idle = [name for name in KEPT_OUT if getattr(config, name)]
-        return "properties set" + (f"; without effect: {', '.join(idle)}" if idle else "")
+        idle = [name for name in ODE_ONLY if getattr(config, name)]
+        return "properties set" + ("; ignored, not supported by Bullet: "
+                                   f"{', '.join(idle)}" if idle else "")
 
     def configure(self, request: Any, _response: Any) -> str:
-        """Put joints at positions, at rest and within their limits."""
+        """Set joint positions (rad or m), clamped to the joint limits, with zero velocity."""
         names, positions = request.joint_names, request.joint_positions
-        with in_gazebos_words("model does not exist"):
+        with gazebo_prefix("model does not exist"):
             model = self._simulator.models.get(request.model_name)
         if len(names) != len(positions):
             raise CommandError("joint name and position list have different lengths: "
@@ -90,7 +91,7 @@ class JointServices:
         wanted: Dict[str, float] = {}
         left: List[str] = []
         for name, position in zip(names, positions):
-            between(position, -SPIN, SPIN, f"the position of {name}")
+            between(position, -SPIN, SPIN, f"position of {name}")
             plain = name[len(scope):] if name.startswith(scope) else name
             joint = joints.get(plain)
             if joint is None or joint.type not in CONFIGURABLE:
@@ -104,7 +105,7 @@ class JointServices:
             return "success"
         settable = [name for name, joint in joints.items() if joint.type in CONFIGURABLE]
         return ("success; skipped unknown or non-settable joints: "
-                f"{', '.join(left)}; settable are {', '.join(settable) or 'none'}")
+                f"{', '.join(left)}; settable joints: {', '.join(settable) or 'none'}")
 
 
 def _axes(joint: Joint) -> List[JointAxis]:
@@ -133,7 +134,8 @@ def _changed(axis: JointAxis, config: Any, number: int) -> JointAxis:
     lower = given("loStop", -INFINITE, INFINITE, axis.lower)
     upper = given("hiStop", -INFINITE, INFINITE, axis.upper)
     if lower > upper:
-        raise CommandError(f"loStop[{number}] is {lower:g}, above hiStop, which is {upper:g}")
+        raise CommandError(f"loStop[{number}] is {lower:g}, greater than hiStop[{number}] "
+                           f"{upper:g}")
     return replace(axis, lower=lower, upper=upper,
                    damping=given("damping", 0.0, FORCE, axis.damping),
                    friction=given("fmax", 0.0, FORCE, axis.friction),

@@ -12,19 +12,19 @@ from ...simulator.simulator import Simulator
 from ..message_conversion import between, pose_from_message, vector, within
 
 BRIGHTEST = 1e6
-"""The largest number of a colour or attenuation."""
+"""Largest accepted colour component or attenuation."""
 
 NO_COLOUR = (0.0, 0.0, 0.0, 0.0)
 
 
 class LightServices:
-    """What a light shines like."""
+    """Reads, changes and deletes lights."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
 
     def get(self, request: Any, response: Any) -> str:
-        """Its colour and attenuation."""
+        """Diffuse colour and attenuation of a light."""
         light = self._light(request.light_name)
         colour = response.diffuse
         colour.r, colour.g, colour.b, colour.a = light.diffuse
@@ -34,7 +34,7 @@ class LightServices:
         return "got properties"
 
     def set(self, request: Any, _response: Any) -> str:
-        """Other properties; colours, attenuations, direction and pose of zeros stay as they are."""
+        """Change a light; colours, attenuations, direction and pose of zeros are left unchanged."""
         light = self._light(request.light_name)
         changes: Dict[str, Any] = {"cast_shadows": request.cast_shadows}
         for field in ("diffuse", "specular"):
@@ -54,7 +54,7 @@ class LightServices:
         return "properties set"
 
     def delete(self, request: Any, _response: Any) -> str:
-        """Take it out of the world."""
+        """Delete a light."""
         name = self._light(request.light_name).name
         self._simulator.lights.delete(name)
         return f"{name} successfully deleted"
@@ -65,7 +65,7 @@ class LightServices:
         except UnknownEntityError as fault:
             lights = ", ".join(light.name for light in self._simulator.lights.all())
             raise CommandError(f"Requested light {name} not found! The world has "
-                               f"{lights or 'no light'}") from fault
+                               f"{lights or 'no lights'}") from fault
 
 
 def _colour(message: Any, field: str) -> Tuple[float, float, float, float]:

@@ -9,23 +9,23 @@ from ...description.validate import inertial_faults
 from ...errors import CommandError
 from ...simulator.simulator import Simulator
 from ..message_conversion import between, fill_pose, pose_from_message
-from .entity_errors import in_gazebos_words
+from .entity_errors import gazebo_prefix
 
 MOMENTS = tuple(field.name for field in fields(Inertial) if field.name.startswith("i"))
 
 HEAVIEST = 1e12
-"""kg, and kg m^2."""
+"""Largest accepted mass (kg) and moment of inertia (kg m^2)."""
 
 
 class LinkServices:
-    """What a link weighs."""
+    """Reads and sets the inertial properties of links."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
 
     def get(self, request: Any, response: Any) -> str:
-        """Mass (kg), centre of mass and axes of inertia in the link frame, moments (kg m^2)."""
-        with in_gazebos_words("link not found"):
+        """Mass (kg), centre of mass and inertia axes in the link frame, moments (kg m^2)."""
+        with gazebo_prefix("link not found"):
             link = self._simulator.models.link(request.link_name)
         fill_pose(response.com, link.inertial.pose)
         response.gravity_mode, response.mass = link.gravity, link.inertial.mass
@@ -34,8 +34,8 @@ class LinkServices:
         return "got properties"
 
     def set(self, request: Any, _response: Any) -> str:
-        """All of them at once; the moments are about the centre of mass, along `com`'s axes."""
-        with in_gazebos_words("link not found"):
+        """Replace all of them; moments are about the centre of mass, along the axes of `com`."""
+        with gazebo_prefix("link not found"):
             link = self._simulator.models.link(request.link_name)
         inertial = replace(
             link.inertial, mass=between(request.mass, -HEAVIEST, HEAVIEST, "mass", "kg"),
@@ -44,7 +44,7 @@ class LinkServices:
                for name in MOMENTS})
         for fault in inertial_faults(inertial, link.name):
             raise CommandError(fault.message)
-        with in_gazebos_words("link not found"):
+        with gazebo_prefix("link not found"):
             self._simulator.models.set_link_inertial(request.link_name, inertial,
                                                      request.gravity_mode)
         return "properties set"

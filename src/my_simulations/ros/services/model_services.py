@@ -16,7 +16,7 @@ from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 from ...simulator.spawn_advice import arrival_advice
 from ..message_conversion import LENGTH, pose_from_message, within
-from .entity_errors import in_gazebos_words
+from .entity_errors import gazebo_prefix
 from .spawn_request import (
     FILE_ATTRIBUTE,
     LAUNCH_ATTRIBUTE,
@@ -28,13 +28,13 @@ from .spawn_request import (
 )
 
 SAME = 1e-9
-"""Numbers that differ by less, in their unit or relative to their size, are the same."""
+"""Tolerance, absolute in the value's unit or relative, below which values are equal."""
 
 NO_FRAME = "reference reference_frame not found"
 
 
 class ModelServices:
-    """Puts models into the world and takes them out."""
+    """Spawns and deletes models, and spawns lights."""
 
     def __init__(self, simulator: Simulator, resolver: Resolver,
                  log: Callable[[Issue], None], launcher: int = 0) -> None:
@@ -46,7 +46,7 @@ class ModelServices:
         self._told_deprecated = False
 
     def spawn_urdf(self, request: Any, _response: Any) -> str:
-        """A URDF document; any other root is refused, as in Gazebo."""
+        """Spawn a URDF model; any other root element is rejected (Gazebo behaviour)."""
         document = self._parsed(request, "")
         if document.root_tag != "robot":
             raise CommandError("Failure - entity format is invalid. The root element of a URDF is "
@@ -55,7 +55,7 @@ class ModelServices:
         return self._spawn(request, document, self._attribute_options(request, document))
 
     def spawn_sdf(self, request: Any, _response: Any) -> str:
-        """An SDF document, or a URDF one."""
+        """Spawn an SDF or URDF model, or an SDF light."""
         document = self._parsed(request, "")
         return self._spawn(request, document, self._attribute_options(request, document))
 
@@ -95,22 +95,26 @@ class ModelServices:
 
     def spawn_text(self, text: str, name: Optional[str], initial: Pose = IDENTITY, *,
                    launched: bool = False, file: str = "model_xml") -> str:
-        """Put the model or light of a document into the world.
+        """Spawn the model or light of a document.
 
         Args:
             text: URDF or SDF.
-            name: its name in the world; None for the document's own.
-            initial: pose in the world frame; the document's own pose is composed onto it.
-            launched: whether the launch file of the simulator spawns it: where the world file
-                has that very model already, that one is taken.
-            file: what messages call the document.
+            name: name in the world; None for the document's own.
+            initial: pose in `frame`; the document's own pose is composed onto it: the model's
+                world pose is T_frame o T_initial o T_own (Gazebo behaviour).
+            frame: "" or a name of the world frame, else a model or link.
+            namespace: robotNamespace of plugins that set none.
+            replace: delete a model of that name in the same step.
+            launched: spawned by the launch file of the simulator: if the world file contains the
+                same model already, that one is kept.
+            file: name of the document in messages.
 
         Returns:
-            What to tell the client.
+            The status message.
 
         Raises:
-            InputError: the document describes no whole model.
-            CommandError: the world refuses it.
+            InputError: the document contains no usable model.
+            CommandError: the name is taken, or the engine rejected the model.
         """
         document = parse_document(text, self._resolver, file)
         return self._spawn_document(document, name, initial, launched=launched)
@@ -137,39 +141,39 @@ class ModelServices:
         if launched and not replace and self._is_the_worlds(model.name):
             return self._adopt(model)
         where = compose(initial, model.pose)
-        within(where.position, LENGTH, "m", "the model's position")
-        with in_gazebos_words("", NO_FRAME):
+        within(where.position, LENGTH, "m", "position of the model")
+        with gazebo_prefix("", NO_FRAME):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
         self._report(arrival_advice(self._simulator, model.name, meshes))
-        remarks = sum(issue.severity is not Severity.NOTE for issue in issues)
-        warnings = f" ({remarks} remarks in the log)" if remarks else ""
-        return f"Successfully spawned entity{warnings}"
+        warned = sum(issue.severity is not Severity.NOTE for issue in issues)
+        counted = "1 warning" if warned == 1 else f"{warned} warnings"
+        return "Successfully spawned entity" + (f" ({counted}, see log)" if warned else "")
 
     def _is_the_worlds(self, name: str) -> bool:
-        """Whether there is a model of that name, which the world file brought."""
+        """Whether the world file contains a model of that name, which still exists."""
         return self._simulator.models.has(name) and any(
             model.name == name for model in self._simulator.world.models)
 
     def _adopt(self, model: Model) -> str:
-        """Take the world's model for the one that was to be spawned, if they are the same."""
+        """Keep the world file's model instead of spawning, if both are equal."""
         here = self._simulator.models.get(model.name)
         other = differences(with_changes(here, pose=IDENTITY, name=""),
                             with_changes(flattened(model), pose=IDENTITY, name=""), SAME)
         world = self._simulator.world.file
         if other:
             raise CommandError(
-                f"Failure - entity already exists. (model {model.name!r}: {world} holds one that"
-                f" is described otherwise, in {other[0]}; take it out of that file, or out of the"
+                f"Failure - entity already exists. (model {model.name!r}: {world} contains a model"
+                f" of that name that differs in {other[0]}; remove it from that file or from the"
                 " launch file)")
-        return (f"{world} holds '{model.name}' already, as described; it stays where the world has"
-                " it")
+        return (f"{world} already contains an identical model '{model.name}'; kept at its pose in"
+                " the world file")
 
     def _spawn_light(self, light: Light, name: Optional[str], initial: Pose, frame: str) -> str:
         light = with_changes(light, name=light.name if name is None else name,
                              pose=compose(initial, light.pose))
         if any(one.name == light.name for one in self._simulator.lights.all()):
             raise CommandError(f"Failure - entity already exists. (light {light.name!r})")
-        with in_gazebos_words("", NO_FRAME):
+        with gazebo_prefix("", NO_FRAME):
             self._simulator.lights.add(light, frame)
         return "Successfully spawned entity"
 
@@ -178,8 +182,8 @@ class ModelServices:
             self._log(issue)
 
     def delete(self, request: Any, _response: Any) -> str:
-        """Take a model out; it is in no list any more when this answers."""
-        with in_gazebos_words("model does not exist"):
+        """Delete a model; it is gone when this returns."""
+        with gazebo_prefix("model does not exist"):
             self._simulator.models.delete(request.model_name)
         return "successfully deleted model"
 

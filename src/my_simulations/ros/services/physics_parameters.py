@@ -1,4 +1,4 @@
-"""The physics settings that clients may change: names, ranges, and what they are in the world."""
+"""Physics parameters of services and dynamic_reconfigure: names, ranges, current values."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
@@ -12,25 +12,25 @@ from ..message_conversion import between
 Value = Union[bool, int, float]
 
 SHORTEST_STEP = 1e-6
-"""s; below it a second would be more steps than anybody waits for."""
+"""s; smallest accepted step size."""
 
 STRONGEST_GRAVITY = 1000.0
-"""m/s^2, each component; the sun's is 274."""
+"""m/s^2; largest accepted gravity component."""
 
 FASTEST = 1e6
-"""Hz; a larger `max_update_rate` means unthrottled, which is 0."""
+"""Hz; largest accepted `max_update_rate`; 0 and less mean as fast as possible."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One of the 15 (Gazebo behaviour: names, types, defaults and ranges).
+    """One of the 15 parameters (names, types, defaults and ranges: Gazebo behaviour).
 
     Attributes:
         name: in dynamic_reconfigure; those of `ode` also in gazebo_msgs/ODEPhysics.
-        default: what dynamic_reconfigure calls so; its type is the parameter's.
-        low, high: the range; dynamic_reconfigure clamps to it.
-        meaning: for people.
-        ode: the field of `description.world.OdePhysics`, "" for the others.
+        default: default value in dynamic_reconfigure; its type is the parameter's.
+        low, high: range; dynamic_reconfigure clamps to it.
+        meaning: description shown by rqt_reconfigure.
+        ode: field of `description.world.OdePhysics`; "" for parameters that are none.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Parameter:
     ode: str = ""
 
     def checked(self, value: Value) -> Value:
-        """The value itself. Raises CommandError when it is not in the range."""
+        """The value. Raises CommandError if it is out of range."""
         if isinstance(value, bool):
             return value
         between(value, self.low, self.high, self.name)
@@ -49,8 +49,9 @@ class Parameter:
 
 
 PARAMETERS: Tuple[Parameter, ...] = (
-    Parameter("time_step", 0.001, 0.0, 10.0, "step size in s"),
-    Parameter("max_update_rate", 60.0, 0.0, 1000.0, "steps a second of wall time, 0 unthrottled"),
+    Parameter("time_step", 0.001, 0.0, 10.0, "step size (s)"),
+    Parameter("max_update_rate", 60.0, 0.0, 1000.0, "steps per second of wall time (Hz), 0 for "
+                                                    "as fast as possible"),
     Parameter("gravity_x", 0.0, -100.0, 100.0, "m/s^2"),
     Parameter("gravity_y", 0.0, -100.0, 100.0, "m/s^2"),
     Parameter("gravity_z", -9.8, -100.0, 100.0, "m/s^2"),
@@ -71,7 +72,7 @@ ODE = tuple(parameter for parameter in PARAMETERS if parameter.ode)
 
 
 def present(simulator: Simulator) -> Dict[str, Value]:
-    """All 15 as they are now, each in its parameter's type."""
+    """Current values of all 15 parameters, each in its parameter's type."""
     physics, gravity = simulator.physics.settings, simulator.physics.gravity
     found: Dict[str, Value] = {
         "time_step": physics.max_step_size, "max_update_rate": physics.real_time_update_rate,
@@ -82,15 +83,15 @@ def present(simulator: Simulator) -> Dict[str, Value]:
 
 
 def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
-    """Give the world these values of the 15; the others stay.
+    """Set some of the 15 parameters; the others keep their values.
 
     Raises:
-        CommandError: one is out of range; nothing has changed.
+        CommandError: a value is out of range; nothing has changed.
     """
     wanted = {**present(simulator), **values}
     step = wanted["time_step"]
     if not is_finite(step) or not SHORTEST_STEP <= step <= 10.0:
-        raise CommandError(f"time_step must be in {SHORTEST_STEP:g} to 10 s, it is {step:g}")
+        raise CommandError(f"time_step must be between {SHORTEST_STEP:g} and 10 s, is {step:g}")
     rate = between(wanted["max_update_rate"], 0.0, FASTEST, "max_update_rate", "Hz")
     gravity: Vec3 = tuple(  # type: ignore[assignment]
         between(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,

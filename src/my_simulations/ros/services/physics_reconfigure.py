@@ -30,11 +30,11 @@ GROUP = "Default"
 LEVEL = 1
 KINDS = {bool: ("bool", "bools", BoolParameter), int: ("int", "ints", IntParameter),
          float: ("double", "doubles", DoubleParameter)}
-"""By the type of a value: its word, its list in a Config, and the element's class."""
+"""By Python type: name of the type, its list in a Config, and the class of an element."""
 
 
-class Reconfigure:
-    """Describes the settings, changes them on request and tells of every change."""
+class ReconfigureServer:
+    """Publishes and changes the physics parameters as dynamic_reconfigure does."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
@@ -47,27 +47,31 @@ class Reconfigure:
         self._tell()
 
     def set(self, request: Any, response: Any) -> str:
-        """Change what the request names; numbers beyond a parameter's range are clamped to it."""
+        """Set the parameters of the request, clamped to their ranges.
+
+        Raises:
+            CommandError: an unknown parameter, or a value that is not finite.
+        """
         known = {parameter.name: parameter for parameter in PARAMETERS}
         wanted: Dict[str, Value] = {}
         for kind, (word, field, _) in KINDS.items():
             for element in getattr(request.config, field):
                 parameter = known.get(element.name)
                 if parameter is None or type(parameter.default) is not kind:
-                    raise CommandError(f"there is no {word} parameter {element.name!r}")
+                    raise CommandError(f"unknown {word} parameter {element.name!r}")
                 wanted[element.name] = _clamped(parameter, element.value)
         for element in request.config.strs:
-            raise CommandError(f"there is no str parameter {element.name!r}")
+            raise CommandError(f"unknown str parameter {element.name!r}")
         change(self._simulator, wanted)
         self._tell()
         response.config = _config(present(self._simulator))
         return ""
 
     def keep_up(self) -> None:
-        """Tell of changes that were made elsewhere, and keep the parameter server up to date.
+        """Publish changes made by other means, and update the parameter server.
 
         Raises:
-            OSError: the master does not answer; the next call tries again.
+            OSError: the master does not respond; the next call tries again.
         """
         self._tell()
         with self._lock:
@@ -78,7 +82,7 @@ class Reconfigure:
             self._stored = values
 
     def forget_stored(self) -> None:
-        """A new parameter server knows nothing: `keep_up` stores everything again."""
+        """Have `keep_up` store all values again, on a new parameter server."""
         with self._lock:
             self._stored = None
 
@@ -91,7 +95,7 @@ class Reconfigure:
 
 
 def description() -> ConfigDescription:
-    """Names, types, ranges and defaults, in one group."""
+    """Names, types, ranges and defaults of the parameters, in one group."""
     parameters = [ParamDescription(parameter.name, KINDS[type(parameter.default)][0], LEVEL,
                                    parameter.meaning, "") for parameter in PARAMETERS]
     return ConfigDescription(
@@ -113,5 +117,5 @@ def _clamped(parameter: Parameter, value: Value) -> Value:
     if isinstance(value, bool):
         return value
     if not is_finite(value):
-        raise CommandError(f"{parameter.name} is not a finite number: {value}")
+        raise CommandError(f"{parameter.name} must be finite, is {value}")
     return max(parameter.low, min(parameter.high, value))

@@ -1,4 +1,4 @@
-"""The service that saves the running world."""
+"""Service save_world."""
 from __future__ import annotations
 
 from typing import Any, List, Optional
@@ -10,20 +10,24 @@ from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 
 ROOTS = "~save_roots"
-"""Parameter: a list of the folders below which worlds may be saved, instead of the usual ones."""
+"""Parameter: folders below which worlds may be saved; replaces the default list."""
 
 
 class SaveService:
-    """save_world."""
+    """Saves the running world to a file."""
 
     def __init__(self, simulator: Simulator, resolver: Resolver, caller: str = "") -> None:
-        """`caller`: folder in which the command was typed; worlds may be saved there."""
+        """`caller`: working directory of the user who started the node; an allowed folder."""
         self._caller = caller
         self._simulator = simulator
         self._resolver = resolver
 
     def save(self, request: Any, response: Any) -> str:
-        """The world as it is now, to a file."""
+        """Save the world in its current state.
+
+        Raises:
+            CommandError: the path is not allowed or cannot be written.
+        """
         # Imported with the first request: start-up time counts.
         from ...simulator.saving import default_roots, save_world
 
@@ -35,7 +39,7 @@ class SaveService:
             self._simulator, request.path, roots=roots, resolver=self._resolver,
             overwrite=request.overwrite, inline=request.inline, state=request.state,
             launched=request.launched)
-        without = (f" without {', '.join(left_out)}, which the launch file spawns"
+        without = (f", without models spawned by the launch file: {', '.join(left_out)}"
                    if left_out else "")
         return f"saved to {response.path}{without}"
 
@@ -45,6 +49,6 @@ def _roots() -> Optional[List[str]]:
     if roots is None:
         return None
     if not isinstance(roots, list) or not all(isinstance(root, str) and root for root in roots):
-        raise CommandError(f"the parameter {rospy.resolve_name(ROOTS)} must be a list of folders,"
-                           f" it is {roots!r}")
+        raise CommandError(f"parameter {rospy.resolve_name(ROOTS)} must be a list of folders,"
+                           f" is {roots!r}")
     return roots

@@ -51,8 +51,8 @@ def checked_name(name: str) -> str:
     if not name.strip():
         raise CommandError("model_name is empty")
     if "::" in name:
-        raise CommandError(f"model_name {name!r} contains '::', which separates a model's name "
-                           "from its link's")
+        raise CommandError(f"model_name {name!r} must not contain '::', the separator of scoped "
+                           "names")
     return name
 
 

@@ -17,19 +17,19 @@ from ..message_conversion import (
     seconds_and_nanoseconds,
     twist_from_message,
 )
-from .entity_errors import in_gazebos_words
+from .entity_errors import gazebo_prefix
 
 NO_FRAME = "specified reference frame entity does not exist"
 
 
 class _CountedResponse(srv.GetModelStateResponse):
-    """Keeps our `header.seq`; in a class that says it has a header, rospy puts its own there."""
+    """Keeps our `header.seq`, which rospy would overwrite in a class that has a header."""
 
     _has_header = False
 
 
 class StateServices:
-    """Where models and links are, and putting them elsewhere."""
+    """Reads and sets poses and twists of models and links."""
 
     responses = {"get_model": _CountedResponse}
 
@@ -39,9 +39,9 @@ class StateServices:
         self._lock = threading.Lock()
 
     def get_model(self, request: Any, response: Any) -> str:
-        """Pose and twist of a model in a frame; `seq` counts the calls for this model (Gazebo)."""
+        """Pose and twist of a model in a frame; `seq` counts calls per model (Gazebo behaviour)."""
         name, frame = request.model_name, request.relative_entity_name
-        with in_gazebos_words("model does not exist"):
+        with gazebo_prefix("model does not exist"):
             self._simulator.models.get(name)
         with self._lock:
             self._calls[name] += 1
@@ -49,15 +49,15 @@ class StateServices:
         response.header.frame_id = frame
         stamp = response.header.stamp
         stamp.secs, stamp.nsecs = seconds_and_nanoseconds(self._simulator.clock.sim_ns)
-        with in_gazebos_words("model does not exist", "reference relative_entity_name not found"):
+        with gazebo_prefix("model does not exist", "reference relative_entity_name not found"):
             pose, twist = self._simulator.states.model_state(name, frame)
         fill_pose(response.pose, pose)
         fill_twist(response.twist, twist)
         return "got properties"
 
     def get_link(self, request: Any, response: Any) -> str:
-        """Pose and twist of a link, named scoped or not, in a frame."""
-        with in_gazebos_words("link not found", "reference reference_frame not found"):
+        """Pose and twist of a link, by scoped or unscoped name, in a frame."""
+        with gazebo_prefix("link not found", "reference reference_frame not found"):
             pose, twist = self._simulator.states.link_state(request.link_name,
                                                             request.reference_frame)
         state = response.link_state
@@ -67,12 +67,12 @@ class StateServices:
         return "got state"
 
     def set_model(self, request: Any, _response: Any) -> str:
-        """Move a model; its next state shows it."""
+        """Set pose and twist of a model; reads after the response return them."""
         self.move_model(request.model_state)
         return "set model state done"
 
     def set_link(self, request: Any, _response: Any) -> str:
-        """Move one link."""
+        """Set pose and twist of a link."""
         self.move_link(request.link_state)
         return "success"
 
@@ -80,10 +80,10 @@ class StateServices:
         """Apply a gazebo_msgs/ModelState.
 
         Raises:
-            CommandError: unknown model or frame, or a number that is not finite.
+            CommandError: unknown model or frame, or a value that is NaN or infinite.
         """
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
-        with in_gazebos_words("model does not exist", NO_FRAME):
+        with gazebo_prefix("model does not exist", NO_FRAME):
             self._simulator.states.set_model_state(state.model_name, pose, twist,
                                                    state.reference_frame)
 
@@ -91,22 +91,22 @@ class StateServices:
         """Apply a gazebo_msgs/LinkState.
 
         Raises:
-            CommandError: unknown link or frame, or a number that is not finite.
+            CommandError: unknown link or frame, or a value that is NaN or infinite.
         """
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
-        with in_gazebos_words("link does not exist", NO_FRAME):
+        with gazebo_prefix("link does not exist", NO_FRAME):
             self._simulator.states.set_link_state(state.link_name, pose, twist,
                                                   state.reference_frame)
 
     def on_model_state(self, state: Any) -> None:
-        """What `move_model` does, faults to the log."""
+        """Subscriber callback of `move_model`; errors are logged."""
         try:
             self.move_model(state)
         except CommandError as fault:
             rospy.logerr_throttle_identical(1.0, f"SetModelState (topic): {fault}")
 
     def on_link_state(self, state: Any) -> None:
-        """What `move_link` does, faults to the log."""
+        """Subscriber callback of `move_link`; errors are logged."""
         try:
             self.move_link(state)
         except CommandError as fault:

@@ -1,11 +1,11 @@
-"""Services about the world as a whole: its models, its physics, its clock."""
+"""Services for the whole world: models, physics properties, pause and reset."""
 from __future__ import annotations
 
 from typing import Any
 
 from ...description.scoped_names import SCOPE
 from ...simulator.simulator import Simulator
-from .entity_errors import in_gazebos_words
+from .entity_errors import gazebo_prefix
 from .physics_parameters import ODE, change, present
 
 
@@ -16,15 +16,15 @@ class WorldServices:
         self._simulator = simulator
 
     def get_world(self, _request: Any, response: Any) -> str:
-        """Sim time in seconds and the names of the models, in load order."""
+        """Sim time (s) and the names of the models, in load order."""
         response.sim_time = self._simulator.clock.sim_ns / 1e9
         response.model_names = list(self._simulator.models.names())
         response.rendering_enabled = True
         return "got properties"
 
     def get_model(self, request: Any, response: Any) -> str:
-        """Links, collisions and joints of a model; names unscoped, as in Gazebo."""
-        with in_gazebos_words("model does not exist"):
+        """Links, collisions and joints of a model, by unscoped names (Gazebo behaviour)."""
+        with gazebo_prefix("model does not exist"):
             model = self._simulator.models.get(request.model_name)
         links = [link for link in model.links if SCOPE not in link.name]
         response.canonical_body_name = model.canonical_link or (links[0].name if links else "")
@@ -37,7 +37,7 @@ class WorldServices:
         return "got properties"
 
     def get_physics(self, _request: Any, response: Any) -> str:
-        """Step size (s), rate (Hz of steps, 0 unthrottled), gravity and the stored ODE values."""
+        """Step size (s), update rate (Hz, 0: unthrottled), gravity (m/s^2), ODE parameters."""
         values = present(self._simulator)
         response.time_step = values["time_step"]
         response.pause = self._simulator.clock.paused
@@ -49,7 +49,7 @@ class WorldServices:
         return "got properties"
 
     def set_physics(self, request: Any, _response: Any) -> str:
-        """Replace all of them; nothing changes when one is refused."""
+        """Set all physics properties; nothing changes if one is rejected."""
         gravity = request.gravity
         change(self._simulator, {
             "time_step": request.time_step, "max_update_rate": request.max_update_rate,
@@ -59,26 +59,26 @@ class WorldServices:
         return "physics engine updated"
 
     def pause(self, _request: Any, _response: Any) -> str:
-        """Stop after the running step."""
+        """Pause after the current step."""
         self._simulator.clock.pause()
         return ""
 
     def unpause(self, _request: Any, _response: Any) -> str:
-        """Go on."""
+        """Resume."""
         self._simulator.clock.unpause()
         return ""
 
     def reset_world(self, _request: Any, _response: Any) -> str:
-        """Models to their load poses, velocities zero; joints and sim time stay (Gazebo)."""
+        """Reset model poses and velocities; joint positions and sim time are kept (Gazebo)."""
         self._simulator.resets.reset_world()
         return ""
 
     def reset_simulation(self, _request: Any, _response: Any) -> str:
-        """All of that, joints to their load positions, sim time to zero (Gazebo)."""
+        """Reset model poses, velocities, joint positions and sim time (Gazebo)."""
         self._simulator.resets.reset_simulation()
         return ""
 
     def reset_time(self, _request: Any, _response: Any) -> str:
-        """Sim time to zero, everything else goes on as it is."""
+        """Reset sim time to 0; everything else is kept."""
         self._simulator.resets.reset_time()
         return ""

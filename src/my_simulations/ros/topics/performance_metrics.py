@@ -1,4 +1,4 @@
-"""`performance_metrics`: how fast the world runs, five times a second while somebody listens."""
+"""Topic `performance_metrics`: the real-time factor, at 5 Hz while there are subscribers."""
 from __future__ import annotations
 
 import time
@@ -15,11 +15,11 @@ from .worker_thread import WorkerThread
 
 TOPIC = "performance_metrics"
 PERIOD_SECONDS = 0.2
-"""Gazebo behaviour: 5 Hz at most."""
+"""Wall seconds between messages (Gazebo behaviour)."""
 
 
 class Metrics(WorkerThread):
-    """Sleeps until there is a subscriber."""
+    """Publishes the topic; its thread sleeps while there is no subscriber."""
 
     def __init__(self, simulator: Simulator) -> None:
         super().__init__("metrics")
@@ -34,7 +34,7 @@ class Metrics(WorkerThread):
             self._measure()
 
     def _measure(self) -> None:
-        """Publish until nobody listens any more."""
+        """Publish until there is no subscriber."""
         sim, real = self._simulator.clock.sim_ns, time.monotonic()
         while not self._stop.wait(PERIOD_SECONDS) and self._publisher.get_num_connections():
             sim_now, real_now = self._simulator.clock.sim_ns, time.monotonic()

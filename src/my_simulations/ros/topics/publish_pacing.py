@@ -1,19 +1,19 @@
-"""Which steps to publish, and how many messages a wall second may cost."""
+"""Selects the steps to publish, and limits messages per wall second."""
 from __future__ import annotations
 
 from typing import Callable, List, Optional, Tuple
 
 CLOCK_MESSAGES_PER_SECOND = 1000.0
-"""`/clock` messages a wall second when the world runs faster than real time."""
+"""Most `/clock` messages per wall second if the world runs faster than real time."""
 
 BURST = 250.0
-"""Messages saved up by a quiet spell: what a stalled publisher may send at once."""
+"""Most messages in one burst, after a pause."""
 
 
 class TokenBucket:
-    """Allows `rate` messages a second on average and at most `capacity` at once.
+    """Allows `rate` messages per second on average and at most `capacity` at once.
 
-    Time is passed in (seconds of a monotonic clock), so that tests need none.
+    Time (monotonic, s) is passed in, so that tests need no clock.
     """
 
     def __init__(self, rate: float, capacity: float, now: float) -> None:
@@ -21,23 +21,23 @@ class TokenBucket:
         self._tokens, self._at = capacity, now
 
     def available(self, now: float) -> int:
-        """How many messages may go out now."""
+        """How many messages may be sent now."""
         self._tokens = min(self._capacity, self._tokens + (now - self._at) * self._rate)
         self._at = now
         return int(self._tokens)
 
     def take(self, count: int) -> None:
-        """Count messages that went out; may go below zero, which is paid back first."""
+        """Count sent messages; the balance may become negative."""
         self._tokens -= count
 
 
 class StepSelector:
-    """Picks the steps whose `/clock` goes out, of those made since the last look.
+    """Selects the steps whose `/clock` is published, of those made since the last poll.
 
-    Every step in real time; with `period_ns` at most one a period of sim time; thinned evenly when
-    there are more than the wall clock allows. The newest is always among them, so that a listener's
-    time is never older than one look. A step count or time that went back (reset, restart) starts
-    anew at once.
+    Every step in real time; with `period_ns` at most one per period of sim time; thinned evenly if
+    there are more than CLOCK_MESSAGES_PER_SECOND. The newest is always among them, so that a
+    subscriber is never behind by more than one poll. If step count or time decreased (reset,
+    restart), the newest is published at once.
     """
 
     def __init__(self, step: int, sim_ns: int, now: float, period_ns: int = 0) -> None:
@@ -99,11 +99,11 @@ class StepSelector:
         return found
 
 
-class StateGate:
-    """Says when a state message is due: every step, or at most `rate` times a second of sim time.
+class StateSchedule:
+    """Decides when a state message is due: every step, or at most `rate` Hz of sim time.
 
-    A world that stands still is shown whenever it is not as last shown, whatever the rate; and a
-    new listener is owed one message.
+    A paused world is published whenever it changes, whatever the rate; a new subscriber gets one
+    message at once.
     """
 
     def __init__(self, rate: float) -> None:
@@ -114,13 +114,13 @@ class StateGate:
 
     def due(self, step: int, sim_ns: int, owed: bool,
             standing: Callable[[], Optional[Tuple[int, int]]]) -> bool:
-        """True when a message shall go out now.
+        """Whether to publish a message now.
 
         Args:
-            step: step count now.
+            step: current step count.
             sim_ns: its sim time.
-            owed: a listener has come.
-            standing: what a world that stands still looks like (any key); None while it runs.
+            owed: there is a new subscriber.
+            standing: returns a key of the state of a paused world; None while it runs.
         """
         waited = sim_ns - self._published_ns
         stepped, self._step = step != self._step, step
@@ -134,5 +134,5 @@ class StateGate:
         return found
 
     def sent(self, shown: Tuple[int, int]) -> None:
-        """A message went out; `shown` is the key of what it shows."""
+        """Note that a message was published; `shown` is the key of its state."""
         self._shown = shown

@@ -1,9 +1,9 @@
-"""Topic messages as bytes, built in bulk.
+"""State messages, serialised in bulk.
 
 rospy builds and packs one Pose and one Twist object per entity, about 2.3 microseconds each; at
 1000 messages a second with 100 models that is a quarter of a core. A link's row in the ring has the
-layout of a geometry_msgs/Pose followed by a Twist, so here the bytes go from the ring to the wire
-as they are, and the names, which hardly ever change, are packed once.
+layout of a geometry_msgs/Pose followed by a Twist, so here the bytes are copied from the
+ring, and the names, which rarely change, are packed once.
 """
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import struct
 from typing import List, Sequence, Tuple
 
 from ...geometry import Pose, compose
-from ...simulator.row_layout import Place
+from ...simulator.row_layout import FrameLocation
 
 POSE_BYTES, TWIST_BYTES = 7 * 8, 6 * 8
 ROW_BYTES = POSE_BYTES + TWIST_BYTES
-"""A row of the ring's link table: position, orientation x y z w, linear, angular."""
+"""Bytes of a row of the link table: position, orientation x, y, z, w, linear, angular."""
 
 _COUNT = struct.Struct("<I")
 _TIME = struct.Struct("<II")
@@ -39,24 +39,24 @@ def packed_time(nanoseconds: int) -> bytes:
 
 
 class StatesBuffer:
-    """The bytes of a ModelStates or LinkStates message, packed again only as far as needed."""
+    """The bytes of a ModelStates or LinkStates message; repacks only what has changed."""
 
     def __init__(self) -> None:
         self._revision = self._sequence = -1
         self._names = self._count = self._packed = b""
         self._at: List[int] = []
-        self._special: List[Tuple[int, Place]] = []
+        self._special: List[Tuple[int, FrameLocation]] = []
 
-    def pack(self, revision: int, sequence: int, names: Sequence[str], places: Sequence[Place],
-             links: bytes) -> bytes:
+    def pack(self, revision: int, sequence: int, names: Sequence[str],
+             places: Sequence[FrameLocation], links: bytes) -> bytes:
         """The message of three parallel arrays.
 
         Args:
-            revision: changes when names or places do.
-            sequence: changes when `links` does.
-            names: one an entity.
-            places: where each is, see `simulator.layout`.
-            links: the link rows of a snapshot.
+            revision: changes with names or places.
+            sequence: changes with `links`.
+            names: names of the entities.
+            places: their locations, see `simulator.row_layout`.
+            links: the link rows of a snapshot, as bytes.
         """
         if revision != self._revision:
             self._names, self._count = packed_strings(names), _COUNT.pack(len(names))

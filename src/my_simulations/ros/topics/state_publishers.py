@@ -1,7 +1,7 @@
-"""`/clock`, `model_states` and `link_states`, published from the ring by one thread.
+"""Topics `/clock`, `model_states` and `link_states`, published by one thread.
 
-Everything here is paced by the wall clock and by the engine's steps: waiting on ROS time would be
-waiting on what this thread publishes.
+The thread waits on the wall clock and on the engine's steps, never on ROS time, which it publishes
+itself.
 """
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ import rospy
 from gazebo_msgs.msg import LinkStates, ModelStates
 from rosgraph_msgs.msg import Clock
 
-from ...simulator.row_layout import Layout, Place
+from ...simulator.row_layout import FrameLocation, RowLayout
 from ...simulator.simulator import Simulator
 from ..registration import publisher
-from .publish_pacing import StateGate, StepSelector, TokenBucket
+from .publish_pacing import StateSchedule, StepSelector, TokenBucket
 from .state_buffers import StatesBuffer, packed_time
 from .subscriber_events import SubscriberEvents
 from .worker_thread import WorkerThread
 
 LOOK_SECONDS = 0.001
-"""Between two looks at a world that makes many steps in that time."""
+"""Wall seconds between polls of a world that makes many steps in that time."""
 
 FEW_STEPS = 2
-"""As many as a world in real time makes between two looks, one of them a little late."""
+"""Steps per poll of a world in real time, one poll a little late."""
 
 PAUSED_LOOK_SECONDS = 0.05
-"""Between two looks at a world that does not step."""
+"""Wall seconds between polls of a paused world."""
 
 STATES_QUEUE = 50
 
 PASSED_BY = 12
-"""Steps and snapshots that a late look goes back; the ring holds four snapshots more."""
+"""Most past snapshots that a late poll publishes; the ring holds four more."""
 
 STATES_PER_SECOND = 1000.0
-"""State messages a wall second up to which a late look goes back at all."""
+"""State messages per wall second above which a late poll publishes the newest state only."""
 
 
 class _PackedClock(Clock):
-    """A Clock that is already bytes."""
+    """A Clock that is already serialised."""
 
     __slots__ = ["packed"]
 
@@ -49,7 +49,7 @@ class _PackedClock(Clock):
 
 
 class _PackedModelStates(ModelStates):
-    """A ModelStates that is already bytes."""
+    """A ModelStates that is already serialised."""
 
     __slots__ = ["packed"]
 
@@ -58,7 +58,7 @@ class _PackedModelStates(ModelStates):
 
 
 class _PackedLinkStates(LinkStates):
-    """A LinkStates that is already bytes."""
+    """A LinkStates that is already serialised."""
 
     __slots__ = ["packed"]
 
@@ -66,58 +66,58 @@ class _PackedLinkStates(LinkStates):
         buff.write(self.packed)
 
 
-class Channel:
-    """One state topic: its publisher, whether a message is owed, and when one is due."""
+class StateTopic:
+    """One state topic: its publisher and its schedule."""
 
     def __init__(self, topic: str, packed_class: Any,
-                 entities: Callable[[Layout], Tuple[List[str], List[Place]]], rate: float,
-                 wake: threading.Event) -> None:
+                 entities: Callable[[RowLayout], Tuple[List[str], List[FrameLocation]]],
+                 rate: float, wake: threading.Event) -> None:
         self._entities = entities
-        self._gate = StateGate(rate)
+        self._schedule = StateSchedule(rate)
         self._buffer = StatesBuffer()
         self._message = packed_class()
         self._owed = threading.Event()
         self._wake = wake
         self.publisher = publisher(topic, queue_size=STATES_QUEUE, tcp_nodelay=True,
-                                   subscriber_listener=SubscriberEvents(self._hear))
+                                   subscriber_listener=SubscriberEvents(self._on_subscriber))
 
-    def _hear(self) -> None:
+    def _on_subscriber(self) -> None:
         self._owed.set()
         self._wake.set()
 
     @property
     def wanted(self) -> bool:
-        """True while anybody listens."""
+        """Whether there are subscribers."""
         return self.publisher.get_num_connections() > 0
 
     def is_due(self, step: int, sim_ns: int,
                standing: Callable[[], Optional[Tuple[int, int]]]) -> bool:
-        """True when a message shall go out now; see `StateGate.due`."""
+        """Whether to publish now; see `StateSchedule.due`."""
         owed = self._owed.is_set()
         self._owed.clear()
-        return self._gate.due(step, sim_ns, owed, standing)
+        return self._schedule.due(step, sim_ns, owed, standing)
 
-    def send(self, layout: Layout, sequence: int, links: bytes) -> None:
-        """Publish what `StateFeed.states` gave."""
+    def send(self, layout: RowLayout, sequence: int, links: bytes) -> None:
+        """Publish the rows that `StateFeed.states` returned."""
         names, places = self._entities(layout)
         self._message.packed = self._buffer.pack(layout.revision, sequence, names, places, links)
         self.publisher.publish(self._message)
-        self._gate.sent((layout.revision, sequence))
+        self._schedule.sent((layout.revision, sequence))
 
 
 class Publishers(WorkerThread):
-    """The thread behind the three topics."""
+    """The publishing thread of the three topics."""
 
     def __init__(self, simulator: Simulator, clock: rospy.Publisher, *, clock_hz: float = 0.0,
                  states_hz: float = 0.0, states: bool = True) -> None:
         """Advertise the state topics.
 
         Args:
-            simulator: what to publish; started later than this.
+            simulator: the world to publish.
             clock: the advertised `/clock`.
-            clock_hz: at most this many `/clock` a second of sim time; 0 for one a step.
-            states_hz: likewise for the state topics.
-            states: False leaves the state topics out.
+            clock_hz: rate of `/clock` in Hz of sim time; 0 for every step.
+            states_hz: rate of the state topics in Hz of sim time; 0 for every step.
+            states: whether to advertise the state topics.
         """
         super().__init__("publishers")
         self._simulator = simulator
@@ -125,17 +125,17 @@ class Publishers(WorkerThread):
         self._states_hz = states_hz
         self._demand = (-1.0, False)
         self._spare = TokenBucket(STATES_PER_SECOND, STATES_QUEUE, time.monotonic())
-        self._sent = (-1, 0, 0)  # revision, sequence and step of the newest states that went out
+        self._sent = (-1, 0, 0)  # revision, sequence and step of the newest published states
         self._clock_message = _PackedClock()
         self._clock = clock
         self._clock.impl.add_subscriber_listener(SubscriberEvents(self._wake.set))
-        self._channels: List[Channel] = []
+        self._state_topics: List[StateTopic] = []
         if states:
-            self._channels = [
-                Channel("model_states", _PackedModelStates,
+            self._state_topics = [
+                StateTopic("model_states", _PackedModelStates,
                         lambda layout: (layout.model_names, layout.model_places), states_hz,
                         self._wake),
-                Channel("link_states", _PackedLinkStates,
+                StateTopic("link_states", _PackedLinkStates,
                         lambda layout: (layout.link_names, layout.link_places), states_hz,
                         self._wake),
             ]
@@ -145,7 +145,7 @@ class Publishers(WorkerThread):
         selector = StepSelector(step, clock.sim_ns(step), time.monotonic(), self._clock_period_ns)
         while not self._stop.is_set():
             clock_wanted = self._clock.get_num_connections() > 0
-            states_wanted = any(channel.wanted for channel in self._channels)
+            states_wanted = any(channel.wanted for channel in self._state_topics)
             self._set_demand(clock_wanted, states_wanted)
             if not (clock_wanted or states_wanted):
                 self._sleep()
@@ -158,7 +158,7 @@ class Publishers(WorkerThread):
                 self._publish(selector, states_wanted)
             except rospy.ROSException as fault:
                 if not self._stop.is_set():
-                    rospy.logerr("publishing failed: %s", fault)
+                    rospy.logerr("cannot publish: %s", fault)
                     self._stop.wait(1.0)
             self._pace(began, selector.step - before, selector.step)
 
@@ -172,7 +172,7 @@ class Publishers(WorkerThread):
             self._simulator.feed.request("topics", states_hz=hz, notify=demand[1])
 
     def _pace(self, began: float, made: int, step: int) -> None:
-        """Wait for the next step; in a world of many steps a millisecond, look once in one."""
+        """Wait for the next step; if there are many in a millisecond, poll once in one."""
         if made > FEW_STEPS:
             left = began + LOOK_SECONDS - time.monotonic()
             if left > 0.0:
@@ -187,7 +187,7 @@ class Publishers(WorkerThread):
             self._clock.publish(self._clock_message)
         if states_wanted:
             sim_ns = clock.sim_ns(step)
-            due = [channel for channel in self._channels
+            due = [channel for channel in self._state_topics
                    if channel.wanted and channel.is_due(step, sim_ns, self._standing)]
             if due:
                 layout, sequence, links = self._simulator.feed.states()
@@ -202,10 +202,10 @@ class Publishers(WorkerThread):
 
     def _passed_by(self, revision: int, sequence: int, step: int,
                    size: int) -> List[Tuple[int, bytes]]:
-        """States of the steps since the last message, but for the newest: number and rows.
+        """States between the last message and the newest: sequence number and rows of each.
 
-        Only where every step is to be told, in a world that has not changed otherwise, and where
-        this thread came a little late: the ring forgets the rest.
+        Only if every step is to be published, models have not changed, and the thread was only a
+        little late: the ring keeps few snapshots.
         """
         known, last, before = self._sent
         missed = min(step - before - 1, PASSED_BY, self._spare.available(time.monotonic()))
@@ -222,7 +222,7 @@ class Publishers(WorkerThread):
         return [states[-1] for states in there if states]
 
     def _standing(self) -> Optional[Tuple[int, int]]:
-        """What a world that stands still looks like; None while it runs."""
+        """Key of the state of a paused world; None while it runs."""
         if self._simulator.clock.running:
             return None
         layout, sequence, _ = self._simulator.feed.states()

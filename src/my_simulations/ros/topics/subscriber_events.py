@@ -1,4 +1,4 @@
-"""Hearing of subscribers that come and go."""
+"""Notification of new and lost subscribers."""
 from __future__ import annotations
 
 from typing import Any, Callable
@@ -7,7 +7,7 @@ import rospy
 
 
 class SubscriberEvents(rospy.SubscribeListener):
-    """Tells of every subscriber that comes or goes."""
+    """Calls a function whenever a subscriber connects or disconnects."""
 
     def __init__(self, tell: Callable[[], None]) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Threads that work while somebody listens, and sleep else."""
+"""A thread that sleeps while there is nothing to do."""
 from __future__ import annotations
 
 import threading
@@ -12,31 +12,31 @@ class WorkerThread(ABC):
 
     Attributes:
         _wake: set from any thread, ends `_sleep`.
-        _stop: set once `_run` shall return.
+        _stop: set to make `_run` return.
     """
 
     def __init__(self, name: str) -> None:
-        """Not started yet; `name` is the thread's."""
+        """`name`: name of the thread, which is not started yet."""
         self._wake = threading.Event()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def start(self) -> None:
-        """Begin to publish."""
+        """Start the thread."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End, and wait for the end, 2 s at most."""
+        """Stop the thread; waits 2 s at most."""
         self._stop.set()
         self._wake.set()
         if self._thread.is_alive():
             self._thread.join(_STOP_SECONDS)
 
     def _sleep(self) -> None:
-        """Wait until woken; at once when that has happened since the last sleep."""
+        """Wait until woken; returns at once if that happened since the last call."""
         self._wake.wait()
         self._wake.clear()
 
     @abstractmethod
     def _run(self) -> None:
-        """What the thread does until `_stop` is set."""
+        """Body of the thread; returns once `_stop` is set."""

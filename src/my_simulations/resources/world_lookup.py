@@ -68,7 +68,7 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
         caller: folder in which the command was typed; "" for the working directory.
 
     Raises:
-        NotFound: it is in none of them; `tried` names every place.
+        ResourceNotFoundError: it is in none of them; `tried` names every place.
     """
     name = os.path.expanduser(name.strip())
     tried: List[str] = []
@@ -93,11 +93,11 @@ def advice_on(name: str, caller: str = "") -> str:
     same = [os.path.join(folder, file) for folder, file in known
             if os.path.basename(file) == base]
     if same:
-        return f"a world of that name is {same[0]}"
+        return f"did you mean {same[0]}?"
     stems = {_stem(file): file for _, file in reversed(known)}
     near = difflib.get_close_matches(_stem(base), stems, 1, 0.7)
-    meant = f"did you mean {stems[near[0]]}? Else " if near else ""
-    return f"{meant}give its full path, or a folder of GAZEBO_RESOURCE_PATH that holds it"
+    meant = f"did you mean {stems[near[0]]}? Otherwise " if near else ""
+    return f"{meant}give its full path, or add its folder to GAZEBO_RESOURCE_PATH"
 
 
 def _stem(file: str) -> str:

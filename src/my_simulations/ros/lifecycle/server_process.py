@@ -1,7 +1,7 @@
-"""The life of the server process: engine, world, node, end.
+"""Life cycle of the server process: engine, world, node, shutdown.
 
-What costs time is done at once and side by side: the engine process starts before anything else is
-imported, the world is read and loaded in a thread, and meanwhile rospy is imported and registered.
+Slow phases run in parallel: the engine process starts before anything else is imported, a thread
+reads and loads the world, and meanwhile rospy is imported and registered.
 """
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 
 NODE = "gazebo"
 END_SECONDS = 3.0
-"""Longest orderly end; a thread that is stuck in a network call does not keep the process."""
+"""Wall seconds after which a shutdown that hangs in a network call is forced."""
 
 UPKEEP_SECONDS = 1.0
 POLL_SECONDS = 0.05
-"""How soon a signal ends the wait for a world that is being loaded."""
+"""Wall seconds after which a signal interrupts the wait for the world."""
 
 CLOCK_QUEUE = 1000
-"""Messages a subscriber to `/clock` may be behind by: a second in real time."""
+"""Queue length of `/clock`: one second at 1000 Hz."""
 
 OK, FAILED = 0, 1
 
@@ -46,8 +46,9 @@ class WorldLoader:
     """Reads the world file and starts its simulator, paused, in a thread of its own.
 
     Attributes:
-        simulator, resolver: set when it went well.
-        fault: why it did not.
+        simulator, resolver: set on success.
+        fault: the error of the user's input, else None.
+        defect: an internal error, else None.
     """
 
     def __init__(self, options: ServerOptions, engines: EngineSupply, log: IssueLog,
@@ -92,11 +93,11 @@ class WorldLoader:
 
     @property
     def busy(self) -> bool:
-        """Whether it is still at work."""
+        """Whether the world is still being loaded."""
         return self._thread.is_alive()
 
     def wait(self, stop: threading.Event) -> None:
-        """Wait for the end, or until `stop` is set; a defect of the program is raised here."""
+        """Wait until it is done or `stop` is set; raises an internal error."""
         while self.busy and not stop.is_set():
             self._thread.join(POLL_SECONDS)
         if self.defect is not None:
@@ -104,28 +105,28 @@ class WorldLoader:
 
 
 class Server:
-    """Runs the node until a signal, a shutdown request or a fault ends it."""
+    """Runs the node until a signal, a shutdown request or an error."""
 
     def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say,
                  engines: EngineSupply, profile: StartProfile,
                  start_editor: "Optional[StartEditor]" = None, gui: bool = False,
                  start_recording: "Optional[StartRecording]" = None) -> None:
-        """Take over a start that has begun.
+        """Continue a start whose engine process is already starting.
 
         Args:
             options: the parsed command line.
             argv: the whole command line, for rospy.
-            say: where words go before rospy can log them.
-            engines: holds the engine that was started first of all.
-            profile: gets the phases.
-            start_editor: starts the world editor, when somebody wants it.
-            gui: want it at once, whatever the parameters say.
-            start_recording: begins the state log that the options ask for.
+            say: prints a line while rospy cannot log yet.
+            engines: supplies the engine.
+            profile: records the phases of the start.
+            start_editor: starts the world editor; None for no editor.
+            gui: start the editor with the node, whatever the parameter `~gui` says.
+            start_recording: starts the state log of the options.
         """
         self._start_recording = start_recording
         self._recorder: "Optional[RunningRecorder]" = None
         self._start_editor, self._gui = start_editor, gui
-        self._door: "Optional[EditorLauncher]" = None
+        self._editor_launcher: "Optional[EditorLauncher]" = None
         self._options, self._argv, self._say = options, list(argv), say
         self._engines, self._profile = engines, profile
         self._launch = Launch.of(argv)
@@ -149,7 +150,7 @@ class Server:
             if not self._may_register(loader):
                 return OK if self._ended.is_set() else FAILED
             self._init_node()
-            # Already now: loading may take a while, and says what it is at.
+            # Opened early: loading a world may take long and logs its progress.
             self._open_log()
             loader.wait(self._ended)
             if self._ended.is_set():
@@ -163,13 +164,12 @@ class Server:
                 node.keep_up()
                 reason = abandonment.reason()
                 if reason:
-                    self._say(f"{reason}; the simulator ends (~master_timeout sets the time, 0 for "
-                              "never)")
+                    self._say(f"{reason}; shutting down (parameter ~master_timeout, 0 to disable)")
                     return FAILED
             return OK
         except OSError as fault:
             if not self._ended.is_set():
-                self._say(f"the ROS master at {self._master} stopped answering: {fault}")
+                self._say(f"the ROS master at {self._master} stopped responding: {fault}")
             return OK if self._ended.is_set() else FAILED
         finally:
             self._end(node, loader)
@@ -181,25 +181,25 @@ class Server:
         self._settled.set()
 
     def _may_register(self, loader: WorldLoader) -> bool:
-        """True when there is a master without a node of our name; else everything was said."""
+        """Whether a master without a running node of our name exists; prints why not."""
         try:
             there = master_api.wait(self._master, self._name, self._settled, self._say)
             if not there:
-                self._say_why_not(loader)
+                self._report_world_errors(loader)
                 return False
-            other = master_api.living_node(self._master, self._name)
+            other = master_api.running_node(self._master, self._name)
         except OSError as fault:
-            self._say(f"the ROS master at {self._master} stopped answering: {fault}")
+            self._say(f"the ROS master at {self._master} stopped responding: {fault}")
             return False
         if other is not None:
-            self._say(f"a node {self._name} already runs on {self._master} ({other[0]}, process "
-                      f"{other[1]}); end it first, or give this one another name with "
+            self._say(f"a node {self._name} is already running on {self._master} ({other[0]}, "
+                      f"process {other[1]}); stop it, or rename this node with "
                       "__name:=NAME or __ns:=NAMESPACE")
             return False
         self._profile.mark("master asked")
         return True
 
-    def _say_why_not(self, loader: WorldLoader) -> None:
+    def _report_world_errors(self, loader: WorldLoader) -> None:
         loader.wait(self._ended)
         if self._ended.is_set():
             return
@@ -214,8 +214,8 @@ class Server:
 
         self._profile.mark("rospy imported")
         threading.Thread(target=self._break_off, daemon=True).start()
-        faces = threading.Thread(target=_import_faces, daemon=True)
-        faces.start()
+        imports = threading.Thread(target=_import_interface, daemon=True)
+        imports.start()
         level = rospy.DEBUG if self._options.verbose else rospy.INFO
         try:
             rospy.init_node(NODE, argv=self._argv, disable_rostime=True, disable_signals=True,
@@ -223,19 +223,19 @@ class Server:
         except rospy.ROSInitException as fault:
             raise OSError(str(fault)) from fault
         rospy.on_shutdown(self._ended.set)
-        # Already now: a subscriber takes as long to connect as the rest of the start.
+        # Advertised early: subscribers need time to connect.
         self._clock = publisher("/clock", queue_size=CLOCK_QUEUE, tcp_nodelay=True)
         self._profile.mark("node registered")
-        faces.join()
+        imports.join()
         self._profile.mark("interface imported")
 
     def _break_off(self) -> None:
-        """Make `rospy.init_node` give up when the end comes while it waits for the master."""
+        """Make `rospy.init_node` return when a shutdown comes while it waits for the master."""
         import rospy
 
         self._ended.wait()
         if not rospy.core.is_initialized():
-            rospy.signal_shutdown("ended")
+            rospy.signal_shutdown("shutdown requested")
 
     def _open_log(self) -> None:
         import rospy
@@ -252,10 +252,10 @@ class Server:
         from ..node import Node
 
         rospy.loginfo("the world file is %s", loader.simulator.world.file)
-        door = self._make_door(loader)
+        launcher = self._make_editor_launcher(loader)
         node = Node(loader.simulator, loader.resolver, self._clock,
-                    None if door is None else door.open, self._master,
-                    (lambda: None) if door is None else door.announce, self._launch)
+                    None if launcher is None else launcher.open, self._master,
+                    (lambda: None) if launcher is None else launcher.announce, self._launch)
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
@@ -265,17 +265,17 @@ class Server:
             loader.simulator.clock.unpause()
         self._profile.mark("running")
         node.advertise_late()
-        # What the start has made stays; without this every full collection walks through it again.
+        # Objects of the start live as long as the node; full collections need not visit them.
         gc.freeze()
-        if door is not None and (self._gui or door.wanted()):
-            door.open_soon()
+        if launcher is not None and (self._gui or launcher.wanted()):
+            launcher.open_soon()
         self._profile.mark("all offered")
         for line in self._profile.lines():
             self._say(line)
         return node
 
     def _record(self, loader: WorldLoader) -> None:
-        """Begin the state log; the clock is published by now, and time still stands."""
+        """Start the state log; the clock is published by now, and the world is still paused."""
         wanted = self._options.recording
         if self._start_recording is None or not wanted.on:
             return
@@ -284,14 +284,15 @@ class Server:
         self._recorder = begin(self._start_recording, loader.simulator, loader.resolver, wanted)
         self._profile.mark("state log begun")
 
-    def _make_door(self, loader: WorldLoader) -> "Optional[EditorLauncher]":
+    def _make_editor_launcher(self, loader: WorldLoader) -> "Optional[EditorLauncher]":
         if self._start_editor is None:
             return None
         from .editor_launcher import EditorLauncher
 
-        self._door = EditorLauncher(self._start_editor, loader.simulator, loader.resolver,
-                                self._log.also, self._launch.folder)
-        return self._door
+        self._editor_launcher = EditorLauncher(
+            self._start_editor, loader.simulator, loader.resolver, self._log.also,
+            self._launch.folder)
+        return self._editor_launcher
 
     def _refuse(self, fault: InputError) -> int:
         from ..node import fail
@@ -305,8 +306,8 @@ class Server:
         watchdog.daemon = True
         watchdog.start()
         self._ended.set()
-        if self._door is not None:
-            self._door.close()
+        if self._editor_launcher is not None:
+            self._editor_launcher.close()
         if node is not None:
             node.stop()
         if self._recorder is not None:
@@ -318,14 +319,14 @@ class Server:
         self._engines.close()
         rospy = sys.modules.get("rospy")
         if rospy is not None and rospy.core.is_initialized():
-            rospy.signal_shutdown("the server ends")
-        if loader.busy:  # nobody waits for it; what it has started ends with this process
+            rospy.signal_shutdown("the server is shutting down")
+        if loader.busy:  # not waited for; its child processes end with this one
             sys.stdout.flush()
             sys.stderr.flush()
             os._exit(status)
         watchdog.cancel()
 
 
-def _import_faces() -> None:
-    """Import the services and topics while `rospy.init_node` sleeps on its registration."""
+def _import_interface() -> None:
+    """Import services and topics while `rospy.init_node` waits for its registration."""
     from ..topics import state_publishers  # noqa: F401

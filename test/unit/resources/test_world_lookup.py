@@ -10,7 +10,7 @@ import pytest
 from my_simulations.errors import InputError
 from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver, ResourceNotFoundError
-from my_simulations.resources.world_files import (
+from my_simulations.resources.world_lookup import (
     SHIPPED,
     advice_on,
     find_world,
@@ -77,7 +77,7 @@ def test_the_worlds_that_ship_are_listed_and_none_has_a_name_of_the_lab_sheet():
 def test_a_students_file_in_the_packages_folder_is_the_students(tmp_path, monkeypatch):
     package = tmp_path / "package"
     (package / "world").mkdir(parents=True)
-    monkeypatch.setattr("my_simulations.resources.world_files.own_directory", lambda: str(package))
+    monkeypatch.setattr("my_simulations.resources.world_lookup.own_directory", lambda: str(package))
     for name in ("lab_room.world", "test.world"):
         (package / "world" / name).write_text("<sdf/>")
     (tmp_path / "theirs.world").write_text("<sdf/>")

@@ -1,0 +1,351 @@
+"""All issue codes: severity, meaning, and what to do. `doc/issue_codes.md` is made from them.
+
+Sources give a code as a literal beside its message; a test compares them with this table.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Tuple
+
+ERROR, WARNING, NOTE = "error", "warning", "note"
+EITHER = "error or warning"
+"""An error where the element is needed, else a warning."""
+
+
+@dataclass(frozen=True)
+class IssueCode:
+    """One kind of issue.
+
+    Attributes:
+        code: stable identifier in kebab-case, as in `Issue.code`.
+        severity: ERROR, WARNING, NOTE or EITHER.
+        meaning: what is wrong, one sentence.
+        action: what to do about it, one sentence.
+    """
+
+    code: str
+    severity: str
+    meaning: str
+    action: str
+
+
+_TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
+    ("Files and XML", (
+        ("file-not-found", ERROR, "The file does not exist.", "Correct the path."),
+        ("file-unreadable", ERROR, "The file cannot be read.",
+         "Check that it is a file, and its permissions."),
+        ("xml-empty", ERROR, "The document is empty.", "Give a file with content."),
+        ("xml-no-root", ERROR, "The document has no root element.", "Add <sdf> or <robot>."),
+        ("xml-malformed", EITHER, "The document is not well-formed XML; repaired with a warning "
+         "where Gazebo's parser accepts it.", "Correct the given line."),
+        ("xml-truncated", ERROR, "The document ends inside an element.", "Restore the file."),
+        ("xml-encoding", WARNING, "The text is not in the declared encoding; read as Latin-1.",
+         "Save it as UTF-8."),
+        ("xml-entities", ERROR, "The document declares entities, which are never expanded.",
+         "Write the text instead of the entity."),
+        ("xml-too-large", ERROR, "The document exceeds a size limit.", "Split it into models."),
+        ("xml-too-deep", ERROR, "Elements are nested too deeply.", "Flatten the document."),
+        ("root-unknown", ERROR, "The root element is neither <sdf> nor <robot>.",
+         "Check that it is the intended file."),
+        ("xacro-unexpanded", ERROR, "The text is xacro source, not URDF.",
+         "Expand it with `xacro FILE` first."),
+    )),
+    ("Elements and values", (
+        ("attribute-missing", EITHER, "A required attribute is missing.", "Add the attribute."),
+        ("bad-value", EITHER, "A value cannot be parsed or is out of range.",
+         "Write a value of the expected type."),
+        ("value-not-finite", WARNING, "A value is NaN or infinite; its default is used.",
+         "Write a finite number."),
+        ("value-odd", WARNING, "A value is malformed; read as Gazebo reads it.",
+         "Write it as the format asks."),
+        ("element-repeated", WARNING, "An element occurs more than once; the first is used.",
+         "Remove the others."),
+        ("unknown-element", WARNING, "The element is not part of the format; kept, no effect.",
+         "Correct its name, or ignore the warning for extensions."),
+        ("unknown-attribute", WARNING, "The attribute is not part of the format; kept, no effect.",
+         "Correct its name."),
+        ("unknown-many", WARNING, "More unknown elements follow and are not listed.",
+         "Correct those listed first."),
+        ("not-simulated", NOTE, "The element is kept and saved, but has no effect.", "None."),
+        ("name-empty", ERROR, "An entity has no name.", "Give it a name."),
+        ("name-missing", WARNING, "An entity has no name attribute; a default name is used.",
+         "Give it a name."),
+        ("name-repeated", EITHER, "Two entities of one parent have the same name.",
+         "Rename one of them."),
+        ("name-changed", WARNING, "A collision or visual was renamed to make names unique.",
+         "Give each a name of its own."),
+        ("name-reserved", EITHER, "A link is named `world`, which refers to the world.",
+         "Rename the link."),
+        ("name-ambiguous", WARNING, "An unscoped name matches several models; the first is used.",
+         "Write `model::name`."),
+        ("pose-not-finite", ERROR, "A pose contains NaN or infinity.", "Write finite numbers."),
+        ("frame-unknown", WARNING, "A pose refers to a frame that does not exist.",
+         "Correct the frame's name."),
+        ("reference-unknown", WARNING, "<gazebo reference> names no link or joint.",
+         "Correct the reference."),
+        ("sdf-version", WARNING, "The SDF version is missing or invalid; read as 1.7.",
+         "Write `<sdf version=\"1.7\">`."),
+        ("sdf-newer", WARNING, "The SDF version is newer than 1.7; unknown elements are ignored.",
+         "Check the result, or write SDF 1.7."),
+    )),
+    ("Worlds and included models", (
+        ("world-not-found", ERROR, "The world file was not found.",
+         "Check the name and GAZEBO_RESOURCE_PATH."),
+        ("world-not-started", ERROR, "The physics engine could not load the world.",
+         "See the message."),
+        ("world-missing", ERROR, "The file contains no <world>.", "Give a world file."),
+        ("world-many", WARNING, "The file contains several worlds; the first is used.",
+         "Keep one world in a file."),
+        ("world-shapes", WARNING, "The URDF link `world` has shapes; they are ignored.",
+         "Move the shapes to another link."),
+        ("include-uri-missing", EITHER, "<include> has no <uri>; it is skipped.", "Add <uri>."),
+        ("include-empty", ERROR, "The included file contains no model and no light.",
+         "Correct the URI."),
+        ("include-cycle", ERROR, "Models include each other in a cycle.", "Remove one include."),
+        ("include-many", ERROR, "The limit of includes was reached; the rest is skipped.",
+         "Use fewer includes, or <population>."),
+        ("include-flag", NOTE, "A flag of an included model applies to the whole model.", "None."),
+        ("model-not-found", EITHER, "An included model was not found.",
+         "Add its folder to GAZEBO_MODEL_PATH, or correct the URI."),
+        ("model-missing", ERROR, "The folder or file contains no model.",
+         "Add model.config and model.sdf."),
+        ("model-download", NOTE, "A model is being downloaded.", "Wait."),
+        ("model-refused", ERROR, "The physics engine rejected a model of the world.",
+         "See the message; the rest of the world runs."),
+        ("models-too-deep", ERROR, "Models are nested too deeply; the inner one is skipped.",
+         "Flatten the models."),
+        ("actor-unsupported", WARNING, "Actors are displayed but not simulated.",
+         "Use a model where it must collide."),
+        ("population-unusable", ERROR, "A <population> cannot be read and is skipped.",
+         "See the message."),
+        ("state-unknown", WARNING, "The saved state names an entity that the world does not have.",
+         "Remove the entry from <state>."),
+        ("static-forced", WARNING, "The model is made static, because a heightmap or image "
+         "collision cannot move.", "Set <static>true</static>."),
+        ("light-type", WARNING, "The light type is unknown; `point` is used.",
+         "Use point, spot or directional."),
+        ("physics-profile", WARNING, "The world has no physics preset of that name.",
+         "Correct the name given with --profile."),
+        ("physics-range", WARNING, "A physics setting is out of range.", "Correct the value."),
+    )),
+    ("Links and inertia", (
+        ("link-missing", EITHER, "The robot has no link, or none with a mass.",
+         "Add a link with <inertial>."),
+        ("link-unknown", WARNING, "canonical_link names no link of the model.", "Correct it."),
+        ("link-massless", WARNING, "A link of the robot has no mass and is dropped, with all "
+         "links below it (Gazebo behaviour).", "Add <inertial>."),
+        ("link-two-parents", WARNING, "A link is the child of two joints; the second is skipped.",
+         "Remove one of the joints."),
+        ("root-many", ERROR, "The robot has several root links.", "Connect them with joints."),
+        ("root-missing", ERROR, "Every link is the child of a joint.", "Break the loop."),
+        ("mass-missing", EITHER, "<inertial> has no <mass>.", "Add <mass>."),
+        ("mass-not-positive", ERROR, "The mass of a movable link is not positive.",
+         "Write a positive mass in kg, or set <static>."),
+        ("inertia-missing", EITHER, "<inertial> has no <inertia>, or a moment is missing.",
+         "Add ixx, iyy and izz in kg m^2."),
+        ("inertia-not-finite", ERROR, "Mass or inertia is NaN or infinite.",
+         "Write finite numbers."),
+        ("inertia-not-positive", EITHER, "The inertia matrix is not positive definite.",
+         "Compute it from mass and size."),
+        ("inertia-impossible", WARNING, "The principal moments violate the triangle inequality.",
+         "Compute the matrix from mass and size."),
+        ("inertia-odd", WARNING, "The inertia does not match mass and size of the collisions.",
+         "Check the unit: kg m^2."),
+        ("inertia-zero", WARNING, "The inertia is zero; a usable value is taken instead.",
+         "Compute it from mass and size."),
+    )),
+    ("Joints", (
+        ("joint-type-missing", ERROR, "The joint has no type; it is skipped.", "Add a type."),
+        ("joint-type-unknown", EITHER, "The joint type is unknown.", "Correct the type."),
+        ("joint-unsupported", WARNING, "The joint type is not simulated, or only in part.",
+         "Use another type."),
+        ("joint-link-missing", ERROR, "The joint has no parent or child link.",
+         "Add <parent> and <child>."),
+        ("joint-link-unknown", EITHER, "The joint names a link that does not exist.",
+         "Correct the link's name."),
+        ("joint-link-repeated", EITHER, "Parent and child are the same link.", "Correct one."),
+        ("joint-axis-missing", EITHER, "The joint has no axis.", "Add <axis>."),
+        ("joint-axis-zero", EITHER, "The axis has zero length.", "Write a direction in <xyz>."),
+        ("joint-limit-missing", ERROR, "A revolute or prismatic joint has no <limit>.",
+         "Add <limit>, or use type continuous."),
+        ("joint-limits-reversed", WARNING, "The lower limit is above the upper limit.",
+         "Exchange them."),
+        ("joint-not-finite", ERROR, "A value of the joint is NaN or infinite.",
+         "Write finite numbers."),
+        ("joint-cycle", ERROR, "The joints of the robot form a closed loop.",
+         "Use SDF for closed loops."),
+        ("joint-not-held", WARNING, "Joints of this type between two models have no effect.",
+         "Put both parts into one model."),
+        ("joint-refused", ERROR, "The physics engine rejected a joint between models.",
+         "See the message."),
+        ("mimic-joint-missing", EITHER, "<mimic> names no joint, or the joint has no axis.",
+         "Add the joint's name."),
+        ("mimic-joint-unknown", WARNING, "<mimic> names a joint that does not exist.",
+         "Correct the name."),
+        ("mimic-axis", WARNING, "<mimic> of a second axis follows the first instead.",
+         "Use single-axis joints."),
+    )),
+    ("Shapes, meshes and images", (
+        ("geometry-missing", EITHER, "A collision or visual has no shape.", "Add <geometry>."),
+        ("geometry-many", WARNING, "<geometry> contains several shapes; one is used.",
+         "Write one collision or visual for each."),
+        ("geometry-unknown", EITHER, "The shape is unknown and is skipped.", "Use another shape."),
+        ("bad-shape", EITHER, "A size of the shape is not positive or not finite.",
+         "Correct the size."),
+        ("scale-zero", WARNING, "The mesh scale is zero along an axis; a small one is used.",
+         "Write a non-zero scale."),
+        ("mesh-not-found", EITHER, "The mesh file was not found; the shape is skipped.",
+         "Correct the URI, or add its folder to the resource paths."),
+        ("image-not-found", EITHER, "The image was not found.", "Correct the path."),
+        ("image-unreadable", EITHER, "The image cannot be read.", "Use PNG or JPEG."),
+        ("mesh-unreadable", ERROR, "The mesh file cannot be read.", "Use STL, OBJ, DAE or glTF."),
+        ("mesh-empty", ERROR, "The mesh, or the named submesh, has no faces.",
+         "Correct the file or the submesh name."),
+        ("mesh-not-finite", ERROR, "The mesh has NaN or infinite vertices.", "Export it again."),
+        ("mesh-size-odd", WARNING, "The mesh is very large or small, as if in another unit.",
+         "Scale it to metres."),
+        ("mesh-flat", WARNING, "The mesh has no volume; it collides as a thin solid.",
+         "Give it thickness, or use a box."),
+        ("mesh-not-decomposed", WARNING, "The mesh could not be divided into convex parts; it "
+         "collides as its convex hull.", "Close its openings, or use simple collision shapes."),
+        ("meshes", NOTE, "Progress of convex decomposition.", "Wait; results are cached."),
+        ("solid-empty", ERROR, "A heightmap, image or polyline encloses no volume.",
+         "See the message."),
+        ("solid-complex", ERROR, "A heightmap, image or polyline exceeds a size limit.",
+         "Use a coarser image or fewer points."),
+        ("material-unknown", WARNING, "The URDF material is not defined.",
+         "Define it, or correct the name."),
+    )),
+    ("Suspicious values", (
+        ("starts-inside", WARNING, "A model starts inside another one and will be pushed out.",
+         "Move it."),
+        ("shape-thin", WARNING, "A collision is so thin that moving bodies may pass through it.",
+         "Make it thicker, or reduce the step size."),
+        ("advice-many", WARNING, "More warnings of this kind are not listed.",
+         "Correct those listed first."),
+    )),
+    ("Object lists and tools", (
+        ("argument", ERROR, "A command line argument is invalid.", "See --help."),
+        ("list-unreadable", ERROR, "The object list cannot be read.", "Check the path."),
+        ("list-not-utf8", ERROR, "The object list is not UTF-8 text.", "Save it as UTF-8."),
+        ("list-not-yaml", ERROR, "The object list is not valid YAML.", "Correct the given line."),
+        ("list-too-large", ERROR, "The object list exceeds the size limit.", "Split it."),
+        ("list-wrong-type", ERROR, "The object list is not a map of names to objects.",
+         "See doc/objects.md."),
+        ("repeated-key", WARNING, "A key is given twice; the last one is used.", "Remove one."),
+        ("unknown-key", WARNING, "The key is unknown and ignored.", "Correct the key."),
+        ("missing-key", ERROR, "A required key is missing.", "Add the key."),
+        ("wrong-value", ERROR, "A value has the wrong type.", "See the message."),
+        ("object-name", ERROR, "The name of an object is not text.", "Quote the name."),
+        ("object-name-twice", ERROR, "Two objects have the same flattened name.", "Rename one."),
+        ("object-wrong-type", ERROR, "The object is not a map with the required keys.",
+         "Give model, position and orientation."),
+        ("model-without-package", ERROR, "The model names no package.", "Write PACKAGE/FILE."),
+        ("model-type", ERROR, "Files of this type cannot be spawned.",
+         "Use .urdf, .xacro or .sdf."),
+        ("children-wrong-type", ERROR, "`children` is not a map of names to objects.",
+         "Correct it."),
+        ("children-too-deep", ERROR, "`children` is nested too deeply.", "Flatten the list."),
+        ("parent-faulty", ERROR, "The object's parent has an error.", "Correct the parent."),
+        ("unknown-object", ERROR, "No object or group has that name.", "Correct the name."),
+        ("groups-wrong-type", ERROR, "Object groups are not a map of names to lists.",
+         "Correct the file."),
+        ("group-name", ERROR, "The name of a group is not text.", "Quote the name."),
+        ("group-wrong-type", ERROR, "A group is not a list of object names.", "Write a list."),
+        ("group-member", ERROR, "A member of a group is not text.", "Quote the name."),
+        ("unknown-package", ERROR, "The ROS package was not found.",
+         "Source its workspace, or correct the name."),
+        ("object-file-missing", ERROR, "The object's file does not exist.",
+         "Create the file, or correct `model`."),
+        ("object-unreadable", ERROR, "The object's file cannot be read.",
+         "Check the permissions."),
+        ("object-empty", ERROR, "The object's file is empty.", "Give a file with content."),
+        ("object-encoding", ERROR, "The object's file is not in the declared encoding.",
+         "Save it as UTF-8."),
+        ("xacro-missing", ERROR, "xacro is not installed.", "Source the workspace."),
+        ("xacro-failed", ERROR, "xacro reported an error.", "See the message."),
+        ("xacro-timeout", ERROR, "xacro did not finish in time.", "Increase --timeout."),
+        ("no-object-list", WARNING, "The world has no object list.",
+         "Create config/WORLD/object_locations.yaml."),
+        ("not-a-parameter", ERROR, "The list cannot be stored on the parameter server.",
+         "See the message."),
+        ("polygon", ERROR, "The polygon has fewer than two different corners.",
+         "Give more corners."),
+        ("circle", ERROR, "The radius is not positive.", "Give a positive radius in metres."),
+    )),
+    ("Buildings", (
+        ("building-not-found", ERROR, "The folder contains no building.", "Correct the path."),
+        ("building-unknown", ERROR, "The model is not a building from a building editor.",
+         "Open a model with links such as Wall_0."),
+        ("building-link-left-out", WARNING, "A link cannot be converted back to the plan.",
+         "Add it to the world as a model."),
+        ("plan-unreadable", ERROR, "The plan file cannot be read.", "Check the permissions."),
+        ("plan-not-json", ERROR, "The plan is not valid JSON.", "Restore the file."),
+        ("plan-format", ERROR, "The plan has an unknown format version.",
+         "Update my_simulations."),
+        ("plan-value", ERROR, "A value of the plan has the wrong type or range.", "Correct it."),
+        ("plan-id-repeated", ERROR, "Two items of the plan have the same id.", "Change one id."),
+        ("wall-zero-length", ERROR, "A wall is too short.", "Delete or lengthen the wall."),
+        ("opening-wall-unknown", ERROR, "A door or window refers to a wall that does not exist.",
+         "Delete it, or correct the wall id."),
+        ("openings-overlap", ERROR, "Two doors or windows overlap.", "Move one of them."),
+        ("floor-outline", ERROR, "The outline of a floor is not a simple polygon.",
+         "Remove crossing edges."),
+    )),
+    ("Physics engine", (
+        ("engine-died", ERROR, "The physics engine crashed and was restarted from the last "
+         "snapshot.", "Report the model that triggers it."),
+        ("engine-stalled", ERROR, "The physics engine stopped responding and is restarted.",
+         "Simplify the model that triggers it."),
+        ("engine-lost", ERROR, "The physics engine could not be restarted.",
+         "Restart the simulator."),
+        ("state-diverged", ERROR, "The state of a model became NaN or infinite.",
+         "Check masses, inertia and gains, or reduce the step size."),
+        ("physics-approximate", WARNING, "A setting is simulated approximately.",
+         "See the message."),
+    )),
+    ("World editor", (
+        ("refused", ERROR, "The request cannot be carried out.", "See the message."),
+        ("protocol", ERROR, "The message does not match the protocol.", "Reload the page."),
+        ("version", ERROR, "Page and server use different protocol versions.",
+         "Reload the page."),
+        ("unusable", ERROR, "The input cannot be used.", "See the message."),
+        ("editor-defect", ERROR, "A part of the editor stopped because of an internal error.",
+         "Restart the simulator and report the message."),
+        ("editor-view", ERROR, "The editor could not read the state of the world.",
+         "See the message."),
+        ("autosave", WARNING, "Unsaved changes cannot be stored.", "Free disk space and save."),
+        ("exists", ERROR, "The file already exists.", "Confirm overwriting, or choose a name."),
+        ("not-allowed", ERROR, "The folder is not among the allowed folders.",
+         "Choose another folder, or set ~save_roots."),
+        ("not-found", ERROR, "Nothing of that name can be downloaded.", "Reload the page."),
+        ("folder-unreadable", ERROR, "The folder cannot be listed.", "Check the permissions."),
+        ("path-needed", ERROR, "The world has no file to be saved to.", "Give a file name."),
+        ("unsaved", ERROR, "The world has unsaved changes.", "Save or discard them first."),
+        ("world-file", NOTE, "The path of the world file that was opened.", "None."),
+        ("log", EITHER, "The state log ended early.", "See the message."),
+        ("recording", ERROR, "The log is still being recorded.", "Stop the recording first."),
+    )),
+)
+
+SECTIONS: Tuple[Tuple[str, Tuple[IssueCode, ...]], ...] = tuple(
+    (title, tuple(IssueCode(*row) for row in rows)) for title, rows in _TABLE)
+"""All codes by subject."""
+
+CODES: Dict[str, IssueCode] = {entry.code: entry for _, entries in SECTIONS for entry in entries}
+
+
+def markdown() -> str:
+    """The page `doc/issue_codes.md`."""
+    lines = ["# Issue codes", "",
+             "Every warning and error about a file carries a code: `check_model --json` prints it, "
+             "`check_model --explain CODE` explains it, the world editor shows it. "
+             "`error or warning`: an error where the element is needed, else a warning; "
+             "`check_model --strict` turns warnings about invalid input into errors.", ""]
+    for title, entries in SECTIONS:
+        lines += [f"## {title}", "", "| code | severity | meaning | what to do |",
+                  "|---|---|---|---|"]
+        lines += [f"| `{entry.code}` | {entry.severity} | {entry.meaning} | {entry.action} |"
+                  for entry in entries]
+        lines.append("")
+    return "\n".join(lines)

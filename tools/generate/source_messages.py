@@ -1,0 +1,206 @@
+"""Finds issue codes and the texts of messages in the sources, without importing them."""
+from __future__ import annotations
+
+import ast
+import pathlib
+import re
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Optional, Set, Tuple
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+PACKAGE = REPOSITORY / "src" / "my_simulations"
+
+CARRIERS = ("code", "notice")
+"""Names of parameters and fields that hold an issue code."""
+
+LOGGERS = ("_log", "rospy", "logging")
+"""Objects whose `error` and `warning` are log functions and take no code."""
+
+_CODE = re.compile(r"[a-z]+(?:-[a-z0-9]+)*\Z")
+
+
+@dataclass(frozen=True)
+class Use:
+    """One place where a code is given.
+
+    Attributes:
+        pattern: regular expression of the codes meant; a literal code unless part is computed.
+        severity: "error", "warning", "note", or "" where it is not written there.
+        text: message, `{...}` for computed parts; "" where it is not written there.
+        path: of the module, below the package.
+        line: 1-based.
+    """
+
+    pattern: str
+    severity: str
+    text: str
+    path: str
+    line: int
+
+
+def modules(folder: pathlib.Path = PACKAGE) -> Iterator[Tuple[str, ast.Module]]:
+    """Path below `folder` and syntax tree of every module."""
+    for file in sorted(folder.rglob("*.py")):
+        yield file.relative_to(folder).as_posix(), ast.parse(file.read_text(encoding="utf-8"))
+
+
+def text_of(node: Optional[ast.expr], constants: Optional[Dict[str, ast.expr]] = None) -> str:
+    """The text of a string expression, `{name}` for computed parts; "" for anything else.
+
+    Args:
+        node: the expression.
+        constants: values of the module's constants by name.
+    """
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return node.value
+    if isinstance(node, ast.JoinedStr):
+        return "".join(text_of(part) if isinstance(part, ast.Constant)
+                       else _constant_part(part, constants) or _placeholder(part)
+                       for part in node.values)
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        left, right = text_of(node.left, constants), text_of(node.right, constants)
+        return (left or "{...}") + (right or "{...}") if left or right else ""
+    if isinstance(node, ast.IfExp):
+        both = (text_of(node.body, constants), text_of(node.orelse, constants))
+        return "[" + " / ".join(filter(None, both)) + "]" if any(both) else ""
+    if isinstance(node, ast.Name) and constants and node.id in constants:
+        return text_of(constants[node.id])
+    return ""
+
+
+def _constant_part(part: ast.expr, constants: Optional[Dict[str, ast.expr]]) -> str:
+    value = part.value if isinstance(part, ast.FormattedValue) else part
+    return text_of(value, constants) if isinstance(value, ast.Name) else ""
+
+
+def _placeholder(part: ast.expr) -> str:
+    """`{name}` for a computed part of a text: its last name, `{...}` where it has none."""
+    value = part.value if isinstance(part, ast.FormattedValue) else part
+    while isinstance(value, (ast.Call, ast.Subscript)):
+        value = (value.args[0] if isinstance(value, ast.Call) and value.args
+                 else value.func if isinstance(value, ast.Call) else value.value)
+    name = (value.id if isinstance(value, ast.Name)
+            else value.attr if isinstance(value, ast.Attribute) else "...")
+    return "{" + name.lstrip("_").lower() + "}"
+
+
+def code_uses() -> List[Use]:
+    """Every place of the package where an issue code is given."""
+    trees = list(modules())
+    positions = _code_positions(tree for _, tree in trees)
+    found: List[Use] = []
+    for path, tree in trees:
+        constants = dict(constants_of(tree))
+        for node in ast.walk(tree):
+            for expression, severity, text in _codes_at(node, positions):
+                found += [Use(pattern, severity, text, path, expression.lineno)
+                          for pattern in _patterns(expression, constants)]
+    return found
+
+
+def constants_of(tree: ast.Module) -> Iterator[Tuple[str, ast.expr]]:
+    """Names and values that a module assigns, `A, B = ...` too."""
+    for node in tree.body:
+        for target in node.targets if isinstance(node, ast.Assign) else []:
+            if isinstance(target, ast.Name):
+                yield target.id, node.value
+            elif isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
+                yield from ((name.id, value) for name, value in zip(target.elts, node.value.elts)
+                            if isinstance(name, ast.Name))
+
+
+def _code_positions(trees: Iterator[ast.Module]) -> Dict[str, Set[int]]:
+    """By the name of a function or class: at which positions it takes an issue code."""
+    found: Dict[str, Set[int]] = {"say": {0}}  # a bound `report` or `tolerate`
+    for tree in trees:
+        for node in ast.walk(tree):
+            names: List[str] = []
+            owner = getattr(node, "name", "")
+            if isinstance(node, ast.ClassDef):
+                names = [item.target.id for item in node.body if isinstance(item, ast.AnnAssign)
+                         and isinstance(item.target, ast.Name)]
+                for item in node.body:
+                    if isinstance(item, ast.FunctionDef) and item.name == "__init__":
+                        names = [argument.arg for argument in item.args.args[1:]]
+            elif isinstance(node, ast.FunctionDef):
+                names = [argument.arg for argument in node.args.args]
+                names = names[1:] if names[:1] == ["self"] else names
+            for name in CARRIERS:
+                if name in names and owner != "__init__":
+                    found.setdefault(owner, set()).add(names.index(name))
+    return found
+
+
+def _codes_at(node: ast.AST, positions: Dict[str, Set[int]]
+              ) -> Iterator[Tuple[ast.expr, str, str]]:
+    """The expressions that give a code here, each with severity and message."""
+    if isinstance(node, ast.Call) and not _is_log_call(node):
+        yield from _codes_of_call(node, positions)
+    elif isinstance(node, ast.Assign):
+        if any(isinstance(target, ast.Name) and target.id in CARRIERS for target in node.targets):
+            yield node.value, "", ""
+    elif isinstance(node, ast.FunctionDef):
+        for argument, default in zip(reversed(node.args.args), reversed(node.args.defaults)):
+            if argument.arg in CARRIERS:
+                yield default, "", ""
+
+
+def _is_log_call(call: ast.Call) -> bool:
+    return (isinstance(call.func, ast.Attribute) and isinstance(call.func.value, ast.Name)
+            and call.func.value.id in LOGGERS)
+
+
+def _codes_of_call(call: ast.Call, positions: Dict[str, Set[int]]
+                   ) -> Iterator[Tuple[ast.expr, str, str]]:
+    name = called(call)
+    for position in positions.get(name, ()):
+        if position < len(call.args):
+            message = 0 if name == "MeshError" else position + 1
+            text = text_of(call.args[message]) if message < len(call.args) else ""
+            yield call.args[position], _severity(name, call), text
+    for keyword in call.keywords:
+        if keyword.arg in CARRIERS and name in positions:
+            yield keyword.value, "", text_of(call.args[0]) if call.args else ""
+    if name == "getattr" and len(call.args) == 3 and text_of(call.args[1]) in CARRIERS:
+        yield call.args[2], "", ""
+
+
+def called(call: ast.Call) -> str:
+    """The last name of what is called."""
+    return (call.func.id if isinstance(call.func, ast.Name)
+            else call.func.attr if isinstance(call.func, ast.Attribute) else "")
+
+
+_SEVERITIES = {
+    "error": "error", "_fault": "error", "_unusable": "error", "_fatal": "error",
+    "EditRefusedError": "error", "MeshError": "error", "warning": "warning", "warn": "warning",
+    "tolerate": "warning",
+}
+
+
+def _severity(name: str, call: ast.Call) -> str:
+    if name in _SEVERITIES:
+        return _SEVERITIES[name]
+    for node in [*call.args, *(keyword.value for keyword in call.keywords)]:
+        if isinstance(node, ast.Attribute) and node.attr in ("ERROR", "WARNING", "NOTE"):
+            return node.attr.lower()
+        if isinstance(node, ast.Attribute) and node.attr in ("FATAL", "LEFT_OUT"):
+            return "error"
+    return "error" if name == "Fault" else ""
+
+
+def _patterns(expression: ast.expr, constants: Dict[str, ast.expr]) -> Iterator[str]:
+    """The codes that an expression may be, as regular expressions."""
+    if isinstance(expression, ast.Constant):
+        if isinstance(expression.value, str) and _CODE.match(expression.value):
+            yield expression.value
+    elif isinstance(expression, ast.JoinedStr):
+        pattern = "".join(part.value if isinstance(part, ast.Constant) else "[a-z-]+"
+                          for part in expression.values)
+        if " " not in pattern:
+            yield pattern
+    elif isinstance(expression, ast.IfExp):
+        yield from _patterns(expression.body, constants)
+        yield from _patterns(expression.orelse, constants)
+    elif isinstance(expression, ast.Name) and expression.id in constants:
+        yield from _patterns(constants[expression.id], {})
