@@ -51,6 +51,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Expand it with `xacro FILE` first."),
     )),
     ("Elements and values", (
+        ("attribute-deprecated", WARNING, "A root attribute of a spawn request is deprecated.",
+         "Call the service `spawn_object`, whose request has a field for it."),
         ("attribute-missing", EITHER, "A required attribute is missing.", "Add the attribute."),
         ("bad-value", EITHER, "A value cannot be parsed or is out of range.",
          "Write a value of the expected type."),

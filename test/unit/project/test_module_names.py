@@ -9,6 +9,7 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[3] / "src" / "my_simulations"
 SAME_IDEA = {
     "inter_model_joints",  # engine and simulator
     "joint", "link", "model",  # SDF, URDF, description
+    "light", "saved_state",  # SDF, description
     "world",  # SDF, description
 }
 """Base names that stand for the same idea in several packages."""
