@@ -38,7 +38,7 @@ _PAST_STOP = 1e-6     # rad or m past a stop that do not matter
 _PUT_BACK = 0.5       # share of the way back to the stop at each look
 
 
-class Settling:
+class ContactSettling:
     """Chooses how exactly Bullet solves."""
 
     def __init__(self) -> None:

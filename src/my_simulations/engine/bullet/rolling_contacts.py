@@ -48,7 +48,7 @@ class _Roller:
     still: int = 0
 
 
-class Rolling:
+class RollingContacts:
     """Drops the contact points of lying cylinders before each step."""
 
     def __init__(self) -> None:
