@@ -139,7 +139,7 @@ class BulletBackend:
             self._settling.look(step)
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
-            self._rolling.before(step, gravity)
+            self._rolling.before(step, dt, gravity)
             free = self._spin.before(step, dt)
             one()
             self._spin.after(free, self._forces.wrenched_links, dt)
@@ -154,7 +154,7 @@ class BulletBackend:
         while step < end:
             settling.look(step)
             if not rolling.idle:
-                rolling.before(step, self._settings.gravity)
+                rolling.before(step, dt, self._settings.gravity)
             ahead = end - step
             if rolling.busy or residual.busy:
                 ahead = 1
