@@ -39,10 +39,16 @@ def stacks(count: int, height: int = 10) -> List[Piece]:
 
 
 def wall(rows: int = 20, columns: int = 10) -> List[Piece]:
-    """Bricks of 0.2 x 0.1 x 0.1 m and 4 kg, each row half a brick aside of the one below."""
-    return [Piece(f"b{row}_{n}", (0.2, 0.1, 0.1), 4.0, 0.6,
-                  (0.2 * n + 0.1 * (row % 2), 0.0, 0.05 + 0.1 * row))
-            for row in range(rows) for n in range(columns)]
+    """Bricks of 0.2 x 0.1 x 0.1 m and 4 kg; every other row begins and ends with half a brick."""
+    pieces = []
+    for row in range(rows):
+        places = [(0.2, 0.2 * n) for n in range(columns)]
+        if row % 2:
+            places = [(0.1, -0.05), *((0.2, 0.1 + 0.2 * n) for n in range(columns - 1)),
+                      (0.1, 0.2 * columns - 0.15)]
+        pieces += [Piece(f"b{row}_{n}", (length, 0.1, 0.1), 20.0 * length, 0.6,
+                         (x, 0.0, 0.05 + 0.1 * row)) for n, (length, x) in enumerate(places)]
+    return pieces
 
 
 def cards(count: int = 20) -> List[Piece]:

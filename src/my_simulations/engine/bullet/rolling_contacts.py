@@ -10,8 +10,8 @@ time: at the rate of other contacts a cylinder of 3 cm rolls 1.9 mm deep, where 
 on boxes that it loses 2 % of 0.05 m/s in 20 s (measured). Where a rigid cylinder rolls on what does
 not move, its overlaps are therefore parted as fast as that gives it no velocity to jump with.
 
-A cylinder at rest would rock on such points. So one that hardly moves, where the floor is level and nothing that moves touches it, keeps its points, and
-is stopped in every step and put back.
+A cylinder at rest would rock on such points. So one that hardly moves, where the floor is level and
+nothing that moves touches it, keeps its points, and is stopped in every step and put back.
 """
 from __future__ import annotations
 
