@@ -15,7 +15,7 @@ def _built(lab: Lab, pieces: List[structures.Piece]) -> List[Tuple[int, structur
     return structures.load(lab, pieces)
 
 
-@pytest.mark.parametrize("seconds", [3, pytest.param(60, marks=pytest.mark.long)])
+@pytest.mark.parametrize("seconds", [1, pytest.param(60, marks=pytest.mark.long)])
 def test_a_wall_of_two_hundred_bricks_stands(lab: Lab, laws: Laws, seconds: int):
     wall = _built(lab, structures.wall())
     lab.seconds(seconds)
