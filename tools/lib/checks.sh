@@ -82,15 +82,16 @@ check_and_report() {
   if [ "$status" -eq 0 ]; then finish "$(tail -n 1 "$LOG")"; else judge "$1" 0 0 "$status"; fi
 }
 
-# pytest_folder FOLDER SECONDS FILE...: the tests of the given files.
+# pytest_folder FOLDER SECONDS FILE...: the tests of the given files, long ones where LONG is 1.
 pytest_folder() {
-  local folder="$1" limit="$2" status=0 head name results
+  local folder="$1" limit="$2" status=0 head name results chosen=()
+  [ "${LONG:-0}" = 1 ] || chosen=(-m "not long")
   name=${folder//\//-}
   results="$RESULTS/$name.xml"
   shift 2
   begin "$folder"
   attempt "$name" "$limit" env PYTHONPATH="$CLONE/src${PYTHONPATH:+:$PYTHONPATH}" \
-    "$VENV/bin/python3" -m pytest -p no:cacheprovider --junitxml="$results" "$@" || status=$?
+    "$VENV/bin/python3" -m pytest -p no:cacheprovider --junitxml="$results" "${chosen[@]}" "$@" || status=$?
   head=$(grep -o '<testsuite [^>]*>' "$results" 2>/dev/null | head -n 1 || true)
   judge "$folder" $(($(attribute tests "$head") - $(attribute skipped "$head"))) \
     $(($(attribute errors "$head") + $(attribute failures "$head"))) "$status"

@@ -34,19 +34,19 @@ from .bodies import Body, Part
 from .body_builder import Builder
 from .collision_shapes import ShapeError, ShapeFactory
 from .contact_readout import read_contacts
+from .contact_settling import EVERY as EVERY_SETTLE
+from .contact_settling import ContactSettling
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
 from .initial_state_cache import InitialStateCache, Start
 from .inter_model_joints import InterModelJoints
 from .joint_constraints import Constraints
-from .leftovers import EVERY as EVERY_LOOK
-from .leftovers import Leftovers
 from .pair_friction import EVERY, FrictionBalance
 from .pinned_bodies import PinnedBodies
-from .rolling import EVERY as EVERY_ROLL
-from .rolling import Rolling
-from .settling import EVERY as EVERY_SETTLE
-from .settling import Settling
+from .residual_friction import EVERY as EVERY_FRICTION
+from .residual_friction import ResidualFriction
+from .rolling_contacts import EVERY as EVERY_ROLL
+from .rolling_contacts import RollingContacts
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
@@ -66,8 +66,8 @@ class BulletBackend:
         self._rows: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
         self._readout = StateReadout(self._on_diverged)
-        self._leftovers = Leftovers()
-        self._rolling = Rolling()
+        self._residual = ResidualFriction()
+        self._rolling = RollingContacts()
         self._waker = WakeUp(self._bodies, self._touched)
         self._forces = Forces(self._waker.around)
         self._friction = FrictionBalance(self._on_misfit)
@@ -75,12 +75,12 @@ class BulletBackend:
         self._holds = PinnedBodies(self._waker.around)
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
-        self._settling = Settling()
+        self._settling = ContactSettling()
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
-                         self._decay, self._leftovers, self._rolling, self._settling,
+                         self._decay, self._residual, self._rolling, self._settling,
                          self._readout)
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
@@ -139,28 +139,28 @@ class BulletBackend:
             self._settling.look(step)
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
-            self._rolling.before(step, gravity)
+            self._rolling.before(step, dt, gravity)
             free = self._spin.before(step, dt)
             one()
             self._spin.after(free, self._forces.wrenched_links, dt)
-            self._leftovers.after(step, dt)
+            self._residual.after(step, dt)
             self._holds.apply()
 
     def _step_freely(self, first: int, count: int, dt: float) -> None:
         """Make steps that nothing acts on from outside: between two looks at them, no calls."""
-        one, leftovers, rolling = pybullet.stepSimulation, self._leftovers, self._rolling
+        one, residual, rolling = pybullet.stepSimulation, self._residual, self._rolling
         settling = self._settling
         step, end = first, first + count
         while step < end:
             settling.look(step)
             if not rolling.idle:
-                rolling.before(step, self._settings.gravity)
+                rolling.before(step, dt, self._settings.gravity)
             ahead = end - step
-            if rolling.busy or leftovers.busy:
+            if rolling.busy or residual.busy:
                 ahead = 1
             else:
-                if not leftovers.idle:
-                    ahead = min(ahead, -step % EVERY_LOOK + 1)   # they look after a step
+                if not residual.idle:
+                    ahead = min(ahead, -step % EVERY_FRICTION + 1)   # they look after a step
                 if not rolling.idle:
                     ahead = min(ahead, EVERY_ROLL - step % EVERY_ROLL)   # before one
                 if not settling.idle:
@@ -168,7 +168,7 @@ class BulletBackend:
             for _ in range(ahead):
                 one()
             step += ahead
-            leftovers.after(step - 1, dt)
+            residual.after(step - 1, dt)
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -304,7 +304,7 @@ class BulletBackend:
         self._forces.add_body(body)
         self._friction.add(body)
         self._spin.add(body)
-        self._leftovers.add(body)
+        self._residual.add(body)
         self._settling.add(body)
         self._readout.add(body)
 
@@ -338,7 +338,7 @@ class BulletBackend:
         self._models.clear()
         self._forces.clear_all()
         for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
-                       self._leftovers, self._rolling, self._settling):
+                       self._residual, self._rolling, self._settling):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
@@ -379,7 +379,7 @@ class BulletBackend:
     def _touched(self, body: Body) -> None:
         """A command reached a body."""
         self._readout.touch(body)
-        self._leftovers.touched(body)
+        self._residual.touched(body)
         self._rolling.touched(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:

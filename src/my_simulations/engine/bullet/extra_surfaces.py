@@ -50,7 +50,8 @@ def store(body: Body, part: Part, link: Link, dt: float) -> None:
 def gives_way(link: Link) -> bool:
     """A joint-free link on springs so soft that one sees it: it must be an articulated body.
 
-    Contacts of rigid bodies part overlaps without forces (`settling`), so they cannot be springs.
+    Contacts of rigid bodies part overlaps without forces (`contact_settling`), so they cannot be
+    springs.
     """
     return bool(link.collisions) and link.collisions[0].surface.kp * _SEEN < (
         _WEIGHT * link.inertial.mass)

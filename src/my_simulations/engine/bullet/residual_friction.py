@@ -31,7 +31,7 @@ _SOON = -1         # instead of a look: it is not known yet which comes next
 _NONE = (0.0, 0.0, 0.0)
 
 
-class Leftovers:
+class ResidualFriction:
     """Mends the velocities of sliding rigid bodies after each step."""
 
     def __init__(self) -> None:
