@@ -54,6 +54,15 @@ class BadRequests(unittest.TestCase):
             self.assertEqual(self.gazebo.names(), before)
         self.gazebo.unpause_physics()
 
+    def spawn_warned(self, xml, *words):
+        """Spawned as Gazebo does, with a warning in the log that holds each of these words."""
+        warned = [support.heard_on_rosout(word) for word in words]
+        answer = self.gazebo.spawn_urdf_model("odd", xml, "", pose(), "")
+        self.assertTrue(answer.success, answer.status_message)
+        self.assertIn("odd", self.gazebo.names())
+        for heard in warned:
+            heard()
+
     def test_xml_that_is_cut_off(self):
         self.spawn_refused(box()[:150], "model_xml")
 
@@ -78,20 +87,21 @@ class BadRequests(unittest.TestCase):
                            kind="spawn_sdf_model")
 
     def test_a_missing_mesh(self):
-        self.spawn_refused(MESH.format("package://my_simulations/none.dae"), "none.dae")
+        self.spawn_warned(MESH.format("package://my_simulations/none.dae"), "none.dae")
 
     def test_a_mesh_of_an_unknown_package(self):
-        self.spawn_refused(MESH.format("package://no_such_package/a.dae"), "no_such_package")
+        self.spawn_warned(MESH.format("package://no_such_package/a.dae"), "no_such_package")
 
     def test_sizes_that_are_no_sizes(self):
         for size in ("-1 1 1", "1 -0.5 1"):
-            self.spawn_refused(box().replace("0.2 0.2 0.2", size), "size of the box", size)
+            self.spawn_warned(box().replace("0.2 0.2 0.2", size), f"above 0, found {size}")
+            self.assertTrue(self.gazebo.delete_model("odd").success)
 
     def test_a_mass_of_zero(self):
-        self.spawn_refused(box(mass=0.0), "mass")
+        self.spawn_warned(box(mass=0.0), "has no mass")
 
     def test_an_inertia_that_is_not_positive_definite(self):
-        self.spawn_refused(box().replace('ixx="0.00', 'ixx="-1.00'), "inertia")
+        self.spawn_warned(box().replace('ixx="0.00', 'ixx="-1.00'), "not positive definite")
 
     def test_an_empty_name(self):
         self.spawn_refused(box(), "empty", name="")

@@ -10,7 +10,7 @@ import unittest
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-sys.path.insert(0, os.path.join(HERE, os.pardir, "unit"))
+sys.path.insert(0, os.path.join(HERE, os.pardir, "unit", "support"))
 
 import aiohttp
 import rospy

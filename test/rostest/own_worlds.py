@@ -127,7 +127,7 @@ class OwnWorlds(unittest.TestCase):
 
     def test_what_a_launch_files_spawn_model_spawns_is_left_out_and_by_hand_is_not(self):
         path = self.write("mine.world")
-        with Launched(self.typed, self.home, self.spawners(path.replace(" ", r"\ "))) as launched:
+        with Launched(self.typed, self.home, self.spawners(path)) as launched:
             launched.says("spawn_model: SpawnModel: Successfully spawned")
             with Program([executable("gazebo_ros", "spawn_model"), "-urdf", "-model", "by_hand",
                           "-param", "robot_description", "-x", "2"],
