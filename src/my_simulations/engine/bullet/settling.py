@@ -14,9 +14,9 @@ thing that stands may drift. Contacts of articulated bodies start from nothing i
 is no warm start for them): a parked robot went 1 mm and 0.8 degrees in a minute, or slid where its
 wheels were not solved in 50 iterations (measured). While one that touches something is slow, the
 world is solved to 3e-8 m/s and with more iterations; one that is slower than 0.01 mm/s is put back
-where it was 16 steps ago, or in ten minutes it would turn by 0.1 degrees. Rigid bodies that may not sleep creep where
-friction holds them up; while there are such, it is solved to 3e-6 m/s. What moves, sleeps, or
-stands on the level costs nothing.
+where it was 16 steps ago, or in ten minutes it would turn by 0.1 degrees. Rigid bodies that may not
+sleep creep where friction holds them up; while there are such, it is solved to 3e-6 m/s. What
+moves, sleeps, or stands on the level costs nothing.
 """
 from __future__ import annotations
 
