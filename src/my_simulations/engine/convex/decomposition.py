@@ -140,7 +140,7 @@ def _run(folder: str, progress: Progress, end: float, limits: Sequence[str]) -> 
     with open(faults, "wb") as stream:
         with child_process.shielded():
             started = subprocess.Popen(
-                child_process.command("engine.decompose", folder, *limits),
+                child_process.command("engine.convex.decomposition", folder, *limits),
                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
                 env=child_process.environment())
         in_time = _watched(started, progress, end)
