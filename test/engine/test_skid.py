@@ -1,41 +1,96 @@
-"""A skid-steered base turns on the spot, whatever its heading."""
+"""Wheels that slide: a skid-steered base turns on the spot, whatever its heading."""
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
 import pytest
-from conftest import Lab, ground, inertial_of_box
+from conftest import Lab, ground, inertial_of_box, slab
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Collision, Cylinder, Surface
-from my_simulations.geometry import Pose, quat_from_rpy
+from my_simulations.engine.commands import ReadContacts
+from my_simulations.geometry import Pose, norm, quat_from_rpy, rotate
 
 AHEAD, ASIDE, RADIUS, SPEED = 0.2, 0.25, 0.1, 0.3   # wheels from the centre, m; m/s
 
 
-def _base() -> Model:
+EXPECTED = SPEED * ASIDE / (AHEAD ** 2 + ASIDE ** 2)
+
+
+def _base(speed: float = SPEED, mu: float = 1.0, brake: float = 1e3) -> Model:
     """Four wheels whose joints turn at given rates, the left ones backwards."""
     links = [Link("link", inertial=inertial_of_box(10, 0.6, 0.4, 0.1))]
     joints = []
     wheel = Link("wheel", inertial=Inertial(0.5, ixx=0.0015, iyy=0.0015, izz=0.0025), collisions=[
-        Collision("c", Cylinder(RADIUS, 0.05), surface=Surface(mu=1.0))])
+        Collision("c", Cylinder(RADIUS, 0.05), surface=Surface(mu=mu))])
     for n, (x, y) in enumerate([(AHEAD, ASIDE), (AHEAD, -ASIDE), (-AHEAD, ASIDE),
                                 (-AHEAD, -ASIDE)]):
         links.append(replace(wheel, name=f"w{n}", pose=Pose(
             (x, y, 0), quat_from_rpy(-math.pi / 2, 0, 0))))
         joints.append(Joint(f"j{n}", "revolute", "link", f"w{n}", axis=JointAxis(
-            (0, 0, 1), friction=1e3, motor_rate=SPEED / RADIUS * (-1 if y > 0 else 1))))
+            (0, 0, 1), friction=brake, motor_rate=speed / RADIUS * (-1 if y > 0 else 1))))
     return Model("base", links=links, joints=joints)
 
 
 @pytest.mark.parametrize("heading", range(0, 91, 15))
 def test_a_skid_steered_base_turns_at_every_heading(lab: Lab, laws: Laws, heading: int):
-    # Four equal wheels that slip in the direction of Coulomb's law: v b / (a^2 + b^2). Friction
-    # along the world's axes, as Gazebo's, turns it by up to half faster, and never slower by much.
+    # Four equal wheels that slip in the direction of Coulomb's law: v b / (a^2 + b^2).
     lab.load(ground(1.0))
     base = lab.load(_base(), (0, 0, RADIUS), quat_from_rpy(0, 0, math.radians(heading)))
     lab.steps(400)
-    laws.near("a skid-steered base with pyramid friction: turn, rad/s",
-              lab.twist(base).angular[2], SPEED * ASIDE / (AHEAD ** 2 + ASIDE ** 2), rel=0.5)
+    laws.near("a skid-steered base: turn, rad/s", lab.twist(base).angular[2], EXPECTED, rel=0.05)
+
+
+@pytest.mark.parametrize("mu", [0.3, 1.0])
+@pytest.mark.parametrize("share", [0.1, 5.0])
+def test_a_skid_steered_base_turns_slowly_and_fast(lab: Lab, laws: Laws, share: float, mu: float):
+    lab.load(ground(1.0))
+    base = lab.load(_base(share * SPEED, mu), (0, 0, RADIUS))
+    lab.steps(500)
+    angle, steps = 0.0, 500
+    for _ in range(steps):
+        lab.steps(1)
+        angle += 1e-3 * lab.twist(base).angular[2]
+    laws.near("a skid-steered base at 0.03 to 1.5 m/s, mu 0.3 and 1: mean turn",
+              angle / (1e-3 * steps) / (share * EXPECTED), 1.0, rel=0.05)
+
+
+def test_a_skid_steered_base_turns_on_a_box(lab: Lab, laws: Laws):
+    lab.load(slab("floor", (60, 60, 1)), (0, 0, -0.5))
+    base = lab.load(_base(), (0, 0, RADIUS), quat_from_rpy(0, 0, 0.5))
+    lab.steps(600)
+    laws.near("a skid-steered base on a box: turn, rad/s", lab.twist(base).angular[2], EXPECTED,
+              rel=0.05)
+
+
+def test_a_base_that_skids_comes_to_rest_and_stays(lab: Lab, laws: Laws):
+    # Braked wheels that slide over a slope of 10 degrees stop as Coulomb's law says, and hold.
+    angle, mu, speed = math.radians(10), 0.8, 1.0
+    tilt = quat_from_rpy(0.0, angle, 0.0)
+    lab.load(slab("slope", (60, 60, 0.2)), (0, 0, 0), tilt)
+    base = lab.load(_base(0.0, mu), rotate(tilt, (0.0, 0.0, 0.1 + RADIUS)), tilt)
+    lab.seconds(1)
+    start = lab.pose(base)
+    lab.push(base, rotate(tilt, (speed, 0.0, 0.0)))
+    lab.seconds(2)
+    stopped = lab.pose(base)
+    slowing = 9.8 * (mu * math.cos(angle) - math.sin(angle))
+    laws.near("a base with braked wheels that slides downhill: way to a stop, m",
+              math.dist(stopped.position, start.position), speed ** 2 / (2 * slowing), rel=0.05)
+    lab.seconds(10)
+    laws.at_most("a base that has slid to rest on a slope: way in 10 s, mm",
+                 1e3 * math.dist(lab.pose(base).position, stopped.position), 0.1)
+
+
+def test_sliding_wheels_tell_their_friction(lab: Lab, laws: Laws):
+    lab.load(ground(1.0))
+    base = lab.load(_base(), (0, 0, RADIUS))
+    lab.steps(400)
+    wheels = {lab.rows[base, f"w{n}"] for n in range(4)}
+    contacts = [contact for contact in lab.apply(ReadContacts()) if contact.force > 0.0]
+    assert wheels <= {row for contact in contacts for row in (contact.row_a, contact.row_b)}
+    for contact in contacts:
+        laws.near("friction of wheels that slide, by normal force",
+                  norm(contact.friction) / contact.force, 1.0, rel=0.02)

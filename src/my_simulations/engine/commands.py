@@ -45,14 +45,14 @@ class ModelState:
 class PhysicsSettings:
     """`step_size` s; `gravity` m/s^2; `rate` steps a wall second, 0 = as fast as possible.
 
-    `cone`: the friction of bodies with joints is a cone, not a pyramid along the world's axes.
+    `cone`: the friction of bodies with joints is a cone, else a pyramid along the world's axes.
     """
 
     step_size: float = 0.001
     gravity: Vec3 = (0.0, 0.0, -9.8)
     rate: float = 1000.0
     iterations: int = 50
-    cone: bool = False
+    cone: bool = True
 
 
 @dataclass(frozen=True)

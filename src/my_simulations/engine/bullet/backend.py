@@ -47,6 +47,8 @@ from .residual_friction import EVERY as EVERY_FRICTION
 from .residual_friction import ResidualFriction
 from .rolling_contacts import EVERY as EVERY_ROLL
 from .rolling_contacts import RollingContacts
+from .sliding import EVERY as EVERY_SLIDE
+from .sliding import Sliding
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
@@ -68,6 +70,7 @@ class BulletBackend:
         self._readout = StateReadout(self._on_diverged)
         self._residual = ResidualFriction()
         self._rolling = RollingContacts()
+        self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
         self._forces = Forces(self._waker.around)
         self._friction = FrictionBalance(self._on_misfit)
@@ -80,8 +83,8 @@ class BulletBackend:
                                   self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
-                         self._decay, self._residual, self._rolling, self._settling,
-                         self._readout)
+                         self._decay, self._residual, self._rolling, self._sliding,
+                         self._settling, self._readout)
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -93,7 +96,8 @@ class BulletBackend:
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,
             ConnectModels: self._connect,
-            ReadContacts: lambda command: read_contacts(self._bodies, command.limit),
+            ReadContacts: lambda command: read_contacts(self._bodies, command.limit,
+                                                        self._sliding.friction),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
         }
@@ -140,27 +144,32 @@ class BulletBackend:
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
             self._rolling.before(step, dt, gravity)
+            self._sliding.before()
             free = self._spin.before(step, dt)
             one()
             self._spin.after(free, self._forces.wrenched_links, dt)
             self._residual.after(step, dt)
+            self._sliding.after(step, dt, gravity)
             self._holds.apply()
 
     def _step_freely(self, first: int, count: int, dt: float) -> None:
         """Make steps that nothing acts on from outside: between two looks at them, no calls."""
         one, residual, rolling = pybullet.stepSimulation, self._residual, self._rolling
-        settling = self._settling
+        settling, sliding = self._settling, self._sliding
         step, end = first, first + count
         while step < end:
             settling.look(step)
             if not rolling.idle:
                 rolling.before(step, dt, self._settings.gravity)
+            sliding.before()
             ahead = end - step
-            if rolling.busy or residual.busy:
+            if rolling.busy or residual.busy or sliding.busy:
                 ahead = 1
             else:
                 if not residual.idle:
                     ahead = min(ahead, -step % EVERY_FRICTION + 1)   # they look after a step
+                if not sliding.idle:
+                    ahead = min(ahead, -step % EVERY_SLIDE + 1)
                 if not rolling.idle:
                     ahead = min(ahead, EVERY_ROLL - step % EVERY_ROLL)   # before one
                 if not settling.idle:
@@ -169,6 +178,7 @@ class BulletBackend:
                 one()
             step += ahead
             residual.after(step - 1, dt)
+            sliding.after(step - 1, dt, self._settings.gravity)
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -212,6 +222,7 @@ class BulletBackend:
             allowedCcdPenetration=0.0,   # what flies fast stops at a wall, not in it
         )
         self._settling.configure(settings.iterations, settings.step_size)
+        self._sliding.configure(settings.cone)
 
     # -- models ----------------------------------------------------------------------------------
 
@@ -244,6 +255,7 @@ class BulletBackend:
                 link = model.links[part.row - first_row]
                 self._decay.add(body, part, link)
                 self._rolling.add(body, part, link)
+                self._sliding.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
             joint_axes.set_up(body, model, self._forces, dt)
         return entry
@@ -338,7 +350,7 @@ class BulletBackend:
         self._models.clear()
         self._forces.clear_all()
         for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
-                       self._residual, self._rolling, self._settling):
+                       self._residual, self._rolling, self._sliding, self._settling):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
@@ -381,6 +393,7 @@ class BulletBackend:
         self._readout.touch(body)
         self._residual.touched(body)
         self._rolling.touched(body)
+        self._sliding.touched(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

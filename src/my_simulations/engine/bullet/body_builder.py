@@ -15,10 +15,11 @@ from ..principal_inertia import principal
 from ..ring_rows import AXES, axis_rows, row_name
 from . import collision_groups, surface_coefficients
 from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics, sweep
-from .collision_shapes import Recipe, ShapeFactory
+from .collision_shapes import MAX_SHAPES, Recipe, ShapeFactory
 from .extra_surfaces import gives_way
 from .implicit_axes import mobility
 from .mass_matrix import MassMatrix
+from .rims import with_rims
 
 _LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
 _JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
@@ -195,8 +196,8 @@ class Builder:
         if node.index == NO_LINK:
             return None
         link = self._model.links[node.index]
-        found = self._shapes.recipes(link.collisions, meshes, inverse(node.link_from_frame),
-                                     False)
+        found = self._shapes.recipes(with_rims(node, link.collisions, MAX_SHAPES), meshes,
+                                     inverse(node.link_from_frame), False)
         return found[0] if found else None
 
     def _build_tree(self, tree: _Tree, pose: Pose) -> Body:

@@ -1,18 +1,22 @@
 """The contacts of the last step, by link row."""
 from __future__ import annotations
 
-from typing import Dict, List, Tuple
+from typing import Callable, Dict, List, Tuple
 
 import pybullet
 
-from ...geometry import add, scale
+from ...geometry import Vec3, add, scale
 from ..body_plan import BASE
 from ..commands import Contact
 from .bodies import Body
 
 
-def read_contacts(bodies: Dict[int, Body], limit: int) -> Tuple[Contact, ...]:
-    """At most `limit` contacts between known links; `bodies` by PyBullet's number."""
+def read_contacts(bodies: Dict[int, Body], limit: int,
+                  more_friction: Callable[[int, int, Vec3], Vec3]) -> Tuple[Contact, ...]:
+    """At most `limit` contacts between known links; `bodies` by PyBullet's number.
+
+    `more_friction` tells what acts on a link, of body and index, at a point besides Bullet's.
+    """
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
         rows = []
@@ -24,6 +28,8 @@ def read_contacts(bodies: Dict[int, Body], limit: int) -> Tuple[Contact, ...]:
         if len(rows) == 2:
             # Bullet does not solve points that are apart: what they tell is of an older step.
             friction = add(scale(contact[11], contact[10]), scale(contact[13], contact[12]))
+            friction = add(friction, more_friction(contact[1], contact[3], contact[5]))
+            friction = add(friction, scale(more_friction(contact[2], contact[4], contact[6]), -1))
             force, friction = ((contact[9], friction) if contact[8] <= 0.0
                                else (0.0, (0.0, 0.0, 0.0)))
             found.append(Contact(rows[0], rows[1], contact[6], contact[7], -contact[8], force,

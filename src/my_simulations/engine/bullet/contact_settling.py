@@ -13,17 +13,21 @@ Bullet ends its iterations once no row changes a velocity by more than sqrt(1e-7
 thing that stands may drift. Contacts of articulated bodies start from nothing in each step (there
 is no warm start for them): a parked robot went 1 mm and 0.8 degrees in a minute, or slid where its
 wheels were not solved in 50 iterations (measured). While one that touches something is slow, the
-world is solved to 3e-8 m/s and with more iterations. Rigid bodies that may not sleep creep where
-friction holds them up; while there are such, it is solved to 3e-6 m/s. What moves, sleeps, or
-stands on the level costs nothing. Small ones that may not sleep creep on the level too, for which
-3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in 20 s, solved so 0.3 mm.
+world is solved to 3e-8 m/s and with more iterations; one that is slower than 0.01 mm/s is put back
+where it was 16 steps ago, or in ten minutes it would turn by 0.1 degrees. Rigid bodies that may not
+sleep creep where friction holds them up; while there are such, it is solved to 3e-6 m/s. What
+moves, sleeps, or stands on the level costs nothing. Small ones that may not sleep creep on the
+level too, for which 3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in 20 s, solved so
+0.3 mm.
 """
 from __future__ import annotations
 
+from math import dist
 from typing import Any, Dict, Optional, Sequence
 
 import pybullet
 
+from ...geometry import Pose
 from .bodies import Body
 
 JointStates = Sequence[Any]  # as PyBullet tells them
@@ -31,6 +35,8 @@ JointStates = Sequence[Any]  # as PyBullet tells them
 EVERY = 16            # steps between two looks at articulated bodies
 _RIGID_EVERY = 256    # and at rigid ones, of which there may be hundreds
 _SLOW = 0.02          # m/s and rad/s: of the base, and of all joints
+_STILL = 1e-5         # m/s and rad/s: an acceleration of 1e-3 gives more between two looks
+_CREEP = 1e-6         # m, or of a quaternion: what else goes so far between two looks was moved
 _LEANS = 0.02         # friction by normal force
 _SMALL = 0.06         # m, radius: such a body creeps on the level too
 _RESIDUALS = (1e-7, 1e-11, 1e-15)  # PyBullet's own; for leaning bodies; for standing robots
@@ -46,6 +52,7 @@ class ContactSettling:
     def __init__(self) -> None:
         self._trees: Dict[int, Body] = {}
         self._rigid: Dict[int, Body] = {}
+        self._kept: Dict[int, Pose] = {}
         self._level = 0
         self._leaning = False
         self._iterations = 50
@@ -75,6 +82,7 @@ class ContactSettling:
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._trees.pop(body.uid, None)
+        self._kept.pop(body.uid, None)
         self._rigid.pop(body.uid, None)
         if not self._trees and not self._rigid:
             self._leaning = False
@@ -83,6 +91,7 @@ class ContactSettling:
     def clear(self) -> None:
         """All bodies are gone."""
         self._trees.clear()
+        self._kept.clear()
         self._rigid.clear()
         self._level, self._leaning = 0, False
         self._new, self._until = False, None
@@ -108,8 +117,24 @@ class ContactSettling:
         for body in self._trees.values():
             states = pybullet.getJointStates(body.uid, [axis.index for axis in body.axes]) or ()
             _put_back(body, states)
-            standing = standing or _stands(body, states)
+            stands = _stands(body, states)
+            standing = standing or stands
+            self._keep(body, states, stands)
         self._change(2 if standing else int(self._leaning))
+
+    def _keep(self, body: Body, states: JointStates, stands: bool) -> None:
+        """Put a free body that stands back where it stood at the last look."""
+        before = self._kept.pop(body.uid, None)
+        if not stands or body.base is None or not _is_slow(body.uid, _STILL) or any(
+                abs(state[1]) > _STILL for state in states):
+            return
+        position, turn = pybullet.getBasePositionAndOrientation(body.uid)
+        if before is None or dist(position, before.position) > _CREEP or dist(
+                turn, before.orientation) > _CREEP:
+            before = Pose(position, turn)
+        elif position != before.position or turn != before.orientation:
+            pybullet.resetBasePositionAndOrientation(body.uid, *before)
+        self._kept[body.uid] = before
 
     @staticmethod
     def _split(wanted: bool) -> None:
@@ -158,6 +183,6 @@ def _creeps(body: Body) -> bool:
     return max(along, across) > _LEANS * normal
 
 
-def _is_slow(uid: int) -> bool:
+def _is_slow(uid: int, most: float = _SLOW) -> bool:
     linear, angular = pybullet.getBaseVelocity(uid)
-    return max(map(abs, linear)) <= _SLOW and max(map(abs, angular)) <= _SLOW
+    return max(map(abs, linear)) <= most and max(map(abs, angular)) <= most

@@ -1,0 +1,217 @@
+"""Friction of sliding wheels: mu N against the slip, whatever their heading.
+
+Bullet's solver for articulated bodies works friction out along the world's axes. With its pyramid
+what slides diagonally meets up to 1.41 of mu; with its cone the two directions count by how easily
+the link moves along them, so that a driven wheel hardly feels slip along its axle: a skid-steered
+base turned at 0.68 to 1.08 rad/s, or at 0.09 to 0.73, where Coulomb's law has 0.73.
+
+So once a link that hangs on a joint slides on something static, Bullet's friction is taken away
+from it (a share of 0.001 along each axis remains), and Coulomb's law acts as an external force at
+each contact. A force against a slip of a few centimetres a second or less would overshoot within a
+step; there it grows in proportion to the slip. So as to come to rest, such a link gets Bullet's
+friction back every 64 steps, for as long as that slows it down, and keeps it when it is held.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Tuple
+
+import pybullet
+
+from ...description.model import Link
+from ...geometry import Vec3, add, cross, dot, norm, scale
+from .bodies import Body, Part
+from .surface_coefficients import directed
+
+EVERY = 16
+"""Steps between two looks at who slides."""
+
+_SLIDES = 2e-3     # m/s of slip: a link at rest never has it
+_HELD = 5e-4       # m/s: what slips less than that is held
+_SOFT = 4.0        # steps of braking by friction: a slip that ends sooner meets less of it
+_TRY = 64          # steps between two tries whether Bullet's friction holds a slow link
+_SLOWS = 0.98      # of the slip of the step before: a try goes on while it becomes less
+_LOST = 20         # steps without contact: it flies
+_NONE = (0.0, 0.0, 0.0)
+_OURS = (1e-3,) * 3
+_BULLETS = (1.0,) * 3
+
+Key = Tuple[int, int]  # body uid, link index
+Contacts = List[Tuple[Any, ...]]  # as PyBullet tells them
+
+
+@dataclass
+class _Slide:
+    """A link that slides.
+
+    Attributes:
+        forces: of the next step, N, by where they act, world axes.
+        slip: mean velocity across the floor after the last step, m/s.
+        trying: Bullet has its friction in this step.
+        apart: steps since it last touched something.
+    """
+
+    part: Part
+    mass: float
+    slip: Vec3
+    forces: Dict[Vec3, Vec3] = field(default_factory=dict)
+    trying: bool = False
+    apart: int = 0
+
+
+class Sliding:
+    """Applies Coulomb's law to links that hang on joints and slide on static bodies."""
+
+    def __init__(self) -> None:
+        self._parts: Dict[int, Dict[int, Part]] = {}
+        self._mass: Dict[int, float] = {}
+        self._static: Dict[int, float] = {}
+        self._slides: Dict[Key, _Slide] = {}
+        self._wanted = True
+
+    def configure(self, wanted: bool) -> None:
+        """Whether friction is a cone; a pyramid is Bullet's own."""
+        self._wanted = wanted
+        if not wanted:
+            for key in list(self._slides):
+                self._give_back(key)
+
+    def add(self, body: Body, part: Part, link: Link) -> None:
+        """Know a link of a body. Those with two coefficients of friction are left to Bullet."""
+        if not link.collisions or directed(link.collisions[0].surface):
+            return
+        if not body.moves:
+            self._static.update({uid: part.mu for uid in body.uids})
+        elif part.mu > 0.0 and any(axis.index == part.index for axis in body.axes):
+            self._parts.setdefault(body.uid, {})[part.index] = part
+            self._mass[body.uid] = sum(each.mass for each in body.parts)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        for uid in body.uids:
+            for table in (self._static, self._parts, self._mass):
+                table.pop(uid, None)
+        for part in body.parts:
+            self._slides.pop((body.uid, part.index), None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        for table in (self._static, self._parts, self._mass, self._slides):
+            table.clear()
+
+    @property
+    def idle(self) -> bool:
+        """True when no link can need it."""
+        return not (self._wanted and self._parts)
+
+    @property
+    def busy(self) -> bool:
+        """True when something must be done before and after every step."""
+        return bool(self._slides)
+
+    def touched(self, body: Body) -> None:
+        """A body was put somewhere or given another velocity."""
+        for key in [key for key in self._slides if key[0] == body.uid]:
+            self._give_back(key)
+
+    def friction(self, uid: int, index: int, at: Vec3) -> Vec3:
+        """What acts on a link at a contact besides Bullet's friction, N, world axes."""
+        slide = self._slides.get((uid, index))
+        return _NONE if slide is None else slide.forces.get(at, _NONE)
+
+    def before(self) -> None:
+        """Act before a step."""
+        for (uid, index), slide in self._slides.items():
+            for at, force in slide.forces.items():
+                pybullet.applyExternalForce(uid, index, force, at, pybullet.WORLD_FRAME)
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """See how links slide after the step that began at count `step`; now and then, which."""
+        if step % EVERY == 0 and self._wanted:
+            for uid, parts in self._parts.items():
+                self._look(uid, parts)
+        if self._slides:
+            least = norm(gravity)
+            for key, slide in list(self._slides.items()):
+                self._go_on(key, slide, step, dt, least)
+
+    def _look(self, uid: int, parts: Dict[int, Part]) -> None:
+        """Find the links of a body that slide."""
+        found: Dict[int, Contacts] = {}
+        for contact in pybullet.getContactPoints(bodyA=uid):
+            if contact[3] in parts and contact[9] > 0.0 and contact[8] <= 0.0:
+                found.setdefault(contact[3], []).append(contact)
+        for index, contacts in found.items():
+            if (uid, index) in self._slides or self._touches_moving(contacts):
+                continue
+            slip = _mean(_slips(uid, index, contacts))
+            if norm(slip) > _SLIDES:
+                self._slides[uid, index] = _Slide(parts[index], self._mass[uid], slip)
+                pybullet.changeDynamics(uid, index, anisotropicFriction=_OURS)
+
+    def _touches_moving(self, contacts: Contacts) -> bool:
+        return any(contact[2] not in self._static for contact in contacts)
+
+    def _go_on(self, key: Key, slide: _Slide, step: int, dt: float, gravity: float) -> None:
+        """Work out the forces of the next step, or give the link back to Bullet."""
+        slide.forces = {}
+        contacts = [contact for contact in pybullet.getContactPoints(bodyA=key[0],
+                                                                     linkIndexA=key[1])
+                    if contact[9] > 0.0 and contact[8] <= 0.0]
+        slide.apart = 0 if contacts else slide.apart + 1
+        if slide.apart > _LOST or self._touches_moving(contacts):
+            self._give_back(key)
+        if not contacts or key not in self._slides:
+            return
+        slips = _slips(*key, contacts)
+        slip, before = _mean(slips), slide.slip
+        slide.slip = slip
+        if slide.trying:
+            if norm(slip) < _HELD:
+                self._give_back(key)
+                return
+            if norm(slip) < _SLOWS * norm(before):
+                return
+            self._try(key, slide, False)
+        carried = sum(contact[9] for contact in contacts)
+        soft = _SOFT * dt * max(gravity, carried / slide.mass)
+        slow = False
+        for contact, velocity in zip(contacts, slips):
+            mu = min(slide.part.mu, self._static[contact[2]])
+            speed = norm(velocity)
+            slow = slow or speed < soft * mu
+            if speed > 0.0:
+                slide.forces[contact[5]] = scale(
+                    velocity, -mu * contact[9] / max(speed, soft * mu))
+        if dot(slip, before) < 0.0 or (slow and step % _TRY == 0):
+            self._try(key, slide, True)
+
+    @staticmethod
+    def _try(key: Key, slide: _Slide, trying: bool) -> None:
+        """Let Bullet's friction act in the next step, or ours again."""
+        slide.trying = trying
+        if trying:
+            slide.forces = {}
+        pybullet.changeDynamics(*key, anisotropicFriction=_BULLETS if trying else _OURS)
+
+    def _give_back(self, key: Key) -> None:
+        del self._slides[key]
+        pybullet.changeDynamics(*key, anisotropicFriction=_BULLETS)
+
+
+def _slips(uid: int, index: int, contacts: Contacts) -> List[Vec3]:
+    """The velocity of a link across the floor at each contact, m/s."""
+    state = pybullet.getLinkState(uid, index, computeLinkVelocity=1)
+    centre, linear, angular = state[0], state[6], state[7]
+    found: List[Vec3] = []
+    for contact in contacts:
+        at, normal = contact[5], contact[7]
+        arm = (at[0] - centre[0], at[1] - centre[1], at[2] - centre[2])
+        velocity = add(linear, cross(angular, arm))
+        found.append(add(velocity, scale(normal, -dot(velocity, normal))))
+    return found
+
+
+def _mean(slips: List[Vec3]) -> Vec3:
+    x, y, z = (sum(slip[n] for slip in slips) / len(slips) for n in range(3))
+    return (x, y, z)

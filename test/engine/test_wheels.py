@@ -1,0 +1,95 @@
+"""Wheels under efforts: a base goes straight, turns as its wheels do, and stands on both edges."""
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import List
+
+import pytest
+from conftest import Lab, ground, inertial_of_box, slab
+from laws import Laws
+
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
+from my_simulations.engine.commands import AddTimedForces, ReadContacts, TimedEffort
+from my_simulations.geometry import Pose, quat_from_rpy
+
+LYING = quat_from_rpy(-math.pi / 2, 0, 0)
+
+
+def _car(radius: float, width: float, turned: bool = False) -> Model:
+    """Four cylinder wheels with free axles; with `turned` in link frames that are not theirs."""
+    across, about = (3 * radius ** 2 + width ** 2) / 24, radius ** 2 / 4
+    links = [Link("link", inertial=inertial_of_box(10, 0.6, 0.4, 0.1))]
+    joints: List[Joint] = []
+    for n, (x, y) in enumerate([(3 * radius, 0.3), (3 * radius, -0.3), (-3 * radius, 0.3),
+                                (-3 * radius, -0.3)]):
+        collision = Collision("c", Cylinder(radius, width), Pose((0, 0, 0), LYING),
+                              surface=Surface(mu=1.0))
+        inertial = Inertial(0.5, Pose((0, 0, 0), LYING), across, 0, 0, across, 0, about)
+        joint_at, axis = Pose(), (0.0, 1.0, 0.0)
+        if turned:
+            off = Pose((0.02, 0.03, 0), LYING)
+            collision = replace(collision, pose=off)
+            inertial = replace(inertial, pose=off)
+            joint_at, axis = off, (0.0, 0.0, 1.0)
+        at = (x - 0.02, y - 0.03, 0) if turned else (x, y, 0)
+        links.append(Link(f"w{n}", Pose(at), inertial, [collision]))
+        joints.append(Joint(f"j{n}", "revolute", "link", f"w{n}", joint_at, axis=JointAxis(axis)))
+    return Model("car", links=links, joints=joints)
+
+
+def _drive(lab: Lab, car: int, efforts: List[float], steps: int) -> None:
+    lab.apply(AddTimedForces(tuple(
+        TimedEffort(n + 1, lab.joint_rows[car, f"j{n}"], lab.step, lab.step + steps, effort)
+        for n, effort in enumerate(efforts))))
+
+
+def _yaw(lab: Lab, car: int) -> float:
+    x, y, z, w = lab.pose(car).orientation
+    return math.degrees(math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+
+
+@pytest.mark.parametrize("floor", ["plane", "box"])
+@pytest.mark.parametrize("radius, width", [(0.1, 0.03), (0.1, 0.1), (0.05, 0.3)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_wheels_under_equal_efforts_go_straight(lab: Lab, laws: Laws, floor: str, radius: float,
+                                                width: float, turned: bool):
+    lab.load(ground(1.0) if floor == "plane" else slab("floor", (60, 60, 1)),
+             (0, 0, 0 if floor == "plane" else -0.5))
+    car = lab.load(_car(radius, width, turned), (0, 0, radius))
+    lab.steps(300)
+    effort = 10.0 * radius
+    start, before = lab.pose(car), _yaw(lab, car)
+    _drive(lab, car, [effort] * 4, 1000)
+    lab.seconds(1)
+    laws.at_most(f"four wheels under equal efforts on a {floor}: yaw in 1 s, degrees",
+                 abs(_yaw(lab, car) - before), 0.1)
+    # Half of what four torques do to the car and its wheels' turning.
+    rolling = 10.0 + 4 * 0.5 * 1.5
+    laws.near(f"four wheels under equal efforts on a {floor}: way in 1 s, m",
+              lab.pose(car).position[0] - start.position[0], 0.5 * 4 * 10.0 / rolling, rel=0.02)
+
+
+def test_wide_wheels_stand_on_both_edges(lab: Lab, laws: Laws):
+    lab.load(ground(1.0))
+    car = lab.load(_car(0.1, 0.1), (0, 0, 0.1))
+    _drive(lab, car, [0.5] * 4, 500)
+    lab.seconds(0.5)
+    edges = set()
+    for contact in lab.apply(ReadContacts()):
+        wheel = max(contact.row_a, contact.row_b) - lab.rows[car, "w0"]
+        edges.add((wheel, contact.position[1] > lab.pose(car, f"w{wheel}").position[1]))
+    assert len(edges) == 8
+    laws.near("wide wheels that roll: height of the axle, m", lab.pose(car, "w0").position[2], 0.1,
+              abs=1e-4)
+
+
+def test_a_wheel_of_many_shapes_stays_one_body(lab: Lab):
+    lab.load(ground(1.0))
+    car = _car(0.1, 0.05)
+    spokes = [Collision(f"s{n}", Box((0.01, 0.01, 0.01))) for n in range(14)]
+    car.links[1].collisions.extend(spokes)
+    body = lab.load(car, (0, 0, 0.1))
+    lab.seconds(0.5)
+    assert abs(lab.pose(body).position[2] - 0.1) < 1e-3
