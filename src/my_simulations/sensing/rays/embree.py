@@ -68,12 +68,13 @@ class Embree:
                 "lasers need the Python package 'embreex', which is not installed: "
                 "pip install embreex (it has no wheel for this Python or processor otherwise)")
         try:
-            library = ctypes.CDLL(path)
+            # Calls are short: to let other threads run meanwhile costs more than the calls.
+            library, building = ctypes.PyDLL(path), ctypes.CDLL(path)
         except OSError as fault:
             raise SensingUnavailableError(f"lasers need Embree, which cannot be loaded: {fault}"
                                           ) from None
         for name, (result, arguments) in _CALLS.items():
-            call = getattr(library, name)
+            call = getattr(building if name == "rtcCommitScene" else library, name)
             call.restype, call.argtypes = result, arguments
             setattr(self, name, call)
         # One thread: what is built is small, and the physics needs the other cores.

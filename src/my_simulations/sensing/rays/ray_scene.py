@@ -3,11 +3,12 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass, field
-from typing import Dict, List, Sequence, Tuple
+from typing import Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
 
 from ...description.shapes import Capsule, Ellipsoid, Geometry, Plane, Sphere
+from ...errors import InputError
 from ...geometry import Pose
 from ..api import NO_ROW
 from ..poses import matrices, matrix
@@ -81,10 +82,14 @@ class _Model:
 
 
 class RayScene:
-    """A top-level scene. Not thread safe."""
+    """A top-level scene. Not thread safe.
 
-    def __init__(self, embree: Embree) -> None:
+    `trouble` is told of shapes that cannot be read, which rays then pass through.
+    """
+
+    def __init__(self, embree: Embree, trouble: Callable[[str], None]) -> None:
         self._embree = embree
+        self._trouble = trouble
         self._top = embree.scene(dynamic=True)
         self._parts: Dict[str, _Parts] = {}
         self._instances: Dict[int, _Instance] = {}
@@ -93,11 +98,7 @@ class RayScene:
         self._buffer = _packets(PACKET)
 
     def add(self, name: str, links: Sequence[Tuple[int, Sequence[RayShape]]]) -> None:
-        """A model of links with rows; it is seen once `move` has given it a place.
-
-        Raises:
-            InputError: a mesh cannot be read.
-        """
+        """A model of links with rows; it is seen once `move` has given it a place."""
         self.remove(name)
         model = _Model()
         self._models[name] = model
@@ -148,7 +149,12 @@ class RayScene:
         scene = self._embree.scene(dynamic=False)
         retro: List[float] = []
         for shape in shapes:
-            for kind, buffers in _buffers(shape):
+            try:
+                made = _buffers(shape)
+            except InputError as fault:
+                self._trouble(f"rays do not see a shape: {fault}")
+                continue
+            for kind, buffers in made:
                 self._embree.attach(scene, kind, buffers)
                 retro.append(shape.retro)
         self._embree.rtcCommitScene(scene)
