@@ -23,6 +23,12 @@ if TYPE_CHECKING:
 WORLD_ROW = -1
 """`Mount.row` of a sensor that stands still; its pose is in the world."""
 
+TROUBLE = -1
+"""Between the processes: the number of a message that is a sentence about what is left out."""
+
+READY = -2
+"""Between the processes: the number of the child's first message."""
+
 NO_ROW = -1
 """Where a ray or a pixel meets nothing."""
 
@@ -35,8 +41,8 @@ RGB, DEPTH, LABELS = "rgb", "depth", "labels"
 At = Union[None, int, bytes]
 """The state to look at: a ring sequence, link rows as `RingReader.raw_links` gives them, or None.
 
-A sequence is copied when the request arrives at the process, and fails with `SnapshotGoneError` when
-it has been overwritten (16 snapshots later). Rows never fail. None is the newest state: for whoever
+A sequence is copied when the request arrives at the process, and fails with `SnapshotGoneError`
+when it has been overwritten (16 snapshots later). Rows never fail. None is the newest state: for whoever
 only wants a picture now.
 """
 
@@ -82,7 +88,7 @@ class RayFan:
 
 @dataclass(frozen=True)
 class RayBundle:
-    """Any rays: `origins` (n, 3) in metres and unit `directions` (n, 3), both in the sensor frame."""
+    """Any rays: `origins` (n, 3) in metres, unit `directions` (n, 3), both in the sensor frame."""
 
     origins: "np.ndarray"
     directions: "np.ndarray"

@@ -15,6 +15,8 @@ from typing import Any, Callable, Dict, Optional, Tuple, Union
 from ..engine import child_process
 from ..engine.message_pipe import Wire
 from .api import (
+    READY,
+    TROUBLE,
     CastRays,
     Change,
     Pictures,
@@ -29,10 +31,9 @@ from .scene import SceneState
 
 _log = logging.getLogger(__name__)
 _END_S = 3.0  # how long a child may take to end by itself
+_START_S = 60.0  # and to start, on a machine that does much else
 _MOST_WAITING = 256
 _MOST_DEATHS = 3
-TROUBLE = -1
-"""The number of a message that is a sentence about what is left out."""
 
 
 class _Waiting:
@@ -54,7 +55,7 @@ class SensingProcess:
 
     Args:
         ring_fd: descriptor of the engine's ring; -1 where all requests bring their rows.
-        patience: s without an answer to a request.
+        patience: s without an answer to a request, once the child has started.
     """
 
     def __init__(self, ring_fd: int = -1, patience: float = 60.0) -> None:
@@ -214,6 +215,7 @@ class SensingProcess:
     # The reader of one child.
 
     def _read(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+        patience = max(_START_S, self._patience)
         while True:
             try:
                 messages = wire.receive(min(1.0, self._patience / 4))
@@ -221,8 +223,10 @@ class SensingProcess:
                 break
             for number, message in messages:
                 self._answer(number, message)
-            if not messages and self._overdue():
-                self._verdict = (f"the sensing process has not answered for {self._patience:g} s "
+                if number == READY:
+                    patience = self._patience
+            if not messages and self._overdue(patience):
+                self._verdict = (f"the sensing process has not answered for {patience:g} s "
                                  "and was ended")
                 child.kill()
         child.wait()
@@ -234,20 +238,21 @@ class SensingProcess:
             return
         with self._lock:
             waiting = self._waiting.pop(number, None)
-            self._deaths = 0
+            if waiting is not None:
+                self._deaths = 0
             for later in self._waiting.values():
                 later.since = time.monotonic()  # it works through them
         if waiting is None:
-            return
+            return  # the first message, which asks for nothing
         if isinstance(message, SensingError):
             waiting.future.set_exception(message)
         else:
             waiting.future.set_result(message)
 
-    def _overdue(self) -> bool:
+    def _overdue(self, patience: float) -> bool:
         with self._lock:
             oldest = min((one.since for one in self._waiting.values()), default=None)
-        return oldest is not None and time.monotonic() - oldest > self._patience
+        return oldest is not None and time.monotonic() - oldest > patience
 
     def _bury(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
         reason = self._verdict or _reason(child.returncode)

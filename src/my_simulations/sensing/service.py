@@ -1,17 +1,20 @@
 """The child's inside: one thread receives and copies poses, one casts rays, one draws."""
 from __future__ import annotations
 
+import os
 import queue
 import threading
+import traceback
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
 from ..engine.message_pipe import Wire
 from ..engine.ring import RingReader
-from ..errors import InputError
 from .api import (
     COLLISIONS,
+    READY,
+    TROUBLE,
     WORLD_ROW,
     At,
     Body,
@@ -26,8 +29,9 @@ from .api import (
     SnapshotGoneError,
 )
 from .poses import matrices, matrix, rows_of
-from .process import TROUBLE
 from .scene import SceneState
+
+_FAULT = 70
 
 State = Tuple[np.ndarray, int]
 """Poses (n, 7) by link row, and the step count."""
@@ -45,6 +49,7 @@ class Service:
 
     def run(self) -> None:
         """Receive; what each request is to see is copied before the next is looked at."""
+        self._reply(READY, None)
         while True:
             try:
                 messages = self._wire.receive(3600.0)
@@ -117,8 +122,9 @@ class _Worker:
                     self._reply(number, self._viewer.answer(message, state))
             except SensingError as fault:
                 self._reply(number, fault)
-            except InputError as fault:
-                self._reply(number or TROUBLE, SensingError(str(fault)) if number else str(fault))
+            except Exception:  # a fault of ours: the parent starts another process
+                traceback.print_exc()
+                os._exit(_FAULT)
 
 
 class _Rays:

@@ -27,7 +27,7 @@ RAY_ERROR = 5e-5
 
 @dataclass(frozen=True)
 class Triangles:
-    """A surface. `vertices` float64 (n, 3) m; `triangles` int32 (m, 3); the rest None or per vertex.
+    """A surface: `vertices` float64 (n, 3) m, `triangles` int32 (m, 3), the rest per vertex.
 
     Attributes:
         normals: (n, 3), outwards.

@@ -88,8 +88,7 @@ class ServedFiles:
         return found
 
     def texture(self, name: str, folders: List[str]) -> Optional[str]:
-        """The path of a picture by file name, looked for in these folders first, if it is served.
-        """
+        """The path of a picture that may be served, looked for in these folders first."""
         places = places_of_script(name, folders, self._resolver.resource_folders())
         return next((found for found in map(self._existing, places) if found), None)
 
