@@ -34,7 +34,7 @@ def rows(poses: Sequence[Pose]) -> bytes:
 
 def table(poses: Sequence[Pose]) -> np.ndarray:
     """Poses as the scenes want them."""
-    return np.array([[*pose.position, *pose.orientation] for pose in poses])
+    return np.array([[*pose.position, *pose.orientation] for pose in poses]).reshape(-1, 7)
 
 
 def until(condition, failure: str) -> None:

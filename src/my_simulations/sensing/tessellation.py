@@ -121,7 +121,9 @@ def plane(normal: Vec3, size: Tuple[float, float]) -> Triangles:
 
 def _ring(count: int) -> np.ndarray:
     angles = np.linspace(0.0, 2.0 * math.pi, count + 1)
-    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    circle[-1] = circle[0]  # to the last bit: rays must not slip through the seam
+    return circle
 
 
 def _widened(count: int) -> float:
@@ -172,9 +174,11 @@ def capsule(radius: float, length: float, count: int) -> Triangles:
 
 def _revolved(latitudes: np.ndarray, radii: np.ndarray, length: float, count: int) -> Triangles:
     circle, levels = _ring(count), len(latitudes)
+    across = np.cos(latitudes)
+    across[np.abs(latitudes) > math.pi / 2 - 1e-9] = 0.0  # nor through the poles
     unit = np.concatenate([
-        np.column_stack([circle * math.cos(lat), np.full(count + 1, math.sin(lat))])
-        for lat in latitudes])
+        np.column_stack([circle * wide, np.full(count + 1, math.sin(latitude))])
+        for wide, latitude in zip(across, latitudes)])
     ends = np.repeat(np.where(np.arange(levels) < levels / 2, -0.5, 0.5), count + 1) * length
     vertices = unit * radii
     vertices[:, 2] += ends
