@@ -285,12 +285,25 @@ def test_distortion_moves_points_as_browns_model_says(view, k1):
     lens = Distortion(k1=k1, k2=0.01, p1=0.001, p2=-0.002)
     spec = CameraSpec(640, 480, 1.2, distortion=lens)
     for y, z in ((0.5, 0.3), (-0.9, -0.6), (0.0, 0.8)):
-        found = view([body("b", Box((0.001, 0.12, 0.12)), 0, FLAT_WHITE)],
-                     [Pose((3.0, y, z), quat_from_rpy(0.3, 0.0, 0.0))], spec=spec)
-        x, down = distorted(lens, np.array([-y / 3.0]), np.array([-z / 3.0]))
-        expected = (319.5 + spec.focal_length * x[0], 239.5 + spec.focal_length * down[0])
+        found = view([body("b", Box((0.001, 0.4, 0.4)), 0, FLAT_WHITE)],
+                     [Pose((3.0005, y, z), quat_from_rpy(0.3, 0.0, 0.0))], spec=spec)
+        rim = np.array([(side * 0.2, part) for side in (-1, 1)
+                        for part in np.linspace(-0.2, 0.2, 50) * side])
+        rim = np.concatenate([rim[:50], np.flip(rim[:50], 1) * (-1, 1), rim[50:],
+                              np.flip(rim[50:], 1) * (-1, 1)])
+        turned = rim @ np.array([[math.cos(0.3), math.sin(0.3)], [-math.sin(0.3), math.cos(0.3)]])
+        u, v = distorted(lens, -(y + turned[:, 0]) / 3.0, -(z + turned[:, 1]) / 3.0)
+        expected = centroid(319.5 + spec.focal_length * u, 239.5 + spec.focal_length * v)
         assert middle_of(found.rgb[..., 0] > 127) == pytest.approx(expected, abs=0.2)
         assert middle_of(found.labels == 0) == pytest.approx(expected, abs=0.2)
+
+
+def centroid(x, y):
+    """Of a polygon."""
+    following_x, following_y = np.roll(x, -1), np.roll(y, -1)
+    cross = x * following_y - following_x * y
+    return (((x + following_x) * cross).sum() / (3 * cross.sum()),
+            ((y + following_y) * cross).sum() / (3 * cross.sum()))
 
 
 def test_a_cropped_barrel_distortion_leaves_no_border_empty(view):

@@ -13,8 +13,8 @@ class Look:
 
     Colours are None where nothing is said, and then a mesh's own counts. `texture` is the path of a
     picture, `pattern` the name of one that is drawn (`gazebo_materials`); `scale` is the size of
-    one repetition in texture coordinates, u and v. `transparency` 0 opaque to 1 invisible; `lit` False
-    ignores all lights.
+    one repetition in texture coordinates, u and v. `transparency` 0 opaque to 1 invisible; `lit`
+    False ignores all lights.
     """
 
     name: str = ""

@@ -42,8 +42,8 @@ At = Union[None, int, bytes]
 """The state to look at: a ring sequence, link rows as `RingReader.raw_links` gives them, or None.
 
 A sequence is copied when the request arrives at the process, and fails with `SnapshotGoneError`
-when it has been overwritten (16 snapshots later). Rows never fail. None is the newest state: for whoever
-only wants a picture now.
+when it has been overwritten (16 snapshots later). Rows never fail. None is the newest state, for
+whoever only wants a picture now.
 """
 
 

@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Callable
+from typing import Any, Callable, Dict
 
 from ..api import SensingUnavailableError
 
+_EGL: Dict[str, Any] = {"backend": "egl"}
 _PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
 
 
@@ -21,7 +22,7 @@ def new_context() -> Any:
         raise SensingUnavailableError("cameras need the Python package 'moderngl', which cannot be "
                                       f"imported ({fault}): pip install moderngl") from None
     try:
-        context = moderngl.create_context(standalone=True, backend="egl", require=330)
+        context = moderngl.create_context(standalone=True, require=330, **_EGL)
     except Exception as fault:  # each of its back ends fails in its own way
         raise SensingUnavailableError(
             f"cameras need OpenGL 3.3 on EGL, which is not to be had ({fault}): "

@@ -15,8 +15,7 @@ Rgb = Tuple[int, int, int]
 
 
 def read_picture(picture: Any) -> Optional[np.ndarray]:
-    """uint8 (h, w, 4), the lowest row first, of a path or a PIL image; None if it is not readable.
-    """
+    """uint8 (h, w, 4), the lowest row first, of a path or a PIL image; None if unreadable."""
     from PIL import Image, UnidentifiedImageError
 
     try:

@@ -1,8 +1,8 @@
 """The programs of the renderer, GLSL 3.30.
 
 Light and colour are those of the editor's page: colours of files are sRGB, light is added up in
-linear units, a lamp of colour 1 falls on a white wall as 1. Places are given relative to the camera,
-so that a world far from its origin keeps its accuracy.
+linear units, a lamp of colour 1 falls on a white wall as 1. Places are given relative to the
+camera, so that a world far from its origin keeps its accuracy.
 """
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ vec3 encoded(vec3 c) {
 }
 """
 
-LIT_FRAGMENT = """#version 330
-#define LIGHTS %d
-#define SHADOWS %d
-in vec3 place; in vec3 out_normal; in vec2 out_uv;
+LIT_FRAGMENT = f"""#version 330
+#define LIGHTS {MOST_LIGHTS}
+#define SHADOWS {MOST_SHADOWS}
+""" + """in vec3 place; in vec3 out_normal; in vec2 out_uv;
 out vec4 seen;
 uniform vec4 diffuse;
 uniform vec3 specular, emissive, ambient, up;
@@ -46,14 +46,14 @@ uniform vec4 light_at[LIGHTS];       // xyz: place, or direction to it with w = 
 uniform vec3 light_color[LIGHTS];
 uniform vec3 light_way[LIGHTS];      // of a spot
 uniform vec4 light_fade[LIGHTS];     // constant, linear, quadratic, range
-uniform vec3 light_cone[LIGHTS];     // cosines of half the inner and outer angle, falloff; x < -1: all round
+uniform vec3 light_cone[LIGHTS];     // cosines of half the inner and outer angle, falloff; or -2
 uniform int light_shadow[LIGHTS];    // which map, or -1
 uniform mat4 shadow_from_view[SHADOWS];
 uniform float shadow_pixel[SHADOWS];
 uniform sampler2DShadow shadow0, shadow1;
 uniform vec4 fog;                    // start, end, density, kind
 uniform vec3 fog_color;
-""" % (MOST_LIGHTS, MOST_SHADOWS) + COLOR + """
+""" + COLOR + """
 float lightened(int map, vec3 n) {
   vec4 p = shadow_from_view[map] * vec4(place + n * shadow_pixel[map] * 1.5, 1.0);
   vec3 at = p.xyz / p.w * 0.5 + 0.5;
@@ -153,8 +153,13 @@ void main() {
   if (way.z > 0.01) {
     vec2 at = way.xy / (way.z + 0.12) / size + vec2(drift, 0.0);
     float density = 0.0, part = 0.55;
-    for (int octave = 0; octave < 5; octave++) { density += part * noise(at); at *= 2.1; part *= 0.5; }
-    float cloud = smoothstep(1.0 - cover, 1.15 - 0.3 * cover, density) * smoothstep(0.01, 0.2, way.z);
+    for (int octave = 0; octave < 5; octave++) {
+      density += part * noise(at);
+      at *= 2.1;
+      part *= 0.5;
+    }
+    float cloud = smoothstep(1.0 - cover, 1.15 - 0.3 * cover, density);
+    cloud *= smoothstep(0.01, 0.2, way.z);
     color = mix(color, cloud_color, cloud * 0.85);
   }
   seen = vec4(encoded(clamp(color, 0.0, 1.0)), 1.0);

@@ -1,7 +1,7 @@
 """The few calls of Embree 4 that are needed, through ctypes.
 
 The library is the one that the `embreex` wheel carries: Debian's is Embree 3, and the wheel's
-Python module knows no instances. Source of names and numbers: Embree's API documentation, version 4.
+Python module knows no instances. Source of names and numbers: Embree's API documentation.
 """
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ class Embree:
         path = library_path()
         if path is None:
             raise SensingUnavailableError(
-                "lasers need the Python package 'embreex', which is not installed or has no library "
-                "for this processor: pip install embreex")
+                "lasers need the Python package 'embreex', which is not installed or has no "
+                "library for this processor: pip install embreex")
         try:
             # Calls are short: to let other threads run meanwhile costs more than the calls.
             library, building = ctypes.PyDLL(path), ctypes.CDLL(path)

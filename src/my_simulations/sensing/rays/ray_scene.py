@@ -95,6 +95,9 @@ class RayScene:
         self._instances: Dict[int, _Instance] = {}
         self._models: Dict[str, _Model] = {}
         self._changed = True
+        self._rows = np.zeros(0, dtype=np.int64)
+        self._last = np.zeros((0, 7))
+        self._poses = np.zeros((0, 7))
         self._buffer = _packets(PACKET)
 
     def add(self, name: str, links: Sequence[Tuple[int, Sequence[RayShape]]]) -> None:
