@@ -294,8 +294,11 @@ def test_distortion_moves_points_as_browns_model_says(view, k1):
         turned = rim @ np.array([[math.cos(0.3), math.sin(0.3)], [-math.sin(0.3), math.cos(0.3)]])
         u, v = distorted(lens, -(y + turned[:, 0]) / 3.0, -(z + turned[:, 1]) / 3.0)
         expected = centroid(319.5 + spec.focal_length * u, 239.5 + spec.focal_length * v)
-        assert middle_of(found.rgb[..., 0] > 127) == pytest.approx(expected, abs=0.2)
-        assert middle_of(found.labels == 0) == pytest.approx(expected, abs=0.2)
+        weight = found.rgb[..., 0] / found.rgb[..., 0].sum(dtype=float)
+        column, row = np.meshgrid(np.arange(640), np.arange(480))
+        assert ((weight * column).sum(), (weight * row).sum()) == pytest.approx(expected, abs=0.1)
+        # Labels are never mixed: an edge is off by a part of a pixel.
+        assert middle_of(found.labels == 0) == pytest.approx(expected, abs=0.5)
 
 
 def centroid(x, y):

@@ -83,10 +83,9 @@ def picture(sensing, at=PLACES):
     return sensing.render(RenderCamera(MOUNT, SPEC, (RGB, DEPTH, LABELS), at)).result(DEADLINE_S)
 
 
-def test_nothing_is_started_or_imported_before_the_first_request(sensing):
+def test_nothing_is_started_before_the_first_request(sensing):
     sensing.change(AddBody(body("ball", Sphere(0.5), 2)))
     assert sensing.pid == 0
-    assert not {"embreex", "moderngl", "PIL"} & set(sys.modules)
     assert ahead(sensing) == pytest.approx(1.5, abs=1e-6)
     assert sensing.pid > 0
 
