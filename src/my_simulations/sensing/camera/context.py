@@ -27,7 +27,6 @@ def new_context() -> Any:
         raise SensingUnavailableError(
             f"cameras need OpenGL 3.3 on EGL, which is not to be had ({fault}): "
             f"apt install {_PACKAGES}") from None
-    context.gc_mode = "auto"
     return context
 
 

@@ -147,7 +147,8 @@ class Renderer:
         self._set_lit(view, clip, shadows)
         context.enable_only(context.DEPTH_TEST)
         clear: List[Batch] = []
-        for batch in self._batches.values():
+        # Small ones first: walls and grounds are mostly behind them, and need not be lit there.
+        for batch in sorted(self._batches.values(), key=lambda one: one.radius):
             if batch.surface.opacity < 1.0:
                 clear.append(batch)
             else:

@@ -95,6 +95,9 @@ class RayScene:
         self._instances: Dict[int, _Instance] = {}
         self._models: Dict[str, _Model] = {}
         self._changed = True
+        self._listed: List[_Instance] = []
+        self._shown = np.zeros(0, dtype=bool)
+        self._handles: List[ctypes.c_void_p] = []
         self._rows = np.zeros(0, dtype=np.int64)
         self._last = np.zeros((0, 7))
         self._poses = np.zeros((0, 7))
@@ -179,12 +182,14 @@ class RayScene:
 
     def _index(self) -> None:
         """Tables by place in the list of instances, after a change of the scene."""
-        self._numbers = list(self._instances)
-        instances = list(self._instances.values())
-        self._handles = [one.geometry for one in instances]
+        for one, shown in zip(self._listed, self._shown.tolist()):
+            one.shown = shown
+        self._listed = instances = list(self._instances.values())
+        self._handles = [ctypes.c_void_p(one.geometry) for one in instances]
+        self._shown = np.array([one.shown for one in instances], dtype=bool)
         self._rows = np.array([one.row for one in instances], dtype=np.int64)
         self._last = np.full((len(instances), 7), np.inf)
-        most = max(self._numbers, default=-1) + 1
+        most = max(self._instances, default=-1) + 1
         self._row_of = np.full(most, NO_ROW, dtype=np.int32)
         self._first_retro = np.zeros(most, dtype=np.int64)
         retro: List[float] = []
@@ -201,17 +206,18 @@ class RayScene:
         frames = matrices(np.where(seen[:, None], now[moved], 0.0))
         columns = np.ascontiguousarray(frames[:, :3, :].transpose(0, 2, 1), dtype=np.float32)
         at, size = columns.ctypes.data, columns[:1].nbytes
-        for n, index in enumerate(moved.tolist()):
-            geometry, one = self._handles[index], self._instances[self._numbers[index]]
-            if seen[n]:
-                embree.rtcSetGeometryTransform(geometry, 0, MATRIX, at + n * size)
-                if not one.shown:
-                    embree.rtcEnableGeometry(geometry)
-                    one.shown = True
-            elif one.shown:
-                embree.rtcDisableGeometry(geometry)
-                one.shown = False
-            embree.rtcCommitGeometry(geometry)
+        place, commit = embree.rtcSetGeometryTransform, embree.rtcCommitGeometry
+        shown = self._shown[moved]
+        for n in np.flatnonzero(shown != seen).tolist():
+            change = embree.rtcEnableGeometry if seen[n] else embree.rtcDisableGeometry
+            change(self._handles[moved[n]])
+            if not seen[n]:
+                commit(self._handles[moved[n]])
+        self._shown[moved] = seen
+        for n in np.flatnonzero(seen).tolist():
+            geometry = self._handles[moved[n]]
+            place(geometry, 0, MATRIX, at + n * size)
+            commit(geometry)
 
     def cast(self, origins: np.ndarray, directions: np.ndarray, near: float, far: float,
              ) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
