@@ -11,7 +11,7 @@ import numpy as np
 
 from ...description.shapes import Color, Mesh, MeshData
 from ...errors import InputError
-from .collada import _instances, _unit
+from .collada import instances, unit_of
 from .loading import load_mesh
 from .part import MeshError
 
@@ -118,9 +118,9 @@ def _collada(mesh: Mesh) -> List[PaintedPart]:
     with open(mesh.path, "rb") as stream:
         data = stream.read()
     document = collada.Collada(io.BytesIO(data), ignore=[collada.DaeError])
-    unit = _unit(document, etree.fromstring(data))
+    unit = unit_of(document, etree.fromstring(data))
     parts = []
-    for names, geometry in _instances(document):
+    for names, geometry in instances(document):
         if mesh.submesh and mesh.submesh not in names:
             continue
         mirrored = np.linalg.det(geometry.matrix[:3, :3]) < 0
