@@ -91,8 +91,9 @@ def test_pip_requirements_are_pinned(name):
     lines = [line for line in (REPOSITORY / name).read_text().splitlines()
              if line and not line.startswith("#")]
     assert lines
+    python, machine = r"python_version [<>=]+ \"3\.\d+\"", r" and platform_machine == \"\w+\""
     for line in lines:
-        assert re.match(r"[\w-]+==[\w.]+(; python_version [<>=]+ \"3\.\d+\")?$", line), line
+        assert re.match(rf"[\w-]+==[\w.]+(; {python}({machine})?)?$", line), line
 
 
 def test_every_top_level_folder_of_data_is_installed():

@@ -28,9 +28,9 @@ def read_collada(data: bytes) -> List[MeshPart]:
     root = tidied(data)
     try:
         document = _loaded(etree.tostring(root))
-        unit = _unit(document, root)
+        unit = unit_of(document, root)
         with np.errstate(all="ignore"):  # what is not finite is reported later
-            made = (_part(names, geometry, unit) for names, geometry in _instances(document))
+            made = (_part(names, geometry, unit) for names, geometry in instances(document))
             return bounded(part for part in made if part is not None)
     except RecursionError:
         raise MeshError("its nodes form a cycle or are nested too deeply") from None
@@ -65,7 +65,7 @@ def _line_of_fault(root: Any) -> int:
     return 0
 
 
-def _unit(document: Any, root: Any) -> float:
+def unit_of(document: Any, root: Any) -> float:
     element = root.find("{*}asset/{*}unit")
     text = element.get("meter") if element is not None else None
     if text is None:
@@ -77,7 +77,7 @@ def _unit(document: Any, root: Any) -> float:
     return float(unit)
 
 
-def _instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
+def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
     """(names, bound geometry) of every piece of the scene."""
     import numpy as np
     from collada.scene import GeometryNode

@@ -1,0 +1,55 @@
+"""Meshes with their own colours and pictures, as cameras draw them."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from my_simulations.description.shapes import Mesh
+from my_simulations.errors import InputError
+from my_simulations.formats.mesh.loading import load_mesh
+from my_simulations.formats.mesh.painted import painted_parts
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+MODELS = REPOSITORY / "Media" / "models"
+
+
+def mesh(path: Path, **options: object) -> Mesh:
+    return Mesh(path.name, str(path), **options)
+
+
+def test_a_picture_of_a_collada_file_is_found_beside_it():
+    (part,) = painted_parts(mesh(MODELS / "my_object.dae"))
+    assert Path(part.picture).name == "carton.png" and Path(part.picture).is_file()
+    assert np.ptp(part.uv, axis=0).min() > 0.1
+
+
+def test_a_collada_colour_is_its_diffuse():
+    (part,) = painted_parts(mesh(MODELS / "lab_table.dae"))
+    assert part.color == pytest.approx((0.72, 0.6, 0.42, 1.0), abs=0.01) and part.picture is None
+
+
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (2.0, 1.0, -0.5)])
+def test_the_triangles_are_those_that_collide_and_face_the_same_way(scale):
+    path = mesh(MODELS / "my_object.dae", scale=scale)
+    (part,), plain = painted_parts(path), load_mesh(path)
+
+    def corners(vertices, triangles):
+        return np.sort(np.round(vertices[triangles], 9).reshape(len(triangles), -1), axis=0)
+
+    assert corners(part.vertices, part.triangles) == pytest.approx(
+        corners(plain.vertices, plain.triangles), abs=1e-6)
+    at = part.vertices[part.triangles]
+    facing = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+    assert (np.einsum("ij,ij->i", facing, part.normals[part.triangles].mean(axis=1)) > 0).all()
+
+
+def test_an_stl_file_has_no_colour_and_flat_faces():
+    (part,) = painted_parts(mesh(REPOSITORY / "test" / "data" / "valid" / "cube.stl"))
+    assert part.color is None and len(part.vertices) == 24
+
+
+def test_a_file_that_does_not_load_is_refused_as_ever():
+    with pytest.raises(InputError):
+        painted_parts(Mesh("none.dae", "/nowhere/none.dae"))
