@@ -1,11 +1,14 @@
-"""Models: links, joints, inertia, plugins."""
+"""Models: links, joints, inertia."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import List, Optional
 
 from ..geometry import IDENTITY, Pose, Vec3
+from .plugin import PluginSpec as PluginSpec
+from .sensor import Sensor
 from .shapes import Collision, Visual
+from .transmission import Transmission
 
 INFINITE = 1e16
 """SDF's spelling of "no limit" (joint/axis/limit lower and upper)."""
@@ -33,7 +36,7 @@ class Inertial:
 
 @dataclass
 class Link:
-    """A rigid body; `pose` in the model frame."""
+    """A rigid body; `pose` in the model frame. `sensors` show what the XML in `extra` says."""
 
     name: str
     pose: Pose = IDENTITY
@@ -45,6 +48,7 @@ class Link:
     self_collide: Optional[bool] = None
     linear_decay: float = 0.0
     angular_decay: float = 0.0
+    sensors: List[Sensor] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
 
 
@@ -100,16 +104,8 @@ class Joint:
     thread_pitch: float = 1.0
     gearbox_ratio: float = 1.0
     gearbox_reference: str = ""
+    sensors: List[Sensor] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
-
-
-@dataclass
-class PluginSpec:
-    """A `<plugin>` as written: `xml` is the whole element."""
-
-    name: str
-    filename: str
-    xml: str = ""
 
 
 @dataclass
@@ -132,6 +128,7 @@ class Model:
     joints: List[Joint] = field(default_factory=list)
     models: List["Model"] = field(default_factory=list)
     plugins: List[PluginSpec] = field(default_factory=list)
+    transmissions: List[Transmission] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
     uri: str = ""
     guide: Optional["Model"] = field(default=None, compare=False, repr=False)

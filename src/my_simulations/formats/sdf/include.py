@@ -15,8 +15,9 @@ from ..xml.parsing import content, parse
 from ..xml.source import Level, Source
 from .flags import Said
 from .light import LightPlacement, read_light
-from .model import IncludeOverrides, ParsedModel, read_model, read_plugin, relative_to
+from .model import IncludeOverrides, ParsedModel, read_model, relative_to
 from .model_tables import INCLUDE
+from .sensor import read_plugin
 from .upgrade import upgrade
 from .world_scene import read_actor
 
@@ -43,7 +44,7 @@ def read_include(element: Any, source: Source, static: bool = False,
         probe.pose = IDENTITY  # an empty one, too, replaces that of the model
     changes = IncludeOverrides(
         probe.name or None, probe.pose, relative_to(found), probe.static,
-        [read_plugin(plugin) for plugin in found.get("plugin", ())],
+        [read_plugin(plugin, source) for plugin in found.get("plugin", ())],
         next(((e.text or "").strip() for e in found.get("placement_frame", ())), ""),
     )
     read = functools.partial(read_model, static=static, outer=outer, alone=alone and not outer)

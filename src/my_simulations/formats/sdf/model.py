@@ -9,13 +9,14 @@ from ...description.model import WORLD, Link, Model, PluginSpec
 from ...description.validate import link_names, own_faults, place_faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose, inverse
-from ..xml.binding import closest, fill, to_xml
+from ..xml.binding import closest, fill
 from ..xml.source import Level, Source
 from .flags import Said, first_link, says, settle
 from .frame_graph import FrameError, FrameTree
 from .joint import UnresolvedJoint, is_whole, place_axes, read_joint, reverse_axes
 from .link import LinkReader, free_name, must_stand, relative_to
 from .model_tables import FRAME, MODEL
+from .sensor import read_plugin
 
 ROOT = "__model__"
 DEEPEST = 50
@@ -70,11 +71,6 @@ def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides]
     ).read()
 
 
-def read_plugin(element: Any) -> PluginSpec:
-    """A `<plugin>`, kept whole."""
-    return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element))
-
-
 class _End(enum.Enum):
     """Where the links of a joint are: in this model, perhaps in one around it, or nowhere."""
 
@@ -107,7 +103,7 @@ class _ModelReader:
         included = self._read_includes(self._within_depth(found.get("include", ()), model), model,
                                        placement)
         static = model.static or self._outer_static
-        model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+        model.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
         model.plugins += changes.plugins
         model.links = self._links.read_all(found.get("link", ()), static)
         self._stand_still(model, static)
@@ -409,5 +405,4 @@ def _add_inner_frames(frames: FrameTree, model: Model, scope: str, element: Any)
         _add_inner_frames(frames, nested, inner, element)
 
 
-__all__ = ["IncludeOverrides", "ParsedModel", "add_frames_inside", "read_model", "read_plugin",
-           "relative_to"]
+__all__ = ["IncludeOverrides", "ParsedModel", "add_frames_inside", "read_model", "relative_to"]

@@ -175,8 +175,8 @@ LINK = Table("link", Link, {
         "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
     }),
     **_kept("frame", "light", "must_be_base_link", "enable_wind"),
-    **_told("sensor", "projector", "audio_source", "audio_sink", "battery", "particle_emitter",
-            "plugin"),
+    "sensor": Part(use=KEPT, told=True, kept=True),
+    **_told("projector", "audio_source", "audio_sink", "battery", "particle_emitter", "plugin"),
 }, known_attributes=("name",))
 
 _AXIS_CHILDREN: Mapping[str, Entry] = {
@@ -206,7 +206,8 @@ JOINT = Table("joint", Joint, {
     "screw_thread_pitch": Part("1.10"),
     "gearbox_ratio": Value("gearbox_ratio", FLOAT),
     "gearbox_reference_body": Value("gearbox_reference", TEXT),
-    **_kept("frame", "physics"), **_told("sensor"),
+    "sensor": Part(use=KEPT, told=True, kept=True),
+    **_kept("frame", "physics"),
 }, known_attributes=("name", "type"))
 
 FRAME = Table("frame", Link, {"pose": Value("pose", POSE, FATAL)},

@@ -16,10 +16,11 @@ from .include import read_include
 from .inter_model_joint import Between
 from .joint import UnresolvedJoint, is_whole, read_joint
 from .light import LightPlacement, read_light
-from .model import ParsedModel, add_frames_inside, read_model, read_plugin, relative_to
+from .model import ParsedModel, add_frames_inside, read_model, relative_to
 from .model_tables import FRAME, PHYSICS, WORLD
 from .population import read_population
 from .saved_state import read_state
+from .sensor import read_plugin
 from .state_applied import state_issues
 from .world_scene import read_surroundings
 
@@ -31,7 +32,7 @@ def read_world_element(element: Any, source: Source, seed: int = 0, profile: str
     """
     world = World(element.get("name") or "default", file=source.file, seed=seed)
     found = fill(world, element, WORLD, source, world.extra)
-    world.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+    world.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
     _read_physics(found.get("physics", ()), world, source, profile)
     read_surroundings(found, world, source)
     _Entities(world, source, found).read(element)

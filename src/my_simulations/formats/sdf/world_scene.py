@@ -18,7 +18,7 @@ from ...description.world import (
 from ..xml.binding import Found, fill
 from ..xml.source import Source
 from .collision_visual import fill_material
-from .model import read_plugin
+from .sensor import read_plugin
 from .world_tables import (
     ACTOR,
     ANIMATION,
@@ -76,7 +76,7 @@ def read_actor(element: Any, source: Source) -> Actor:
     """An actor: who walks where; nothing of it is simulated. Source: SDF spec 1.7, actor."""
     actor = Actor(element.get("name", ""), base_dir=source.base_dir)
     found = fill(actor, element, ACTOR, source, [])
-    actor.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+    actor.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
     for child in found.get("animation", ()):
         animation = Animation(child.get("name", ""))
         fill(animation, child, ANIMATION, source, [])

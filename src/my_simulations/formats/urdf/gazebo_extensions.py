@@ -4,12 +4,13 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any, DefaultDict, List, Sequence, Set
 
-from ...description.model import Model, PluginSpec
+from ...description.model import Model
 from ...description.shapes import Material
 from ...geometry import Pose, compose
 from ..sdf.collision_visual import fill_material
 from ..sdf.model_tables import COLLISION as SDF_COLLISION
 from ..sdf.model_tables import VISUAL as SDF_VISUAL
+from ..sdf.sensor import read_plugin
 from ..xml.binding import Value, closest, fill, set_value, to_xml
 from ..xml.source import Level, Source
 from ..xml.values import BOOL, FLOAT, POSE
@@ -47,10 +48,8 @@ class Extensions:
             self.joints += found.get("joint", [])
             for child in found.get("plugin", ()):
                 self._source.tell_unused(child)
-            model.plugins += [
-                PluginSpec(child.get("name", ""), child.get("filename", ""), to_xml(child))
-                for child in found.get("plugin", ())
-            ]
+            model.plugins += [read_plugin(child, self._source)
+                              for child in found.get("plugin", ())]
 
     def to_link(self, body: Body) -> None:
         """Settings of a link and of its own collisions and visuals, before any lumping."""

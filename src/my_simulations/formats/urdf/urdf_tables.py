@@ -86,7 +86,8 @@ ORIGIN = Table("origin", Origin, attributes={
 
 ROBOT = Table("robot", Model, {
     "link": Part(), "joint": Part(), "material": Part(), "gazebo": Part(), "origin": Part(),
-    **_ignored("transmission", "sensor", "verbose", "group_state", "ros2_control"),
+    "transmission": Part(use=Use.IGNORED),
+    **_ignored("sensor", "verbose", "group_state", "ros2_control"),
 }, known_attributes=("name", "version", "static", "type"), strict=True)
 
 LINK = Table("link", Link, {

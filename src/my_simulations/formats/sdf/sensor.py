@@ -1,0 +1,58 @@
+"""SDF sensors, of links and of joints; their XML is kept by who holds them."""
+from __future__ import annotations
+
+from typing import Any, List, Mapping, Sequence
+
+from ...description.plugin import PluginSpec
+from ...description.sensor import Camera, Sensor
+from ..xml.binding import fill, to_xml
+from ..xml.source import Source
+from .sensor_tables import BLOCKS, CAMERA, FIELDS, SENSOR
+
+
+def read_sensor(element: Any, source: Source) -> Sensor:
+    """A sensor. A value that cannot be read is a warning, and its default is used.
+
+    A pose in a named frame is as it is written; who knows the frames moves it.
+    """
+    sensor = Sensor(element.get("name", ""), file=source.file, line=element.sourceline or 0)
+    found = fill(sensor, element, SENSOR, source, [])
+    for tag, table in BLOCKS.items():
+        for child in found.get(tag, ())[:1]:
+            block = table.of()
+            fill(block, child, table, source, [])
+            setattr(sensor, FIELDS.get(tag, tag), block)
+    for child in found.get("camera", ()):
+        camera = Camera()
+        fill(camera, child, CAMERA, source, [])
+        sensor.cameras.append(camera)
+    sensor.plugins = [read_plugin(child, source) for child in found.get("plugin", ())]
+    return sensor
+
+
+def read_plugin(element: Any, source: Source) -> PluginSpec:
+    """A `<plugin>`, kept whole."""
+    return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element),
+                      source.file, element.sourceline or 0)
+
+
+def kept_sensors(extra: Sequence[str], source: Source, lines: Mapping[str, int]) -> List[Sensor]:
+    """The sensors among XML that was kept, after it was changed.
+
+    Args:
+        extra: of a link or joint.
+        source: the file.
+        lines: of its `<sensor>` elements, by name.
+    """
+    return [read_sensor(_parsed(xml, lines), source) for xml in extra if xml.startswith("<sensor")]
+
+
+def _parsed(xml: str, lines: Mapping[str, int]) -> Any:
+    from lxml import etree
+
+    # Prefixes such as `ignition:` are not declared in the fragment.
+    root = etree.fromstring(xml, etree.XMLParser(recover=True, resolve_entities=False))
+    first = lines.get(root.get("name", ""), 0)
+    for element in root.iter():
+        element.sourceline = first + element.sourceline - 1 if first else 0
+    return root
