@@ -206,7 +206,7 @@ def asleep() -> List[Row]:
 
 
 def stacks() -> List[Row]:
-    return [_factor("stacks", 200, False, 0.9, 0.0), _factor("stacks", 200, True, 0.0, 10.0)]
+    return [_factor("stacks", 200, False, 2.5, 0.0), _factor("stacks", 200, True, 0.0, 10.0)]
 
 
 def resting() -> List[Row]:

@@ -170,7 +170,7 @@ def open_again(browser, node):
     sheet.click((-1.5, 1.85))
     sheet.shows(windows=2)
     editor.page.keyboard.press("Control+s")
-    wait_for(lambda: "Saved in" in editor.page.locator(".building-hint").inner_text(), "saving")
+    wait_for(lambda: "Saved to" in editor.page.locator(".building-hint").inner_text(), "saving")
     before = editor.names()
     editor.page.keyboard.press("Control+b")
     editor.until("!document.querySelector('.plan-sheet')", "leaving")
@@ -204,7 +204,7 @@ def test_a_wall_is_painted_in_the_3d_view(drawn):
     box = editor.page.locator("#view").bounding_box()
     x, y = box["x"] + box["width"] * 0.35, box["y"] + box["height"] * 0.4
     picked = wait_for(lambda: editor.get(f"editor.actions.previewPick({x}, {y})"), "a wall there")
-    editor.page.get_by_role("button", name="Colour #fe7905", exact=True).click()
+    editor.page.get_by_role("button", name="Color #fe7905", exact=True).click()
     editor.page.mouse.move(x - 5, y)
     editor.page.mouse.move(x, y)
     shown = ("editor.store.preview.links.find((link) => link.name === "
@@ -230,7 +230,7 @@ def test_a_floor_plan_is_scaled_by_a_line_and_a_file_that_is_none_refused(drawn,
     dialog = page.get_by_role("dialog")
     dialog.locator("input[type=file]").set_input_files(str(tmp_path / "none.png"))
     dialog.get_by_role("button", name="Import", exact=True).click()
-    wait_for(lambda: "no picture" in dialog.get_by_role("alert").inner_text(), "the refusal")
+    wait_for(lambda: "not a valid image" in dialog.get_by_role("alert").inner_text(), "the refusal")
     dialog.locator("input[type=file]").set_input_files(str(tmp_path / "plan.png"))
     dialog.get_by_role("button", name="Import", exact=True).click()
     width = page.locator(".plan-image")
@@ -240,7 +240,7 @@ def test_a_floor_plan_is_scaled_by_a_line_and_a_file_that_is_none_refused(drawn,
     page.mouse.move(*sheet.pixel((0.0, 0.0)))
     page.mouse.move(*sheet.pixel((2.0, 0.0)))
     page.mouse.up()
-    page.get_by_label("Length in metres").fill("2")
+    page.get_by_label("Length in meters").fill("2")
     page.keyboard.press("Enter")
     wait_for(lambda: abs(float(width.get_attribute("width")) - 400) < 8, "the picture, 4 m wide")
     assert editor.faults == []

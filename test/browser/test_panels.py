@@ -83,7 +83,7 @@ def test_a_number_that_makes_no_sense_is_refused_and_the_old_one_comes_back(edit
     mass = editor.field("mass")
     mass.fill("-1")
     mass.press("Enter")
-    editor.page.get_by_text("mass: must be above 0").wait_for()
+    editor.page.get_by_text("mass: must be greater than 0").wait_for()
     assert mass.input_value() == "1"
     assert editor.get("editor.store.history.undo.length") == 1
 
@@ -268,7 +268,7 @@ def test_unsaved_changes_are_asked_for_before_another_world_is_opened(editor, no
     editor.until("!editor.store.history.dirty", "the saved world")
     with_box(editor, (2.0, 1.0))
     editor.page.keyboard.press("Control+o")
-    question = editor.page.get_by_role("dialog", name="Save the changes?")
+    question = editor.page.get_by_role("dialog", name="Save changes?")
     question.get_by_role("button", name="Don't save").click()
     dialog = in_dialog(editor, "Open World")
     dialog.get_by_role("option", name="one_box.world").dblclick()
@@ -359,7 +359,7 @@ def test_the_joints_panel_turns_a_hinge(editor):
     speed.fill("1")
     speed.press("Enter")
     editor.button("Play").click()
-    now = panel.get_by_label("hinge now")
+    now = panel.get_by_label("hinge state")
     wait_for(lambda: now.text_content() and abs(float(now.text_content().split()[0])) > 0.05,
              "the hinge's turn")
     position = panel.get_by_role("textbox", name="hinge position")
@@ -471,7 +471,7 @@ def test_dark_and_light_follow_the_browser_until_the_user_chooses(node, browser)
 
     assert brightness() > 600
     light.page.get_by_role("menuitem", name="Window").click()
-    light.page.get_by_role("menuitemcheckbox", name="Colours: dark").click()
+    light.page.get_by_role("menuitemcheckbox", name="Theme: dark").click()
     wait_for(lambda: brightness() < 200, "the dark")
     light.page.reload()
     light.until("Boolean(window.editor && editor.store.document)", "the world again")

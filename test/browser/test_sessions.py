@@ -40,7 +40,7 @@ def test_unsaved_changes_survive_a_killed_node_and_are_offered_again(launch, bro
     kept = os.path.join(node.home, ".cache", "my_simulations", "autosave")
     wait_for(lambda: os.path.isdir(kept) and autosaved(kept, "unit_cylinder"), "the autosave")
     os.kill(server_pid(node), signal.SIGKILL)
-    editor.page.get_by_text("The connection to the simulator is lost").wait_for()
+    editor.page.get_by_text("Connection to the simulator lost").wait_for()
     editor.close()
     node.close()
 

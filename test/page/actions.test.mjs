@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {createActions} from '../../web/js/actions.js';
 import {RequestError} from '../../web/js/connection.js';
-import {HOTKEYS, hotkey, spelled} from '../../web/js/keys.js';
+import {HOTKEYS, hotkey, spelled} from '../../web/js/hotkeys.js';
 import {Store} from '../../web/js/store.js';
 import {requestFault} from './protocol.mjs';
 import {NotingConnection, world} from './scene.mjs';

@@ -2,11 +2,11 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import {inPolygon, isSimple, labelPoint, nearest, signedArea} from '../../web/js/building/geometry.js';
-import {hitOf, itemsWithin, wallNear} from '../../web/js/building/hit.js';
+import {inPolygon, isSimple, labelPoint, nearest, signedArea} from '../../web/js/building/plane_geometry.js';
+import {hitOf, itemsWithin, wallNear} from '../../web/js/building/hit_test.js';
 import {add, emptyPlan} from '../../web/js/building/plan.js';
 import {outlineOf, roomsOf} from '../../web/js/building/rooms.js';
-import {snapEnd, snapStart} from '../../web/js/building/snap.js';
+import {snapEnd, snapStart} from '../../web/js/building/wall_snap.js';
 
 const close = (found, wanted, slack = 1e-6) =>
   assert.ok(Math.abs(found - wanted) <= slack, `${found} is not ${wanted}`);

@@ -3,8 +3,8 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import * as plans from '../../web/js/building/plan.js';
-import {faultsOf, meeting, openingFault} from '../../web/js/building/check.js';
-import {History} from '../../web/js/building/history.js';
+import {faultsOf, meeting, openingFault} from '../../web/js/building/plan_check.js';
+import {History} from '../../web/js/building/plan_history.js';
 
 const {add, addLevel, emptyPlan, itemOf, moveEnd, moveItems, remove, update} = plans;
 
@@ -162,10 +162,10 @@ test('faults name the items', () => {
   plan = add(plan, 0, 'floors', {outline: [[0, 0], [1, 1], [1, 0], [0, 1]]}).plan;
   const words = faultsOf(plan.levels[0]).map(({message}) => message);
   assert.equal(words.length, 4);
-  assert.match(words[0], /Wall_4 has no length/);
+  assert.match(words[0], /Wall_4 has zero length/);
   assert.match(words[1], /Window_0 and Door_0|Door_0 and Window_0|Window_1 is 4 m/);
-  assert.ok(words.some((word) => /Window_1 is 4 m wide, the wall only 3 m long/.test(word)));
-  assert.ok(words.some((word) => /Floor_0 cross/.test(word)));
+  assert.ok(words.some((word) => /Window_1 is 4 m wide, but the wall is only 3 m long/.test(word)));
+  assert.ok(words.some((word) => /Floor_0 intersects itself/.test(word)));
 });
 
 test('undo and redo go through all steps, and know what is saved', () => {

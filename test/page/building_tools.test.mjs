@@ -5,12 +5,12 @@ import test from 'node:test';
 import {FloorTool, MeasureTool, OpeningTool, StairsTool, WallTool, rescaled, segmentWords,
 } from '../../web/js/building/draw_tools.js';
 import {applied, fieldFault, fieldsOf, levelApplied, levelValues, roofApplied, roofValues, valuesOf,
-} from '../../web/js/building/forms.js';
+} from '../../web/js/building/inspector_fields.js';
 import {placeOf} from '../../web/js/building/plan.js';
-import {placingOps} from '../../web/js/building/preview.js';
+import {placingOps} from '../../web/js/building/building_preview.js';
 import {PaintTool, SelectTool} from '../../web/js/building/select_tool.js';
-import {Session} from '../../web/js/building/session.js';
-import {openingPaths, stairsPaths, wallPath} from '../../web/js/building/svg.js';
+import {Session} from '../../web/js/building/drawing_session.js';
+import {openingPaths, stairsPaths, wallPath} from '../../web/js/building/plan_svg.js';
 
 const mouse = (x, y, keys = {}) =>
   ({point: [x, y], shift: false, alt: false, ctrl: false, tolerance: 0.06, ...keys});
@@ -76,7 +76,7 @@ test('a click on the spot adds no wall and says why', () => {
   session.tool = new WallTool(session);
   click(session, [1, 1], [1, 1]);
   assert.equal(session.level.walls.length, 0);
-  assert.match(session.hint, /needs a length/);
+  assert.match(session.hint, /at least 0.01 m/);
 });
 
 test('Esc drops the segment and keeps the walls', () => {
@@ -143,7 +143,7 @@ test('an end that is dragged snaps about the other one and takes linked walls al
   drag(session, [3.85, 0], [4.62, 0.1]);
   assert.deepEqual(session.level.walls[0].end, [4.6, 0]);
   assert.deepEqual(session.level.walls[1].start, [4.6, 0]);
-  assert.equal(session.history.undoLabel, 'stretch wall');
+  assert.equal(session.history.undoLabel, 'resize wall');
 });
 
 test('a drag is one step of history, and Esc takes it back', () => {
@@ -191,7 +191,7 @@ test('a floor whose edges cross is refused in words', () => {
   for (const [x, y] of [[0, 0], [2, 2], [2, 0], [0, 2]]) click(session, [x, y, {shift: true}]);
   session.tool.double();
   assert.equal(session.level.floors.length, 0);
-  assert.match(session.hint, /cross/);
+  assert.match(session.hint, /intersects itself/);
 });
 
 test('painting shows on hovering and paints one thing', () => {
@@ -235,7 +235,7 @@ test('the inspector of an attached door speaks of distances to the wall ends', (
   session.tool = new OpeningTool(session, 'doors');
   click(session, [2, 0]);
   const ref = {kind: 'doors', id: 0};
-  const values = valuesOf('doors', session.level.doors[0], session.level);
+  const values = valuesOf(session.level.doors[0], session.level);
   assert.equal(values.fromStart, 1.55);
   assert.ok(Math.abs(values.fromEnd - (3.85 - 2.45)) < 1e-9);
   const names = fieldsOf('doors', session.level.doors[0]).map(({name}) => name);
@@ -250,19 +250,19 @@ test('the inspector of an attached door speaks of distances to the wall ends', (
 test("a wall's typed outer length moves its end, typed ends move linked walls", () => {
   const session = withRoom();
   const ref = {kind: 'walls', id: 0};
-  const values = valuesOf('walls', session.level.walls[0], session.level);
+  const values = valuesOf(session.level.walls[0], session.level);
   assert.equal(values.length, 4);
   const longer = applied(session.plan, 0, ref, {...values, length: 5}, values).plan;
   assert.deepEqual(longer.levels[0].walls[0].end, [4.85, 0]);
   assert.deepEqual(longer.levels[0].walls[1].start, [4.85, 0]);
-  assert.match(applied(session.plan, 0, ref, {...values, endX: 0, endY: 0}, values).fault, /needs a length/);
+  assert.match(applied(session.plan, 0, ref, {...values, endX: 0, endY: 0}, values).fault, /must differ/);
 });
 
 test('fields refuse what is outside of their range', () => {
   const [, , , , length] = fieldsOf('walls', {});
-  assert.match(fieldFault(length, 0), /must not be below/);
+  assert.match(fieldFault(length, 0), /must be at least/);
   assert.match(fieldFault(length, NaN), /not a number/);
-  assert.match(fieldFault(length, 2000), /must not be above 1000/);
+  assert.match(fieldFault(length, 2000), /must be at most 1000/);
   assert.equal(fieldFault(length, 4), '');
 });
 

@@ -70,7 +70,7 @@ test('answers find their requests in any order', async () => {
 
 test('what is asked without a line fails at once', async () => {
   const connection = new Connection('ws://here/ws', {WebSocket: Socket});
-  await assert.rejects(connection.request('play'), /no connection/);
+  await assert.rejects(connection.request('play'), /Not connected/);
 });
 
 test('a lost line fails what waits, and is made again with the session', async () => {

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import {rpyOf, sevenOf, sixOf} from '../../web/js/panels/angles.js';
+import {rpyOf, sevenOf, sixOf} from '../../web/js/panels/pose_rpy.js';
 import {
   bytesText,
   clockText,
@@ -8,7 +8,7 @@ import {
   colorText,
   numberText,
   parseNumber,
-} from '../../web/js/panels/format.js';
+} from '../../web/js/panels/text_format.js';
 
 test('sim time is written as days, hours, minutes, seconds and milliseconds', () => {
   assert.equal(clockText(0), '00 00:00:00.000');

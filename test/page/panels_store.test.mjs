@@ -1,14 +1,14 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import {createActions} from '../../web/js/actions.js';
-import {Connection} from '../../web/js/connection.js';
+import {Connection, RequestError} from '../../web/js/connection.js';
 import {Store} from '../../web/js/store.js';
 import {Watches} from '../../web/js/watches.js';
 import {faultText} from '../../web/js/panels/dialog.js';
-import {withEnding} from '../../web/js/panels/dialogs/files.js';
-import {contextMenu, keysOf, menus} from '../../web/js/panels/menus.js';
-import {numberFault} from '../../web/js/panels/inputs.js';
-import {HOTKEYS} from '../../web/js/keys.js';
+import {withEnding} from '../../web/js/panels/dialogs/world_file_dialogs.js';
+import {contextMenu, keysOf, menus} from '../../web/js/panels/menu_items.js';
+import {numberFault} from '../../web/js/panels/property_inputs.js';
+import {HOTKEYS} from '../../web/js/hotkeys.js';
 import {FakeSimulator, box, light, world} from './fake_simulator.mjs';
 
 /** A page without elements, connected to a fake simulator. */
@@ -61,7 +61,7 @@ test('watches are told again after the line was lost', async () => {
 
 test('a refusal is told with its place and hint', () => {
   const issue = {message: 'no such mesh', file: 'a.world', line: 3, hint: 'Look again.'};
-  assert.equal(faultText({issues: [issue]}), 'no such mesh (a.world:3) Look again.');
+  assert.equal(faultText(new RequestError([issue])), 'no such mesh (a.world:3) Look again.');
   assert.equal(faultText(new Error('boom')), 'boom');
 });
 
@@ -72,9 +72,9 @@ test('worlds are saved with an ending', () => {
 });
 
 test("numbers out of a field's range are refused in words", () => {
-  assert.equal(numberFault({type: 'number', above: 0}, 0), 'must be above 0');
-  assert.equal(numberFault({type: 'number', min: 0, max: 1}, 2), 'must not be above 1');
-  assert.equal(numberFault({type: 'integer'}, 1.5), 'not a whole number');
+  assert.equal(numberFault({type: 'number', above: 0}, 0), 'must be greater than 0');
+  assert.equal(numberFault({type: 'number', min: 0, max: 1}, 2), 'must be at most 1');
+  assert.equal(numberFault({type: 'integer'}, 1.5), 'must be an integer');
   assert.equal(numberFault({type: 'number'}, NaN), 'not a number');
   assert.equal(numberFault({type: 'number', min: 0, max: 1}, 1), '');
 });
@@ -116,7 +116,7 @@ test('the context menu is that of Gazebo; a light takes no force and no overlays
   assert.deepEqual(titles('sun'), ['Move To', 'Follow', 'Copy', 'Paste', 'Delete']);
   assert.deepEqual(titles('nobody'), []);
   store.select(['a', 'sun']);
-  assert.ok(titles('a').includes('Delete 2 selected'));
+  assert.ok(titles('a').includes('Delete Selection (2)'));
   connection.close();
 });
 

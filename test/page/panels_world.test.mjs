@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import {layersOf} from '../../web/js/panels/layers.js';
+import {layersOf} from '../../web/js/panels/layers_tab.js';
 import {geometryFields, unitGeometry} from '../../web/js/panels/geometry_fields.js';
 import {sectionsOf, valueAt} from '../../web/js/panels/property_sections.js';
 import {modelOf, rowOf, worldRows} from '../../web/js/panels/world_rows.js';
-import {searched} from '../../web/js/panels/insert.js';
-import {drivenJoints} from '../../web/js/panels/joints.js';
+import {searched} from '../../web/js/panels/insert_tab.js';
+import {drivenJoints} from '../../web/js/panels/joints_panel.js';
 import {box, light, world} from './fake_simulator.mjs';
 
 const AXIS = {

@@ -26,9 +26,23 @@ export function fault(type, value, where = 'value') {
   const list = /^(.*)\[(\d*)\]$/.exec(type);
   if (list) return faultOfList(list[1], list[2], value, where);
   if (type.startsWith('{')) return faultOfMap(type.slice(1, -1), value, where);
+  if (type.startsWith('some ')) return faultOfFields(some(type.slice(5)), value, where);
+  if (type.includes('|')) return fault(alternative(type.split('|'), value), value, where);
+  if (type === 'Operation') return operationFault(value, where);
   if (BASIC[type]) return BASIC[type](value) ? null : `${where}: ${value} is no ${type}`;
   if (!(type in protocol.types)) throw new Error(`the protocol has no type ${type}`);
   return fault(protocol.types[type], value, where);
+}
+
+/** The fields of a type, all of which may be left out. */
+function some(type) {
+  return Object.fromEntries(Object.entries(protocol.types[type])
+    .map(([name, of]) => [name, `${of.replace(/\?$/, '')}?`]));
+}
+
+/** Of several types of objects the one that the value's `type` tells, else the first. */
+function alternative(types, value) {
+  return types.find((name) => protocol.types[name]?.type === `'${value?.type}'`) ?? types[0];
 }
 
 function faultOfFields(fields, value, where) {
@@ -68,13 +82,11 @@ function faultOfMap(type, value, where) {
 export function requestFault(type, fields) {
   const request = protocol.requests[type];
   if (!request) return `no request ${type}`;
-  return fault(request.fields, fields, type) ??
-    (type === 'edit' ? operationFault(fields.op) : null);
+  return fault(request.fields, fields, type);
 }
 
-function operationFault({kind, ...fields}) {
+function operationFault({kind, ...fields}, where) {
   const operation = protocol.operations[kind];
-  if (!operation) return `no operation ${kind}`;
-  return fault(operation, fields, kind) ??
-    (kind === 'group' ? fields.ops.map(operationFault).find(Boolean) ?? null : null);
+  if (!operation) return `${where}: no operation ${kind}`;
+  return fault(operation, fields, `${where}.${kind}`);
 }

@@ -1,5 +1,6 @@
 /** A small world's document, and a connection that notes what is asked of it. */
-import {shapeModel, newLight} from '../../web/js/inserts.js';
+import {Emitter} from '../../web/js/emitter.js';
+import {shapeModel, newLight} from '../../web/js/new_entities.js';
 
 export function model(name, id, pose) {
   const made = shapeModel('box');
@@ -33,7 +34,7 @@ export function frameOf(links, {kind = 1, length} = {}) {
   return buffer;
 }
 
-export class NotingConnection extends EventTarget {
+export class NotingConnection extends Emitter {
   requests = [];
   answers = {};
 

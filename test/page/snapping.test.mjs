@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {magnetic, SMALLEST_SIZE, snapSize, snapTurn} from '../../web/js/snapping.js';
+import {magnetic, SMALLEST_SIZE, snapSize, snapTurn} from '../../web/js/drag_snap.js';
 
 test('a value within 40 % of a whole metre sticks to it', () => {
   assert.equal(magnetic(2.39), 2);

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {decodeFrame} from '../../web/js/frames.js';
+import {decodeFrame} from '../../web/js/pose_frames.js';
 import {Store} from '../../web/js/store.js';
 import {protocol} from './protocol.mjs';
 import {near} from './near.mjs';

@@ -3,7 +3,7 @@ import {test} from 'node:test';
 import {alignMoves} from '../../web/js/align.js';
 import {centroid, normal, snapped} from '../../web/js/face_math.js';
 import {equivalentBox, principal} from '../../web/js/inertia_math.js';
-import {newLight, shapeModel} from '../../web/js/inserts.js';
+import {newLight, shapeModel} from '../../web/js/new_entities.js';
 import {axisAngle, transform} from '../../web/js/pose.js';
 import {near} from './near.mjs';
 

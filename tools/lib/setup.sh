@@ -238,6 +238,38 @@ prepare_page() {
   finish installed
 }
 
+# prepare_page_checks: what checks the types and the style of the page's modules, in a folder of the
+# workspace (PAGE_CHECKS) beside the configuration of TypeScript and ESLint.
+prepare_page_checks() {
+  begin "Packages of the page's checks"
+  PAGE_CHECKS="$OWN/page_checks"
+  local source="$CLONE/test/page" stamp
+  stamp=$(cat "$source/package-lock.json" "$source/eslint.config.mjs" "$source/tsconfig.json" |
+    sha256sum)
+  if [ "$(cat "$PAGE_CHECKS/.stamp" 2>/dev/null || true)" = "$stamp" ]; then
+    finish "all there"
+    return
+  fi
+  mkdir -p -- "$PAGE_CHECKS"
+  rm -f -- "$PAGE_CHECKS/.stamp"
+  cp -- "$source/package.json" "$source/package-lock.json" "$source/eslint.config.mjs" "$PAGE_CHECKS/"
+  logged npm-checks "Is there a network? Then run $COMMAND again." \
+    npm ci --prefix "$PAGE_CHECKS" --ignore-scripts --no-audit --no-fund
+  # TypeScript looks for packages beside the modules, where there are none.
+  cat >"$PAGE_CHECKS/tsconfig.json" <<JSON
+{
+  "extends": "$source/tsconfig.json",
+  "compilerOptions": {"paths": {
+    "three": ["./node_modules/@types/three"],
+    "three/addons/*": ["./node_modules/@types/three/examples/jsm/*"]
+  }},
+  "include": ["$CLONE/web/js"]
+}
+JSON
+  printf '%s' "$stamp" >"$PAGE_CHECKS/.stamp"
+  finish installed
+}
+
 # build_inputs: a text that changes when a new catkin_make is due.
 build_inputs() {
   local folder

@@ -5,43 +5,94 @@
  * refused is also put into the store's issues, unless a dialog that shows it itself asks for `quiet`.
  */
 import {alignMoves} from './align.js';
-import {shapeModel, newLight, SHAPES, LIGHTS} from './inserts.js';
+import {RequestError} from './connection.js';
+import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
+/** @import {AlignChoice} from './align.js' */
+/** @import {CameraChoices, CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js' */
+/** @import {Issue, RequestFunction} from './connection.js' */
+/** @import {LightType, ShapeName} from './new_entities.js' */
+/** @import {Operation, Requests} from './protocol.js' */
+/** @import {Pose7, Vec3} from './pose.js' */
+/** @import {SceneView} from './view/view.js' */
+/** @import {Turned} from './view/force_arrows.js' */
 
-/** @typedef {{ok: boolean, value?: any, issues: import('./connection.js').Issue[]}} Outcome */
+/**
+ * What became of a request.
+ * @template [Value=unknown]
+ * @typedef {{ok: true, value: Value, issues: Issue[]}|{ok: false, value?: undefined, issues: Issue[]}} Outcome
+ */
 
-/** @param {{store: import('./store.js').Store, connection: any}} parts */
+/** @typedef {{quiet?: boolean}} AskOptions  quiet: issues are returned only */
+
+/** @typedef {Omit<import('./protocol.js').JointOperation, 'kind'>} JointFields */
+
+/**
+ * @typedef {{link: string, force: Vec3, torque: Vec3, point?: Vec3|null, in_link_axes?: boolean}}
+ *   ShownWrench
+ */
+
+/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|
+ *            'building'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
+
+/** @typedef {{name: DialogName, target?: string}} DialogRequest */
+
+/** @typedef {ReturnType<typeof createActions>} Actions */
+
+/** @param {{store: Store, connection: {request: RequestFunction}}} parts */
 export function createActions({store, connection}) {
-  /** Set by the view once it is there; without WebGL it never is. */
+  /** Set by the view once it is there; without WebGL it never is. @type {SceneView|null} */
   let view = null;
 
-  /** @returns {Promise<Outcome>} */
-  async function ask(type, fields = {}, {quiet = false} = {}) {
+  /**
+   * @template {keyof Requests} T
+   * @param {T} type
+   * @param {Requests[T]['fields']} [fields]
+   * @param {AskOptions} [options]
+   * @returns {Promise<Outcome<Requests[T]['reply']>>}
+   */
+  async function ask(type, fields, {quiet = false} = {}) {
     try {
       return {ok: true, value: await connection.request(type, fields), issues: []};
     } catch (error) {
-      if (!error.issues) throw error;
+      if (!(error instanceof RequestError)) throw error;
       if (!quiet) for (const issue of error.issues) store.addIssue(issue);
       return {ok: false, issues: error.issues};
     }
   }
+  /**
+   * @param {Operation} op
+   * @param {AskOptions} [options]
+   */
   const edit = (op, options) => ask('edit', {op}, options);
+  /** @param {DialogName} name @param {{target?: string}} [fields] */
   const dialog = (name, fields = {}) => store.emit('dialog', {name, ...fields});
-  const modelOf = (name) => name.split('::')[0];
+  /** @param {string} message */
   const note = (message) => store.addIssue({severity: 'note', code: 'editor', message});
 
   const actions = {
+    /** @param {SceneView} theView */
     attachView(theView) { view = theView; },
     ask,
     edit,
 
     // ---- files
-    /** An empty world; asks first when there are unsaved changes and `discard` is not given. */
+    /**
+     * An empty world; asks first when there are unsaved changes and `discard` is not given.
+     * @param {{discard?: boolean}} [options]
+     */
     newWorld: (options) =>
       options || !store.history.dirty ? ask('new', options ?? {}) : dialog('newWorld'),
-    /** Opens a world; without a path asks which (a dialog). */
+    /**
+     * Opens a world; without a path asks which (a dialog).
+     * @param {string} [path]
+     * @param {{discard?: boolean}} [options]
+     */
     open: (path, options = {}) =>
       path ? ask('open', {path, ...options}, {quiet: true}) : dialog('open'),
-    /** Saves to the file of the world; asks for a name the first time. */
+    /**
+     * Saves to the file of the world; asks for a name the first time.
+     * @returns {Promise<Outcome|void>}
+     */
     async save() {
       if (!store.history.file) return actions.saveAs();
       const outcome = await ask('save', {}, {quiet: true});
@@ -51,64 +102,75 @@ export function createActions({store, connection}) {
       if (outcome.ok) note(`Saved ${outcome.value.path}${without(outcome.value.left_out)}`);
       return outcome;
     },
+    /** @param {string} [path] @param {{overwrite?: boolean}} [options] */
     saveAs: (path, options = {}) =>
       path ? ask('save', {path, ...options}, {quiet: true}) : dialog('saveAs'),
+    /** @param {string} [path] */
     folders: (path) => ask('folders', path ? {path} : {}),
+    /** @param {'restore'|'discard'} action */
     autosave: (action) => ask('autosave', {action}),
 
     // ---- editing
+    /** @param {number} [to]  steps more than one */
     undo: (to) => ask('undo', to === undefined ? {} : {to}),
+    /** @param {number} [to]  steps more than one */
     redo: (to) => ask('redo', to === undefined ? {} : {to}),
+    /** @returns {Promise<Outcome>} */
     remove(names = store.selection) {
-      const whole = [...new Set(names.map((name) => store.entity(name)?.kind === 'link'
-        ? store.entity(name).model.name : name))];
+      const whole = [...new Set(names.map((name) => store.entity(name)?.model?.name ?? name))];
       return whole.length ? edit({kind: 'delete', names: whole}) : Promise.resolve(NOTHING);
     },
+    /** @param {string} name @param {string} to */
     async rename(name, to) {
       const outcome = await edit({kind: 'rename', name, to});
       if (outcome.ok) store.select([to]);
       return outcome;
     },
-    /** @param {string} target  "" is the world @param {string} path  e.g. "inertial.mass" */
+    /**
+     * @param {string} target  "" is the world
+     * @param {string} path  e.g. "inertial.mass"
+     * @param {unknown} value
+     */
     setProperty: (target, path, value) => edit({kind: 'set', target, path, value}),
-    /** @param {Record<string, number[]>} poses  pose7 in the world by name */
+    /**
+     * @param {Record<string, number[]>} poses  pose7 in the world by name
+     * @param {string} [label]
+     */
     move: (poses, label) => edit({kind: 'move', poses, ...(label ? {label} : {})}),
+    /** @param {string} name @param {Vec3} factors */
     scale: (name, factors) => edit({kind: 'scale', name, scale: factors}),
+    /** @param {Operation[]} ops @param {string} label */
     group: (ops, label) => edit({kind: 'group', ops, label}),
+    /** @param {'time'|'poses'|'world'} what */
     reset: (what) => edit({kind: 'reset', what}),
-    resetPoses: () => actions.reset('poses'),
-    resetWorld: () => actions.reset('world'),
-    resetTime: () => actions.reset('time'),
-    /** Copies models and lights (default: what is selected). */
+    resetPoses: () => edit({kind: 'reset', what: 'poses'}),
+    resetWorld: () => edit({kind: 'reset', what: 'world'}),
+    resetTime: () => edit({kind: 'reset', what: 'time'}),
+    /** Copies models and lights (default: what is selected). @returns {Promise<Outcome>} */
     async copy(names = store.selection) {
-      const wanted = names.filter((name) => ['model', 'light'].includes(store.entity(name)?.kind));
-      if (!wanted.length) return NOTHING;
-      const outcome = await ask('copy', {names: wanted});
-      if (!outcome.ok) return outcome;
-      store.setClipboard({
-        text: outcome.value.text,
-        items: wanted.map((name) => {
-          const {kind, model, light} = store.entity(name);
-          const document = structuredClone(model ?? light);
-          document.pose = store.worldPose(name);
-          return {kind, document};
-        }),
+      const items = names.flatMap((name) => {
+        const copied = copyOf(store.entity(name));
+        if (!copied) return [];
+        copied.document.pose = store.worldPose(name) ?? copied.document.pose;
+        return [copied];
       });
+      if (!items.length) return NOTHING;
+      const wanted = items.map(({document}) => document.name);
+      const outcome = await ask('copy', {names: wanted});
+      if (outcome.ok) store.setClipboard({text: outcome.value.text, items});
       return outcome;
     },
     /** Lets what was copied follow the mouse. */
     paste() {
-      const {text, items} = store.clipboard ?? {};
-      if (!text) return;
-      const last = items[items.length - 1];
-      store.setPlacing({
-        kind: last.kind, document: last.document, items, keepHeight: true,
-        op: (pose) => ({kind: 'paste', text, pose}),
-      });
+      const {text = '', items = []} = store.clipboard ?? {};
+      const last = items.at(-1);
+      if (!last) return;
+      store.setPlacing({...last, items, keepHeight: true,
+        op: (pose) => ({kind: 'paste', text, pose})});
     },
 
     // ---- adding
-    /** @param {'box'|'sphere'|'cylinder'} shape */
+    /** @param {ShapeName} shape */
     insertShape(shape) {
       if (!SHAPES.includes(shape)) throw new RangeError(`no shape ${shape}`);
       store.setPlacing({
@@ -116,7 +178,7 @@ export function createActions({store, connection}) {
         op: (pose) => ({kind: 'insert', shape, pose}),
       });
     },
-    /** @param {'point'|'spot'|'directional'} type */
+    /** @param {LightType} type */
     insertLight(type) {
       if (!LIGHTS.includes(type)) throw new RangeError(`no light ${type}`);
       const light = newLight(type, store.document?.lights.map((one) => one.name) ?? []);
@@ -125,32 +187,44 @@ export function createActions({store, connection}) {
         op: (pose) => ({kind: 'insert_light', light: {...light, pose}}),
       });
     },
-    /** Fetches a model of the library, from afar when need be; it then follows the mouse. */
+    /**
+     * Fetches a model of the library, from afar when need be; it then follows the mouse.
+     * @param {string} uri
+     */
     async insertModel(uri) {
       const outcome = await ask('library_get', {uri});
       if (!outcome.ok) return outcome;
       const {model, light} = outcome.value;
-      store.setPlacing({
-        kind: model ? 'model' : 'light', document: model ?? light, uri,
-        op: (pose) => ({kind: 'insert', uri, pose}),
-      });
+      /** @type {(pose: Pose7) => Operation} */
+      const op = (pose) => ({kind: 'insert', uri, pose});
+      if (model) store.setPlacing({kind: 'model', document: model, uri, op});
+      else if (light) store.setPlacing({kind: 'light', document: light, uri, op});
       return outcome;
     },
-    /** Puts down what follows the mouse. @param {number[]} pose  pose7 in the world */
+    /**
+     * Puts down what follows the mouse.
+     * @param {Pose7} pose  in the world
+     * @returns {Promise<Outcome>}
+     */
     async place(pose) {
       const {placing} = store;
       if (!placing) return NOTHING;
       store.setPlacing(null);
       const outcome = await edit(placing.op(pose));
       const {name, names} = outcome.value ?? {};
-      if (outcome.ok && (names ?? name)) store.select(names ?? [name]);
+      if (names) store.select(names);
+      else if (name) store.select([name]);
       return outcome;
     },
     library: () => ask('library'),
+    /** @param {string} path */
     libraryAdd: (path) => ask('library_add', {path}),
 
     // ---- modes
-    /** Esc: first what is being placed or followed, then the tool, then the selection. */
+    /**
+     * Esc: first what is being placed or followed, then the tool, then the selection.
+     * @returns {void}
+     */
     escape() {
       if (view?.cancelDrag()) return;
       if (store.placing) store.setPlacing(null);
@@ -166,19 +240,19 @@ export function createActions({store, connection}) {
     selectAll: () => store.select(store.document?.models.map((model) => model.name) ?? []),
 
     // ---- align
-    /** Shows where the models would go; `null` ends the preview. */
+    /**
+     * Shows where the models would go; `null` ends the preview.
+     * @param {AlignChoice|null} choice
+     */
     alignPreview(choice) {
       view?.setPreviewPoses(choice ? alignPoses(choice) : null);
     },
-    /**
-     * @param {{axis: 'x'|'y'|'z', at: 'min'|'center'|'max', reverse?: boolean,
-     *          relative?: 'first'|'last'}} choice
-     */
+    /** @param {AlignChoice} choice @returns {Promise<Outcome>} */
     async align(choice) {
       view?.setPreviewPoses(null);
       const poses = alignPoses(choice);
-      if (!Object.keys(poses).length) return NOTHING;
-      return view.carry(poses, actions.move(poses, 'align'));
+      if (!view || !Object.keys(poses).length) return NOTHING;
+      return view.carry(poses, edit({kind: 'move', poses, label: 'align'}));
     },
 
     // ---- camera
@@ -186,58 +260,76 @@ export function createActions({store, connection}) {
     viewFrom: (side) => view?.viewFrom(side),
     resetView: () => view?.viewFrom('home'),
     moveTo: (name = store.selection.at(-1)) => name && view?.moveTo(name),
-    /** @param {string|null} name  null ends it */
+    /** @param {string|null} name  null ends it @returns {void} */
     follow(name = store.selection.at(-1) ?? null) {
       if (name) store.setMode('select');
       store.setCamera({following: name});
     },
+    /** @param {CameraChoices['projection']} projection */
     setProjection: (projection) => store.setCamera({projection}),
+    /** @param {CameraChoices['controller']} controller */
     setController: (controller) => store.setCamera({controller}),
-    perspective: () => actions.setProjection('perspective'),
-    orthographic: () => actions.setProjection('orthographic'),
-    orbitControl: () => actions.setController('orbit'),
-    fpsControl: () => actions.setController('fps'),
+    perspective: () => store.setCamera({projection: 'perspective'}),
+    orthographic: () => store.setCamera({projection: 'orthographic'}),
+    orbitControl: () => store.setCamera({controller: 'orbit'}),
+    fpsControl: () => store.setCamera({controller: 'fps'}),
 
     // ---- what is shown
+    /**
+     * @param {OverlayFlag} flag
+     * @param {boolean|null} on
+     * @param {string} [model]
+     */
     setOverlay: (flag, on, model) => store.setOverlay(flag, on, model),
+    /** @param {OverlayFlag} flag @param {string} [model] */
     toggleOverlay: (flag, model) => store.setOverlay(flag, !store.overlay(flag, model), model),
+    /** @param {number} layer @param {boolean} shown */
     setLayer: (layer, shown) => store.setLayer(layer, shown),
 
     // ---- time
     play: () => ask('play'),
     pause: () => ask('pause'),
-    togglePlay: () => store.stats.paused ? actions.play() : actions.pause(),
+    togglePlay: () => ask(store.stats.paused ? 'play' : 'pause'),
     step: (steps = 1) => ask('step', {steps}),
 
     // ---- forces and joints
     /** @param {{link: string, force: number[], torque: number[], point?: number[],
      *           in_link_axes?: boolean, steps?: number}} wrench  N, N m */
     wrench: (wrench) => edit({kind: 'wrench', in_link_axes: false, steps: 1, ...wrench}),
-    /** Arrows for the force dialog; `null` takes them away. */
+    /**
+     * Arrows for the force dialog; `null` takes them away.
+     * @param {ShownWrench|null} wrench
+     * @param {(turned: Turned) => void} [onTurned]
+     */
     showForce: (wrench, onTurned) => view?.showForce(wrench, onTurned),
+    /** @param {JointFields} fields */
     joint: (fields) => edit({kind: 'joint', ...fields}),
 
     // ---- pictures
-    /** A PNG of the view; downloaded unless `download` is false. @returns {Promise<Blob>} */
+    /** A PNG of the view; downloaded unless `download` is false. @returns {Promise<Blob|null>} */
     async screenshot({download = true} = {}) {
       if (!view) return null;
       const blob = await view.picture();
-      if (download) saveBlob(blob, `${store.document?.name ?? 'world'}-${timestamp()}.png`);
+      if (blob && download) saveBlob(blob, `${store.document?.name ?? 'world'}-${timestamp()}.png`);
       return blob;
     },
 
     // ---- logs and plots
+    /** @param {string[]} topics */
     watch: (topics) => ask('watch', {topics}),
+    /** @param {string} [name] */
     logStart: (name) => ask('log_start', name ? {name} : {}),
     logStop: () => ask('log_stop'),
     logList: () => ask('log_list'),
+    /** @param {string} name */
     logOpen: (name) => ask('log_open', {name}),
+    /** @param {number} time */
     logSeek: (time) => ask('log_seek', {time}),
     logPlay: (rate = 1) => ask('log_play', {rate}),
     logClose: () => ask('log_close'),
 
     // ---- windows of the panels
-    applyForce: (name = store.selection.at(-1)) => dialog('applyForce', {target: name}),
+    applyForce: (name = store.selection.at(-1)) => dialog('applyForce', name ? {target: name} : {}),
     hotkeys: () => dialog('hotkeys'),
     about: () => dialog('about'),
     plot: () => dialog('plot'),
@@ -253,32 +345,63 @@ export function createActions({store, connection}) {
       if (document.fullscreenElement) return document.exitFullscreen();
       return document.documentElement.requestFullscreen();
     },
-    /** What of the preview (store.preview) is under a point of the page: {link} or null. */
+    /**
+     * What of the preview (store.preview) is under a point of the page: {link} or null.
+     * @param {number} clientX
+     * @param {number} clientY
+     */
     previewPick: (clientX, clientY) => view?.previewPick(clientX, clientY) ?? null,
   };
 
+  /** @param {Mode} mode */
   function manipulate(mode) {
-    if (store.camera.following) note('Not while the camera follows a model; Esc ends that.');
+    if (store.camera.following) note('Not available while following a model; press Esc to stop following.');
     else store.setMode(mode);
   }
 
+  /** @param {AlignChoice} choice */
   function alignPoses(choice) {
-    const names = [...new Set(store.selection.map(modelOf))].filter((name) => store.model(name));
-    const boxes = names.map((name) => ({name, pose: store.worldPose(name), ...view?.bounds(name)}));
-    return alignMoves(boxes.filter((box) => box.min), choice);
+    const names = [...new Set(store.selection.flatMap((name) => store.split(name)[0]?.name ?? []))];
+    const boxes = names.flatMap((name) => {
+      const [pose, bounds] = [store.worldPose(name), view?.bounds(name)];
+      return pose && bounds ? [{name, pose, ...bounds}] : [];
+    });
+    return alignMoves(boxes, choice);
   }
 
   return actions;
 }
 
-const NOTHING = Object.freeze({ok: true, value: null, issues: []});
+/**
+ * What an action answers that had nothing to do.
+ * @type {Outcome<{name?: string, names?: string[]}>}
+ */
+const NOTHING = Object.freeze({ok: true, value: {}, issues: []});
 
-/** What is said about models that a saved world does not hold. */
+/**
+ * What is said about models that a saved world does not hold.
+ * @param {string[]} [names]
+ */
 function without(names = []) {
   return names.length ? ` without ${names.join(', ')}, which the launch file spawns` : '';
 }
 
-/** Lets the browser store a file. */
+/**
+ * A copy of a model or light; null of a link, or of nothing.
+ * @param {EntityRef|null} entity
+ * @returns {CopiedItem|null}
+ */
+function copyOf(entity) {
+  if (entity?.kind === 'model') return {kind: 'model', document: structuredClone(entity.model)};
+  if (entity?.kind === 'light') return {kind: 'light', document: structuredClone(entity.light)};
+  return null;
+}
+
+/**
+ * Lets the browser store a file.
+ * @param {Blob} blob
+ * @param {string} name
+ */
 export function saveBlob(blob, name) {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(blob);

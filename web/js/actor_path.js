@@ -4,17 +4,26 @@
  * (SDF spec 1.7, script/delay_start).
  */
 import {orientation, position, slerp} from './pose.js';
+/** @import {Actor, Trajectory, Waypoint} from './protocol.js' */
 
 /** @typedef {{time: number, pose: number[]}} Key */
 
-/** Waypoints in the order of their times; of those of one time the last counts. @returns {Key[]} */
+/**
+ * Waypoints in the order of their times; of those of one time the last counts.
+ * @param {Waypoint[]} waypoints
+ * @returns {Key[]}
+ */
 function inOrder(waypoints) {
   const byTime = new Map(waypoints.map(({time, pose}) => [time, pose]));
   return [...byTime].map(([time, pose]) => ({time, pose})).sort((a, b) => a.time - b.time);
 }
 
-/** @returns {{keys: Key[], length: number}} times in s since the script began */
+/**
+ * @param {Trajectory[]} trajectories
+ * @returns {{keys: Key[], length: number}} times in s since the script began
+ */
 function script(trajectories) {
+  /** @type {Key[]} */
   const keys = [];
   let length = 0;
   for (const {waypoints} of trajectories) {
@@ -31,7 +40,7 @@ export class ActorPath {
   #keys;
   #length;
 
-  /** @param {any} actor  the protocol's Actor */
+  /** @param {Actor} actor */
   constructor(actor) {
     this.#actor = actor;
     ({keys: this.#keys, length: this.#length} = script(actor.trajectories));
@@ -64,7 +73,7 @@ export class ActorPath {
     const keys = this.#keys;
     const next = keys.findIndex((key) => key.time > at);
     if (next === 0) return [...keys[0].pose];
-    if (next < 0) return [...keys.at(-1).pose];
+    if (next < 0) return [...keys[keys.length - 1].pose];
     const [from, to] = [keys[next - 1], keys[next]];
     const part = (at - from.time) / (to.time - from.time);
     const start = position(from.pose);

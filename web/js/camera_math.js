@@ -3,33 +3,46 @@
  * roll. It looks along its forward vector; the world's z is up.
  */
 import {add, axisAngle, cross, dot, length, rotate, scale, subtract} from './pose.js';
+/** @import {Pose7, Vec3} from './pose.js' */
 
-/** @typedef {{position: number[], yaw: number, pitch: number}} View */
+/** @typedef {{position: Vec3, yaw: number, pitch: number}} View */
 
 const RADIANS_PER_PIXEL = 0.004;
 const LOOK_PER_PIXEL = Math.PI / 1800;
 const HORIZONTAL_FOV = Math.PI / 3;
-/** Pixels per metre of an orthographic view at first. */
+/** Resolution (pixels per meter) of an orthographic view at first. */
 export const ORTHOGRAPHIC_ZOOM = 100;
 const STEEPEST = Math.PI / 2 - 1e-4;
 const NEAREST = 0.05;
 
+/** @param {number} pitch */
 const clampPitch = (pitch) => Math.max(-STEEPEST, Math.min(STEEPEST, pitch));
 
+/** @param {{yaw: number, pitch: number}} options */
 export const forward = ({yaw, pitch}) => [
   Math.cos(pitch) * Math.cos(yaw), Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch),
 ];
+/** @param {{yaw: number}} options */
 export const right = ({yaw}) => [Math.sin(yaw), -Math.cos(yaw), 0];
+/** @param {{yaw: number, pitch: number}} view */
 export const up = (view) => cross(right(view), forward(view));
 
-/** @returns {View} from a position towards a point */
+/**
+ * @param {Vec3} position
+ * @param {Vec3} point
+ * @returns {View} from a position towards a point
+ */
 export function lookAt(position, point) {
   const [x, y, z] = subtract(point, position);
   return {position: [...position], yaw: Math.atan2(y, x),
     pitch: clampPitch(Math.atan2(z, Math.hypot(x, y)))};
 }
 
-/** The view of a camera pose of a world file: it looks along its x. @returns {View} */
+/**
+ * The view of a camera pose of a world file: it looks along its x.
+ * @param {Pose7} pose
+ * @returns {View}
+ */
 export function fromPose(pose) {
   const ahead = rotate(pose.slice(3), [1, 0, 0]);
   return lookAt(pose.slice(0, 3), add(pose.slice(0, 3), ahead));
@@ -38,10 +51,19 @@ export function fromPose(pose) {
 /** Gazebo's first view. */
 export const HOME = Object.freeze(lookAt([5, -5, 2], [0, 0, 0]));
 
-/** Vertical field of view, rad, of a picture `aspect` times as wide as high. */
+/**
+ * Vertical field of view, rad, of a picture `aspect` times as wide as high.
+ * @param {number} aspect
+ */
 export const verticalFov = (aspect) => 2 * Math.atan(Math.tan(HORIZONTAL_FOV / 2) / aspect);
 
-/** Metres that a pixel covers at a point. @param {number} height of the picture, px */
+/**
+ * Metres that a pixel covers at a point.
+ * @param {View} view
+ * @param {Vec3} point
+ * @param {number} fov
+ * @param {number} height of the picture, px
+ */
 export function metresPerPixel(view, point, fov, height) {
   const depth = Math.max(dot(subtract(point, view.position), forward(view)), NEAREST);
   return 2 * depth * Math.tan(fov / 2) / height;
@@ -49,6 +71,10 @@ export function metresPerPixel(view, point, fov, height) {
 
 /**
  * Turns the camera about a pivot, which stays where it is in the picture.
+ * @param {View} view
+ * @param {Vec3} pivot
+ * @param {number} dx
+ * @param {number} dy
  * @param {'pitch'|'yaw'|null} only
  * @returns {View}
  */
@@ -62,7 +88,13 @@ export function orbit(view, pivot, dx, dy, only = null) {
   return {position: add(pivot, turned), yaw: view.yaw + turn, pitch};
 }
 
-/** Looks round from where the camera is. @returns {View} */
+/**
+ * Looks round from where the camera is.
+ * @param {View} view
+ * @param {number} dx
+ * @param {number} dy
+ * @returns {View}
+ */
 export function look(view, dx, dy) {
   return {position: view.position, yaw: view.yaw - dx * LOOK_PER_PIXEL,
     pitch: clampPitch(view.pitch - dy * LOOK_PER_PIXEL)};
@@ -70,6 +102,9 @@ export function look(view, dx, dy) {
 
 /**
  * Shifts the camera so that a point keeps under the mouse.
+ * @param {View} view
+ * @param {number} dx
+ * @param {number} dy
  * @param {number} unit  metres per pixel at that point
  * @param {'x'|'y'|'z'|null} axis  only along this world axis
  * @returns {View}
@@ -80,7 +115,13 @@ export function pan(view, dx, dy, unit, axis = null) {
   return {...view, position: add(view.position, kept)};
 }
 
-/** Goes towards a point (factor < 1) or away from it. @returns {View} */
+/**
+ * Goes towards a point (factor < 1) or away from it.
+ * @param {View} view
+ * @param {Vec3} point
+ * @param {number} factor
+ * @returns {View}
+ */
 export function zoom(view, point, factor) {
   const lever = subtract(view.position, point);
   const distance = length(lever);
@@ -89,18 +130,31 @@ export function zoom(view, point, factor) {
   return {...view, position: add(point, scale(lever, wanted / distance))};
 }
 
-/** Walks: metres forward and to the right. @returns {View} */
+/**
+ * Walks: metres forward and to the right.
+ * @param {View} view
+ * @param {number} ahead
+ * @param {number} sideways
+ * @returns {View}
+ */
 export function walk(view, ahead, sideways) {
   return {...view, position: add(view.position,
     add(scale(forward(view), ahead), scale(right(view), sideways)))};
 }
 
+/** @type {Record<string, Vec3>} */
 const SIDES = {
   top: [0, 0, 1], bottom: [0, 0, -1], front: [1, 0, 0], back: [-1, 0, 0], left: [0, 1, 0],
   right: [0, -1, 0],
 };
 
-/** A look at `centre` from one side, as far from it as now. @returns {View} */
+/**
+ * A look at `centre` from one side, as far from it as now.
+ * @param {View} view
+ * @param {string} side
+ * @param {Vec3} centre
+ * @returns {View}
+ */
 export function fromSide(view, side, centre) {
   const distance = Math.max(length(subtract(view.position, centre)), 0.5);
   const from = SIDES[side];
@@ -112,7 +166,14 @@ export function fromSide(view, side, centre) {
   };
 }
 
-/** From the same direction, so near that a box fills the picture. @returns {View} */
+/**
+ * From the same direction, so near that a box fills the picture.
+ * @param {View} view
+ * @param {{min: Vec3, max: Vec3}} box
+ * @param {number} fov
+ * @param {number} aspect
+ * @returns {View}
+ */
 export function framing(view, {min, max}, fov, aspect) {
   const centre = scale(add(min, max), 0.5);
   const radius = Math.max(length(subtract(max, min)) / 2, 0.1);
@@ -122,9 +183,16 @@ export function framing(view, {min, max}, fov, aspect) {
   return {...towards, position: subtract(centre, scale(forward(towards), distance))};
 }
 
-/** Between two views; `part` 0..1, slow at both ends; the shorter way round. @returns {View} */
+/**
+ * Between two views; `part` 0..1, slow at both ends; the shorter way round.
+ * @param {View} a
+ * @param {View} b
+ * @param {number} part
+ * @returns {View}
+ */
 export function between(a, b, part) {
   const eased = part * part * (3 - 2 * part);
+  /** @param {number} from @param {number} to */
   const mix = (from, to) => from + (to - from) * eased;
   const turn = Math.atan2(Math.sin(b.yaw - a.yaw), Math.cos(b.yaw - a.yaw));
   return {position: a.position.map((value, index) => mix(value, b.position[index])),

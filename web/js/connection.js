@@ -1,27 +1,53 @@
 /** The web socket to the simulator: requests with answers, pushes, and coming back after a loss. */
 
-/** @typedef {{severity: string, code: string, message: string, file?: string, line?: number,
- *             xpath?: string, hint?: string}} Issue  as errors.Issue of the simulator */
+import {Emitter} from './emitter.js';
+import {PROTOCOL_VERSION} from './protocol.js';
+/** @import {Notices, Push, Requests} from './protocol.js' */
+
+/**
+ * What is told to the user; the page's own issues name no file.
+ * @typedef {Partial<import('./protocol.js').Issue> &
+ *   Pick<import('./protocol.js').Issue, 'severity'|'code'|'message'>} Issue
+ */
+
+/**
+ * @typedef {object} ConnectionEvents
+ * @property {Requests['hello']['reply']} open  the greeting was answered
+ * @property {undefined} close
+ * @property {Push|{type: 'issue', issue: Issue}} message  what the simulator pushed
+ * @property {ArrayBuffer} frame
+ */
+
+/**
+ * Sends a request; the promise is of the reply's value, and rejects with RequestError.
+ * @typedef {<T extends keyof Requests>(type: T, fields?: Requests[T]['fields'])
+ *   => Promise<Requests[T]['reply']>} RequestFunction
+ */
+
+/** @typedef {{resolve: (value: unknown) => void, reject: (error: Error) => void}} Waiting */
 
 /** A request that was refused or never answered. */
 export class RequestError extends Error {
   /** @param {Issue[]} issues  at least one */
   constructor(issues) {
-    super(issues[0].message);
+    super(issues[0]?.message ?? 'The request was refused.');
     this.name = 'RequestError';
     /** @type {Issue[]} */
     this.issues = issues;
   }
 }
 
-/** Milliseconds to wait before the n-th attempt in a row to connect again, n from 0. */
+/**
+ * Milliseconds to wait before the n-th attempt in a row to connect again, n from 0.
+ * @param {number} attempt
+ */
 export function backOff(attempt) {
   return Math.min(250 * 2 ** attempt, 4000);
 }
 
 /**
  * The web socket's address that belongs to a page's address; a token in the query goes along.
- * @param {Location|URL} location
+ * @param {{protocol: string, search: string, host: string}} location
  */
 export function webSocketUrl(location) {
   const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
@@ -30,28 +56,33 @@ export function webSocketUrl(location) {
 }
 
 const OPEN = 1;
-const PROTOCOL_VERSION = 1;
 
 /**
- * Emits `open`, `close`, `message` (detail: a pushed object) and `frame` (detail: ArrayBuffer).
  * Requests made while the line is down fail at once: the page shows that it is, and nothing that a
  * user did long ago reaches a world that has changed since.
+ * @extends {Emitter<ConnectionEvents>}
  */
-export class Connection extends EventTarget {
+export class Connection extends Emitter {
   #url;
   #WebSocket;
   #setTimeout;
+  /** @type {WebSocket|null} */
   #socket = null;
   #nextId = 1;
+  /** @type {Map<number, Waiting>} */
   #waiting = new Map();
   #attempt = 0;
-  #timer = null;
+  /** @type {ReturnType<typeof setTimeout>|undefined} */
+  #timer;
   #closed = false;
+  /** @type {string|null} */
   #session = null;
 
   /**
    * @param {string} url  of the web socket
-   * @param {{WebSocket?: any, setTimeout?: any}} [options]  other implementations, for tests
+   * @param {{WebSocket?: typeof globalThis.WebSocket,
+   *          setTimeout?: (call: () => void, wait: number) => ReturnType<typeof setTimeout>}}
+   *        [options]  other implementations, for tests
    */
   constructor(url, options = {}) {
     super();
@@ -76,84 +107,90 @@ export class Connection extends EventTarget {
     this.#socket?.close();
   }
 
-  /**
-   * Sends a request.
-   * @param {string} type
-   * @param {object} [fields]
-   * @returns {Promise<any>} the reply's value; rejects with RequestError
-   */
-  request(type, fields = {}) {
-    if (this.#socket?.readyState !== OPEN) {
+  /** @type {RequestFunction} */
+  request(type, fields) {
+    const socket = this.#socket;
+    if (socket?.readyState !== OPEN) {
       return Promise.reject(new RequestError([{
         severity: 'error', code: 'not-connected',
-        message: 'There is no connection to the simulator; nothing was changed.',
+        message: 'Not connected to the simulator; the request was not sent.',
       }]));
     }
     const id = this.#nextId++;
     return new Promise((resolve, reject) => {
-      this.#waiting.set(id, {resolve, reject});
-      this.#socket.send(JSON.stringify({type, id, ...fields}));
+      this.#waiting.set(id, {
+        // The server's replies are checked against the protocol in its tests.
+        resolve: /** @type {(value: unknown) => void} */ (resolve), reject,
+      });
+      socket.send(JSON.stringify({type, id, .../** @type {object} */ (fields ?? {})}));
     });
   }
 
-  /** Sends what is not answered (live drags); dropped while the line is down or congested. */
-  send(type, fields = {}) {
+  /**
+   * Sends what is not answered (live drags); dropped while the line is down or congested.
+   * @template {keyof Notices} T
+   * @param {T} type
+   * @param {Notices[T]} [fields]
+   */
+  send(type, fields) {
     if (this.#socket?.readyState !== OPEN || this.#socket.bufferedAmount > 65536) return;
-    this.#socket.send(JSON.stringify({type, ...fields}));
+    this.#socket.send(JSON.stringify({type, .../** @type {object} */ (fields ?? {})}));
   }
 
   #connect() {
     const socket = new this.#WebSocket(this.#url);
     socket.binaryType = 'arraybuffer';
     this.#socket = socket;
-    socket.onopen = () => this.#greet(socket);
+    socket.onopen = () => this.#greet();
     socket.onmessage = (event) => this.#receive(event.data);
     socket.onclose = () => this.#lost(socket);
   }
 
   async #greet() {
-    const fields = {version: PROTOCOL_VERSION};
-    if (this.#session) fields.session = this.#session;
+    const session = this.#session ? {session: this.#session} : {};
     try {
-      const welcome = await this.request('hello', fields);
+      const welcome = await this.request('hello', {version: PROTOCOL_VERSION, ...session});
       this.#session = welcome.session;
       this.#attempt = 0;
       this.connected = true;
-      this.dispatchEvent(new CustomEvent('open', {detail: welcome}));
+      this.emit('open', welcome);
     } catch (error) {
-      for (const issue of error.issues ?? []) {
-        this.dispatchEvent(new CustomEvent('message', {detail: {type: 'issue', issue}}));
+      for (const issue of error instanceof RequestError ? error.issues : []) {
+        this.emit('message', {type: 'issue', issue});
       }
     }
   }
 
+  /** @param {string|ArrayBuffer} data */
   #receive(data) {
     if (typeof data !== 'string') {
-      this.dispatchEvent(new CustomEvent('frame', {detail: data}));
+      this.emit('frame', data);
       return;
     }
+    /** @type {Push} */
     const message = JSON.parse(data);
     if (message.type !== 'reply') {
-      this.dispatchEvent(new CustomEvent('message', {detail: message}));
+      this.emit('message', message);
       return;
     }
     const waiting = this.#waiting.get(message.id);
     this.#waiting.delete(message.id);
     if (message.ok) waiting?.resolve(message.value);
-    else waiting?.reject(new RequestError(message.issues));
+    else waiting?.reject(new RequestError(message.issues ?? []));
   }
 
+  /** @param {WebSocket} socket */
   #lost(socket) {
     if (socket !== this.#socket) return;
     const lost = new RequestError([{
       severity: 'error', code: 'connection-lost',
-      message: 'The connection to the simulator was lost before it answered.',
+      message: 'Connection to the simulator lost before it replied.',
     }]);
     for (const {reject} of this.#waiting.values()) reject(lost);
     this.#waiting.clear();
     if (this.connected) {
       this.connected = false;
-      this.dispatchEvent(new CustomEvent('close'));
+      this.emit('close');
     }
     if (!this.#closed) {
       this.#timer = this.#setTimeout(() => this.#connect(), backOff(this.#attempt++));

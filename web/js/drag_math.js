@@ -5,16 +5,23 @@
 import {
   add, axisAngle, cross, dot, multiply, normalized, orientation, position, scale, subtract,
 } from './pose.js';
-import {magnetic, SMALLEST_SIZE, snapSize, snapTurn} from './snapping.js';
+import {magnetic, SMALLEST_SIZE, snapSize, snapTurn} from './drag_snap.js';
+/** @import {Model} from './protocol.js' */
+/** @import {Pose7, Vec3} from './pose.js' */
 
-/** @typedef {{origin: number[], direction: number[]}} Ray */
+/** @typedef {{origin: Vec3, direction: Vec3}} Ray */
 
 export const WORLD_AXES = Object.freeze({x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1]});
 const PARALLEL = 1e-4;
 /** Cosine of ray and axis below which a ring is taken as seen edge-on. */
 const EDGE_ON = 0.05;
 
-/** Where a ray meets a plane, or null when it runs along it or away from it. */
+/**
+ * Where a ray meets a plane, or null when it runs along it or away from it.
+ * @param {Ray} ray
+ * @param {Vec3} point
+ * @param {Vec3} normal
+ */
 export function rayPlane(ray, point, normal) {
   const slope = dot(ray.direction, normal);
   if (Math.abs(slope) < PARALLEL) return null;
@@ -22,7 +29,12 @@ export function rayPlane(ray, point, normal) {
   return distance < 0 ? null : add(ray.origin, scale(ray.direction, distance));
 }
 
-/** How far along an axis (m from `point`) the ray passes nearest to it; null when parallel. */
+/**
+ * How far along an axis (m from `point`) the ray passes nearest to it; null when parallel.
+ * @param {Ray} ray
+ * @param {Vec3} point
+ * @param {Vec3} axis
+ */
 export function alongAxis(ray, point, axis) {
   const cosine = dot(axis, ray.direction);
   const divisor = 1 - cosine * cosine;
@@ -31,6 +43,7 @@ export function alongAxis(ray, point, axis) {
   return (cosine * dot(between, ray.direction) - dot(between, axis)) / divisor;
 }
 
+/** @param {Vec3} axis */
 const isWorldAxis = (axis) => axis.some((part) => Math.abs(Math.abs(part) - 1) < 1e-9);
 
 /**
@@ -44,6 +57,7 @@ const isWorldAxis = (axis) => axis.some((part) => Math.abs(Math.abs(part) - 1) <
  * @returns {number[]|null} pose7; null where the ray says nothing
  */
 export function translated(start, grab, ray, {axis = null, snap = false} = {}) {
+  /** @type {Vec3} */
   let shift;
   let touched = [true, true, false];
   if (axis) {
@@ -65,6 +79,7 @@ export function translated(start, grab, ray, {axis = null, snap = false} = {}) {
 
 /**
  * A dragged turn about an axis through the pose's own position.
+ * @param {Pose7} start
  * @param {Ray} from  when the drag began
  * @param {Ray} ray   now
  * @param {number[]} axis  unit, world
@@ -77,6 +92,12 @@ export function rotated(start, from, ray, axis, {snap = false} = {}) {
   return [...position(start), ...multiply(turn, orientation(start))];
 }
 
+/**
+ * @param {Vec3} centre
+ * @param {Vec3} axis
+ * @param {Ray} from
+ * @param {Ray} ray
+ */
 function turnBetween(centre, axis, from, ray) {
   const a = spoke(centre, axis, from);
   const b = spoke(centre, axis, ray);
@@ -87,6 +108,9 @@ function turnBetween(centre, axis, from, ray) {
 /**
  * From the centre to where the ray meets the plane of the turn. Seen edge-on that point runs off to
  * infinity: then to a point of the near side of the ring.
+ * @param {Vec3} centre
+ * @param {Vec3} axis
+ * @param {Ray} ray
  */
 function spoke(centre, axis, ray) {
   if (Math.abs(dot(ray.direction, axis)) < EDGE_ON) {
@@ -101,9 +125,10 @@ function spoke(centre, axis, ray) {
 
 /** The kinds of models by what their sizes allow. @typedef {'free'|'round'|'ball'} Roundness */
 
+/** @type {Record<string, Roundness>} */
 const ROUNDNESS = {sphere: 'ball', cylinder: 'round', capsule: 'round', cone: 'round'};
 
-/** @returns {Roundness} what a model's geometries allow together */
+/** @param {Model} model @returns {Roundness} what a model's geometries allow together */
 export function roundness(model) {
   const kinds = model.links.flatMap((link) => [...link.visuals, ...link.collisions])
     .map(({geometry}) => ROUNDNESS[geometry.type] ?? 'free');

@@ -2,10 +2,13 @@
 import {
   add, compose, cross, normalized, orientation, position, rotationBetween, scale, subtract,
 } from './pose.js';
+/** @import {Vec3} from './pose.js' */
 
-/** @typedef {{corners: number[][]}} Face  three corners, world */
+/** Three corners, world. @typedef {{corners: Vec3[]}} Face */
 
+/** @param {Face} face */
 export const centroid = ({corners: [a, b, c]}) => scale(add(add(a, b), c), 1 / 3);
+/** @param {Face} face */
 export const normal = ({corners: [a, b, c]}) =>
   normalized(cross(subtract(b, a), subtract(c, a)));
 

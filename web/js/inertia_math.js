@@ -24,6 +24,14 @@ export function principal(matrix) {
   return {values: [a[0][0], a[1][1], a[2][2]], vectors};
 }
 
+/**
+ * @param {number[][]} a
+ * @param {number[][]} v
+ * @param {number} p
+ * @param {number} q
+ * @param {number} c
+ * @param {number} s
+ */
 function turn(a, v, p, q, c, s) {
   for (let k = 0; k < 3; k++) {
     [a[k][p], a[k][q]] = [c * a[k][p] - s * a[k][q], s * a[k][p] + c * a[k][q]];
@@ -45,6 +53,11 @@ export function equivalentBox({mass, ixx, ixy, ixz, iyy, iyz, izz}) {
   if (!(mass > 0)) return null;
   const {values: [a, b, c], vectors} =
     principal([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]);
+  /**
+   * @param {number} one
+   * @param {number} other
+   * @param {number} own
+   */
   const edge = (one, other, own) => Math.sqrt(Math.max(6 * (one + other - own) / mass, 0));
   return {size: [edge(b, c, a), edge(a, c, b), edge(a, b, c)], vectors};
 }

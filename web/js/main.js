@@ -1,7 +1,9 @@
 /** Puts the page together. */
 import {createActions} from './actions.js';
 import {Connection, webSocketUrl} from './connection.js';
-import {mountKeys} from './keys.js';
+import {mountKeys} from './hotkeys.js';
+import {faultText} from './panels/dialog.js';
+import {byId} from './panels/dom.js';
 import {mountPanels} from './panels/panels.js';
 import {Store} from './store.js';
 import {Watches} from './watches.js';
@@ -11,20 +13,20 @@ const store = new Store(connection);
 const actions = createActions({store, connection});
 const watches = new Watches(connection);
 const page = mountPanels(document, {store, actions, connection, watches, view: null});
-connection.addEventListener('open', ({detail}) => { page.about = detail; });
+connection.listen('open', ({detail}) => { page.about = detail; });
 mountKeys(window, {store, actions});
 connection.open();
 
 try {
   const {mountView} = await import('./view/view.js');
-  page.view = mountView(document.getElementById('view'), {store, actions, connection, watches});
+  page.view = mountView(byId('view'), {store, actions, connection, watches});
 } catch (fault) {
   // Tree, properties and time work without a picture.
   store.addIssue({
-    severity: 'error', code: 'view', message: `The 3D view cannot be shown: ${fault.message}`,
+    severity: 'error', code: 'view', message: `The 3D view failed to load: ${faultText(fault)}`,
   });
   console.error(fault);
 }
 
 /** For people with the browser's console open, and for tests. */
-window.editor = page;
+Object.assign(window, {editor: page});

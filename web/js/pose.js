@@ -5,27 +5,51 @@
 
 /** @typedef {number[]} Vec3 */
 /** @typedef {number[]} Quat */
-/** @typedef {number[]|Float64Array} Pose7 */
+/** @typedef {number[]} Pose7 */
+/** What functions take: a list or a typed array. @typedef {ArrayLike<number>} Numbers */
 
-/** @returns {Vec3} */
+/**
+ * @param {Numbers} a
+ * @param {Numbers} b
+ * @returns {Vec3}
+ */
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-/** @returns {Vec3} */
+/**
+ * @param {Numbers} a
+ * @param {Numbers} b
+ * @returns {Vec3}
+ */
 export const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-/** @returns {Vec3} */
+/**
+ * @param {Numbers} a
+ * @param {number} factor
+ * @returns {Vec3}
+ */
 export const scale = (a, factor) => [a[0] * factor, a[1] * factor, a[2] * factor];
+/** @param {Numbers} a @param {Numbers} b */
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-/** @returns {Vec3} */
+/**
+ * @param {Numbers} a
+ * @param {Numbers} b
+ * @returns {Vec3}
+ */
 export const cross = (a, b) => [
   a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
 ];
+/** @param {Numbers} a */
 export const length = (a) => Math.hypot(a[0], a[1], a[2]);
-/** The unit vector along `a`; `a` itself when it is zero. */
+/** The unit vector along `a`; `a` itself when it is zero. @param {Numbers} a */
 export const normalized = (a) => {
   const norm = length(a);
-  return norm > 0 ? scale(a, 1 / norm) : [...a];
+  return norm > 0 ? scale(a, 1 / norm) : [a[0], a[1], a[2]];
 };
 
-/** a * b: first b, then a. @returns {Quat} */
+/**
+ * a * b: first b, then a.
+ * @param {Numbers} a
+ * @param {Numbers} b
+ * @returns {Quat}
+ */
 export function multiply(a, b) {
   return [
     a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
@@ -35,22 +59,36 @@ export function multiply(a, b) {
   ];
 }
 
-/** @returns {Quat} */
+/** @param {Numbers} q @returns {Quat} */
 export const conjugate = (q) => [-q[0], -q[1], -q[2], q[3]];
 
-/** @returns {Vec3} */
+/**
+ * @param {Numbers} q
+ * @param {Numbers} v
+ * @returns {Vec3}
+ */
 export function rotate(q, v) {
   const t = scale(cross(q, v), 2);
   return add(add(v, scale(t, q[3])), cross(q, t));
 }
 
-/** Rotation by `angle` rad about the unit vector `axis`. @returns {Quat} */
+/**
+ * Rotation by `angle` rad about the unit vector `axis`.
+ * @param {Numbers} axis
+ * @param {number} angle
+ * @returns {Quat}
+ */
 export function axisAngle(axis, angle) {
   const s = Math.sin(angle / 2);
   return [axis[0] * s, axis[1] * s, axis[2] * s, Math.cos(angle / 2)];
 }
 
-/** The shortest rotation that turns unit vector `a` into unit vector `b`. @returns {Quat} */
+/**
+ * The shortest rotation that turns unit vector `a` into unit vector `b`.
+ * @param {Numbers} a
+ * @param {Numbers} b
+ * @returns {Quat}
+ */
 export function rotationBetween(a, b) {
   const w = 1 + dot(a, b);
   if (w < 1e-9) {
@@ -61,33 +99,58 @@ export function rotationBetween(a, b) {
   return scale4(q, 1 / Math.hypot(...q));
 }
 
-const scale4 = (q, factor) => q.map((part) => part * factor);
+/** @param {Numbers} q @param {number} factor */
+const scale4 = (q, factor) => [q[0] * factor, q[1] * factor, q[2] * factor, q[3] * factor];
 
+/** @param {Numbers} pose */
 export const position = (pose) => [pose[0], pose[1], pose[2]];
+/** @param {Numbers} pose */
 export const orientation = (pose) => [pose[3], pose[4], pose[5], pose[6]];
 
-/** parent_from_a * a_from_b. @returns {number[]} */
+/**
+ * parent_from_a * a_from_b.
+ * @param {Numbers} a
+ * @param {Numbers} b
+ * @returns {number[]}
+ */
 export function compose(a, b) {
   const q = orientation(a);
   return [...add(position(a), rotate(q, position(b))), ...multiply(q, orientation(b))];
 }
 
-/** @returns {number[]} */
+/** @param {Numbers} pose @returns {number[]} */
 export function inverse(pose) {
   const q = conjugate(orientation(pose));
   return [...scale(rotate(q, position(pose)), -1), ...q];
 }
 
-/** Where a point of the child frame is in the parent frame. @returns {Vec3} */
+/**
+ * Where a point of the child frame is in the parent frame.
+ * @param {Numbers} pose
+ * @param {Numbers} point
+ * @returns {Vec3}
+ */
 export const transform = (pose, point) => add(position(pose), rotate(orientation(pose), point));
 
-/** Roll, pitch, yaw about fixed x, y, z (SDF's pose angles), rad. @returns {Quat} */
+/**
+ * Roll, pitch, yaw about fixed x, y, z (SDF's pose angles), rad.
+ * @param {number} roll
+ * @param {number} pitch
+ * @param {number} yaw
+ * @returns {Quat}
+ */
 export function fromRpy(roll, pitch, yaw) {
   return multiply(axisAngle([0, 0, 1], yaw),
     multiply(axisAngle([0, 1, 0], pitch), axisAngle([1, 0, 0], roll)));
 }
 
-/** The rotation a part (0..1) of the shorter way from `a` to `b`. @returns {Quat} */
+/**
+ * The rotation a part (0..1) of the shorter way from `a` to `b`.
+ * @param {number[]} a
+ * @param {number[]} b
+ * @param {number} part
+ * @returns {Quat}
+ */
 export function slerp(a, b, part) {
   const cosine = a.reduce((sum, value, index) => sum + value * b[index], 0);
   const end = cosine < 0 ? scale4(b, -1) : b;

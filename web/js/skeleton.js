@@ -1,18 +1,22 @@
 /** The skeleton of a model: how its links hang together through their joints. Pure. */
 import {compose, inverse, position, transform} from './pose.js';
+/** @import {Link, Model} from './protocol.js' */
+/** @import {Vec3} from './pose.js' */
 
 const ORIGIN = [0, 0, 0];
 
 /**
  * A link's share of its model's skeleton, in the link's frame.
  *
- * @param {{links: object[], joints: object[]}} model  its link poses are in the model's frame
- * @param {{name: string, pose: number[]}} link
+ * @param {Pick<Model, 'links'|'joints'>} model  its link poses are in the model's frame
+ * @param {Pick<Link, 'name'|'pose'>} link
  * @returns {{bones: number[][][], sockets: number[][]}}  a bone runs from the link's origin to a
  *   joint, as the file has it; sockets are the joints that the link hangs on.
  */
 export function skeletonOf(model, link) {
+  /** @type {Vec3[][]} */
   const bones = [];
+  /** @type {Vec3[]} */
   const sockets = [];
   for (const joint of model.joints) {
     if (joint.child === link.name) {

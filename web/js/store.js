@@ -1,9 +1,80 @@
 /** What the page knows: the world as the simulator last told it, and what the user looks at. */
-import {decodeFrame, LIVE} from './frames.js';
+import {Emitter} from './emitter.js';
+import {decodeFrame, LIVE} from './pose_frames.js';
 import {compose, inverse} from './pose.js';
+import {splitScoped} from './scoped_names.js';
+/** @import {
+ *   AutosavePush, ChangePush, DownloadPush, HistoryPush, LibraryPush, Light, Link, LogPush,
+ *   Model, Operation, Push, ShutdownPush, WatchPush, World, WorldPush
+ * } from './protocol.js' */
+/** @import {Connection, Issue} from './connection.js' */
+/** @import {DialogRequest} from './actions.js' */
+/** @import {Pose7} from './pose.js' */
+/** @import {ShapeName} from './new_entities.js' */
 
 /** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'insert'} Mode */
+/** @typedef {'grid'|'origin'|'transparent'|'wireframe'|'collisions'|'joints'|'com'|'inertia'|
+ *            'contacts'|'frames'|'skeleton'} OverlayFlag */
 
+/**
+ * What follows the mouse until it is placed.
+ * @typedef {{op: (pose: Pose7) => Operation, items?: CopiedItem[], keepHeight?: boolean,
+ *            shape?: ShapeName, uri?: string} & CopiedItem} Placing
+ */
+
+/** @typedef {{kind: 'model', document: Model}|{kind: 'light', document: Light}} CopiedItem */
+
+/**
+ * What was copied: SDF, and documents for the ghost.
+ * @typedef {{text: string, items: CopiedItem[]}} Clipboard
+ */
+
+/** @typedef {{projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
+ *             following: string|null}} CameraChoices */
+
+/**
+ * What a name means.
+ * @typedef {{kind: 'model', model: Model, link?: undefined, light?: undefined}|
+ *           {kind: 'link', model: Model, link: Link, light?: undefined}|
+ *           {kind: 'light', light: Light, model?: undefined, link?: undefined}} EntityRef
+ */
+
+/**
+ * A changed entity; value null: it is gone.
+ * @typedef {{kind: 'model', name: string, value: Model|null}|
+ *           {kind: 'light', name: string, value: Light|null}|
+ *           {kind: 'world', name: '', value: Partial<World>}} EntityChange
+ */
+
+/**
+ * The store's events, with the types of their details.
+ * @typedef {object} StoreEvents
+ * @property {undefined} document  a whole new world
+ * @property {EntityChange} entity
+ * @property {undefined} order
+ * @property {Set<number>} poses  ids of the links that moved
+ * @property {undefined} selection
+ * @property {undefined} mode
+ * @property {undefined} placing
+ * @property {{flag?: OverlayFlag, model?: string, layer?: number}} overlays
+ * @property {undefined} stats
+ * @property {undefined} history
+ * @property {Issue} issue
+ * @property {undefined} connection
+ * @property {undefined} clipboard
+ * @property {undefined} camera
+ * @property {undefined} preview
+ * @property {WatchPush} watch
+ * @property {LogPush} log
+ * @property {AutosavePush} autosave
+ * @property {LibraryPush} library
+ * @property {DownloadPush} download
+ * @property {ShutdownPush} shutdown
+ * @property {DialogRequest} dialog  a window that an action asks for; the panels open it
+ * @property {{name: string|null, x: number, y: number}} contextmenu  name null: of nothing
+ */
+
+/** @type {readonly OverlayFlag[]} */
 const OVERLAY_FLAGS = Object.freeze([
   'grid', 'origin', 'transparent', 'wireframe', 'collisions', 'joints', 'com', 'inertia',
   'contacts', 'frames', 'skeleton',
@@ -11,61 +82,72 @@ const OVERLAY_FLAGS = Object.freeze([
 
 /** What is never mentioned in a world file: how much of it the user wants to see. */
 function initialOverlays() {
-  const scene = Object.fromEntries(OVERLAY_FLAGS.map((flag) => [flag, false]));
-  return {scene: {...scene, grid: true, origin: true}, models: {}, hiddenLayers: new Set()};
+  const off = /** @type {Record<OverlayFlag, boolean>} */ (
+    Object.fromEntries(OVERLAY_FLAGS.map((flag) => [flag, false])));
+  return {
+    scene: {...off, grid: true, origin: true},
+    /** @type {Record<string, Partial<Record<OverlayFlag, boolean>>>} */
+    models: {},
+    /** @type {Set<number>} */
+    hiddenLayers: new Set(),
+  };
 }
 
 /**
- * Emits: `document` (a whole new world), `entity` (detail {name, kind: model|light|world, value};
- * value null: gone), `order`, `poses` (detail: Set of link ids), `selection`, `mode`, `placing`,
- * `overlays`, `stats`, `history`, `issue` (detail: Issue), `connection`, `clipboard`, `camera`,
- * `preview`, and pushes as they come: `watch`, `log`, `autosave`, `library`, `download`,
- * `shutdown`; `dialog` and `contextmenu` are asked for by actions and view, shown by the panels.
+ * The world as the simulator last told it, and what the user looks at; tells of every change.
+ * @extends {Emitter<StoreEvents>}
  */
-export class Store extends EventTarget {
-  /** The world's document, null until the simulator has sent one. */
+export class Store extends Emitter {
+  /** The world's document, null until the simulator has sent one. @type {World|null} */
   document = null;
   revision = 0;
-  /** World pose of each link's frame by link id, as the simulator last told. */
+  /**
+   * World pose of each link's frame by link id, as the simulator last told.
+   * @type {Map<number, Float64Array>}
+   */
   poses = new Map();
   /** Names in the order they were chosen: models, lights, "model::link". @type {string[]} */
   selection = [];
   /** @type {Mode} */
   mode = 'select';
-  /** What follows the mouse until it is placed: {kind, document|light, op}, or null. */
+  /** @type {Placing|null} */
   placing = null;
   overlays = initialOverlays();
   stats = {sim_ns: 0, real_ns: 0, factor: 0, iterations: 0, paused: true};
+  /** @type {Omit<HistoryPush, 'type'>} */
   history = {undo: [], redo: [], dirty: false, file: ''};
-  /** What was copied: SDF, and documents for the ghost. @type {{text: string, items: any[]}|null} */
+  /** @type {Clipboard|null} */
   clipboard = null;
-  /** @type {import('./connection.js').Issue[]} */
+  /** @type {Issue[]} */
   issues = [];
   connected = false;
+  /** @type {AutosavePush|null} */
   autosave = null;
+  /** @type {LogPush|null} */
   log = null;
-  /** @type {{projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
-   *          following: string|null}} */
+  /** Whether the poses are those of a log. */
+  replaying = false;
+  /** @type {CameraChoices} */
   camera = {projection: 'perspective', controller: 'orbit', following: null};
-  /** A model document shown beside the world, e.g. a building being drawn. */
+  /** A model document shown beside the world, e.g. a building being drawn. @type {Model|null} */
   preview = null;
 
-  /** From a link's id to the document of its model. */
+  /** From a link's id to the document of its model. @type {Map<number, Model>} */
   #owners = new Map();
 
-  /** @param {import('./connection.js').Connection} [connection] */
+  /** @param {Connection} [connection] */
   constructor(connection) {
     super();
     if (!connection) return;
-    connection.addEventListener('open', () => this.#setConnected(true));
-    connection.addEventListener('close', () => this.#setConnected(false));
-    connection.addEventListener('message', (event) => this.receive(event.detail));
-    connection.addEventListener('frame', (event) => this.receiveFrame(event.detail));
+    connection.listen('open', () => this.#setConnected(true));
+    connection.listen('close', () => this.#setConnected(false));
+    connection.listen('message', (event) => this.receive(event.detail));
+    connection.listen('frame', (event) => this.receiveFrame(event.detail));
   }
 
   // ---- what comes from the simulator
 
-  /** Takes a pushed message. @param {any} message */
+  /** Takes a pushed message. @param {Push|{type: 'issue', issue: Issue}} message */
   receive(message) {
     switch (message.type) {
       case 'world': this.#replaceWorld(message); break;
@@ -85,8 +167,10 @@ export class Store extends EventTarget {
       case 'issue': this.addIssue(message.issue); break;
       case 'autosave': this.autosave = message; this.emit('autosave', message); break;
       case 'log': this.log = message; this.emit('log', message); break;
-      case 'watch': case 'library': case 'download': case 'shutdown':
-        this.emit(message.type, message); break;
+      case 'watch': this.emit('watch', message); break;
+      case 'library': this.emit('library', message); break;
+      case 'download': this.emit('download', message); break;
+      case 'shutdown': this.emit('shutdown', message); break;
       default: break;  // of a newer simulator
     }
   }
@@ -95,6 +179,7 @@ export class Store extends EventTarget {
   receiveFrame(buffer) {
     const frame = decodeFrame(buffer);
     if (!frame) return;
+    /** @type {Set<number>} */
     const moved = new Set();
     for (let index = 0; index < frame.count; index++) {
       const id = frame.id(index);
@@ -107,6 +192,7 @@ export class Store extends EventTarget {
     if (moved.size) this.emit('poses', moved);
   }
 
+  /** @param {WorldPush} worldPush */
   #replaceWorld({revision, document}) {
     this.revision = revision;
     this.document = document;
@@ -117,33 +203,38 @@ export class Store extends EventTarget {
     this.#dropGone();
   }
 
-  #change({revision, models = {}, lights = {}, world = {}, order}) {
+  /** @param {ChangePush} changePush */
+  #change({revision, models, lights, world, order}) {
     if (!this.document) return;
     this.revision = revision;
+    /** @type {EntityChange[]} */
     const changed = [];
-    for (const [kind, list, entities] of [
-      ['model', this.document.models, models], ['light', this.document.lights, lights]]) {
-      for (const [name, value] of Object.entries(entities)) {
-        replaceByName(list, name, value);
-        if (kind === 'model') this.#reindex(name, value);
-        changed.push({name, kind, value});
-      }
+    for (const [name, value] of Object.entries(models ?? {})) {
+      replaceByName(this.document.models, name, value);
+      this.#reindex(name, value);
+      changed.push({name, kind: 'model', value});
+    }
+    for (const [name, value] of Object.entries(lights ?? {})) {
+      replaceByName(this.document.lights, name, value);
+      changed.push({name, kind: 'light', value});
     }
     Object.assign(this.document, world);
-    if (Object.keys(world).length) changed.push({name: '', kind: 'world', value: world});
+    if (world && Object.keys(world).length) changed.push({name: '', kind: 'world', value: world});
     if (order) this.#sort(order);
     for (const detail of changed) this.emit('entity', detail);
     if (order) this.emit('order');
     this.#dropGone();
   }
 
+  /** @param {string[]} order */
   #sort(order) {
     const places = new Map(order.map((name, index) => [name, index]));
-    const place = ({name}) => places.get(name) ?? order.length;
-    this.document.models.sort((a, b) => place(a) - place(b));
-    this.document.lights.sort((a, b) => place(a) - place(b));
+    const place = (/** @type {{name: string}} */ {name}) => places.get(name) ?? order.length;
+    this.document?.models.sort((a, b) => place(a) - place(b));
+    this.document?.lights.sort((a, b) => place(a) - place(b));
   }
 
+  /** @param {string} name @param {Model|null} model */
   #reindex(name, model) {
     const before = [...this.#owners].filter(([, owner]) => owner.name === name);
     for (const [id] of before) this.#owners.delete(id);
@@ -151,6 +242,7 @@ export class Store extends EventTarget {
     for (const [id] of before) if (!this.#owners.has(id)) this.poses.delete(id);
   }
 
+  /** @param {Model} model */
   #index(model) {
     for (const link of model.links) {
       this.#owners.set(link.id, model);
@@ -165,6 +257,7 @@ export class Store extends EventTarget {
     if (left.length !== this.selection.length) this.#setSelection(left);
   }
 
+  /** @param {boolean} connected */
   #setConnected(connected) {
     this.connected = connected;
     this.emit('connection');
@@ -172,47 +265,54 @@ export class Store extends EventTarget {
 
   // ---- looking things up
 
-  /** @returns {any} the model's document, or undefined */
+  /** The model's document, or undefined. @param {string} name */
   model(name) {
     return this.document?.models.find((model) => model.name === name);
   }
 
-  /** @returns {any} the light's document, or undefined */
+  /** The light's document, or undefined. @param {string} name */
   light(name) {
     return this.document?.lights.find((light) => light.name === name);
   }
 
   /**
-   * What a name means. Links of nested models have scoped names of their own, hence the longest
-   * model name wins.
+   * What a name means.
    * @param {string} name  "model", "model::link" or "light"
-   * @returns {{kind: 'model'|'link'|'light', model?: any, link?: any, light?: any}|null}
+   * @returns {EntityRef|null}
    */
   entity(name) {
     const model = this.model(name);
     if (model) return {kind: 'model', model};
     const light = this.light(name);
     if (light) return {kind: 'light', light};
-    for (let at = name.lastIndexOf('::'); at > 0; at = name.lastIndexOf('::', at - 1)) {
-      const owner = this.model(name.slice(0, at));
-      const link = owner?.links.find((one) => one.name === name.slice(at + 2));
-      if (link) return {kind: 'link', model: owner, link};
-    }
-    return null;
+    const [owner, rest] = this.split(name);
+    const link = owner?.links.find((one) => one.name === rest);
+    return owner && link ? {kind: 'link', model: owner, link} : null;
+  }
+
+  /**
+   * The model that a scoped name begins with, and the rest of the name within it.
+   * @param {string} name  `model`, `model::link`, `model::link::visual`, …
+   * @returns {[Model|undefined, string]}
+   */
+  split(name) {
+    const [model, rest] = splitScoped(name, (one) => this.model(one) !== undefined);
+    return [this.model(model), rest];
   }
 
   /**
    * Where an entity is now, in the world: of a model, where its first link carries its frame.
+   * @param {string} name
    * @returns {number[]|null} pose7
    */
   worldPose(name) {
     const entity = this.entity(name);
     if (!entity) return null;
     if (entity.kind === 'light') return [...entity.light.pose];
-    if (entity.kind === 'link') return [...this.poses.get(entity.link.id)];
-    const first = canonicalLink(entity.model);
-    if (!first) return [...entity.model.pose];
-    return compose(this.poses.get(first.id), inverse(first.pose));
+    const link = entity.kind === 'link' ? entity.link : canonicalLink(entity.model);
+    const pose = link && this.poses.get(link.id);
+    if (!link || !pose) return [...entity.model.pose];
+    return entity.kind === 'link' ? [...pose] : compose(pose, inverse(link.pose));
   }
 
   // ---- what the user looks at
@@ -231,6 +331,7 @@ export class Store extends EventTarget {
     this.#setSelection(next);
   }
 
+  /** @param {string[]} names */
   #setSelection(names) {
     const same = names.length === this.selection.length &&
       names.every((name, index) => name === this.selection[index]);
@@ -250,14 +351,19 @@ export class Store extends EventTarget {
     this.emit('mode');
   }
 
-  /** Gives the mouse something to place, or nothing. */
+  /** Gives the mouse something to place, or nothing. @param {Placing|null} placing */
   setPlacing(placing) {
     this.placing = placing;
     this.emit('placing');
     this.setMode(placing ? 'insert' : 'select');
   }
 
-  /** The whole scene's flag, or one model's, which then overrides it; null: as the scene. */
+  /**
+   * The whole scene's flag, or one model's, which then overrides it; null: as the scene.
+   * @param {OverlayFlag} flag
+   * @param {boolean|null} on
+   * @param {string} [model]
+   */
   setOverlay(flag, on, model) {
     const flags = model ? (this.overlays.models[model] ??= {}) : this.overlays.scene;
     if (on === null) delete flags[flag];
@@ -265,50 +371,67 @@ export class Store extends EventTarget {
     this.emit('overlays', {flag, model});
   }
 
-  /** Whether a flag holds for a model. */
+  /**
+   * Whether a flag holds for a model, or for the scene.
+   * @param {OverlayFlag} flag
+   * @param {string} [model]
+   * @returns {boolean}
+   */
   overlay(flag, model) {
-    return this.overlays.models[model]?.[flag] ?? this.overlays.scene[flag];
+    return (model ? this.overlays.models[model]?.[flag] : undefined) ?? this.overlays.scene[flag];
   }
 
-  /** Shows or hides the visuals of a layer (visual/meta/layer). */
+  /**
+   * Shows or hides the visuals of a layer (visual/meta/layer).
+   * @param {number} layer
+   * @param {boolean} shown
+   */
   setLayer(layer, shown) {
     if (shown) this.overlays.hiddenLayers.delete(layer);
     else this.overlays.hiddenLayers.add(layer);
     this.emit('overlays', {layer});
   }
 
+  /** @param {Partial<CameraChoices>} fields */
   setCamera(fields) {
     Object.assign(this.camera, fields);
     this.emit('camera');
   }
 
+  /** @param {Clipboard|null} clipboard */
   setClipboard(clipboard) {
     this.clipboard = clipboard;
     this.emit('clipboard');
   }
 
+  /** @param {Model|null} document */
   setPreview(document) {
     this.preview = document;
     this.emit('preview');
   }
 
-  /** @param {import('./connection.js').Issue} issue */
+  /** @param {Issue} issue */
   addIssue(issue) {
     this.issues.push(issue);
     this.emit('issue', issue);
   }
-
-  /** Tells listeners. @param {string} type @param {any} [detail] */
-  emit(type, detail) {
-    this.dispatchEvent(new CustomEvent(type, {detail}));
-  }
 }
 
-/** The link that carries a model's frame: the one it names, else the first. */
+/**
+ * The link that carries a model's frame: the one it names, else the first; undefined without links.
+ * @param {Model} model
+ * @returns {Link|undefined}
+ */
 export function canonicalLink(model) {
   return model.links.find((link) => link.name === model.canonical_link) ?? model.links[0];
 }
 
+/**
+ * @template {{name: string}} T
+ * @param {T[]} list
+ * @param {string} name
+ * @param {T|null} value
+ */
 function replaceByName(list, name, value) {
   const index = list.findIndex((one) => one.name === name);
   if (value === null) {

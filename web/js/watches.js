@@ -8,7 +8,7 @@ export class Watches {
   /** @param {import('./connection.js').Connection} connection */
   constructor(connection) {
     this.#connection = connection;
-    connection.addEventListener('open', () => {
+    connection.listen('open', () => {
       if (this.#counts.size) this.#tell();
     });
   }

@@ -173,8 +173,8 @@ class _Core:
 def _overlaps(models: Sequence[Model], only: str) -> Iterator[Fault]:
     """Pairs of different models, one of which moves, that start inside each other."""
     cores: List[_Core] = []
-    planes: List[Tuple[str, Pose, Plane]] = []
-    movers: List[Tuple[str, Collision, Pose]] = []
+    planes: List[Tuple[str, str, Pose, Plane]] = []
+    movers: List[Tuple[str, str, Collision, Pose]] = []
     for model in models:
         for name, link, pose, static in links_of(model):
             for collision in link.collisions:
@@ -182,13 +182,13 @@ def _overlaps(models: Sequence[Model], only: str) -> Iterator[Fault]:
                     continue
                 at = compose(pose, collision.pose)
                 if isinstance(collision.geometry, Plane):
-                    planes.append((name, at, collision.geometry))
+                    planes.append((model.name, name, at, collision.geometry))
                     continue
                 core = _core(collision.geometry, at)
                 if core is not None:
                     cores.append(_Core(model.name, name, *core, static, collision))
                 if not static:
-                    movers.append((name, collision, at))
+                    movers.append((model.name, name, collision, at))
     yield from _in_planes(planes, movers, only)
     yield from _in_each_other(cores, only)
 
@@ -224,14 +224,13 @@ def _is_along_axes(pose: Pose) -> bool:
     return all(max(map(abs, axis)) > 1 - 1e-9 for axis in axes)
 
 
-def _in_planes(planes: Sequence[Tuple[str, Pose, Plane]],
-               movers: Sequence[Tuple[str, Collision, Pose]], only: str) -> Iterator[Fault]:
-    for ground, at, plane in planes:
+def _in_planes(planes: Sequence[Tuple[str, str, Pose, Plane]],
+               movers: Sequence[Tuple[str, str, Collision, Pose]], only: str) -> Iterator[Fault]:
+    for ground_model, ground, at, plane in planes:
         normal = rotate(at.orientation, scale(plane.normal, 1 / norm(plane.normal)))
         level = dot(normal, at.position)
-        for name, collision, pose in movers:
-            owners = (name.split("::")[0], ground.split("::")[0])
-            if owners[0] == owners[1] or (only and only not in owners):
+        for model, name, collision, pose in movers:
+            if model == ground_model or (only and only not in (model, ground_model)):
                 continue
             depth = level - dot(normal, pose.position) + _support(collision.geometry, pose, normal)
             if depth > DEEPEST_M:

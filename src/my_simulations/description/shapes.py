@@ -154,7 +154,9 @@ class Surface:
     """Contact properties; defaults are SDF's (collision/surface).
 
     `mu`, `mu2` Coulomb coefficients; `restitution` 0..1, used for impacts faster than
-    `bounce_threshold` m/s; `kp` N/m, `kd` N s/m, `max_vel` m/s, `min_depth` m.
+    `bounce_threshold` m/s; `kp` N/m, `kd` N s/m, `max_vel` m/s, `min_depth` m. `fdir1`, in the
+    collision frame, is the direction in which `mu` and `slip1` hold. `torsion` is the coefficient
+    of torsional friction on a patch of `patch_radius` m, or one of a sphere of `surface_radius` m.
     """
 
     mu: float = 1.0
@@ -162,6 +164,10 @@ class Surface:
     fdir1: Vec3 = (0.0, 0.0, 0.0)
     slip1: float = 0.0
     slip2: float = 0.0
+    torsion: float = 1.0
+    patch_radius: float = 0.0
+    surface_radius: float = 0.0
+    use_patch_radius: bool = True
     restitution: float = 0.0
     bounce_threshold: float = 100000.0
     kp: float = 1e12

@@ -6,8 +6,7 @@ from typing import Dict, List, Optional, Sequence
 
 from ..geometry import IDENTITY, Pose, compose, inverse
 from .model import WORLD, Joint, Link, Model
-
-_SCOPE = "::"
+from .scoped_names import SCOPE
 
 
 def unflattened(flat: Model) -> Model:
@@ -18,7 +17,7 @@ def unflattened(flat: Model) -> Model:
             the poses, plugins and kept XML of the nested ones. Without one they lie at the origin
             of the outer model.
     """
-    if not any(_SCOPE in link.name for link in flat.links):
+    if not any(SCOPE in link.name for link in flat.links):
         return flat
     whole = _gathered(flat, flat.links, flat.joints, flat.guide or Model(""), IDENTITY)
     return replace(whole, guide=None)
@@ -34,7 +33,7 @@ def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guid
     own: List[Link] = []
     inner: Dict[str, List[Link]] = {}
     for link in links:
-        head, scope, rest = link.name.partition(_SCOPE)
+        head, scope, rest = link.name.partition(SCOPE)
         if scope:
             inner.setdefault(head, []).append(replace(link, name=rest))
         else:
@@ -44,7 +43,7 @@ def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guid
     theirs: Dict[str, List[Joint]] = {}
     ours: List[Joint] = []
     for joint in joints:
-        head = joint.name.partition(_SCOPE)[0]
+        head = joint.name.partition(SCOPE)[0]
         if head in inner and _lies_in(joint, head):
             theirs.setdefault(head, []).append(_seen_from_inside(joint, head))
         else:
@@ -67,8 +66,8 @@ def _pose(link: Link, known: Optional[Link], above: Pose) -> Pose:
 
 
 def _lies_in(joint: Joint, scope: str) -> bool:
-    return all(name.startswith(scope + _SCOPE) or name == WORLD
-               for name in (joint.parent, joint.child)) and _SCOPE in joint.name
+    return all(name.startswith(scope + SCOPE) or name == WORLD
+               for name in (joint.parent, joint.child)) and SCOPE in joint.name
 
 
 def _seen_from_inside(joint: Joint, scope: str) -> Joint:

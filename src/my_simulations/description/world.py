@@ -32,12 +32,18 @@ class Light:
 
 @dataclass
 class OdePhysics:
-    """Settings of Gazebo's ODE engine: stored and read back; `iters` also drives ours."""
+    """Settings of Gazebo's ODE engine: stored and read back; two of them also drive ours.
+
+    Attributes:
+        iters: the most iterations of a step.
+        friction_model: "pyramid_model" or "cone_model" (SDF, ode/solver); "" for the default.
+    """
 
     auto_disable_bodies: bool = False
     precon_iters: int = 0
     iters: int = 50
     sor: float = 1.3
+    friction_model: str = ""
     rms_error_tol: float = 0.0
     cfm: float = 0.0
     erp: float = 0.2

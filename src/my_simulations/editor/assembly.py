@@ -139,4 +139,4 @@ class Assembly:
             return self._files.text(), name
         if name.endswith(".log"):
             return self._logs.data(name[:-len(".log")]), name
-        raise EditRefusedError("not-found", f"there is nothing to download called {name!r}")
+        raise EditRefusedError("not-found", f"unknown download {name!r}")

@@ -43,12 +43,16 @@ class ModelState:
 
 @dataclass(frozen=True)
 class PhysicsSettings:
-    """`step_size` s; `gravity` m/s^2; `rate` steps a wall second, 0 = as fast as possible."""
+    """`step_size` s; `gravity` m/s^2; `rate` steps a wall second, 0 = as fast as possible.
+
+    `cone`: the friction of bodies with joints is a cone, not a pyramid along the world's axes.
+    """
 
     step_size: float = 0.001
     gravity: Vec3 = (0.0, 0.0, -9.8)
     rate: float = 1000.0
     iterations: int = 50
+    cone: bool = False
 
 
 @dataclass(frozen=True)
@@ -265,6 +269,7 @@ class Contact:
         normal: unit vector from b to a, world axes.
         depth: m, how far they overlap; negative while apart.
         force: N, along the normal, on a.
+        friction: N, across the normal, on a, world axes.
     """
 
     row_a: int
@@ -273,6 +278,7 @@ class Contact:
     normal: Vec3
     depth: float
     force: float
+    friction: Vec3 = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)

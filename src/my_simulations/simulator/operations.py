@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple
 
 from ..description.model import Joint, Model
+from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
 from ..description.world import Light, Physics
 from ..engine.commands import ModelState
@@ -282,7 +283,7 @@ class Push:
 
     def apply(self, world: Simulator) -> Operation:
         """Push; undone, the model is where it was, as fast as it was."""
-        name, _, plain = self.link.partition("::")
+        name, plain = split_scoped(self.link, world.models.has)
         model = world.models.get(name)
         com = next((link.inertial.pose.position for link in model.links if link.name == plain),
                    None)

@@ -47,4 +47,4 @@ class WorldPhysics:
         used = settings or self._settings
         return SetPhysics(PhysicsSettings(
             used.max_step_size, gravity or self._gravity, max(0.0, used.real_time_update_rate),
-            max(1, used.ode.iters)))
+            max(1, used.ode.iters), used.ode.friction_model == "cone_model"))

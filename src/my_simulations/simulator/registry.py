@@ -17,6 +17,7 @@ from typing import (
 )
 
 from ..description.model import Joint, Model
+from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
 from ..description.world import Light
 from ..engine.commands import LinkState, ModelState
@@ -280,10 +281,10 @@ class Registry:
         raise UnknownEntityError(f"there is no joint '{name}'" + self._nearest_joint(name))
 
     def _joints_named(self, name: str) -> Iterator[Tuple[Entity, Joint, int]]:
-        for entity in self._entities.values():
-            plain = name
-            if name.startswith(entity.model.name + "::"):
-                plain = name[len(entity.model.name) + 2:]
+        """The joint of a scoped name first, then those of that plain name, in order of models."""
+        model, rest = split_scoped(name, self._entities.__contains__)
+        owner = [(self._entities[model], rest)] if model else []
+        for entity, plain in [*owner, *((entity, name) for entity in self._entities.values())]:
             for joint in entity.model.joints:
                 for number in range(max(1, AXES.get(joint.type, 0))):
                     if row_name(joint.name, number) == plain:
@@ -314,13 +315,11 @@ class Registry:
         raise UnknownFrameError(f"there is no model, link or frame '{name}'" + self._nearest(name))
 
     def _scoped_link(self, name: str) -> Optional[Tuple[Entity, int]]:
-        at = name.find("::")
-        while at > 0:
-            entity = self._entities.get(name[:at])
-            if entity is not None and name[at + 2:] in entity.link_names:
-                return entity, entity.link_names.index(name[at + 2:])
-            at = name.find("::", at + 2)
-        return None
+        model, link = split_scoped(name, self._entities.__contains__)
+        if not model or link not in self._entities[model].link_names:
+            return None
+        entity = self._entities[model]
+        return entity, entity.link_names.index(link)
 
     def _plain_link(self, name: str) -> Optional[Tuple[Entity, int]]:
         found = self._plain_links.get(name)

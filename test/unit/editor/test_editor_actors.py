@@ -20,7 +20,7 @@ def documents(tmp_path):
 
 def told(documents, actor):
     found = documents.actor(actor)
-    Protocol.from_folder(Pages.own_folder())._check(found, "Actor", "actor", 0)
+    Protocol.from_folder(Pages.own_folder()).types.check(found, "Actor", "actor")
     return found
 
 

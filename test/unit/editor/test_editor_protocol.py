@@ -7,14 +7,28 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from building_plans import two_rooms
 from editor_case import Case
 
+from my_simulations.building import building_plan as plan
+from my_simulations.building.building_folder import About
+from my_simulations.building.plan_json import plan_to_json
 from my_simulations.description import model, shapes, world
 from my_simulations.editor.scene.plain_json import HIDDEN
 from my_simulations.editor.scene.scene_json import NAMES, Documents
 from my_simulations.editor.transport.http_pages import Pages
-from my_simulations.editor.transport.pose_messages import LIVE, LOG, Poses, SentPoses, record_type
-from my_simulations.editor.transport.protocol import Protocol, ProtocolError
+from my_simulations.editor.transport.pose_messages import (
+    HEAD,
+    HEAD_BYTES,
+    LIVE,
+    LOG,
+    RECORD,
+    RECORD_BYTES,
+    Poses,
+    SentPoses,
+    record_type,
+)
+from my_simulations.editor.transport.protocol import OPERATION, Protocol, ProtocolError
 from my_simulations.resources.resolver import Resolver
 
 PATH = Pages.own_folder() + "/protocol.json"
@@ -42,14 +56,15 @@ def expressions(node):
 
 def test_every_type_that_is_named_exists(data):
     plain = {"string", "number", "integer", "boolean", "object", "any"}
-    known = plain | set(data["types"])
+    known = plain | set(data["types"]) | {OPERATION}
     for part in ("types", "operations", "requests", "notices", "pushes"):
         for expression in expressions(data[part]):
             if "'" in expression:
                 assert re.fullmatch(r"'[\w-]+'(\|'[\w-]+')*\??", expression), expression
                 continue
-            names = re.findall(r"[A-Za-z]\w*", expression)
-            assert len(names) == 1 and names[0] in known, expression
+            for one in expression.split("|"):
+                names = re.findall(r"[A-Za-z]\w*", re.sub(r"^some ", "", one))
+                assert len(names) == 1 and names[0] in known, expression
 
 
 def test_no_declared_type_is_idle(data):
@@ -69,25 +84,82 @@ def test_every_request_of_the_protocol_is_handled_and_no_other(protocol, tmp_pat
 
 @pytest.mark.parametrize("kind, described", [
     ("Light", world.Light), ("Inertial", model.Inertial), ("Surface", shapes.Surface),
-    ("Axis", model.JointAxis), ("Joint", model.Joint), ("Plugin", model.PluginSpec)])
+    ("Axis", model.JointAxis), ("Mimic", model.Mimic), ("Joint", model.Joint),
+    ("Plugin", model.PluginSpec), ("Physics", world.Physics), ("OdePhysics", world.OdePhysics),
+    ("Scene", world.Scene), ("Sky", world.Sky), ("Fog", world.Fog), ("Wind", world.Wind),
+    ("GuiCamera", world.GuiCamera), ("Atmosphere", world.Atmosphere),
+    ("SphericalCoordinates", world.SphericalCoordinates), ("Road", world.Road),
+    ("Waypoint", world.Waypoint), ("Trajectory", world.Trajectory), ("Plan", plan.Plan),
+    ("Level", plan.Level), ("Wall", plan.Wall), ("Opening", plan.Opening),
+    ("Stairs", plan.Stairs), ("Floor", plan.Floor), ("FloorImage", plan.FloorImage),
+    ("Roof", plan.Roof), ("BuildingAbout", About)])
 def test_the_protocol_names_all_fields_of_the_description(data, kind, described):
-    assert set(data["types"][kind]) == {field.name for field in fields(described)
-                                        if field.name not in HIDDEN}
+    more = {"format"} if kind == "Plan" else set()
+    assert set(data["types"][kind]) == more | {field.name for field in fields(described)
+                                               if field.name not in HIDDEN}
+
+
+@pytest.mark.parametrize("kind, described, more", [
+    ("Model", model.Model, {"enable_wind", "uri", "scalable"}),
+    ("Link", model.Link, {"id"}), ("Visual", shapes.Visual, {"layer"}),
+    ("Collision", shapes.Collision, set()), ("Actor", world.Actor, {"geometry"}),
+    ("Animation", world.Animation, {"geometry"}), ("World", world.World, set())])
+def test_the_protocol_has_no_field_that_the_description_lacks(data, kind, described, more):
+    assert set(data["types"][kind]) - more <= {field.name for field in fields(described)}
+
+
+def test_the_world_of_the_description_follows_the_protocol(protocol):
+    fog = world.Scene(sky=world.Sky(), fog=world.Fog())
+    full = world.World(scene=fog, gui_camera=world.GuiCamera(), roads=[world.Road("road")],
+                       spherical_coordinates=world.SphericalCoordinates(),
+                       actors=[world.Actor("walker", animations=[world.Animation("walk")])])
+    for one in (world.World(), full):
+        document = Documents(Resolver()).world(one, one.physics, one.gravity, [])
+        protocol.types.check(document, "World", "world")
+
+
+def test_a_plan_follows_the_protocol(protocol):
+    two_levels = two_rooms()
+    two_levels.roof = plan.Roof()
+    protocol.types.check(plan_to_json(two_levels), "Plan", "plan")
+
+
+def test_what_a_handler_checks_by_itself_only_has_to_be_an_object(protocol):
+    message = {"type": "building_sdf", "id": 1, "plan": {"format": 1}}
+    protocol.check_message(message)
+    with pytest.raises(ProtocolError, match="building_sdf.plan"):
+        protocol.check_message({**message, "plan": []})
+    with pytest.raises(ProtocolError, match="plan: missing field 'name'"):
+        protocol.types.check({"format": 1}, "Plan", "plan")
+
+
+@pytest.mark.parametrize("op, told", [
+    ({}, "string `kind`"), ({"kind": "fly"}, "unknown operation 'fly'"),
+    ({"kind": "delete"}, "missing field 'names'"),
+    ({"kind": "delete", "names": [1]}, r"delete.names\[0\]: expected a string"),
+    ({"kind": "insert_light", "light": {"glow": 1}}, "unknown field 'glow'")])
+def test_a_wrong_operation_is_refused_with_its_place(protocol, op, told):
+    with pytest.raises(ProtocolError, match=told):
+        protocol.check_operation(op)
 
 
 def test_every_shape_of_the_description_can_be_told(data, protocol):
-    literals = data["types"]["Geometry"]["type"].replace("'", "").split("|")
-    assert set(literals) == {*NAMES.values(), "empty"}
+    literals = [data["types"][name]["type"].strip("'")
+                for name in data["types"]["Geometry"].split("|")]
+    assert sorted(literals) == sorted([*NAMES.values(), "empty"])
     documents = Documents(Resolver())
     for shape in (*NAMES, shapes.Empty):
-        protocol._check(documents.geometry(shape()), "Geometry", "geometry", 0)
+        protocol.types.check(documents.geometry(shape()), "Geometry", "geometry")
 
 
 def test_the_frames_layout_is_that_of_the_file(data):
     frames = data["frames"]
     sizes = {"u32": 4, "u64": 8, "f64": 8, "f32": 4}
-    assert sum(sizes[kind] for _, kind in frames["head"]) == frames["head_bytes"]
+    assert sum(sizes[kind] for _, kind in frames["head"]) == frames["head_bytes"] == HEAD_BYTES
     assert sum(sizes[kind] for _, kind in frames["record"]) == frames["record_bytes"]
+    assert [list(field) for field in HEAD] == frames["head"]
+    assert [list(field) for field in RECORD] == frames["record"]
+    assert RECORD_BYTES == frames["record_bytes"]
     assert record_type().itemsize == frames["record_bytes"]
     assert frames["kinds"] == {"poses": LIVE, "log": LOG}
 
@@ -97,18 +169,22 @@ def test_the_frames_layout_is_that_of_the_file(data):
     (True, "integer"), (1, "boolean"), ([], "object"), ([1, 2], "vec3"), ([1, 2, "x"], "vec3"),
     ("x", "vec3"), ({"a": [1]}, "{vec3}"), ([], "{vec3}"), ("x", "'a'|'b'"), (None, "string"),
     ({"url": None, "pattern": None, "scale": [1, 1], "more": 1}, "Texture"),
-    ({"url": None, "pattern": None}, "Texture"), ([[1]], "string[]")])
+    ({"url": None, "pattern": None}, "Texture"), ([[1]], "string[]"),
+    ({"scale": [1, 1], "more": 1}, "some Texture"), ({"url": 1}, "some Texture"),
+    ({"type": "box", "size": [1, 1]}, "Geometry"), ({"type": "egg"}, "Geometry"),
+    ({"type": "sphere", "size": [1, 1, 1]}, "Geometry")])
 def test_what_does_not_fit_a_type_is_refused_with_its_place(protocol, value, expected):
     with pytest.raises(ProtocolError, match="place"):
-        protocol._check(value, expected, "place", 0)
+        protocol.types.check(value, expected, "place")
 
 
 @pytest.mark.parametrize("value, expected", [
     (1, "number"), (1.5, "number"), (None, "string?"), ("a", "'a'|'b'"), ([1, 2, 3], "vec3"),
     ({"a": [0] * 7}, "{pose}"), ([], "string[]"), ({}, "object"), ([{}], "any"),
-    ({"url": None, "pattern": "wood", "scale": [1, 1]}, "Texture?")])
+    ({"url": None, "pattern": "wood", "scale": [1, 1]}, "Texture?"), ({}, "some Texture"),
+    ({"type": "box", "size": [1, 1, 1]}, "Geometry"), ({"type": "empty"}, "Geometry")])
 def test_what_fits_a_type_passes(protocol, value, expected):
-    protocol._check(value, expected, "place", 0)
+    protocol.types.check(value, expected, "place")
 
 
 def test_a_frame_holds_what_moved_since_the_last_one():

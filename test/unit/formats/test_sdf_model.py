@@ -160,15 +160,17 @@ def test_the_surface_is_read():
         "<geometry><box/></geometry><max_contacts>4</max_contacts><laser_retro>7</laser_retro>"
         "<surface><bounce><restitution_coefficient>0.5</restitution_coefficient>"
         "<threshold>0.1</threshold></bounce><friction><ode><mu>0.3</mu><mu2>0.4</mu2>"
-        "<fdir1>1 0 0</fdir1><slip1>0.1</slip1><slip2>0.2</slip2></ode></friction>"
+        "<fdir1>1 0 0</fdir1><slip1>0.1</slip1><slip2>0.2</slip2></ode>"
+        "<torsional><coefficient>0.7</coefficient><patch_radius>0.05</patch_radius></torsional>"
+        "</friction>"
         "<contact><collide_without_contact>true</collide_without_contact>"
         "<collide_bitmask>3</collide_bitmask><ode><kp>1e6</kp><kd>2</kd><max_vel>3</max_vel>"
         "<min_depth>0.001</min_depth></ode></contact></surface>")
     assert issues == [] and collision.extra == []
     assert (collision.max_contacts, collision.laser_retro) == (4, 7.0)
     assert collision.surface == Surface(
-        mu=0.3, mu2=0.4, fdir1=(1, 0, 0), slip1=0.1, slip2=0.2, restitution=0.5,
-        bounce_threshold=0.1, kp=1e6, kd=2, max_vel=3, min_depth=0.001,
+        mu=0.3, mu2=0.4, fdir1=(1, 0, 0), slip1=0.1, slip2=0.2, torsion=0.7, patch_radius=0.05,
+        restitution=0.5, bounce_threshold=0.1, kp=1e6, kd=2, max_vel=3, min_depth=0.001,
         collide_without_contact=True, collide_bitmask=3)
 
 
@@ -182,10 +184,10 @@ def test_an_empty_friction_and_default_texts_leave_the_defaults():
 
 def test_what_is_known_but_not_simulated_is_kept_with_its_place_and_without_a_warning():
     collision, issues = collision_of(
-        "<geometry><box/></geometry><surface><friction><torsional><coefficient>2</coefficient>"
+        "<geometry><box/></geometry><surface><friction><torsional><ode><slip>2</slip></ode>"
         "</torsional></friction></surface>")
     assert issues == []
-    assert collision.extra == ["<surface><friction><torsional><coefficient>2</coefficient>"
+    assert collision.extra == ["<surface><friction><torsional><ode><slip>2</slip></ode>"
                                "</torsional></friction></surface>"]
 
 

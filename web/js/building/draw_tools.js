@@ -1,41 +1,51 @@
 /** Tools that put new things into the plan. */
-import {openingTrouble} from './check.js';
-import {direction, distance, inPolygon, isSimple, polar, same, tidyPoint} from './geometry.js';
-import {wallNear} from './hit.js';
+import {openingTrouble} from './plan_check.js';
+import {direction, distance, inPolygon, isSimple, polar, same, tidyPoint} from './plane_geometry.js';
+import {wallNear} from './hit_test.js';
 import {
   DEFAULTS, GROUND_FLOOR_THICKNESS, add, attached, detached, outerLength, withLevel,
 } from './plan.js';
 import {roomsOf} from './rooms.js';
-import {snapEnd, snapPolar, snapStart} from './snap.js';
+import {snapEnd, snapPolar, snapStart} from './wall_snap.js';
 import {Tool} from './tool.js';
+/** @import {FloorImage, Plan} from '../protocol.js' */
+/** @import {Mouse} from './tool.js' */
+/** @import {OpeningKind} from './plan.js' */
+/** @import {Point} from './plane_geometry.js' */
+/** @import {Session} from './drawing_session.js' */
 
 export class WallTool extends Tool {
   name = 'wall';
-  hint = 'Click where the wall starts. Shift: no snapping.';
+  hint = 'Click to start a wall. Hold Shift to disable snapping.';
+  /** Direction of the mouse from the start, rad. */
+  #aim = 0;
+  /** @type {Point|null} */
   #from = null;
 
+  /** @param {Mouse} mouse */
   press(mouse) {
     const {session} = this;
     if (!this.#from) {
       this.#from = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
       this.#say();
     } else {
-      this.#put(this.#end(mouse).point);
+      this.#put(this.#from, this.#end(this.#from, mouse).point);
     }
     this.move(mouse);
   }
 
+  /** @param {Mouse} mouse */
   move(mouse) {
     const {session} = this;
     if (!this.#from) {
       const point = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
       session.draft = {mark: point};
     } else {
-      const {point, on} = this.#end(mouse);
+      const {point, on} = this.#end(this.#from, mouse);
       const {thickness} = DEFAULTS.walls;
       session.draft = {segment: {start: this.#from, end: point, thickness, on},
         mark: on === 'end' || on === 'wall' ? point : null};
-      this.aim = direction(this.#from, point);
+      this.#aim = direction(this.#from, point);
     }
     session.changed();
   }
@@ -43,11 +53,11 @@ export class WallTool extends Tool {
   /** The second click of a double click has already put the wall. */
   double() { this.cancel(); }
 
-  /** A typed outer length, in the direction of the mouse. */
+  /** A typed outer length, in the direction of the mouse. @param {number|null} length */
   typed(length) {
-    if (!this.#from || !(length > 0)) return;
+    if (!this.#from || !length || length <= 0) return;
     const inner = Math.max(length - DEFAULTS.walls.thickness, 0.01);
-    this.#put(tidyPoint(polar(this.#from, this.aim ?? 0, inner)));
+    this.#put(this.#from, tidyPoint(polar(this.#from, this.#aim, inner)));
   }
 
   cancel() {
@@ -58,27 +68,29 @@ export class WallTool extends Tool {
     return busy;
   }
 
-  #end(mouse) {
-    return snapEnd(this.#from, mouse.point, {
+  /** @param {Point} from @param {Mouse} mouse */
+  #end(from, mouse) {
+    return snapEnd(from, mouse.point, {
       walls: this.session.level.walls, thickness: DEFAULTS.walls.thickness, free: mouse.shift});
   }
 
-  #put(end) {
+  /** @param {Point} from @param {Point} end */
+  #put(from, end) {
     const {session} = this;
-    if (distance(this.#from, end) < 0.01) {
-      session.say('A wall needs a length: move on before the next click.');
+    if (distance(from, end) < 0.01) {
+      session.say('A wall must be at least 0.01 m long.');
       return;
     }
-    const {plan} = add(session.history.plan, session.at, 'walls', {start: this.#from, end});
-    session.commit(plan, 'wall');
+    const {plan} = add(session.history.plan, session.at, 'walls', {start: from, end});
+    session.commit(plan, 'add wall');
     this.#from = end;
     session.draft = {};
     this.#say();
   }
 
   #say() {
-    this.session.say('Click where it ends; the next wall starts there. Type a length and Enter. '
-      + 'Double click, right click or Esc ends the chain.');
+    this.session.say('Click to end the wall and start the next one, or type a length and press '
+      + 'Enter. Double-click, right-click or press Esc to finish.');
   }
 }
 
@@ -86,29 +98,33 @@ export class WallTool extends Tool {
 export class OpeningTool extends Tool {
   #kind;
 
+  /** @param {Session} session @param {OpeningKind} kind */
   constructor(session, kind) {
     super(session);
     this.#kind = kind;
     this.name = kind === 'windows' ? 'window' : 'door';
-    this.hint = `Move over a wall and click to put the ${this.name} there.`;
+    this.hint = `Click on a wall to place the ${this.name}.`;
   }
 
+  /** @param {Mouse} mouse */
   press(mouse) {
     const {opening, fault} = this.#at(mouse.point);
     if (fault) {
-      this.session.say(`The ${this.name} ${fault}.`);
+      this.session.say(`Cannot place the ${this.name} here: it ${fault}.`);
       return;
     }
     const {id: _, ...fields} = opening;
-    this.insert(this.#kind, fields, this.name);
+    this.insert(this.#kind, fields, `add ${this.name}`);
   }
 
+  /** @param {Mouse} mouse */
   move(mouse) {
     const {opening, fault} = this.#at(mouse.point);
     this.session.draft = {opening: {kind: this.#kind, item: opening, fault}};
     this.session.changed();
   }
 
+  /** @param {Point} point */
   #at(point) {
     const {level} = this.session;
     const fresh = {id: -1, ...DEFAULTS[this.#kind]};
@@ -120,15 +136,18 @@ export class OpeningTool extends Tool {
 
 export class StairsTool extends Tool {
   name = 'stairs';
-  hint = 'Click to put the stairs; turn and resize them by their handles.';
+  hint = 'Click to place the stairs; drag the handles to rotate and resize them.';
 
-  press(mouse) { this.insert('stairs', this.#at(mouse), 'stairs'); }
+  /** @param {Mouse} mouse */
+  press(mouse) { this.insert('stairs', this.#at(mouse), 'add stairs'); }
 
+  /** @param {Mouse} mouse */
   move(mouse) {
     this.session.draft = {stairs: {...DEFAULTS.stairs, ...this.#at(mouse)}};
     this.session.changed();
   }
 
+  /** @param {Mouse} mouse */
   #at(mouse) {
     return {position: tidyPoint(mouse.point), height: this.session.level.height};
   }
@@ -137,13 +156,15 @@ export class StairsTool extends Tool {
 /** Floors: a click in a closed room fills it; clicks elsewhere draw corner after corner. */
 export class FloorTool extends Tool {
   name = 'floor';
-  hint = 'Click in a room to fill it, or click the corners of a floor. Alt: corners in a room, too.';
+  hint = 'Click in a room to fill it, or click corner by corner. Hold Alt to place corners in a room.';
+  /** @type {Point[]} */
   #points = [];
 
+  /** @param {Mouse} mouse */
   press(mouse) {
     const room = !this.#points.length && !mouse.alt && this.#room(mouse.point);
     if (room) {
-      this.#put(room.outline, 'floor of a room');
+      this.#put(room.outline, 'add floor');
       return;
     }
     const point = this.#snapped(mouse);
@@ -153,10 +174,11 @@ export class FloorTool extends Tool {
     }
     if (this.#points.length && same(point, this.#points[this.#points.length - 1])) return;
     this.#points.push(point);
-    this.session.say('Click the next corner; the first one, Enter or a double click closes the floor.');
+    this.session.say('Click the next corner; click the first one, press Enter or double-click to close the floor.');
     this.move(mouse);
   }
 
+  /** @param {Mouse} mouse */
   move(mouse) {
     const {session} = this;
     const room = !this.#points.length && !mouse.alt && this.#room(mouse.point);
@@ -169,6 +191,7 @@ export class FloorTool extends Tool {
     if (this.#points.length >= 3) this.#close();
   }
 
+  /** @param {number|null} length */
   typed(length) {
     if (length === null) this.double();
   }
@@ -181,10 +204,12 @@ export class FloorTool extends Tool {
     return busy;
   }
 
+  /** @param {Point} point */
   #room(point) {
     return roomsOf(this.session.level.walls).find((room) => inPolygon(point, room.outline));
   }
 
+  /** @param {Mouse} mouse */
   #snapped(mouse) {
     if (mouse.shift) return tidyPoint(mouse.point);
     const first = this.#points[0];
@@ -198,41 +223,48 @@ export class FloorTool extends Tool {
   #close() {
     const points = this.#points;
     if (!isSimple(points)) {
-      this.session.say('The edges of the floor cross; Esc starts over.');
+      this.session.say('The floor outline intersects itself; press Esc to start over.');
       return;
     }
     this.#points = [];
-    this.#put(points, 'floor');
+    this.#put(points, 'add floor');
   }
 
+  /** @param {Point[]} outline @param {string} label */
   #put(outline, label) {
     const thickness = this.session.at === 0 ? GROUND_FLOOR_THICKNESS : DEFAULTS.floors.thickness;
     this.insert('floors', {outline, thickness}, label);
   }
 }
 
-/** A line over a known length of the floor plan; `done(metres)` gets what it measures at present. */
+/**
+ * A line over a known length of the floor plan; `done(metres)` gets what it measures at present.
+ */
 export class MeasureTool extends Tool {
   name = 'measure';
-  hint = 'Draw a line over a length that you know: press at one end, let go at the other.';
+  hint = 'Drag a line along a known length.';
+  /** @type {Point|null} */
   #from = null;
 
+  /** @param {Session} session @param {(metres: number) => void} done */
   constructor(session, done) {
     super(session);
     this.done = done;
   }
 
+  /** @param {Mouse} mouse */
   press(mouse) {
     if (this.#from) this.#finish(mouse);
     else this.#from = mouse.point;
   }
 
+  /** @param {Mouse} mouse */
   move(mouse) {
     this.session.draft = this.#from ? {measure: [this.#from, mouse.point]} : {};
     this.session.changed();
   }
 
-  /** A drag ends it; after a click the second click does. */
+  /** A drag ends it; after a click the second click does. @param {Mouse} mouse */
   release(mouse) {
     if (this.#from && distance(this.#from, mouse.point) > 2 * mouse.tolerance) this.#finish(mouse);
   }
@@ -244,20 +276,34 @@ export class MeasureTool extends Tool {
     return busy;
   }
 
+  /** @param {Mouse} mouse */
   #finish(mouse) {
-    const length = distance(this.#from, mouse.point);
+    const length = this.#from ? distance(this.#from, mouse.point) : 0;
     this.#from = null;
     if (length > 1e-3) this.done(length);
   }
 }
 
-/** The resolution after a line of `drawn` metres turned out to be `real` metres long. */
+/**
+ * The resolution after a line of `drawn` metres turned out to be `real` metres long.
+ * @param {FloorImage} image
+ * @param {number} drawn
+ * @param {number} real
+ */
 export const rescaled = (image, drawn, real) =>
   ({...image, resolution: image.resolution * drawn / real});
 
+/**
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {FloorImage|null} image
+ */
 export const withImage = (plan, at, image) => withLevel(plan, at, {image});
 
-/** Labels of a wall being drawn: outer length, and its angle in degrees. */
+/**
+ * Labels of a wall being drawn: outer length, and its angle in degrees.
+ * @param {{start: Point, end: Point, thickness: number}} options
+ */
 export function segmentWords({start, end, thickness}) {
   const degrees = Math.round((direction(start, end) * 180 / Math.PI + 360) % 360 * 10) / 10;
   return `${outerLength({start, end, thickness}).toFixed(2)} m  ${degrees % 360}°`;

@@ -1,19 +1,27 @@
-/** Inspectors as windows: Cancel, Apply and OK over the fields of `forms.js`. */
+/** Inspectors as windows: Cancel, Apply and OK over the fields of `inspector_fields.js`. */
 import {Dialog, labelled} from '../panels/dialog.js';
 import {h} from '../panels/dom.js';
 import {
   ROOF_FIELDS, applied, fieldFault, fieldsOf, levelApplied, levelFields, levelValues, roofApplied,
   roofValues, valuesOf,
-} from './forms.js';
+} from './inspector_fields.js';
 import {itemOf, linkName} from './plan.js';
-import {NAMES} from './session.js';
+import {NAMES} from './drawing_session.js';
+/** @import {InspectorField, Values} from './inspector_fields.js' */
+/** @import {Ref} from './plan.js' */
+/** @import {Session} from './drawing_session.js' */
 
 export const SWATCHES = ['#ffffff', '#c2a9a0', '#ebce9d', '#fe7905', '#ffc34e', '#6fcbac'];
 export const TEXTURES = [['Wood', 'Gazebo/Wood'], ['Tiles', 'Gazebo/CeilingTiled'], ['Bricks', 'Gazebo/Bricks']];
 
-const shown = (value) => typeof value === 'number' ? String(Math.round(value * 1000) / 1000) : value ?? '';
+/** @param {unknown} value */
+const shown = (value) => typeof value === 'number' ? String(Math.round(value * 1000) / 1000) : String(value ?? '');
 
-/** The inspector of an item. */
+/**
+ * The inspector of an item.
+ * @param {Session} session
+ * @param {Ref} ref
+ */
 export function inspectItem(session, ref) {
   const {at} = session;
   const item = itemOf(session.plan, at, ref);
@@ -21,7 +29,7 @@ export function inspectItem(session, ref) {
   const titles = {walls: 'Wall', windows: 'Window', doors: 'Door', stairs: 'Stairs', floors: 'Floor'};
   return inspect({
     title: `${titles[ref.kind]} Inspector: ${linkName(ref)}`, fields: fieldsOf(ref.kind, item),
-    values: () => valuesOf(ref.kind, itemOf(session.plan, at, ref) ?? item, session.plan.levels[at]),
+    values: () => valuesOf(itemOf(session.plan, at, ref) ?? item, session.plan.levels[at]),
     apply(values, before) {
       const {plan, fault} = applied(session.history.plan, at, ref, values, before);
       if (fault) return fault;
@@ -31,7 +39,7 @@ export function inspectItem(session, ref) {
   });
 }
 
-/** The inspector of the level being drawn. */
+/** The inspector of the level being drawn. @param {Session} session */
 export function inspectLevel(session) {
   const {at} = session;
   return inspect({
@@ -44,40 +52,44 @@ export function inspectLevel(session) {
   });
 }
 
+/** @param {Session} session */
 export function inspectRoof(session) {
   return inspect({
     title: 'Roof', fields: ROOF_FIELDS, values: () => roofValues(session.plan),
     apply(values) {
-      session.commit(roofApplied(session.history.plan, values), 'roof');
+      session.commit(roofApplied(session.history.plan, values), 'edit roof');
       return '';
     },
   });
 }
 
+/** What a field shows. @param {Values} values @param {InspectorField} field @returns {unknown} */
+const read = (values, field) => values[/** @type {keyof Values} */ (field.name)];
+
 /**
- * @param {{title: string, fields: import('./forms.js').Field[], values: () => any,
- *          apply: (values: any, before: any) => string}} form  `apply` says what is wrong, or ''
+ * @param {{title: string, fields: InspectorField[], values: () => Partial<Values>,
+ *          apply: (values: Values, before: Values) => string}} form  `apply` says what is wrong, or ''
  */
 function inspect({title, fields, values, apply}) {
-  let before = values();
+  let before = /** @type {Values} */ (values());
   const inputs = fields.map((field) => ({field, ...INPUTS[field.type](field)}));
-  const show = () => inputs.forEach(({field, put}) => put(before[field.name]));
+  const show = () => inputs.forEach(({field, put}) => put(read(before, field)));
   show();
   const take = () => {
     const now = {...before};
     for (const {field, get} of inputs) {
-      const value = get(before[field.name]);
+      const value = get(read(before, field));
       const fault = fieldFault(field, value);
       if (fault) {
         dialog.say(fault);
         return false;
       }
-      now[field.name] = value;
+      Object.assign(now, {[field.name]: value});
     }
     const fault = apply(now, before);
     dialog.say(fault);
     if (fault) return false;
-    before = values();
+    before = /** @type {Values} */ (values());
     show();
     return true;
   };
@@ -90,42 +102,61 @@ function inspect({title, fields, values, apply}) {
   return dialog.open();
 }
 
-/** By type of a field: its element, and how a value is put in and taken out. */
+/**
+ * A field's element, and how a value is put in and taken out.
+ * @typedef {{element: HTMLElement, put: (value: unknown) => void, get: (before: unknown) => unknown}} FieldInput
+ */
+
+/**
+ * By type of a field.
+ * @type {Record<InspectorField['type'], (field: InspectorField) => FieldInput>}
+ */
 const INPUTS = {
+  /** @param {InspectorField} field */
   number: (field) => numeric(field),
+  /** @param {InspectorField} field */
   integer: (field) => numeric(field),
+  /** @param {InspectorField} field */
   text(field) {
     const element = h('input', {type: 'text', 'aria-label': field.label, maxlength: 100});
-    return {element, put: (value) => { element.value = value; }, get: () => element.value};
+    return {element, put: (value) => { element.value = String(value ?? ''); }, get: () => element.value};
   },
+  /** @param {InspectorField} field */
   choice(field) {
     const element = h('select', {'aria-label': field.label},
-      ...field.choices.map(([value, text]) => h('option', {value, text})));
-    return {element, put: (value) => { element.value = value; }, get: () => element.value};
+      ...(field.choices ?? []).map(([value, text]) => h('option', {value, text})));
+    return {element, put: (value) => { element.value = String(value ?? ''); }, get: () => element.value};
   },
+  /** @param {InspectorField} field */
   color(field) {
     const picker = h('input', {type: 'color', 'aria-label': field.label});
     const swatches = SWATCHES.map((color) => h('button', {type: 'button', class: 'swatch', title: color,
       style: `background: ${color}`, onclick: () => { picker.value = color; }}));
     return {element: h('span', {class: 'row'}, picker, ...swatches),
-      put: (value) => { picker.value = value; }, get: () => picker.value};
+      put: (value) => { picker.value = String(value ?? ''); }, get: () => picker.value};
   },
+  /** @param {InspectorField} field */
   texture(field) {
     const element = h('select', {'aria-label': field.label}, h('option', {value: '', text: 'None'}),
       ...TEXTURES.map(([text, value]) => h('option', {value, text})));
     return {
       element, get: () => element.value,
       put(value) {
-        if (value && ![...element.options].some((option) => option.value === value)) {
-          element.append(h('option', {value, text: value}));
+        const text = String(value ?? '');
+        if (text && ![...element.options].some((option) => option.value === text)) {
+          element.append(h('option', {value: text, text}));
         }
-        element.value = value;
+        element.value = text;
       },
     };
   },
 };
 
-/** What was not touched keeps the digits that the field does not show. */
+/**
+ * What was not touched keeps the digits that the field does not show.
+ * @param {InspectorField} field
+ * @returns {FieldInput}
+ */
 function numeric(field) {
   const element = h('input', {type: 'number', class: 'number', 'aria-label': field.label,
     step: field.type === 'integer' ? 1 : 'any', min: field.min, max: field.max});

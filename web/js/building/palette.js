@@ -3,7 +3,8 @@ import {fill, h} from '../panels/dom.js';
 import {FloorTool, OpeningTool, StairsTool, WallTool} from './draw_tools.js';
 import {SWATCHES, TEXTURES, inspectRoof} from './inspector.js';
 import {PaintTool} from './select_tool.js';
-import {svg} from './svg.js';
+import {svg} from './plan_svg.js';
+/** @import {Tool} from './tool.js' */
 
 const GLYPHS = {
   wall: 'M2 14h16M2 10h16M2 6h16M6 6v4M14 6v4M10 10v4M2 6v8M18 6v8',
@@ -12,6 +13,7 @@ const GLYPHS = {
   roof: 'M2 11l8-7 8 7M5 9v8h10V9', image: 'M2 4h16v12H2zM2 13l5-5 4 4 3-2 4 4',
 };
 
+/** @param {keyof typeof GLYPHS} name */
 function glyph(name) {
   return h('span', {class: 'glyph'}, svg('svg', {viewBox: '0 0 20 20', width: 18, height: 18, fill: 'none',
     stroke: 'currentColor', 'stroke-width': 1.4, 'aria-hidden': true}, svg('path', {d: GLYPHS[name]})));
@@ -19,9 +21,10 @@ function glyph(name) {
 
 /**
  * @param {HTMLElement} element
- * @param {{session: import('./session.js').Session, importPlan: () => void}} parts
+ * @param {{session: import('./drawing_session.js').Session, importPlan: () => void}} parts
  */
 export function mountPalette(element, {session, importPlan}) {
+  /** @type {[string, [keyof typeof GLYPHS, string, () => Tool, string?][]][]} */
   const tools = [
     ['Create Walls', [['wall', 'Wall', () => new WallTool(session), 'Shift suspends snapping']]],
     ['Add Features', [
@@ -30,7 +33,14 @@ export function mountPalette(element, {session, importPlan}) {
       ['stairs', 'Stairs', () => new StairsTool(session)],
       ['floor', 'Floor', () => new FloorTool(session)]]],
   ];
+  /** @type {[string, HTMLElement][]} */
   const buttons = [];
+  /**
+   * @param {string} id
+   * @param {Record<string, unknown>} attributes
+   * @param {() => Tool} make
+   * @param {...Node|string} content
+   */
   const toggle = (id, attributes, make, ...content) => {
     const button = h('button', {type: 'button', 'aria-pressed': 'false', ...attributes,
       onclick: () => {
@@ -49,14 +59,20 @@ export function mountPalette(element, {session, importPlan}) {
   const name = h('input', {type: 'text', placeholder: 'Untitled', 'aria-label': 'Model Name', maxlength: 100,
     onchange: () => {
       const text = name.value.trim() || 'Untitled';
-      if (text !== session.history.plan.name) session.commit({...session.history.plan, name: text}, 'name');
+      if (text !== session.history.plan.name) session.commit({...session.history.plan, name: text}, 'rename building');
     }});
-  const more = h('input', {type: 'color', value: '#8fb3d9', title: 'Another colour', 'aria-label': 'More colours',
+  const more = h('input', {type: 'color', value: '#8fb3d9', title: 'Custom color', 'aria-label': 'More colors',
     onchange: () => {
       active = 'more';
       session.tool = new PaintTool(session, {color: more.value, texture: ''});
       update();
     }});
+  /**
+   * @param {string} id
+   * @param {string} title
+   * @param {keyof typeof GLYPHS} glyphName
+   * @param {() => void} run
+   */
   const act = (id, title, glyphName, run) =>
     h('button', {type: 'button', dataset: {act: id}, onclick: run}, glyph(glyphName), title);
   fill(element,
@@ -66,7 +82,7 @@ export function mountPalette(element, {session, importPlan}) {
         toggle(id, {dataset: {tool: id}, title: hint ?? text}, make, glyph(id), text)))]),
     h('h3', {text: 'Add Color'}),
     h('div', {class: 'swatches'}, ...SWATCHES.map((color) => toggle(color,
-      {class: 'swatch', title: color, 'aria-label': `Colour ${color}`, style: `background: ${color}`},
+      {class: 'swatch', title: color, 'aria-label': `Color ${color}`, style: `background: ${color}`},
       () => new PaintTool(session, {color, texture: ''}))), more),
     h('h3', {text: 'Add Texture'}),
     h('div', {class: 'tools'}, ...TEXTURES.map(([text, texture]) => toggle(texture,
@@ -76,11 +92,11 @@ export function mountPalette(element, {session, importPlan}) {
       act('import', 'Import', 'image', importPlan)));
 
   function update() {
-    if (session.tool?.name === 'select') active = '';
+    if (session.tool.name === 'select') active = '';
     for (const [id, button] of buttons) button.setAttribute('aria-pressed', String(id === active));
     if (document.activeElement !== name) name.value = session.plan.name;
   }
-  session.addEventListener('tool', update);
-  session.addEventListener('change', update);
+  session.listen('tool', update);
+  session.listen('change', update);
   update();
 }

@@ -5,26 +5,62 @@
  *
  * The shape of a plan is that of the plan file: metres and radians, colours as #rrggbb.
  *
- * @typedef {import('./geometry.js').Point} Point
- * @typedef {'walls'|'windows'|'doors'|'stairs'|'floors'} Kind
+ * @typedef {import('./plane_geometry.js').Point} Point
+ * @typedef {'windows'|'doors'} OpeningKind
+ * @typedef {'walls'|'stairs'|'floors'|OpeningKind} Kind
  * @typedef {{kind: Kind, id: number}} Ref
  */
-import {direction, distance, minus, plus, polar, same, tidy, tidyPoint} from './geometry.js';
+import {direction, distance, minus, plus, polar, same, tidy, tidyPoint} from './plane_geometry.js';
 import {outlineOf} from './rooms.js';
+/** @import {Floor, Level, Opening, Plan, Stairs, Wall} from '../protocol.js' */
+
+/**
+ * @typedef {{walls: Wall, windows: Opening, doors: Opening, stairs: Stairs, floors: Floor}} ItemOf
+ */
+
+/**
+ * Any item of a level; which fields it has, its kind tells.
+ * @typedef {Wall|Opening|Stairs|Floor} AnyItem
+ */
+
+/** The ends of a wall that move. @typedef {{start?: Point, end?: Point}} Ends */
+
+/**
+ * A copied item; `place`: where an opening is whose wall was not copied.
+ * @typedef {{kind: Kind, item: AnyItem, place?: {point: Point, yaw: number}}} Clip
+ */
 
 const FORMAT = 1;
 const WHITE = '#ffffff';
 
 /** From the list of a level to the name of its counter. */
+/** @type {Record<Kind, keyof Plan['next']>} */
 const COUNTERS = Object.freeze({
   walls: 'wall', windows: 'window', doors: 'door', stairs: 'stairs', floors: 'floor',
 });
-export const KINDS = Object.freeze(Object.keys(COUNTERS));
+/** @type {readonly Kind[]} */
+export const KINDS = Object.freeze(['walls', 'windows', 'doors', 'stairs', 'floors']);
+
+/** @type {readonly OpeningKind[]} */
+export const OPENING_KINDS = Object.freeze(['windows', 'doors']);
+
+/**
+ * What the link of an item is called in the model, before its number.
+ * @type {Record<Kind, string>}
+ */
+export const LINK_NAMES = Object.freeze(
+  {walls: 'Wall', windows: 'Window', doors: 'Door', stairs: 'Stairs', floors: 'Floor'});
 
 const LOOK = {color: WHITE, texture: ''};
+/** @type {Omit<Opening, 'id'|'width'|'height'|'elevation'>} */
 const OPENING = {depth: 0.17, wall: null, along: 0, position: [0, 0], yaw: 0};
 
-/** What is not said of a new item. */
+/**
+ * What is not said of a new item.
+ * @type {{walls: Omit<Wall, 'id'|'start'|'end'>, windows: Omit<Opening, 'id'>,
+ *         doors: Omit<Opening, 'id'>, stairs: Omit<Stairs, 'id'|'position'>,
+ *         floors: Omit<Floor, 'id'|'outline'>}}
+ */
 export const DEFAULTS = Object.freeze({
   walls: {thickness: 0.15, height: 2.5, ...LOOK},
   windows: {width: 0.8, height: 0.8, elevation: 0.5, ...OPENING},
@@ -36,51 +72,72 @@ export const DEFAULTS = Object.freeze({
 /** A floor on the ground is thin, so that robots can drive in through the doors. */
 export const GROUND_FLOOR_THICKNESS = 0.01;
 
+/** @param {number} number @returns {Level} */
 const emptyLevel = (number) => ({
   name: `Level ${number}`, height: 2.5, walls: [], windows: [], doors: [], stairs: [], floors: [],
   image: null,
 });
 
+/** @returns {Plan} */
 export const emptyPlan = (name = 'Untitled') => ({
   format: FORMAT, name, levels: [emptyLevel(1)], roof: null,
   next: {wall: 0, window: 0, door: 0, stairs: 0, floor: 0},
 });
 
+/** @param {Plan} plan */
 export const isEmpty = (plan) =>
   !plan.roof && plan.levels.every((level) => !level.image && KINDS.every((kind) => !level[kind].length));
 
 // ---- looking things up
 
-/** @returns {any} the item, or undefined */
+/**
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @returns {AnyItem|undefined}
+ */
 export const itemOf = (plan, at, {kind, id}) =>
   plan.levels[at]?.[kind].find((item) => item.id === id);
 
-/** What the link of an item is called in the model. */
+/** What the link of an item is called in the model. @param {Ref} ref */
 export const linkName = ({kind, id}) =>
-  `${{walls: 'Wall', windows: 'Window', doors: 'Door', stairs: 'Stairs', floors: 'Floor'}[kind]}_${id}`;
+  `${LINK_NAMES[kind]}_${id}`;
 
-/** The item that a link of the model is made from: {level, ref}, or null. */
+/**
+ * The item that a link of the model is made from: {level, ref}, or null.
+ * @param {Plan} plan
+ * @param {string} link
+ */
 export function itemOfLink(plan, link) {
   const [, word, id] = /^(Wall|Window|Door|Stairs|Floor)_(\d+)$/.exec(link) ?? [];
-  const kind = {Wall: 'walls', Window: 'windows', Door: 'doors', Stairs: 'stairs', Floor: 'floors'}[word];
+  const kind = KINDS.find((one) => LINK_NAMES[one] === word);
   if (!kind) return null;
   const level = plan.levels.findIndex((one) => one[kind].some((item) => item.id === Number(id)));
   return level < 0 ? null : {level, ref: {kind, id: Number(id)}};
 }
 
+/** @param {{start: Point, end: Point}} wall */
 export const wallLength = (wall) => distance(wall.start, wall.end);
+/** @param {{start: Point, end: Point}} wall */
 export const wallYaw = (wall) => direction(wall.start, wall.end);
-/** From edge to edge, as the wall is written and labelled: corners overlap. */
+/**
+ * From edge to edge, as the wall is written and labelled: corners overlap.
+ * @param {{start: Point, end: Point, thickness: number}} wall
+ */
 export const outerLength = (wall) => wallLength(wall) + wall.thickness;
 
-/** Where an opening is and how it is turned: that of its wall, or its own. */
+/**
+ * Where an opening is and how it is turned: that of its wall, or its own.
+ * @param {Opening} opening
+ * @param {Level} level
+ */
 export function placeOf(opening, level) {
   const wall = opening.wall === null ? null : level.walls.find(({id}) => id === opening.wall);
   if (!wall) return {point: opening.position, yaw: opening.yaw, wall: null};
   return {point: polar(wall.start, wallYaw(wall), opening.along), yaw: wallYaw(wall), wall};
 }
 
-/** The height of each level's base above the ground. */
+/** The height of each level's base above the ground. @param {Plan} plan */
 export function bases(plan) {
   let z = 0;
   return plan.levels.map((level) => {
@@ -92,11 +149,23 @@ export function bases(plan) {
 
 // ---- changing lists
 
+/**
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Partial<Level>} changes
+ */
 export function withLevel(plan, at, changes) {
   return {...plan, levels: plan.levels.map((level, n) => n === at ? {...level, ...changes} : level)};
 }
 
-/** Changes one item. */
+/**
+ * Changes one item.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {Partial<Wall>|Partial<Opening>|Partial<Stairs>|Partial<Floor>} changes
+ * @returns {Plan}
+ */
 export function update(plan, at, {kind, id}, changes) {
   const level = plan.levels[at];
   const list = level[kind].map((item) => item.id === id ? {...item, ...changes} : item);
@@ -105,7 +174,11 @@ export function update(plan, at, {kind, id}, changes) {
 
 /**
  * Adds an item; what is not given has its default.
- * @returns {{plan: any, ref: Ref}}
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Kind} kind
+ * @param {Partial<Wall>|Partial<Opening>|Partial<Stairs>|Partial<Floor>} fields
+ * @returns {{plan: Plan, ref: Ref}}
  */
 export function add(plan, at, kind, fields) {
   const counter = COUNTERS[kind];
@@ -116,20 +189,32 @@ export function add(plan, at, kind, fields) {
   return {plan: refit({...grown, next}, at, kind), ref: {kind, id}};
 }
 
-/** Takes items away, the openings of walls with them. */
+/**
+ * Takes items away, the openings of walls with them.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref[]} refs
+ */
 export function remove(plan, at, refs) {
   const level = plan.levels[at];
+  /** @param {Kind} kind @param {number} id */
   const gone = (kind, id) => refs.some((ref) => ref.kind === kind && ref.id === id);
+  /** @type {Partial<Level>} */
   const changes = {};
   for (const kind of KINDS) {
     const left = level[kind].filter((item) => !gone(kind, item.id) &&
-      !(item.wall !== undefined && item.wall !== null && gone('walls', item.wall)));
-    if (left.length !== level[kind].length) changes[kind] = left;
+      !('along' in item && item.wall !== null && item.wall !== undefined && gone('walls', item.wall)));
+    if (left.length !== level[kind].length) Object.assign(changes, {[kind]: left});
   }
   return refit(withLevel(plan, at, changes), at, 'walls');
 }
 
-/** Floors that follow the walls get their new outline. */
+/**
+ * Floors that follow the walls get their new outline.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {string} kind
+ */
 function refit(plan, at, kind) {
   const level = plan.levels[at];
   if (kind !== 'walls' || !level.floors.some((floor) => floor.fit === 'walls')) return plan;
@@ -141,9 +226,18 @@ function refit(plan, at, kind) {
 
 // ---- walls
 
-/** Changes the ends of several walls at once; openings keep their distance from the end that stays. */
+/** @type {readonly ('start'|'end')[]} */
+const ENDS = Object.freeze(['start', 'end']);
+
+/**
+ * Changes the ends of several walls at once; openings keep their distance from the end that stays.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Map<number, Ends>} ends
+ */
 function setEnds(plan, at, ends) {
   const level = plan.levels[at];
+  /** @type {Map<number, number>} */
   const shift = new Map();
   const walls = level.walls.map((wall) => {
     const moved = ends.get(wall.id);
@@ -153,29 +247,39 @@ function setEnds(plan, at, ends) {
     if (!stays) shift.set(wall.id, wallLength(made) - wallLength(wall));
     return made;
   });
-  const slid = (list) => !list.some(({wall}) => shift.get(wall)) ? list : list.map((opening) => {
-    const by = shift.get(opening.wall);
+  /** @param {Opening[]} list */
+  const slid = (list) => list.map((opening) => {
+    const by = shift.get(opening.wall ?? -1);
     return by ? {...opening, along: tidy(opening.along + by)} : opening;
   });
   const changes = {walls, windows: slid(level.windows), doors: slid(level.doors)};
   return refit(withLevel(plan, at, changes), at, 'walls');
 }
 
-/** The ends of walls that lie on a point: [wall, 'start'|'end']. */
+/**
+ * The ends of walls that lie on a point: [wall, 'start'|'end'].
+ * @param {Level} level
+ * @param {Point} point
+ */
 function endsAt(level, point) {
-  return level.walls.flatMap((wall) => ['start', 'end']
-    .filter((end) => same(wall[end], point)).map((end) => [wall, end]));
+  return level.walls.flatMap((wall) => ENDS.filter((end) => same(wall[end], point))
+    .map((end) => /** @type {[Wall, 'start'|'end']} */ ([wall, end])));
 }
 
 /**
  * Moves the end of a wall, and the ends linked with it unless `alone`.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {number} id
  * @param {'start'|'end'} end
+ * @param {Point} point
  */
 export function moveEnd(plan, at, id, end, point, {alone = false} = {}) {
   const level = plan.levels[at];
   const wall = level.walls.find((one) => one.id === id);
+  /** @type {Map<number, Ends>} */
   const ends = new Map([[id, {[end]: tidyPoint(point)}]]);
-  if (!alone) {
+  if (!alone && wall) {
     for (const [other, its] of endsAt(level, wall[end])) {
       ends.set(other.id, {...ends.get(other.id), [its]: tidyPoint(point)});
     }
@@ -183,12 +287,19 @@ export function moveEnd(plan, at, id, end, point, {alone = false} = {}) {
   return setEnds(plan, at, ends);
 }
 
-/** Moves walls as they are; what is linked with them is stretched. */
+/**
+ * Moves walls as they are; what is linked with them is stretched.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {number[]} ids
+ * @param {Point} by
+ */
 function moveWalls(plan, at, ids, by) {
   const level = plan.levels[at];
+  /** @type {Map<number, Ends>} */
   const ends = new Map();
   for (const wall of level.walls.filter(({id}) => ids.includes(id))) {
-    for (const end of ['start', 'end']) {
+    for (const end of ENDS) {
       for (const [other, its] of endsAt(level, wall[end])) {
         ends.set(other.id, {...ends.get(other.id), [its]: tidyPoint(plus(wall[end], by))});
       }
@@ -197,25 +308,39 @@ function moveWalls(plan, at, ids, by) {
   return setEnds(plan, at, ends);
 }
 
-/** Gives a wall an outer length, by moving its end. */
+/**
+ * Gives a wall an outer length, by moving its end.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {number} id
+ * @param {number} length
+ */
 export function setOuterLength(plan, at, id, length) {
   const wall = plan.levels[at].walls.find((one) => one.id === id);
+  if (!wall) return plan;
   const inner = Math.max(length - wall.thickness, 0.01);
   return moveEnd(plan, at, id, 'end', polar(wall.start, wallYaw(wall), inner));
 }
 
-/** Moves items; walls stretch what is linked, openings in walls slide along them. */
+/**
+ * Moves items; walls stretch what is linked, openings in walls slide along them.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref[]} refs
+ * @param {Point} by
+ */
 export function moveItems(plan, at, refs, by) {
   const walls = refs.filter(({kind}) => kind === 'walls').map(({id}) => id);
   let made = walls.length ? moveWalls(plan, at, walls, by) : plan;
   for (const ref of refs) {
     const item = itemOf(plan, at, ref);
-    if (!item || ref.kind === 'walls') continue;
-    if (ref.kind === 'floors') {
+    if (!item || 'start' in item) continue;
+    if ('outline' in item) {
+      /** @param {Point[]} loop */
       const shifted = (loop) => loop.map((point) => tidyPoint(plus(point, by)));
       made = update(made, at, ref,
         {outline: shifted(item.outline), holes: item.holes.map(shifted), fit: 'none'});
-    } else if (item.wall === undefined || item.wall === null) {
+    } else if (!('wall' in item) || item.wall === null) {
       made = update(made, at, ref, {position: tidyPoint(plus(item.position, by))});
     }
   }
@@ -224,7 +349,12 @@ export function moveItems(plan, at, refs, by) {
 
 // ---- openings
 
-/** Puts an opening into a wall, as near to `along` as it fits. */
+/**
+ * Puts an opening into a wall, as near to `along` as it fits.
+ * @param {Opening} opening
+ * @param {Wall} wall
+ * @param {number} along
+ */
 export function attached(opening, wall, along) {
   const half = opening.width / 2;
   const length = wallLength(wall);
@@ -232,13 +362,22 @@ export function attached(opening, wall, along) {
   return {...opening, wall: wall.id, along: tidy(fitting)};
 }
 
-/** Takes an opening out of its wall to stand free. */
+/**
+ * Takes an opening out of its wall to stand free.
+ * @param {Opening} opening
+ * @param {Point} point
+ * @param {number} yaw
+ */
 export const detached = (opening, point, yaw) =>
   ({...opening, wall: null, along: 0, position: tidyPoint(point), yaw});
 
 // ---- levels
 
-/** Adds a level on top: a copy of the walls, and a floor. @returns {any} null without walls */
+/**
+ * Adds a level on top: a copy of the walls, and a floor.
+ * @param {Plan} plan
+ * @returns {Plan|null} null without walls
+ */
 export function addLevel(plan) {
   const at = plan.levels.length - 1;
   const below = plan.levels[at];
@@ -247,75 +386,114 @@ export function addLevel(plan) {
   let made = withLevel(plan, at, {height});
   made = {...made, levels: [...made.levels, emptyLevel(plan.levels.length + 1)]};
   for (const {id: _, ...wall} of below.walls) made = add(made, at + 1, 'walls', wall).plan;
-  return add(made, at + 1, 'floors', {outline: outlineOf(below.walls), fit: 'walls'}).plan;
+  return add(made, at + 1, 'floors', {outline: outlineOf(below.walls) ?? [], fit: 'walls'}).plan;
 }
 
-/** Takes a level away with all in it. @returns {any} null for the last one */
+/**
+ * Takes a level away with all in it.
+ * @param {Plan} plan
+ * @param {number} at
+ * @returns {Plan|null} null for the last one
+ */
 export function removeLevel(plan, at) {
   if (plan.levels.length < 2) return null;
   return {...plan, levels: plan.levels.filter((_, n) => n !== at)};
 }
 
-/** Makes a level higher or lower; walls and stairs as high as it was go along. */
+/**
+ * Makes a level higher or lower; walls and stairs as high as it was go along.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {number} height
+ */
 export function setLevelHeight(plan, at, height) {
   const level = plan.levels[at];
+  /** @template {{height: number}} T @param {T} item @returns {T} */
   const grown = (item) => Math.abs(item.height - level.height) < 1e-6 ? {...item, height} : item;
   return withLevel(plan, at, {height, walls: level.walls.map(grown), stairs: level.stairs.map(grown)});
 }
 
 // ---- copies
 
-/** What is selected, apart from the plan. */
+/**
+ * What is selected, apart from the plan.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref[]} refs
+ */
 export function copied(plan, at, refs) {
-  return refs.map((ref) => ({kind: ref.kind, item: itemOf(plan, at, ref)})).filter(({item}) => item);
+  return refs.flatMap((ref) => {
+    const item = itemOf(plan, at, ref);
+    return item ? [{kind: ref.kind, item}] : [];
+  });
 }
 
 /**
  * Adds copies, moved by a vector; openings of copied walls go into the copies, others stand free.
- * @returns {{plan: any, refs: Ref[]}}
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Clip[]} clips
+ * @param {Point} by
+ * @returns {{plan: Plan, refs: Ref[]}}
  */
 export function pasted(plan, at, clips, by) {
+  /**
+   * From the ids of copied walls to those of the copies.
+   * @type {Map<number|null|undefined, number>}
+   */
   const walls = new Map();
+  /** @type {Ref[]} */
   const refs = [];
   let made = plan;
-  const put = (kind, fields) => {
+  /**
+   * @param {Kind} kind
+   * @param {AnyItem} item  whose id is not taken over
+   */
+  const put = (kind, {id: _, ...fields}) => {
     const grown = add(made, at, kind, fields);
     made = grown.plan;
     refs.push(grown.ref);
     return grown.ref.id;
   };
+  /** @param {Point} point */
   const shifted = (point) => tidyPoint(plus(point, by));
-  for (const {kind, item: {id, ...fields}} of clips.filter((clip) => clip.kind === 'walls')) {
-    walls.set(id, put(kind, {...fields, start: shifted(fields.start), end: shifted(fields.end)}));
+  for (const {kind, item} of clips) {
+    if (!('start' in item)) continue;
+    walls.set(item.id, put(kind, {...item, start: shifted(item.start), end: shifted(item.end)}));
   }
-  for (const {kind, item: {id: _, ...fields}, place} of clips) {
-    if (kind === 'walls') continue;
-    if (kind === 'floors') {
-      put(kind, {...fields, outline: fields.outline.map(shifted),
-        holes: fields.holes.map((hole) => hole.map(shifted)), fit: 'none'});
-    } else if (walls.has(fields.wall)) {
-      put(kind, {...fields, wall: walls.get(fields.wall)});
-    } else if (place) {
-      put(kind, {...detached(fields, shifted(place.point), place.yaw)});
+  for (const {kind, item, place} of clips) {
+    if ('start' in item) continue;
+    if ('outline' in item) {
+      put(kind, {...item, outline: item.outline.map(shifted),
+        holes: item.holes.map((hole) => hole.map(shifted)), fit: 'none'});
+    } else if ('along' in item && walls.has(item.wall)) {
+      put(kind, {...item, wall: walls.get(item.wall)});
+    } else if ('along' in item && place) {
+      put(kind, detached(item, shifted(place.point), place.yaw));
     } else {
-      put(kind, {...fields, position: shifted(fields.position)});
+      put(kind, {...item, position: shifted(item.position)});
     }
   }
   return {plan: made, refs};
 }
 
-/** As `copied`, with the openings of copied walls and the places of those whose walls stay behind. */
+/**
+ * As `copied`, with the openings of copied walls and the places of those whose walls stay behind.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref[]} refs
+ */
 export function clipboardOf(plan, at, refs) {
   const level = plan.levels[at];
   const walls = new Set(refs.filter(({kind}) => kind === 'walls').map(({id}) => id));
-  const more = ['windows', 'doors'].flatMap((kind) => level[kind]
-    .filter((item) => walls.has(item.wall)).map(({id}) => ({kind, id})));
+  const more = OPENING_KINDS.flatMap((kind) => level[kind]
+    .filter((item) => walls.has(item.wall ?? -1)).map(({id}) => ({kind, id})));
   const all = [...refs.filter((ref) => !more.some((one) => one.kind === ref.kind && one.id === ref.id)), ...more];
-  return copied(plan, at, all).map((clip) => ['windows', 'doors'].includes(clip.kind) &&
-    clip.item.wall !== null && !walls.has(clip.item.wall)
+  return copied(plan, at, all).map((clip) => 'along' in clip.item &&
+    clip.item.wall !== null && !walls.has(clip.item.wall ?? -1)
     ? {...clip, place: placeOf(clip.item, level)} : clip);
 }
 
-/** The plan without pictures: what a preview needs. */
+/** The plan without pictures: what a preview needs. @param {Plan} plan */
 export const withoutImages = (plan) =>
   ({...plan, levels: plan.levels.map((level) => level.image ? {...level, image: null} : level)});

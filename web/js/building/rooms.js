@@ -1,22 +1,35 @@
 /** Closed rooms between walls, and the outline of all walls, by the faces of a plane graph. */
-import {crossing, distance, inPolygon, minus, plus, same, side, signedArea} from './geometry.js';
+import {crossing, distance, inPolygon, minus, plus, same, side, signedArea} from './plane_geometry.js';
+/** @import {Point} from './plane_geometry.js' */
+/** @import {Wall} from '../protocol.js' */
 
+/**
+ * A corner with its neighbors, and the half thickness of the wall to each.
+ * @typedef {{point: Point, edges: Map<number, number>}} Corner
+ */
+
+/** @type {WeakMap<Wall[], {rooms: Room[], outer: Point[][]}>} */
 const known = new WeakMap();
 
 /**
  * @typedef {Object} Room
- * @property {import('./geometry.js').Point[]} outline  middle lines of its walls, counter-clockwise
- * @property {import('./geometry.js').Point[]} inside   the faces of its walls
- * @property {import('./geometry.js').Point[][]} holes  what stands free in it
+ * @property {import('./plane_geometry.js').Point[]} outline  middle lines of its walls, counter-clockwise
+ * @property {import('./plane_geometry.js').Point[]} inside   the faces of its walls
+ * @property {import('./plane_geometry.js').Point[][]} holes  what stands free in it
  * @property {number} area  m2 between the faces of the walls
- *
+ */
+
+/**
  * The rooms of a list of walls; the same list gives the same answer without work.
- * @param {any[]} walls
+ * @param {Wall[]} walls
  * @returns {Room[]}
  */
 export const roomsOf = (walls) => facesOf(walls).rooms;
 
-/** The outer outline of the walls that enclose most; their bounding box where nothing is closed. */
+/**
+ * The outer outline of the walls that enclose most; their bounding box where nothing is closed.
+ * @param {Wall[]} walls
+ */
 export function outlineOf(walls) {
   if (!walls.length) return null;
   const {outer} = facesOf(walls);
@@ -29,13 +42,14 @@ export function outlineOf(walls) {
   return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
 }
 
+/** @param {Wall[]} walls */
 function facesOf(walls) {
   let found = known.get(walls);
   if (!found) known.set(walls, found = faces(walls));
   return found;
 }
 
-/** Pairs of walls that come near each other, as places in the list. */
+/** Pairs of walls that come near each other, as places in the list. @param {Wall[]} walls */
 export function* neighbours(walls) {
   const boxes = walls.map(({start, end}, at) => ({
     at, x0: Math.min(start[0], end[0]) - 1e-3, x1: Math.max(start[0], end[0]) + 1e-3,
@@ -50,6 +64,7 @@ export function* neighbours(walls) {
   }
 }
 
+/** @param {Wall[]} walls */
 function faces(walls) {
   const graph = prune(graphOf(walls));
   const loops = loopsOf(graph);
@@ -58,7 +73,9 @@ function faces(walls) {
     .map(({points}) => straightened([...points].reverse()));
   const rooms = inner.map(({points, halves}) => {
     const inside = inset(points, halves);
-    return {outline: straightened(points), inside, holes: [], area: signedArea(inside)};
+    /** @type {Room} */
+    const room = {outline: straightened(points), inside, holes: [], area: signedArea(inside)};
+    return room;
   });
   for (const loop of outer) {
     const holder = rooms.filter((room) => signedArea(room.outline) > signedArea(loop) + 1e-6 &&
@@ -71,7 +88,10 @@ function faces(walls) {
   return {rooms, outer};
 }
 
-/** Corners by number, and for each corner its neighbours with the half thickness of the wall. */
+/**
+ * Corners by number, and for each corner its neighbours with the half thickness of the wall.
+ * @param {Wall[]} walls
+ */
 function graphOf(walls) {
   const cuts = walls.map(({start, end}) => [start, end]);
   for (const [i, j] of neighbours(walls)) {
@@ -80,6 +100,7 @@ function graphOf(walls) {
       cuts[j].push(point);
     }
   }
+  /** @type {Corner[]} */
   const corners = [];
   const cornerOf = numbering(corners);
   walls.forEach((wall, at) => {
@@ -95,11 +116,16 @@ function graphOf(walls) {
   return corners;
 }
 
-/** Gives points numbers, and those that are one the same; found by cells of 1 cm. */
+/**
+ * Gives points numbers, and those that are one the same; found by cells of 1 cm.
+ * @param {Corner[]} corners
+ */
 function numbering(corners) {
+  /** @type {Map<number, number[]>} */
   const cells = new Map();
+  /** @param {number} column @param {number} row */
   const cellOf = (column, row) => column * 4194304 + row;
-  return (point) => {
+  return (/** @type {Point} */ point) => {
     const [x, y] = [point[0] * 100, point[1] * 100];
     // What lies within a tenth of a millimetre of the next cell may be known there.
     for (let column = Math.floor(x - 0.02); column <= Math.floor(x + 0.02); column++) {
@@ -110,16 +136,21 @@ function numbering(corners) {
       }
     }
     const cell = cellOf(Math.floor(x), Math.floor(y));
-    if (cells.has(cell)) cells.get(cell).push(corners.length);
-    else cells.set(cell, [corners.length]);
+    cells.set(cell, [...(cells.get(cell) ?? []), corners.length]);
     corners.push({point, edges: new Map()});
     return corners.length - 1;
   };
 }
 
-/** The points that two walls have in common. */
+/**
+ * The points that two walls have in common.
+ * @param {Wall} a
+ * @param {Wall} b
+ */
 function meetings(a, b) {
+  /** @type {Point[]} */
   const found = [];
+  /** @param {Wall} wall @param {Point} point */
   const on = (wall, point) => Math.abs(side(wall.start, wall.end, point)) < 1e-4 &&
     distance(wall.start, point) + distance(point, wall.end) < distance(wall.start, wall.end) + 1e-4;
   for (const point of [b.start, b.end]) if (on(a, point)) found.push(point);
@@ -129,11 +160,10 @@ function meetings(a, b) {
   return point && on(a, point) && on(b, point) ? [point] : [];
 }
 
-/** Takes away what ends blind: it encloses nothing. */
+/** Takes away what ends blind: it encloses nothing. @param {Corner[]} corners */
 function prune(corners) {
   const ends = corners.map((_, at) => at).filter((at) => corners[at].edges.size === 1);
-  while (ends.length) {
-    const at = ends.pop();
+  for (let at = ends.pop(); at !== undefined; at = ends.pop()) {
     for (const next of corners[at].edges.keys()) {
       corners[next].edges.delete(at);
       if (corners[next].edges.size === 1) ends.push(next);
@@ -143,25 +173,29 @@ function prune(corners) {
   return corners;
 }
 
-/** All faces: at each corner the next edge to the right is taken. */
+/** All faces: at each corner the next edge to the right is taken. @param {Corner[]} corners */
 function loopsOf(corners) {
   const turns = corners.map(({point, edges}) => [...edges.keys()].sort((a, b) => {
     const [p, q] = [minus(corners[a].point, point), minus(corners[b].point, point)];
     return Math.atan2(p[1], p[0]) - Math.atan2(q[1], q[0]);
   }));
   const seen = new Set();
+  /** @param {number} from @param {number} to */
   const step = (from, to) => from * corners.length + to;
+  /** @type {{points: Point[], halves: number[]}[]} */
   const loops = [];
   corners.forEach((_, first) => {
     for (const second of turns[first]) {
       if (seen.has(step(first, second))) continue;
+      /** @type {Point[]} */
       const points = [];
+      /** @type {number[]} */
       const halves = [];
       let [from, to] = [first, second];
       while (!seen.has(step(from, to))) {
         seen.add(step(from, to));
         points.push(corners[from].point);
-        halves.push(corners[from].edges.get(to));
+        halves.push(corners[from].edges.get(to) ?? 0);
         const around = turns[to];
         const next = around[(around.indexOf(from) - 1 + around.length) % around.length];
         [from, to] = [to, next];
@@ -172,7 +206,11 @@ function loopsOf(corners) {
   return loops;
 }
 
-/** The loop moved inwards by half of each wall. */
+/**
+ * The loop moved inwards by half of each wall.
+ * @param {Point[]} points
+ * @param {number[]} halves
+ */
 function inset(points, halves) {
   const count = points.length;
   const lines = points.map((a, at) => {
@@ -188,9 +226,9 @@ function inset(points, halves) {
   return signedArea(loop) > 0 ? loop : points;
 }
 
-/** Without the corners at which nothing turns. */
+/** Without the corners at which nothing turns. @param {Point[]} loop */
 function straightened(loop) {
-  const left = loop.filter((point, at) => Math.abs(side(loop.at(at - 1),
-    loop[(at + 1) % loop.length], point)) > 1e-4);
+  const left = loop.filter((point, at) => Math.abs(side(
+    loop[(at + loop.length - 1) % loop.length], loop[(at + 1) % loop.length], point)) > 1e-4);
   return left.length >= 3 ? left : loop;
 }

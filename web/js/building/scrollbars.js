@@ -1,15 +1,15 @@
 /** Scroll bars for a sheet without end: they span what is drawn and what is seen. */
 import {h} from '../panels/dom.js';
-import {extentOf} from './canvas.js';
-import {SCALE} from './svg.js';
+import {extentOf} from './plan_canvas.js';
+import {SCALE} from './plan_svg.js';
 
 /**
  * @param {HTMLElement} element  holds the sheet
- * @param {{session: import('./session.js').Session, canvas: import('./canvas.js').Canvas}} parts
+ * @param {{session: import('./drawing_session.js').Session, canvas: import('./plan_canvas.js').Canvas}} parts
  * @returns {() => void} brings them up to date
  */
 export function mountScrollbars(element, {session, canvas}) {
-  const bars = ['across', 'down'].map((way) => {
+  const bars = /** @type {const} */ (['across', 'down']).map((way) => {
     const thumb = h('div', {class: 'thumb'});
     const track = h('div', {class: `scroll ${way}`, 'aria-hidden': 'true'}, thumb);
     element.append(track);
@@ -20,6 +20,7 @@ export function mountScrollbars(element, {session, canvas}) {
       event.preventDefault();
       bar.thumb.setPointerCapture(event.pointerId);
       let last = [event.clientX, event.clientY];
+      /** @param {PointerEvent} moved */
       const move = (moved) => {
         const by = bar.way === 'across' ? moved.clientX - last[0] : moved.clientY - last[1];
         last = [moved.clientX, moved.clientY];

@@ -1,23 +1,37 @@
 /** Selecting, moving, stretching and turning, and painting. */
-import {openingTrouble} from './check.js';
-import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './geometry.js';
-import {hitOf, itemsWithin, wallNear} from './hit.js';
+import {openingTrouble} from './plan_check.js';
+import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './plane_geometry.js';
+import {hitOf, itemsWithin, wallNear} from './hit_test.js';
 import {
   attached, detached, itemOf, moveEnd, moveItems, placeOf, update, wallYaw,
 } from './plan.js';
-import {NAMES} from './session.js';
-import {SNAP_ANGLE, snapPolar} from './snap.js';
+import {NAMES} from './drawing_session.js';
+import {SNAP_ANGLE, snapPolar} from './wall_snap.js';
 import {Tool} from './tool.js';
+/** @import {Kind, Ref} from './plan.js' */
+/** @import {Mouse} from './tool.js' */
+/** @import {Opening, Plan, Stairs, Wall} from '../protocol.js' */
+/** @import {Point} from './plane_geometry.js' */
+/** @import {Session} from './drawing_session.js' */
+
+/**
+ * A drag of an item or one of its handles.
+ * @typedef {{ref: Ref, part: string, from: Point, plan: Plan, moved?: boolean}} Drag
+ */
 
 const QUARTER = Math.PI / 2;
 
 export class SelectTool extends Tool {
   name = 'select';
-  hint = 'Click to select, drag to move, double click for the inspector.';
-  /** @type {{ref: import('./plan.js').Ref, part: string, from: any, plan: any, moved: boolean}|null} */
+  hint = 'Click to select, drag to move, double-click to open the inspector.';
+  /** @type {Drag|null} */
   #drag = null;
+  /** Where a box that selects begins. @type {Point|null} */
   #box = null;
+  /** What is under the mouse. @type {{ref: Ref, part: string}|null} */
+  hovered = null;
 
+  /** @param {Mouse} mouse */
   press(mouse) {
     const {session} = this;
     const hit = hitOf(session.plan, session.at, mouse.point,
@@ -37,6 +51,7 @@ export class SelectTool extends Tool {
     this.#drag = {...hit, from: mouse.point, plan: session.history.plan, moved: false};
   }
 
+  /** @param {Mouse} mouse */
   move(mouse) {
     const {session} = this;
     if (this.#box) {
@@ -55,6 +70,8 @@ export class SelectTool extends Tool {
     session.preview(dragged(drag, mouse, session));
   }
 
+  /** @param {Mouse} mouse */
+  /** @param {Mouse} mouse @returns {void} */
   release(mouse) {
     const {session} = this;
     if (this.#box) {
@@ -70,13 +87,13 @@ export class SelectTool extends Tool {
     if (!drag?.moved) return;
     const plan = dragged(drag, mouse, session);
     const fault = drag.part === 'body'
-      ? openingTrouble(plan.levels[session.at], itemOf(plan, session.at, drag.ref)) : '';
+      ? troubleOf(plan, session.at, drag.ref) : '';
     if (fault) {
       session.preview(null);
-      session.say(`Not there: the ${NAMES[drag.ref.kind]} ${fault}.`);
+      session.say(`Cannot move the ${NAMES[drag.ref.kind]} here: it ${fault}.`);
       return;
     }
-    session.commit(plan, `${VERBS[drag.part] ?? 'stretch'} ${NAMES[drag.ref.kind]}`);
+    session.commit(plan, `${VERBS[drag.part] ?? 'resize'} ${NAMES[drag.ref.kind]}`);
   }
 
   /** Esc: first the drag, then the selection. */
@@ -91,27 +108,53 @@ export class SelectTool extends Tool {
   }
 }
 
-const VERBS = {body: 'move', rotate: 'turn'};
+/**
+ * Why an opening cannot stay where it was dragged; '' where it can, and for other items.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ */
+function troubleOf(plan, at, ref) {
+  const item = itemOf(plan, at, ref);
+  return item && 'along' in item ? openingTrouble(plan.levels[at], item) : '';
+}
 
-/** The plan after a drag, from the plan before it. */
+/** @type {Record<string, string>} */
+const VERBS = {body: 'move', rotate: 'rotate'};
+
+/**
+ * The plan after a drag, from the plan before it.
+ * @param {Drag} drag
+ * @param {Mouse} mouse
+ * @param {{at: number, selection: Ref[]}} state
+ * @returns {Plan}
+ */
 export function dragged({ref, part, from, plan}, mouse, {at, selection}) {
   const item = itemOf(plan, at, ref);
   if (!item) return plan;
   const by = minus(mouse.point, from);
-  if (part === 'start' || part === 'end') return draggedEnd(plan, at, ref, item, part, mouse);
-  if (part === 'rotate') return draggedTurn(plan, at, ref, item, mouse);
-  if (part.startsWith('corner')) return draggedCorner(plan, at, ref, item, Number(part.slice(6)), mouse);
-  if (part.startsWith('vertex')) {
+  if ('start' in item && (part === 'start' || part === 'end')) return draggedEnd(plan, at, ref, item, part, mouse);
+  if (part === 'rotate' && 'position' in item) return draggedTurn(plan, at, ref, item, mouse);
+  if (part.startsWith('corner') && 'steps' in item) return draggedCorner(plan, at, ref, item, Number(part.slice(6)), mouse);
+  if (part.startsWith('vertex') && 'outline' in item) {
     const outline = item.outline.map((point, n) =>
       n === Number(part.slice(6)) ? tidyPoint(mouse.point) : point);
     return update(plan, at, ref, {outline, fit: 'none'});
   }
   const alone = selection.length < 2;
-  if (alone && item.wall !== undefined) return draggedOpening(plan, at, ref, item, by, mouse);
+  if (alone && 'along' in item) return draggedOpening(plan, at, ref, item, by, mouse);
   return moveItems(plan, at, alone ? [ref] : selection, by);
 }
 
-/** 15 degrees and 0.25 m about the other end; no foreign ends. Alt leaves linked walls behind. */
+/**
+ * 15 degrees and 0.25 m about the other end; no foreign ends. Alt leaves linked walls behind.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {Wall} wall
+ * @param {'start'|'end'} end
+ * @param {Mouse} mouse
+ */
 function draggedEnd(plan, at, ref, wall, end, mouse) {
   const other = wall[end === 'start' ? 'end' : 'start'];
   const point = mouse.shift ? mouse.point : snapPolar(other, mouse.point, wall.thickness);
@@ -119,6 +162,13 @@ function draggedEnd(plan, at, ref, wall, end, mouse) {
   return moveEnd(plan, at, ref.id, end, point, {alone: mouse.alt});
 }
 
+/**
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {{position: Point}} item
+ * @param {Mouse} mouse
+ */
 function draggedTurn(plan, at, ref, item, mouse) {
   const angle = Math.atan2(mouse.point[1] - item.position[1], mouse.point[0] - item.position[0]) - QUARTER;
   const step = ref.kind === 'stairs' ? QUARTER : SNAP_ANGLE;
@@ -126,7 +176,15 @@ function draggedTurn(plan, at, ref, item, mouse) {
   return update(plan, at, ref, {yaw: Math.round(Math.atan2(Math.sin(yaw), Math.cos(yaw)) * 1e9) / 1e9 + 0});
 }
 
-/** The opposite corner stays. */
+/**
+ * The opposite corner stays.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {Stairs} stairs
+ * @param {number} corner
+ * @param {Mouse} mouse
+ */
 function draggedCorner(plan, at, ref, stairs, corner, mouse) {
   const signs = [[-1, -1], [1, -1], [1, 1], [-1, 1]][corner];
   const fixed = fromLocal([-signs[0] * stairs.width / 2, -signs[1] * stairs.depth / 2],
@@ -138,7 +196,15 @@ function draggedCorner(plan, at, ref, stairs, corner, mouse) {
   return update(plan, at, ref, {width, depth, position: tidyPoint(position)});
 }
 
-/** Along its wall; out of it beyond 0.3 m; into another wall that is near. */
+/**
+ * Along its wall; out of it beyond 0.3 m; into another wall that is near.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {Opening} opening
+ * @param {Point} by
+ * @param {Mouse} mouse
+ */
 function draggedOpening(plan, at, ref, opening, by, mouse) {
   const level = plan.levels[at];
   const {point, yaw} = placeOf(opening, level);
@@ -150,6 +216,7 @@ function draggedOpening(plan, at, ref, opening, by, mouse) {
   return update(plan, at, ref, attached(opening, near.wall, along));
 }
 
+/** @param {Wall} wall @param {Point} by */
 function alongBy(wall, by) {
   const yaw = wallYaw(wall);
   return by[0] * Math.cos(yaw) + by[1] * Math.sin(yaw);
@@ -158,35 +225,45 @@ function alongBy(wall, by) {
 /** Paints the wall, stairs or floor that is clicked, here or in the 3D view, once. */
 export class PaintTool extends Tool {
   name = 'paint';
-  hint = 'Click a wall, floor or stairs, here or in the 3D view, to paint it.';
+  hint = 'Click a wall, floor or stairs, here or in the 3D view, to apply the look.';
 
-  /** @param {any} session @param {{color?: string, texture?: string}} look */
+  /** What is shown painted. */
+  #hovered = '';
+
+  /** @param {Session} session @param {{color?: string, texture?: string}} look */
   constructor(session, look) {
     super(session);
     this.look = look;
   }
 
+  /** @param {Mouse} mouse */
   press(mouse) {
     const {session} = this;
     const target = this.#target(mouse);
     if (target) this.paint(session.at, target);
   }
 
+  /** @param {Mouse} mouse */
   move(mouse) { this.hover(this.session.at, this.#target(mouse)); }
 
-  /** Shows what painting would do. @param {import('./plan.js').Ref|null} ref */
+  /**
+   * Shows what painting would do.
+   * @param {number} at
+   * @param {Ref|null} ref
+   */
   hover(at, ref) {
     const key = ref ? `${at}${ref.kind}${ref.id}` : '';
-    if (key === this.hovered) return;
-    this.hovered = key;
+    if (key === this.#hovered) return;
+    this.#hovered = key;
     const {session} = this;
     session.preview(ref ? update(session.history.plan, at, ref, this.look) : null);
   }
 
+  /** @param {number} at @param {Ref} ref */
   paint(at, ref) {
     const {session} = this;
     session.commit(update(session.history.plan, at, ref, this.look),
-      `${this.look.texture ? 'texture' : 'colour'} of ${NAMES[ref.kind]}`);
+      `set ${this.look.texture ? 'texture' : 'color'} of ${NAMES[ref.kind]}`);
     session.endTool();
   }
 
@@ -195,6 +272,7 @@ export class PaintTool extends Tool {
     return false;
   }
 
+  /** @param {Mouse} mouse */
   #target(mouse) {
     const {session} = this;
     const ref = hitOf(session.history.plan, session.at, mouse.point, {tolerance: mouse.tolerance})?.ref;
@@ -202,5 +280,6 @@ export class PaintTool extends Tool {
   }
 }
 
+/** @param {{kind: Kind}} options */
 export const paintable = ({kind}) => ['walls', 'stairs', 'floors'].includes(kind);
 

@@ -1,7 +1,8 @@
 /**
  * Windows over the page: a title, a content, buttons. Escape and the cross answer as Cancel does.
  */
-import {h} from './dom.js';
+import {RequestError} from '../connection.js';
+import {closestTo, elementsOf, h} from './dom.js';
 import {icon} from './icons.js';
 
 let numbers = 0;
@@ -9,8 +10,8 @@ let numbers = 0;
 /**
  * @typedef {Object} DialogButton
  * @property {string} title
- * @property {any} [value]   the dialog closes with it
- * @property {() => (any|Promise<any>)} [run] asked first; the dialog stays open on false
+ * @property {unknown} [value]   the dialog closes with it
+ * @property {() => unknown} [run]  called first, may return a promise; the dialog stays open on false
  * @property {boolean} [primary]  Enter in a field presses it
  * @property {boolean} [danger]
  */
@@ -40,6 +41,7 @@ export class Dialog {
       'form',
       {
         novalidate: true,
+        /** @param {Event} event */
         onsubmit: (event) => {
           event.preventDefault();
           if (primary) this.#press(primary);
@@ -77,6 +79,7 @@ export class Dialog {
       // The page's hotkeys are not for what is typed here.
       event.stopPropagation();
     });
+    /** @type {Promise<unknown>} */
     this.closed = new Promise((resolve) => {
       this.#resolve = resolve;
     });
@@ -85,32 +88,35 @@ export class Dialog {
 
   #note;
   #buttons;
-  #resolve;
+  /** @type {(value: unknown) => void} */
+  #resolve = () => {};
+  /** What had the focus before. @type {Element|null} */
   #before = null;
 
-  /** Opens it. @returns {Promise<any>} the value of the button that closed it, or undefined */
+  /** Opens it. @returns {Promise<unknown>} the value of the button that closed it, or undefined */
   open() {
     this.#before = document.activeElement;
     document.body.append(this.element);
     if (this.modal) this.element.showModal();
     else this.element.show();
     const first =
-      this.element.querySelector('[autofocus]') ??
-      this.element.querySelector('.dialog-body input, .dialog-body select') ??
+      elementsOf(this.element, '[autofocus]')[0] ??
+      elementsOf(this.element, '.dialog-body input, .dialog-body select')[0] ??
       this.#buttons[0];
     first?.focus();
     return this.closed;
   }
 
+  /** @param {unknown} value */
   close(value) {
     if (!this.element.isConnected) return;
     this.element.close();
     this.element.remove();
-    this.#before?.focus?.();
+    if (this.#before instanceof HTMLElement) this.#before.focus();
     this.#resolve(value);
   }
 
-  /** Says in the dialog what is wrong; '' takes it back. */
+  /** Says in the dialog what is wrong; '' takes it back. @param {string} text */
   say(text) {
     this.#note.hidden = !text;
     this.#note.textContent = text;
@@ -118,9 +124,10 @@ export class Dialog {
 
   /** Presses the primary button, as a double click on a list does. */
   submit() {
-    this.element.querySelector('form').requestSubmit();
+    this.element.querySelector('form')?.requestSubmit();
   }
 
+  /** @param {DialogButton} button */
   async #press(button) {
     if (!button.run) {
       this.close(button.value);
@@ -142,10 +149,13 @@ export class Dialog {
   }
 }
 
-/** What a refused request says: the first issue with its place, or the error's words. */
+/**
+ * What a refused request says: the first issue with its place, or the error's words.
+ * @param {unknown} fault
+ */
 export function faultText(fault) {
-  const issue = fault?.issues?.[0];
-  if (!issue) return fault?.message ?? String(fault);
+  const issue = fault instanceof RequestError ? fault.issues[0] : undefined;
+  if (!issue) return fault instanceof Error ? fault.message : String(fault);
   const place = issue.file ? ` (${issue.file}${issue.line ? `:${issue.line}` : ''})` : '';
   return `${issue.message}${place}${issue.hint ? ` ${issue.hint}` : ''}`;
 }
@@ -156,24 +166,31 @@ export function faultText(fault) {
  * @param {string} title
  * @param {string} text
  * @param {DialogButton[]} buttons
- * @returns {Promise<any>} the value of the button, undefined for Escape
+ * @returns {Promise<unknown>} the value of the button, undefined for Escape
  */
 export function ask(title, text, buttons) {
   const content = [h('p', {text})];
   return new Dialog({title, content, buttons, name: 'question'}).open();
 }
 
-/** A labelled field of a dialog. */
+/**
+ * A labelled field of a dialog.
+ * @param {string} label
+ * @param {Node} input
+ * @param {Node} [more]
+ */
 export function labelled(label, input, more) {
   return h('label', {class: 'dialog-field'}, h('span', {text: label}), input, more);
 }
 
+/** @param {HTMLElement} element @param {HTMLElement} handle */
 function movable(element, handle) {
   handle.addEventListener('pointerdown', (event) => {
-    if (event.button !== 0 || event.target.closest('button')) return;
+    if (event.button !== 0 || closestTo(event, 'button')) return;
     const box = element.getBoundingClientRect();
     const offset = [event.clientX - box.left, event.clientY - box.top];
     handle.setPointerCapture(event.pointerId);
+    /** @param {PointerEvent} moved */
     const move = (moved) => {
       const left = Math.min(Math.max(moved.clientX - offset[0], 0), window.innerWidth - 80);
       const top = Math.min(Math.max(moved.clientY - offset[1], 0), window.innerHeight - 40);

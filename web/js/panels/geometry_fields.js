@@ -1,6 +1,15 @@
 /** The fields of each kind of geometry, with paths below `geometry`. Pure. */
+/** @import {Field} from './property_fields.js' */
 
+/** @type {Partial<Field>} */
 const positive = {above: 0};
+/**
+ * @param {string} name
+ * @param {string} label
+ * @param {string} [unit]
+ * @param {Partial<Field>} [more]
+ * @returns {Field}
+ */
 const number = (name, label, unit = 'm', more = positive) => ({
   path: `geometry.${name}`,
   label,
@@ -8,6 +17,14 @@ const number = (name, label, unit = 'm', more = positive) => ({
   unit,
   ...more,
 });
+/**
+ * @param {string} name
+ * @param {string} label
+ * @param {string[]} parts
+ * @param {string} [unit]
+ * @param {Partial<Field>} [more]
+ * @returns {Field}
+ */
 const vector = (name, label, parts, unit = 'm', more = {}) => ({
   path: `geometry.${name}`,
   label,
@@ -16,6 +33,13 @@ const vector = (name, label, parts, unit = 'm', more = {}) => ({
   unit,
   ...more,
 });
+/**
+ * @param {string} name
+ * @param {string} label
+ * @param {Field['type']} [type]
+ * @param {Partial<Field>} [more]
+ * @returns {Field}
+ */
 const fixed = (name, label, type = 'text', more = {}) => ({
   path: `geometry.${name}`,
   label,
@@ -27,6 +51,7 @@ const fixed = (name, label, type = 'text', more = {}) => ({
 const XYZ = ['x', 'y', 'z'];
 const RADIUS_LENGTH = [number('radius', 'radius'), number('length', 'length')];
 
+/** @type {Record<string, Field[]>} */
 const TABLE = {
   box: [vector('size', 'size', XYZ, 'm', positive)],
   sphere: [number('radius', 'radius')],
@@ -39,7 +64,7 @@ const TABLE = {
     fixed('uri', 'file'),
     vector('scale', 'scale', XYZ, ''),
     fixed('submesh', 'submesh'),
-    fixed('center', 'centred', 'flag'),
+    fixed('center', 'center submesh', 'flag'),
   ],
   heightmap: [
     fixed('uri', 'file'),
@@ -60,6 +85,7 @@ const TABLE = {
 /** What a shape may be turned into by choosing another type: those that need no file. */
 const SIMPLE = ['box', 'sphere', 'cylinder', 'capsule', 'cone', 'ellipsoid'];
 
+/** @type {Record<string, object>} */
 const UNIT = {
   box: {size: [1, 1, 1]},
   sphere: {radius: 0.5},
@@ -69,17 +95,18 @@ const UNIT = {
   ellipsoid: {radii: [0.5, 0.5, 0.5]},
 };
 
-/** A simple shape of unit size. */
+/** A simple shape of unit size. @param {string} type */
 export function unitGeometry(type) {
   return {type, ...UNIT[type]};
 }
 
 /**
  * @param {{type: string}} geometry
- * @returns {import('./properties_table.js').Field[]}
+ * @returns {import('./property_fields.js').Field[]}
  */
 export function geometryFields(geometry) {
   const simple = SIMPLE.includes(geometry.type);
+  /** @type {Field} */
   const type = {
     path: 'geometry.type',
     label: 'geometry',

@@ -5,6 +5,7 @@
 const SVG = 'http://www.w3.org/2000/svg';
 
 /** Path data by name; `fill:` in front means a filled shape, else a line. */
+/** @type {Record<string, string[]>} */
 const SHAPES = {
   select: ['fill:M5 2.5v13l3.4-3 2.1 5 2.2-.9-2.1-4.9 4.4-.4z'],
   translate: [
@@ -118,7 +119,7 @@ export function icon(name, size = 18) {
     'aria-hidden': 'true',
     class: 'icon',
   }))
-    svg.setAttribute(key, value);
+    svg.setAttribute(key, String(value));
   for (const shape of shapes) {
     const path = document.createElementNS(SVG, 'path');
     const filled = shape.startsWith('fill:');

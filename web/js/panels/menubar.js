@@ -1,5 +1,5 @@
 /** The menu bar: arrow keys walk along it, an open menu follows the mouse. */
-import {fill, h, roving} from './dom.js';
+import {elementsOf, fill, h, roving} from './dom.js';
 import {closePopup, menuList, openPopup} from './popup.js';
 
 /**
@@ -7,6 +7,7 @@ import {closePopup, menuList, openPopup} from './popup.js';
  * @param {{title: string, items: () => import('./popup.js').MenuItem[]}[]} menus
  */
 export function mountMenuBar(element, menus) {
+  /** @type {number|null} */
   let open = null;
   const buttons = menus.map((menu) =>
     h('button', {
@@ -18,10 +19,12 @@ export function mountMenuBar(element, menus) {
       text: menu.title,
     }),
   );
+  /** @param {number} at */
   const show = (at) => {
     const button = buttons[at];
-    const close = openPopup(
-      menuList(menus[at].items(), () => close(), menus[at].title),
+    const list = menuList(menus[at].items(), closePopup, menus[at].title);
+    openPopup(
+      list,
       {
         anchor: button,
         onClose: () => {
@@ -32,10 +35,9 @@ export function mountMenuBar(element, menus) {
     );
     open = at;
     button.setAttribute('aria-expanded', 'true');
-    const list = document.querySelector('.popup .menu');
-    list.querySelector('[role^="menuitem"]:not(:disabled)')?.focus();
+    elementsOf(list, '[role^="menuitem"]:not(:disabled)')[0]?.focus();
     list.addEventListener('keydown', (event) => {
-      const step = {ArrowLeft: -1, ArrowRight: 1}[event.key];
+      const step = event.key === 'ArrowLeft' ? -1 : event.key === 'ArrowRight' ? 1 : 0;
       if (!step) return;
       event.preventDefault();
       event.stopPropagation();

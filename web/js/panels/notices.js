@@ -2,9 +2,11 @@
  * What the simulator has to say: a short card for each issue, and a list that keeps them all, each
  * with its file and line.
  */
+import {RequestError} from '../connection.js';
 import {fill, h} from './dom.js';
 import {faultText} from './dialog.js';
 import {icon} from './icons.js';
+/** @import {Issue} from '../connection.js' */
 
 const SECONDS = {error: 12, warning: 8, note: 4};
 const KEPT = 500;
@@ -14,6 +16,7 @@ export class Notices {
   /** @param {HTMLElement} element where the cards appear */
   constructor(element) {
     this.element = element;
+    /** @type {{issue: Issue, count: number, at: Date}[]} */
     this.entries = [];
     this.unseen = 0;
     this.badge = h('span', {class: 'badge', hidden: true});
@@ -47,8 +50,7 @@ export class Notices {
   #list;
 
   /**
-   * @param {{severity?: string, message: string, file?: string, line?: number, xpath?: string,
-   *   hint?: string, code?: string}} issue
+   * @param {Issue} issue
    */
   add(issue) {
     const last = this.entries[0];
@@ -61,27 +63,31 @@ export class Notices {
     if (!again) this.#card(issue);
   }
 
-  /** A word in passing: a path that was saved, an action that makes no sense now. */
+  /**
+   * A word in passing: a path that was saved, an action that makes no sense now.
+   * @param {string} message
+   */
   say(message) {
-    this.add({severity: 'note', message});
+    this.add({severity: 'note', code: 'editor', message});
   }
 
-  /** What came back of a refused request. */
+  /** What came back of a refused request. @param {unknown} fault */
   fault(fault) {
-    const issues = fault?.issues;
-    if (issues?.length) issues.forEach((issue) => this.add(issue));
-    else this.add({severity: 'error', message: faultText(fault)});
+    if (fault instanceof RequestError) fault.issues.forEach((issue) => this.add(issue));
+    else this.add({severity: 'error', code: 'editor', message: faultText(fault)});
   }
 
+  /** @param {number} count */
   #markUnseen(count) {
     this.unseen = count;
     this.badge.hidden = count === 0;
     this.badge.textContent = count > 99 ? '99+' : String(count);
   }
 
+  /** @param {Issue} issue */
   #card(issue) {
     const severity = issue.severity ?? 'error';
-    const close = () => card.remove();
+    const close = () => { card.remove(); };
     const card = h(
       'div',
       {class: `notice ${severity}`},
@@ -99,7 +105,7 @@ export class Notices {
       timer = setTimeout(close, 3000);
     });
     this.element.append(card);
-    while (this.element.childElementCount > CARDS) this.element.firstChild.remove();
+    while (this.element.childElementCount > CARDS) this.element.firstElementChild?.remove();
   }
 
   #toggle() {
@@ -109,7 +115,7 @@ export class Notices {
     if (show) {
       this.#markUnseen(0);
       this.#showList();
-      this.#list.querySelector('button').focus();
+      this.#list.querySelector('button')?.focus();
     } else this.button.focus();
   }
 
@@ -151,15 +157,17 @@ export class Notices {
               ),
             ),
           )
-        : h('p', {class: 'empty', text: 'Nothing was reported.'}),
+        : h('p', {class: 'empty', text: 'No messages'}),
     );
   }
 }
 
+/** @param {string} severity */
 function glyph(severity) {
   return {error: 'error', warning: 'warning'}[severity] ?? 'info';
 }
 
+/** @param {Issue} issue */
 function body(issue) {
   const place = issue.file ? `${issue.file}${issue.line ? `:${issue.line}` : ''}` : '';
   return h(

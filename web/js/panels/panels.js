@@ -3,27 +3,28 @@
  * actions; what they show of the world is what the simulator last said.
  *
  * @typedef {Object} Page  what the panels hand to each other
- * @property {import('../store.js').Store} store
- * @property {any} actions
- * @property {import('../connection.js').Connection} connection
- * @property {(type: string, fields?: object) => Promise<any>} request  rejects with RequestError
- * @property {import('../watches.js').Watches} watches
+ * @property {Store} store
+ * @property {Actions} actions
+ * @property {Connection} connection
+ * @property {RequestFunction} request
+ * @property {Watches} watches
  * @property {Notices} notices
  * @property {ReturnType<typeof mountTheme>} theme
- * @property {any} view  null until it is there, and where there is no WebGL
+ * @property {PageView|null} view  null until it is there
+ * @property {Requests['hello']['reply']} [about]  what the server said of itself
  */
-import {HOTKEYS} from '../keys.js';
+import {HOTKEYS} from '../hotkeys.js';
 import {ask} from './dialog.js';
-import {aboutDialog, hotkeyDialog} from './dialogs/about.js';
-import {newWorld, openDialog, saveAsDialog} from './dialogs/files.js';
-import {forceDialog} from './dialogs/force.js';
-import {logsDialog} from './dialogs/logs.js';
-import {fill, h, remembered, roving} from './dom.js';
-import {InsertTab} from './insert.js';
-import {JointsPanel} from './joints.js';
-import {mountLayers} from './layers.js';
+import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
+import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
+import {forceDialog} from './dialogs/force_dialog.js';
+import {logsDialog} from './dialogs/log_dialog.js';
+import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
+import {InsertTab} from './insert_tab.js';
+import {JointsPanel} from './joints_panel.js';
+import {mountLayers} from './layers_tab.js';
 import {mountMenuBar} from './menubar.js';
-import {contextMenu, menus} from './menus.js';
+import {contextMenu, menus} from './menu_items.js';
 import {Notices} from './notices.js';
 import {Plots} from './plots.js';
 import {openMenu} from './popup.js';
@@ -31,7 +32,18 @@ import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
 import {mountToolBar} from './toolbar.js';
-import {WorldTab} from './world.js';
+import {WorldTab} from './world_tab.js';
+/** @import {Actions, DialogName, DialogRequest} from '../actions.js' */
+/** @import {AutosavePush, Requests} from '../protocol.js' */
+/** @import {Connection, RequestFunction} from '../connection.js' */
+/** @import {SceneView} from '../view/view.js' */
+/** @import {Store} from '../store.js' */
+/** @import {Watches} from '../watches.js' */
+
+/**
+ * What the panels ask of the view, which may be without a picture.
+ * @typedef {Pick<SceneView, 'fps'|'available'|'thumbnail'|'redraw'>} PageView
+ */
 
 /**
  * @param {Document} document
@@ -39,30 +51,31 @@ import {WorldTab} from './world.js';
  * @returns {Page}
  */
 export function mountPanels(document, parts) {
-  const element = (id) => document.getElementById(id);
   const page = Object.assign(parts, {
+    /** @type {RequestFunction} */
     request: (type, fields) => parts.connection.request(type, fields),
-    notices: new Notices(element('notices')),
+    notices: new Notices(byId('notices')),
     theme: mountTheme(),
   });
-  mountMenuBar(element('menubar'), menus(page));
-  mountToolBar(element('toolbar'), page);
-  const tabs = mountTabs(element('left'), page);
-  new TimeBar(element('timebar'), page);
+  mountMenuBar(byId('menubar'), menus(page));
+  mountToolBar(byId('toolbar'), page);
+  const tabs = mountTabs(byId('left'), page);
+  new TimeBar(byId('timebar'), page);
   const windows = new Windows(page, tabs);
-  page.store.addEventListener('dialog', (event) => windows.show(event.detail));
-  page.store.addEventListener('contextmenu', ({detail: {name, x, y}}) => {
+  page.store.listen('dialog', (event) => windows.show(event.detail));
+  page.store.listen('contextmenu', ({detail: {name, x, y}}) => {
+    if (name === null) return;
     const items = contextMenu(page, name);
     if (items.length) openMenu(items, {x, y, label: name});
   });
-  page.store.addEventListener('issue', (event) => page.notices.add(event.detail));
-  page.store.addEventListener('autosave', (event) => offerRestore(page, event.detail));
-  page.store.addEventListener('shutdown', (event) =>
+  page.store.listen('issue', (event) => page.notices.add(event.detail));
+  page.store.listen('autosave', (event) => offerRestore(page, event.detail));
+  page.store.listen('shutdown', (event) =>
     page.notices.say(
-      `The simulator has ended${event.detail.reason ? `: ${event.detail.reason}` : ''}.`,
+      `The simulator has shut down${event.detail.reason ? `: ${event.detail.reason}` : ''}.`,
     ),
   );
-  mountConnectionNote(element('centre'), page);
+  mountConnectionNote(byId('centre'), page);
   return page;
 }
 
@@ -72,6 +85,7 @@ const TABS = [
   ['layers', 'Layers'],
 ];
 
+/** @param {HTMLElement} element @param {Page} page */
 function mountTabs(element, page) {
   const panels = TABS.map(([name]) =>
     h('section', {
@@ -96,6 +110,7 @@ function mountTabs(element, page) {
   const world = new WorldTab(panels[0], page);
   const insert = new InsertTab(panels[1], page);
   mountLayers(panels[2], page);
+  /** @param {number} at */
   const show = (at) => {
     buttons.forEach((button, index) => button.setAttribute('aria-selected', String(index === at)));
     panels.forEach((panel, index) => {
@@ -105,16 +120,20 @@ function mountTabs(element, page) {
   };
   show(0);
   roving(bar, '[role=tab]').settle();
-  splitter(document.getElementById('left-splitter'), {
+  splitter(byId('left-splitter'), {
     key: 'left-width',
     initial: 292,
     min: 200,
     max: 560,
     from: 'left',
-    within: document.getElementById('app'),
-    apply: (size) => document.getElementById('app').style.setProperty('--left-width', `${size}px`),
+    within: byId('app'),
+    apply: (size) => byId('app').style.setProperty('--left-width', `${size}px`),
   });
-  return {world, show: (name) => show(TABS.findIndex((tab) => tab[0] === name))};
+  return {
+    world,
+    /** @param {string} name */
+    show: (name) => show(TABS.findIndex((tab) => tab[0] === name)),
+  };
 }
 
 /** The parts of the window that F6 visits, each with what takes the focus there. */
@@ -129,17 +148,15 @@ const REGIONS = [
   '#timebar [tabindex="0"]',
 ];
 
-/** Moves the focus to the next part of the window that is there. */
+/** Moves the focus to the next part of the window that is there. @param {number} step */
 function goToRegion(step) {
-  const shown = REGIONS.map((selector) =>
-    [...document.querySelectorAll(selector)].find((element) => element.offsetParent !== null),
-  ).filter(Boolean);
-  const parts = shown.map((element) =>
-    element.closest('#menubar, #toolbar, .world-tree, .properties, #view, #dock, #right, #timebar'),
-  );
-  const at = parts.findIndex((part) => part.contains(document.activeElement));
+  const shown = REGIONS.flatMap((selector) =>
+    elementsOf(document, selector).find((element) => element.offsetParent !== null) ?? []);
+  const at = shown.findIndex((element) => element.closest(
+    '#menubar, #toolbar, .world-tree, .properties, #view, #dock, #right, #timebar',
+  )?.contains(document.activeElement));
   const from = at < 0 && step < 0 ? 0 : at;
-  shown[(from + step + shown.length) % shown.length].focus();
+  shown[(from + step + shown.length) % shown.length]?.focus();
 }
 
 /** The dialogs and docked windows, by the names that actions ask for them. */
@@ -151,27 +168,31 @@ class Windows {
   constructor(page, tabs) {
     this.page = page;
     this.tabs = tabs;
-    this.joints = new JointsPanel(document.getElementById('right'), page);
-    splitter(document.getElementById('right-splitter'), {
+    this.joints = new JointsPanel(byId('right'), page);
+    splitter(byId('right-splitter'), {
       key: 'right-width',
       initial: 300,
       min: 220,
       max: 560,
       from: 'right',
-      within: document.getElementById('app'),
+      within: byId('app'),
       apply: (size) =>
-        document.getElementById('app').style.setProperty('--right-size', `${size}px`),
+        byId('app').style.setProperty('--right-size', `${size}px`),
     });
     if (remembered.get('joints-shown', false)) this.#toggleJoints();
   }
 
+  /** @type {{panel: Plots, bar: HTMLElement}|null} */
   #plots = null;
-  #open = new Map();
+  /** Names of the windows that are being opened. @type {Set<DialogName>} */
+  #open = new Set();
+  /** @type {{close: () => Promise<boolean>}|null} */
   #building = null;
 
-  /** @param {{name: string}} detail */
+  /** @param {DialogRequest} detail */
   show(detail) {
-    const run = {
+    /** @type {Record<DialogName, () => unknown>} */
+    const windows = {
       open: () => this.#files(openDialog, 'Opened'),
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
       newWorld: () => newWorld(this.page),
@@ -187,15 +208,17 @@ class Windows {
       rename: () => this.#inWorld((world) => world.rename()),
       nextRegion: () => goToRegion(1),
       previousRegion: () => goToRegion(-1),
-    }[detail.name];
+    };
+    const run = windows[detail.name];
     if (!run || this.#open.has(detail.name)) return;
     // A key that repeats must not stack the same window.
-    this.#open.set(detail.name, true);
+    this.#open.add(detail.name);
     Promise.resolve(run())
       .catch((fault) => this.page.notices.fault(fault))
       .finally(() => this.#open.delete(detail.name));
   }
 
+  /** @param {(world: WorldTab) => void} run */
   #inWorld(run) {
     document.body.classList.remove('bare');
     this.tabs.show('world');
@@ -207,13 +230,14 @@ class Windows {
     return selection[selection.length - 1] ?? '';
   }
 
+  /** @param {(page: Page) => Promise<string|undefined>} dialog @param {string} done */
   async #files(dialog, done) {
     const path = await dialog(this.page);
     if (path) this.page.notices.say(`${done} ${path}`);
   }
 
   #togglePlots() {
-    const dock = document.getElementById('dock');
+    const dock = byId('dock');
     if (!this.#plots) {
       const bar = lyingBar('Height of the plots');
       dock.before(bar);
@@ -223,30 +247,31 @@ class Windows {
         min: 120,
         max: 600,
         from: 'bottom',
-        within: document.getElementById('centre'),
+        within: byId('centre'),
         apply: (size) => dock.style.setProperty('--dock-height', `${size}px`),
       });
       this.#plots = {panel: new Plots(dock, this.page, () => this.#togglePlots()), bar};
       bar.hidden = true;
     }
+    const {panel, bar} = this.#plots;
     dock.hidden = !dock.hidden;
-    this.#plots.bar.hidden = dock.hidden;
+    bar.hidden = dock.hidden;
     if (!dock.hidden) {
-      this.#plots.panel.redraw();
-      dock.querySelector('input').focus();
+      panel.redraw();
+      dock.querySelector('input')?.focus();
     }
   }
 
   #toggleJoints() {
-    const right = document.getElementById('right');
+    const right = byId('right');
     right.hidden = !right.hidden;
-    document.getElementById('right-splitter').hidden = right.hidden;
+    byId('right-splitter').hidden = right.hidden;
     remembered.set('joints-shown', !right.hidden);
     this.joints.show(!right.hidden);
   }
 
   async #toggleBuilding() {
-    const element = document.getElementById('building');
+    const element = byId('building');
     if (this.#building) {
       const closed = await this.#building.close();
       if (closed === false) return;
@@ -255,7 +280,7 @@ class Windows {
       document.body.classList.remove('building');
       return;
     }
-    const {mount} = await import('../building/building.js');
+    const {mount} = await import('../building/building_editor.js');
     element.hidden = false;
     document.body.classList.add('building');
     const {store, request, actions} = this.page;
@@ -266,27 +291,31 @@ class Windows {
         this.#building = null;
         element.hidden = true;
         document.body.classList.remove('building');
-        document.getElementById('view').focus();
+        byId('view').focus();
       },
       {once: true},
     );
   }
 }
 
-/** Changes that no file has, from before a crash or an end without saving. */
+/**
+ * Changes that no file has, from before a crash or an end without saving.
+ * @param {Page} page
+ * @param {AutosavePush} autosavePush
+ */
 async function offerRestore(page, {found, file, time}) {
   if (!found) return;
   const when = time ? ` of ${new Date(time * 1000).toLocaleString()}` : '';
   const choice = await ask(
     'Restore unsaved changes?',
-    `There are changes${when}${file ? ` to ${file}` : ''} that were never saved.`,
+    `Unsaved changes${file ? ` to ${file}` : ''}${when} were found.`,
     [
       {title: 'Discard', value: 'discard', danger: true},
       {title: 'Later'},
       {title: 'Restore', value: 'restore', primary: true},
     ],
   );
-  if (!choice) return;
+  if (choice !== 'discard' && choice !== 'restore') return;
   try {
     await page.request('autosave', {action: choice});
   } catch (fault) {
@@ -294,6 +323,7 @@ async function offerRestore(page, {found, file, time}) {
   }
 }
 
+/** @param {HTMLElement} element @param {Page} page */
 function mountConnectionNote(element, {store}) {
   const note = h('div', {class: 'connection-note', role: 'status', hidden: true});
   element.append(note);
@@ -302,10 +332,10 @@ function mountConnectionNote(element, {store}) {
     begun ||= store.connected;
     note.hidden = store.connected;
     note.textContent = begun
-      ? 'The connection to the simulator is lost. Trying again…'
+      ? 'Connection to the simulator lost. Reconnecting…'
       : 'Connecting to the simulator…';
   };
-  store.addEventListener('connection', show);
+  store.listen('connection', show);
   // A page that connects at once need not say so.
   setTimeout(show, 600);
 }

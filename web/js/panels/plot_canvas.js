@@ -1,6 +1,6 @@
 /** Draws curves with their axes onto a canvas. */
 import {themeColor} from './dom.js';
-import {numberText} from './format.js';
+import {numberText} from './text_format.js';
 import {extent, ticks} from './plot_data.js';
 
 /** Told apart by eyes that see no red or green as well; readable on dark and light. */
@@ -15,6 +15,13 @@ export const CURVE_COLORS = [
   '#2fa7a7',
 ];
 
+/** @typedef {{series: import('./plot_data.js').Series, color: string}} Curve */
+/**
+ * Where the curves are drawn, px.
+ * @typedef {{left: number, top: number, width: number, height: number}} PlotBox
+ */
+/** What the axes show. @typedef {{from: number, to: number, low: number, high: number}} Range */
+
 const LEFT = 62;
 const BOTTOM = 22;
 const TOP = 8;
@@ -22,7 +29,7 @@ const RIGHT = 10;
 
 /**
  * @param {HTMLCanvasElement} canvas
- * @param {{series: import('./plot_data.js').Series, color: string}[]} curves
+ * @param {Curve[]} curves
  * @param {{span: number|null, cursor: number|null, now: number}} options  `cursor`: px from the
  *   left, where the values are read off; `now`: sim time, s
  */
@@ -33,6 +40,7 @@ export function drawPlot(canvas, curves, {span, cursor, now}) {
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round(height * ratio);
   const pen = canvas.getContext('2d');
+  if (!pen) return;
   pen.scale(ratio, ratio);
   pen.fillStyle = themeColor('panel-2');
   pen.fillRect(0, 0, width, height);
@@ -45,11 +53,13 @@ export function drawPlot(canvas, curves, {span, cursor, now}) {
   if (!range) {
     pen.fillStyle = themeColor('text-faint');
     pen.textAlign = 'center';
-    pen.fillText(curves.length ? 'No values yet' : 'Drop a variable here', width / 2, height / 2);
+    pen.fillText(curves.length ? 'No data yet' : 'Drop a variable here', width / 2, height / 2);
     return;
   }
   const box = {left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - BOTTOM};
+  /** @param {number} time */
   const across = (time) => box.left + ((time - range.from) / (range.to - range.from)) * box.width;
+  /** @param {number} value */
   const down = (value) => box.top + ((range.high - value) / (range.high - range.low)) * box.height;
   drawAxes(pen, box, range, across, down);
   pen.save();
@@ -64,12 +74,25 @@ export function drawPlot(canvas, curves, {span, cursor, now}) {
   }
 }
 
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {PlotBox} box
+ * @param {Range} range
+ * @param {(value: number) => number} across
+ * @param {(value: number) => number} down
+ */
 function drawAxes(pen, box, range, across, down) {
   pen.strokeStyle = themeColor('line');
   pen.fillStyle = themeColor('text-soft');
   pen.lineWidth = 1;
   pen.textAlign = 'center';
   pen.textBaseline = 'top';
+  /**
+   * @param {number} fromX
+   * @param {number} fromY
+   * @param {number} toX
+   * @param {number} toY
+   */
   const line = (fromX, fromY, toX, toY) => {
     pen.beginPath();
     pen.moveTo(fromX, fromY);
@@ -90,7 +113,15 @@ function drawAxes(pen, box, range, across, down) {
   }
 }
 
-/** One point for each pixel column's lowest and highest value: long curves stay quick to draw. */
+/**
+ * One point for each pixel column's lowest and highest value: long curves stay quick to draw.
+ * @param {CanvasRenderingContext2D} pen
+ * @param {Curve} curve
+ * @param {Range} range
+ * @param {(value: number) => number} across
+ * @param {(value: number) => number} down
+ * @param {number} width
+ */
 function drawCurve(pen, {series, color}, range, across, down, width) {
   const {times, values} = series;
   const step = (range.to - range.from) / Math.max(1, width);
@@ -122,6 +153,14 @@ function drawCurve(pen, {series, color}, range, across, down, width) {
   pen.stroke();
 }
 
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {PlotBox} box
+ * @param {Curve[]} curves
+ * @param {number} time
+ * @param {(value: number) => number} across
+ * @param {(value: number) => number} down
+ */
 function drawCursor(pen, box, curves, time, across, down) {
   const x = across(time);
   pen.strokeStyle = themeColor('text-soft');

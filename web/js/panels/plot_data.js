@@ -1,6 +1,7 @@
 /**
  * Curves of numbers over sim time: what is kept, how the axes are divided, what is exported. Pure.
  */
+/** @import {World} from '../protocol.js' */
 
 /** The most samples of a curve that are kept; the oldest half goes when there are more. */
 export const KEPT = 20000;
@@ -19,6 +20,8 @@ export class Series {
   /**
    * Adds a sample. Time that runs back (a reset) begins the curve anew; a sample of the same time
    * replaces the last.
+   * @param {number} time
+   * @param {number} value
    */
   add(time, value) {
     const last = this.times.length - 1;
@@ -40,14 +43,21 @@ export class Series {
     this.values.length = 0;
   }
 
-  /** The value at a time, or the last one before it; undefined before the first. */
+  /**
+   * The value at a time, or the last one before it; undefined before the first.
+   * @param {number} time
+   */
   at(time) {
     const index = upper(this.times, time) - 1;
     return index >= 0 ? this.values[index] : undefined;
   }
 }
 
-/** How many of the ascending numbers are at most `limit`. */
+/**
+ * How many of the ascending numbers are at most `limit`.
+ * @param {number[]} numbers
+ * @param {number} limit
+ */
 function upper(numbers, limit) {
   let low = 0;
   let high = numbers.length;
@@ -97,7 +107,7 @@ export function extent(series, span, now = -Infinity) {
 export function ticks(low, high, most) {
   const rough = (high - low) / Math.max(1, most);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= rough * 0.999);
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= rough * 0.999) ?? 10 * power;
   const result = [];
   for (let at = Math.ceil(low / step - 1e-9); at * step <= high + step * 1e-9; at += 1) {
     result.push(Number((at * step).toPrecision(12)));
@@ -113,6 +123,7 @@ export function ticks(low, high, most) {
  */
 export function csvOf(series) {
   const times = [...new Set(series.flatMap((one) => one.times))].sort((a, b) => a - b);
+  /** @param {string} text */
   const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const maps = series.map((one) => new Map(one.times.map((time, at) => [time, one.values[at]])));
   const rows = times.map((time) => [time, ...maps.map((map) => map.get(time) ?? '')].join(','));
@@ -125,12 +136,13 @@ const STATE = ['x', 'y', 'z', 'roll', 'pitch', 'yaw', 'vx', 'vy', 'vz', 'wx', 'w
 /**
  * Everything of a world that can be plotted, by owner.
  *
- * @param {any} document
+ * @param {World|null} document
  * @returns {{owner: string, variables: string[]}[]}
  */
 export function variablesOf(document) {
   const groups = [{owner: 'Simulation', variables: ['sim_time', 'real_time_factor', 'iterations']}];
   for (const model of document?.models ?? []) {
+    /** @param {string} name */
     const of = (name) => STATE.map((part) => `${name}.${part}`);
     const variables = of(model.name);
     if (model.links.length > 1) {

@@ -7,7 +7,10 @@ import {fill, h, onActivate, onceAFrame, roving} from './dom.js';
 import {icon} from './icons.js';
 import {CURVE_COLORS, drawPlot} from './plot_canvas.js';
 import {csvOf, Series, variablesOf} from './plot_data.js';
+/** @import {Curve} from './plot_canvas.js' */
+/** @import {WatchPush} from '../protocol.js' */
 
+/** The time spans to choose from, s; null: all. @type {[string, number|null][]} */
 const SPANS = [
   ['5 s', 5],
   ['10 s', 10],
@@ -17,6 +20,9 @@ const SPANS = [
 ];
 const SHOWN = 300;
 
+/** The samples of a variable that canvases show. @typedef {{series: Series, uses: number, off: () => void,
+ * problem?: string|null}} Kept */
+
 export class Plots {
   /**
    * @param {HTMLElement} element
@@ -25,6 +31,7 @@ export class Plots {
    */
   constructor(element, page, close) {
     this.page = page;
+    /** @type {number|null} */
     this.span = 10;
     this.#search = h('input', {
       type: 'search',
@@ -45,6 +52,11 @@ export class Plots {
       },
       ...SPANS.map(([title, value]) => h('option', {text: title, selected: value === 10})),
     );
+    /**
+     * @param {string} glyph
+     * @param {string} text
+     * @param {() => void} run
+     */
     const tool = (glyph, text, run) =>
       h('button', {type: 'button', onclick: run}, icon(glyph, 14), text);
     const bar = h(
@@ -80,12 +92,12 @@ export class Plots {
     const palette = onceAFrame(() => {
       if (!element.hidden) this.#showPalette();
     });
-    page.store.addEventListener('watch', (event) => this.#take(event.detail));
-    page.store.addEventListener('stats', () => {
+    page.store.listen('watch', (event) => this.#take(event.detail));
+    page.store.listen('stats', () => {
       if (!element.hidden && this.#series.size) this.#draw();
     });
-    for (const event of ['document', 'entity', 'selection'])
-      page.store.addEventListener(event, palette);
+    for (const event of /** @type {const} */ (['document', 'entity', 'selection']))
+      page.store.listen(event, palette);
     new ResizeObserver(this.#draw).observe(this.#canvases);
     this.addCanvas();
     this.#showPalette();
@@ -95,8 +107,11 @@ export class Plots {
   #list;
   #canvases;
   #draw;
+  /** @type {Plot[]} */
   #plots = [];
+  /** @type {Map<string, Kept>} */
   #series = new Map();
+  /** @type {Plot|null} */
   #current = null;
 
   addCanvas() {
@@ -108,13 +123,16 @@ export class Plots {
     return plot;
   }
 
-  /** Variables that are double-clicked go to this canvas. */
+  /** Variables that are double-clicked go to this canvas. @param {Plot} plot */
   choose(plot) {
     this.#current = plot;
     for (const one of this.#plots) one.element.classList.toggle('current', one === plot);
   }
 
-  /** Asks for a variable, or finds it where another canvas shows it already. */
+  /**
+   * Asks for a variable, or finds it where another canvas shows it already.
+   * @param {string} variable
+   */
   series(variable) {
     let kept = this.#series.get(variable);
     if (!kept) {
@@ -129,14 +147,17 @@ export class Plots {
     return kept.series;
   }
 
+  /** @param {string} variable */
   release(variable) {
     const kept = this.#series.get(variable);
+    if (!kept) return;
     kept.uses -= 1;
     if (kept.uses) return;
     kept.off();
     this.#series.delete(variable);
   }
 
+  /** @param {Plot} plot */
   remove(plot) {
     this.#plots = this.#plots.filter((one) => one !== plot);
     plot.element.remove();
@@ -155,7 +176,7 @@ export class Plots {
 
   exportCsv() {
     const all = [...this.#series.values()].map(({series}) => series);
-    if (!all.length) this.page.notices.say('There is no curve to export.');
+    if (!all.length) this.page.notices.say('No curves to export');
     else saveBlob(new Blob([csvOf(all)], {type: 'text/csv'}), 'plot.csv');
   }
 
@@ -168,12 +189,13 @@ export class Plots {
     });
     let top = 0;
     for (const sheet of sheets) {
-      whole.getContext('2d').drawImage(sheet, 0, top);
+      whole.getContext('2d')?.drawImage(sheet, 0, top);
       top += sheet.height;
     }
-    whole.toBlob((blob) => saveBlob(blob, 'plot.png'), 'image/png');
+    whole.toBlob((blob) => blob && saveBlob(blob, 'plot.png'), 'image/png');
   }
 
+  /** @param {WatchPush} watchPush */
   #take({topic, time, value, problem}) {
     if (!topic.startsWith('plot:')) return;
     const kept = this.#series.get(topic.slice(5));
@@ -187,16 +209,16 @@ export class Plots {
 
   #showPalette() {
     const word = this.#search.value.trim().toLowerCase();
-    const chosen = new Set(this.page.store.selection.map((name) => name.split('::')[0]));
+    const chosen = new Set(this.page.store.selection.map((name) => this.page.store.split(name)[0]?.name));
     const groups = variablesOf(this.page.store.document).sort(
-      (a, b) => chosen.has(b.owner) - chosen.has(a.owner),
+      (a, b) => Number(chosen.has(b.owner)) - Number(chosen.has(a.owner)),
     );
     const found = groups.flatMap(({owner, variables}) =>
       variables
         .filter((variable) => !word || variable.toLowerCase().includes(word))
         .map((variable) => ({owner, variable})),
     );
-    let owner = null;
+    let owner = '';
     fill(
       this.#list,
       ...found.slice(0, SHOWN).flatMap((one) => {
@@ -205,13 +227,14 @@ export class Plots {
         return [head, this.#option(one.variable)];
       }),
       found.length > SHOWN &&
-        h('p', {class: 'empty', text: `and ${found.length - SHOWN} more: search for them`}),
+        h('p', {class: 'empty', text: `${found.length - SHOWN} more: refine the search`}),
     );
     if (!this.#list.querySelector('[tabindex="0"]')) {
       this.#list.querySelector('[role=option]')?.setAttribute('tabindex', '0');
     }
   }
 
+  /** @param {string} variable */
   #option(variable) {
     const option = h('div', {
       class: 'plot-variable',
@@ -220,11 +243,11 @@ export class Plots {
       draggable: true,
       text: variable,
       'aria-selected': String(this.#series.has(variable)),
-      title: 'Click, or drag onto a canvas',
-      ondragstart: (event) => event.dataTransfer.setData('text/x-variable', variable),
+      title: 'Click to plot, or drag onto a canvas',
+      ondragstart: (event) => event.dataTransfer?.setData('text/x-variable', variable),
     });
     onActivate(option, () => {
-      this.#current.add(variable);
+      this.#current?.add(variable);
       this.#showPalette();
     });
     return option;
@@ -234,7 +257,9 @@ export class Plots {
 class Plot {
   #owner;
   #legend;
+  /** @type {Curve[]} */
   #curves = [];
+  /** px from the left. @type {number|null} */
   #cursor = null;
 
   /** @param {Plots} owner */
@@ -248,11 +273,11 @@ class Plot {
         class: 'plot',
         onpointerdown: () => owner.choose(this),
         ondragover: (event) => {
-          if (event.dataTransfer.types.includes('text/x-variable')) event.preventDefault();
+          if (event.dataTransfer?.types.includes('text/x-variable')) event.preventDefault();
         },
         ondrop: (event) => {
           event.preventDefault();
-          this.add(event.dataTransfer.getData('text/x-variable'));
+          this.add(event.dataTransfer?.getData('text/x-variable') ?? '');
         },
       },
       this.#legend,
@@ -269,6 +294,7 @@ class Plot {
     this.#showLegend();
   }
 
+  /** @param {string} variable */
   add(variable) {
     if (!variable || this.#curves.some(({series}) => series.variable === variable)) return;
     const used = new Set(this.#curves.map(({color}) => color));
@@ -278,6 +304,7 @@ class Plot {
     this.#owner.redraw();
   }
 
+  /** @param {Curve} curve */
   #drop(curve) {
     this.#curves = this.#curves.filter((one) => one !== curve);
     this.#owner.release(curve.series.variable);
@@ -307,7 +334,7 @@ class Plot {
         ),
       ),
       !this.#curves.length &&
-        h('span', {class: 'soft', text: 'Click variables, or drop them here'}),
+        h('span', {class: 'soft', text: 'Click or drop variables to plot them'}),
       h('span', {class: 'spring'}),
       h(
         'button',
@@ -326,6 +353,7 @@ class Plot {
     );
   }
 
+  /** @param {number|null} span @param {number} now */
   draw(span, now) {
     drawPlot(this.canvas, this.#curves, {span, now, cursor: this.#cursor});
   }

@@ -9,10 +9,18 @@
  * @property {() => boolean} [enabled]
  * @property {MenuItem[]} [items]  a submenu
  * @property {boolean} [separator]
+ *
+ * @typedef {Object} PopupOptions  where it opens: beside an anchor, or at a point (px)
+ * @property {HTMLElement} [anchor]
+ * @property {number} [x]
+ * @property {number} [y]
+ * @property {() => void} [onClose]
+ * @property {boolean} [keepFocus]
  */
-import {fill, h, roving} from './dom.js';
+import {closestTo, elementsOf, fill, h, roving} from './dom.js';
 import {icon} from './icons.js';
 
+/** @type {(() => void)|null} */
 let closeOpen = null;
 
 /** Closes what is open, if anything. */
@@ -24,19 +32,21 @@ export function closePopup() {
  * Opens an element beside an anchor, or at a point.
  *
  * @param {HTMLElement} content
- * @param {{anchor?: HTMLElement, x?: number, y?: number, onClose?: () => void,
- *   keepFocus?: boolean}} options
+ * @param {PopupOptions} options
  * @returns {() => void} closes it
  */
-export function openPopup(content, {anchor, x, y, onClose, keepFocus = false}) {
+export function openPopup(content, {anchor, x = 0, y = 0, onClose, keepFocus = false}) {
   closePopup();
   const before = document.activeElement;
   const popup = h('div', {class: 'popup'}, content);
   document.body.append(popup);
   place(popup, anchor ? anchor.getBoundingClientRect() : {left: x, bottom: y, top: y});
+  /** @param {Event} event */
   const outside = (event) => {
-    if (!popup.contains(event.target) && !anchor?.contains(event.target)) close();
+    const at = event.target instanceof Node ? event.target : null;
+    if (!popup.contains(at) && !anchor?.contains(at)) close();
   };
+  /** @param {KeyboardEvent} event */
   const key = (event) => {
     // In menus Tab leaves; panels with fields are walked through with it.
     const leaves = event.key === 'Tab' && popup.querySelector('[role=menu]');
@@ -54,7 +64,8 @@ export function openPopup(content, {anchor, x, y, onClose, keepFocus = false}) {
     document.removeEventListener('pointerdown', outside, true);
     document.removeEventListener('keydown', key, true);
     window.removeEventListener('blur', close);
-    if (hadFocus && !keepFocus) (anchor ?? before)?.focus?.();
+    const focused = anchor ?? before;
+    if (hadFocus && !keepFocus && focused instanceof HTMLElement) focused.focus();
     onClose?.();
   };
   closeOpen = close;
@@ -65,6 +76,7 @@ export function openPopup(content, {anchor, x, y, onClose, keepFocus = false}) {
   return close;
 }
 
+/** @param {HTMLElement} popup @param {{left: number, top: number, bottom: number}} box */
 function place(popup, box) {
   const {width, height} = popup.getBoundingClientRect();
   const left = Math.max(4, Math.min(box.left, window.innerWidth - width - 4));
@@ -88,12 +100,17 @@ export function menuList(items, close, label) {
   fill(list, ...items.flatMap((item) => menuItem(item, close)));
   roving(list, '[role^="menuitem"]', {vertical: true});
   list.addEventListener('pointermove', (event) => {
-    const item = event.target.closest('[role^="menuitem"]');
-    if (item && !item.disabled && document.activeElement !== item) item.focus();
+    const item = closestTo(event, '[role^="menuitem"]:not(:disabled)');
+    if (item && document.activeElement !== item) item.focus();
   });
   return list;
 }
 
+/**
+ * @param {MenuItem} item
+ * @param {() => void} close
+ * @returns {HTMLElement[]}
+ */
 function menuItem(item, close) {
   if (item.separator) return [h('div', {class: 'menu-line', role: 'separator'})];
   if (item.items) {
@@ -102,7 +119,7 @@ function menuItem(item, close) {
     return [h('div', {class: 'menu-heading', text: item.title}), ...inner];
   }
   const check = item.checked !== undefined;
-  const on = check && item.checked();
+  const on = Boolean(item.checked?.());
   return [
     h(
       'button',
@@ -114,7 +131,7 @@ function menuItem(item, close) {
         disabled: item.enabled ? !item.enabled() : false,
         onclick: () => {
           close();
-          item.run();
+          item.run?.();
         },
       },
       h('span', {class: 'menu-check'}, on && icon('check', 14)),
@@ -124,11 +141,15 @@ function menuItem(item, close) {
   ];
 }
 
-/** Opens a menu at a point or anchor and puts the focus on its first item. */
+/**
+ * Opens a menu at a point or anchor and puts the focus on its first item.
+ * @param {MenuItem[]} items
+ * @param {PopupOptions & {label: string}} options
+ */
 export function openMenu(items, options) {
   let close = () => {};
   const list = menuList(items, () => close(), options.label);
   close = openPopup(list, options);
-  list.querySelector('[role^="menuitem"]:not(:disabled)')?.focus();
+  elementsOf(list, '[role^="menuitem"]:not(:disabled)')[0]?.focus();
   return close;
 }

@@ -1,19 +1,28 @@
 /**
  * Which sections the property panel shows for a row of the World tab. Pure.
  */
-import * as table from './properties_table.js';
+import * as table from './property_fields.js';
 import {geometryFields} from './geometry_fields.js';
+/** @import {Field, Section} from './property_fields.js' */
+/** @import {Row} from './world_rows.js' */
+/** @import {World} from '../protocol.js' */
 
 /**
- * @param {any} document
- * @param {import('./world_rows.js').Row|null} row
- * @returns {{title: string, sections: import('./properties_table.js').Section[]}|null} null where
+ * A section whose fields' paths begin below `prefix` of its target.
+ * @typedef {Section & {prefix: string}} BareSection
+ */
+/** The heading and sections of a row. @typedef {{title: string, sections: Section[]}} Found */
+
+/**
+ * @param {World|null} document
+ * @param {Row|null} row
+ * @returns {Found|null} null where
  *   the row has no properties, or what it stood for has gone
  */
 export function sectionsOf(document, row) {
-  const make = row && document && KINDS[row.kind];
-  const made = make ? make(document, row) : null;
-  if (!made) return null;
+  const make = row && document ? KINDS[row.kind] : undefined;
+  const made = make && row && document ? make(document, row) : null;
+  if (!made || !row) return null;
   const sections = made
     .filter((section) => section.entity)
     .map((section) => ({...section, fields: present(section)}))
@@ -21,11 +30,20 @@ export function sectionsOf(document, row) {
   return {title: titleOf(row), sections};
 }
 
+/** @param {Row} row */
 function titleOf(row) {
-  if (row.kind === 'model' || row.kind === 'light') return row.name;
+  if (row.kind === 'model' || row.kind === 'light') return row.name ?? '';
   return row.model && row.name ? `${row.model}::${row.name}` : row.label;
 }
 
+/**
+ * @param {string} title
+ * @param {string} target
+ * @param {object|null|undefined} entity
+ * @param {Field[]} fields
+ * @param {string} [prefix]
+ * @returns {BareSection}
+ */
 const section = (title, target, entity, fields, prefix = '') => ({
   key: `${target}|${title}`,
   title,
@@ -35,25 +53,45 @@ const section = (title, target, entity, fields, prefix = '') => ({
   prefix,
 });
 
-/** A field of an entity that has no such member is not for this version of the server. */
+/**
+ * A field of an entity that has no such member is not for this version of the server.
+ * @param {BareSection} bareSection
+ */
 function present({entity, fields, prefix}) {
   return fields
     .filter((field) => valueAt(entity, field.path) !== undefined)
     .map((field) => ({...field, local: field.path, path: prefix + field.path}));
 }
 
-/** The value at a dotted path, undefined where there is none. */
+/**
+ * The value at a dotted path, undefined where there is none.
+ * @param {unknown} entity
+ * @param {string} path
+ * @returns {unknown}
+ */
 export function valueAt(entity, path) {
+  /** @type {unknown} */
   let value = entity;
   for (const key of path.split('.')) {
-    if (value === null || value === undefined) return undefined;
-    value = value[key];
+    if (typeof value !== 'object' || value === null) return undefined;
+    value = /** @type {Record<string, unknown>} */ (value)[key];
   }
   return value;
 }
 
+/**
+ * The entity of a name, or undefined.
+ * @template {{name: string}} T
+ * @param {T[]|undefined} list
+ * @param {string|undefined} name
+ * @returns {T|undefined}
+ */
 const named = (list, name) => (list ?? []).find((entity) => entity.name === name);
 
+/**
+ * By kind of row; null: there are none, or the entity is gone.
+ * @type {Record<string, (world: World, row: Row) => BareSection[]|null|undefined>}
+ */
 const KINDS = {
   gui: (world) => [
     section('', '', world, table.GUI),
@@ -94,7 +132,7 @@ const KINDS = {
   },
   plugin: (world, row) => {
     const owner = row.model ? named(world.models, row.model) : world;
-    return owner && [section('', '', owner.plugins[row.index], table.PLUGIN)];
+    return owner && [section('', '', owner.plugins[row.index ?? -1], table.PLUGIN)];
   },
   light: (world, row) => {
     const light = named(world.lights, row.name);
@@ -102,6 +140,7 @@ const KINDS = {
   },
 };
 
+/** @param {World} world @param {Row} row */
 function linkSections(world, row) {
   const model = named(world.models, row.model);
   const link = model && named(model.links, row.name);
@@ -114,13 +153,13 @@ function linkSections(world, row) {
       target,
       link,
       table.LINK.map((field) =>
-        field.path === 'pose' && canonical ? {...field, hint: 'in the model'} : field,
+        field.path === 'pose' && canonical ? {...field, hint: 'relative to the model'} : field,
       ),
     ),
     section('Inertial', target, link.inertial, table.INERTIAL, 'inertial.'),
   ];
   // A collision and a visual may share a name: the target says which is meant.
-  for (const collision of link.collisions ?? []) {
+  for (const collision of link.collisions) {
     const exact = `${target}::collision:${collision.name}`;
     sections.push(
       section(`Collision ${collision.name}`, exact, collision, [
@@ -132,7 +171,7 @@ function linkSections(world, row) {
       section(`Surface of ${collision.name}`, exact, collision.surface, table.SURFACE, 'surface.'),
     );
   }
-  for (const visual of link.visuals ?? []) {
+  for (const visual of link.visuals) {
     const exact = `${target}::visual:${visual.name}`;
     sections.push(
       section(`Visual ${visual.name}`, exact, visual, [

@@ -20,6 +20,7 @@ export function lyingBar(label) {
  */
 export function splitter(bar, {key, initial, min, max, from, within, apply}) {
   let size = 0;
+  /** @param {number} wanted */
   const set = (wanted, keep = true) => {
     size = Math.round(Math.min(Math.max(wanted, min), max));
     bar.setAttribute('aria-valuenow', String(size));
@@ -28,6 +29,7 @@ export function splitter(bar, {key, initial, min, max, from, within, apply}) {
   };
   bar.setAttribute('aria-valuemin', String(min));
   bar.setAttribute('aria-valuemax', String(max));
+  /** @param {PointerEvent} event */
   const sizeAt = (event) => {
     const box = within.getBoundingClientRect();
     if (from === 'left') return event.clientX - box.left;
@@ -37,6 +39,7 @@ export function splitter(bar, {key, initial, min, max, from, within, apply}) {
   bar.addEventListener('pointerdown', (event) => {
     bar.setPointerCapture(event.pointerId);
     const offset = size - sizeAt(event);
+    /** @param {PointerEvent} moved */
     const move = (moved) => set(sizeAt(moved) + offset);
     const end = () => {
       bar.removeEventListener('pointermove', move);

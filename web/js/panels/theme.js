@@ -1,8 +1,11 @@
 /** Dark and light: the browser's preference, unless the user has chosen. */
 import {remembered} from './dom.js';
 
-/** @returns {{get: () => string, set: (name: 'auto'|'dark'|'light') => void}} */
+/** @typedef {'auto'|'dark'|'light'} ThemeName */
+
+/** @returns {{get: () => string, set: (name: ThemeName) => void}} */
 export function mountTheme() {
+  /** @param {ThemeName} name */
   const apply = (name) => {
     if (name === 'auto') delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = name;

@@ -3,7 +3,7 @@
  * slider in their place.
  */
 import {fill, h, remembered, roving} from './dom.js';
-import {clockText} from './format.js';
+import {clockText} from './text_format.js';
 import {icon} from './icons.js';
 
 const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
@@ -12,10 +12,11 @@ const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 class Mean {
   constructor(kept = 20) {
     this.kept = kept;
+    /** @type {number[]} */
     this.values = [];
   }
 
-  /** @returns {number} the mean with the new one */
+  /** @param {number} value @returns {number} the mean with the new one */
   add(value) {
     this.values.push(value);
     if (this.values.length > this.kept) this.values.shift();
@@ -26,6 +27,23 @@ class Mean {
     this.values = [];
   }
 }
+
+/**
+ * A figure of the bar.
+ * @param {string} label
+ * @param {string} width  CSS
+ */
+const figure = (label, width) =>
+  h('output', {class: 'figure', 'aria-label': label, style: `min-width:${width}`});
+
+/** A figure behind its label. @param {HTMLElement} output */
+const labelledFigure = (output) =>
+  h(
+    'span',
+    {class: 'figure-pair'},
+    h('span', {class: 'figure-label', text: output.getAttribute('aria-label')}),
+    output,
+  );
 
 export class TimeBar {
   /**
@@ -42,10 +60,10 @@ export class TimeBar {
     this.#replay = this.#replayBar();
     fill(element, this.#live, this.#replay, h('span', {class: 'spring'}), this.#shared());
     roving(element, 'button, input');
-    store.addEventListener('stats', () => this.#showStats());
-    store.addEventListener('connection', () => this.#showStats());
-    store.addEventListener('log', () => this.#showLog());
-    store.addEventListener('history', () => this.#showFile());
+    store.listen('stats', () => this.#showStats());
+    store.listen('connection', () => this.#showStats());
+    store.listen('log', () => this.#showLog());
+    store.listen('history', () => this.#showFile());
     setInterval(() => this.#showFrames(), 1000);
     this.#showStats();
     this.#showLog();
@@ -54,55 +72,56 @@ export class TimeBar {
 
   #live;
   #replay;
-  #play;
-  #step;
-  #steps;
-  #figures = {};
-  #log = {};
+  #play = h('button', {type: 'button', class: 'play', onclick: () => this.actions.togglePlay()});
+  #step = h(
+    'button',
+    {type: 'button', title: 'Step', 'aria-label': 'Step', onclick: () => this.#doStep()},
+    icon('step'),
+  );
+  #steps = h('input', {
+    type: 'number',
+    min: 1,
+    max: 9999,
+    step: 1,
+    value: remembered.get('steps', 1),
+    'aria-label': 'Steps',
+    class: 'steps',
+    onkeydown: (event) => {
+      if (event.key === 'Enter') this.#doStep();
+    },
+  });
+  #figures = {
+    factor: figure('Real Time Factor', '3.2em'),
+    sim: figure('Sim Time', '8.6em'),
+    real: figure('Real Time', '8.6em'),
+    iterations: figure('Iterations', '5em'),
+    fps: figure('FPS', '2.4em'),
+  };
+  #file = h('span', {class: 'file-name'});
+  #recording = h('span', {class: 'recording', hidden: true, text: '● recording'});
+  #log = {
+    play: h('button', {type: 'button', class: 'play', onclick: () => this.#playLog()}),
+    slider: h('input', {
+      type: 'range',
+      min: 0,
+      max: 1,
+      step: 0.001,
+      'aria-label': 'Log time',
+      class: 'log-slider',
+      oninput: () => { this.actions.logSeek(Number(this.#log.slider.value)); },
+    }),
+    time: h('output', {class: 'figure', 'aria-label': 'Current time'}),
+    end: h('output', {class: 'figure', 'aria-label': 'End time'}),
+    rate: h(
+      'select',
+      {'aria-label': 'Rate', onchange: () => this.#playLog(true)},
+      ...RATES.map((rate) => h('option', {value: rate, text: `${rate}×`, selected: rate === 1})),
+    ),
+  };
   #mean = new Mean();
   #lastIterations = -1;
 
   #liveBar() {
-    this.#play = h('button', {
-      type: 'button',
-      class: 'play',
-      onclick: () => this.actions.togglePlay(),
-    });
-    this.#step = h(
-      'button',
-      {
-        type: 'button',
-        title: 'Step',
-        'aria-label': 'Step',
-        onclick: () => this.#doStep(),
-      },
-      icon('step'),
-    );
-    this.#steps = h('input', {
-      type: 'number',
-      min: 1,
-      max: 9999,
-      step: 1,
-      value: remembered.get('steps', 1),
-      'aria-label': 'Steps',
-      class: 'steps',
-      onkeydown: (event) => {
-        if (event.key === 'Enter') this.#doStep();
-      },
-    });
-    const figure = (key, label, width) => {
-      this.#figures[key] = h('output', {
-        class: 'figure',
-        'aria-label': label,
-        style: `min-width:${width}`,
-      });
-      return h(
-        'span',
-        {class: 'figure-pair'},
-        h('span', {class: 'figure-label', text: label}),
-        this.#figures[key],
-      );
-    };
     const reset = h(
       'button',
       {
@@ -124,18 +143,18 @@ export class TimeBar {
         h('span', {class: 'figure-label', text: 'Steps'}),
         this.#steps,
       ),
-      figure('factor', 'Real Time Factor', '3.2em'),
-      figure('sim', 'Sim Time', '8.6em'),
-      figure('real', 'Real Time', '8.6em'),
-      figure('iterations', 'Iterations', '5em'),
-      figure('fps', 'FPS', '2.4em'),
+      labelledFigure(this.#figures.factor),
+      labelledFigure(this.#figures.sim),
+      labelledFigure(this.#figures.real),
+      labelledFigure(this.#figures.iterations),
+      labelledFigure(this.#figures.fps),
       reset,
     );
   }
 
   async #doStep() {
     const steps = Math.min(9999, Math.max(1, Math.round(Number(this.#steps.value)) || 1));
-    this.#steps.value = steps;
+    this.#steps.value = String(steps);
     remembered.set('steps', steps);
     await this.actions.step(steps);
   }
@@ -159,69 +178,58 @@ export class TimeBar {
   }
 
   #showFrames() {
-    const text = this.page.view?.fps === undefined ? '–' : String(Math.round(this.page.view.fps));
+    const fps = this.page.view?.fps;
+    const text = fps === undefined ? '–' : String(Math.round(fps));
     if (this.#figures.fps.textContent !== text) this.#figures.fps.textContent = text;
   }
 
   #shared() {
-    this.#log.recording = h('span', {class: 'recording', hidden: true, text: '● recording'});
-    this.#figures.file = h('span', {class: 'file-name'});
     return h(
       'span',
       {class: 'time-part'},
-      this.#log.recording,
-      this.#figures.file,
+      this.#recording,
+      this.#file,
       this.notices.button,
     );
   }
 
   #showFile() {
     const {file, dirty} = this.store.history;
-    const name = file ? file.split('/').pop() : 'not saved yet';
-    this.#figures.file.textContent = `${name}${dirty ? ' •' : ''}`;
+    const name = file ? file.split('/').pop() : 'unsaved';
+    this.#file.textContent = `${name}${dirty ? ' •' : ''}`;
     const unsaved = dirty ? ': unsaved changes' : '';
-    this.#figures.file.title = `${file || 'This world has no file'}${unsaved}`;
+    this.#file.title = `${file || 'The world has not been saved'}${unsaved}`;
     const world = file ? name : (this.store.document?.name ?? 'no world');
     document.title = `${dirty ? '• ' : ''}${world} – World editor`;
   }
 
   #replayBar() {
+    /**
+     * @param {string} glyph
+     * @param {string} label
+     * @param {() => void} run
+     */
     const button = (glyph, label, run) =>
       h(
         'button',
         {type: 'button', title: label, 'aria-label': label, onclick: run},
         icon(glyph, 16),
       );
+    /** @param {number} time */
     const seek = (time) => this.actions.logSeek(time);
     const ends = () => [this.store.log?.begin ?? 0, this.store.log?.end ?? 0];
     const log = this.#log;
-    log.play = h('button', {type: 'button', class: 'play', onclick: () => this.#playLog()});
-    log.slider = h('input', {
-      type: 'range',
-      min: 0,
-      max: 1,
-      step: 0.001,
-      'aria-label': 'Log time',
-      class: 'log-slider',
-      oninput: () => seek(Number(log.slider.value)),
-    });
-    log.time = h('output', {class: 'figure', 'aria-label': 'Current time'});
-    log.end = h('output', {class: 'figure', 'aria-label': 'End time'});
-    log.rate = h(
-      'select',
-      {'aria-label': 'Rate', onchange: () => this.#playLog(true)},
-      ...RATES.map((rate) => h('option', {value: rate, text: `${rate}×`, selected: rate === 1})),
-    );
+    /** @param {number} change */
     const by = (change) => () =>
       seek(Math.min(Math.max((this.store.log?.time ?? 0) + change, ends()[0]), ends()[1]));
     return h(
       'div',
       {class: 'time-part replay', hidden: true},
-      button('begin', 'To the beginning', () => seek(ends()[0])),
+      button('begin', 'Jump to start', () => seek(ends()[0])),
       button('left', 'Step back', by(-0.05)),
       log.play,
       button('right', 'Step forward', by(0.05)),
-      button('end', 'To the end', () => seek(ends()[1])),
+      button('end', 'Jump to end', () => seek(ends()[1])),
       log.slider,
       log.time,
       h('span', {text: '/'}),
@@ -243,12 +251,14 @@ export class TimeBar {
     const replaying = log?.state === 'open' || log?.state === 'playing';
     this.#live.hidden = replaying;
     this.#replay.hidden = !replaying;
-    this.#log.recording.hidden = log?.state !== 'recording';
-    if (!replaying) return;
+    this.#recording.hidden = log?.state !== 'recording';
+    if (!log || !replaying) return;
     const {slider, time, end, play} = this.#log;
-    slider.min = log.begin;
-    slider.max = log.end;
-    if (document.activeElement !== slider || log.state === 'playing') slider.value = log.time;
+    slider.min = String(log.begin);
+    slider.max = String(log.end);
+    if (document.activeElement !== slider || log.state === 'playing') {
+      slider.value = String(log.time);
+    }
     time.textContent = clockText(log.time * 1e9);
     end.textContent = clockText(log.end * 1e9);
     fill(play, icon(log.state === 'playing' ? 'pause' : 'play', 20));

@@ -1,33 +1,48 @@
 /** The tool bar: Gazebo's buttons from left to right, with its drop-downs. */
-import {fill, h, roving} from './dom.js';
+import {closestTo, elementsOf, fill, h, roving} from './dom.js';
+import {run} from '../hotkeys.js';
 import {icon} from './icons.js';
-import {openPopup} from './popup.js';
-import {Video} from './video.js';
+import {closePopup, openPopup} from './popup.js';
+import {Video} from './video_recorder.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {LightType, ShapeName} from '../new_entities.js' */
+/** @import {Mode} from '../store.js' */
+/** @import {Page} from './panels.js' */
 
+/** @type {[Mode, keyof Actions, string, string][]} */
 const MODES = [
-  ['select', 'select', 'Select (Esc)'],
-  ['translate', 'translate', 'Translate (T)'],
-  ['rotate', 'rotate', 'Rotate (R)'],
-  ['scale', 'scale', 'Scale (S)'],
+  ['select', 'selectMode', 'select', 'Select (Esc)'],
+  ['translate', 'translateMode', 'translate', 'Translate (T)'],
+  ['rotate', 'rotateMode', 'rotate', 'Rotate (R)'],
+  ['scale', 'scaleMode', 'scale', 'Scale (S)'],
 ];
+/** @type {[ShapeName, string][]} */
 const SHAPES = [
   ['box', 'Box'],
   ['sphere', 'Sphere'],
   ['cylinder', 'Cylinder'],
 ];
+/** @type {[LightType, string][]} */
 const LIGHTS = [
   ['point', 'Point light'],
   ['spot', 'Spot light'],
   ['directional', 'Directional light'],
 ];
-const VIEWS = ['top', 'bottom', 'front', 'back', 'left', 'right', 'home'];
+const AXES = /** @type {const} */ (['x', 'y', 'z']);
+const EDGES = /** @type {const} */ (['min', 'center', 'max']);
+const VIEWS = /** @type {const} */ (['top', 'bottom', 'front', 'back', 'left', 'right', 'home']);
 
 /**
  * @param {HTMLElement} element
- * @param {import('./panels.js').Page} page
+ * @param {Page} page
  */
 export function mountToolBar(element, page) {
   const {store, actions} = page;
+  /**
+   * @param {string} glyph
+   * @param {string} title
+   * @param {() => void} run
+   */
   const button = (glyph, title, run, more = {}) =>
     h(
       'button',
@@ -42,8 +57,8 @@ export function mountToolBar(element, page) {
     );
   const line = () => h('span', {class: 'tool-line', role: 'separator'});
 
-  const modes = MODES.map(([mode, glyph, title]) =>
-    button(glyph, title, () => actions[`${mode}Mode`](), {role: 'radio', dataset: {mode}}),
+  const modes = MODES.map(([mode, action, glyph, title]) =>
+    button(glyph, title, () => run(actions, action), {role: 'radio', dataset: {mode}}),
   );
   const undo = button('undo', 'Undo (Ctrl+Z)', () => actions.undo());
   const redo = button('redo', 'Redo (Shift+Ctrl+Z)', () => actions.redo());
@@ -59,21 +74,18 @@ export function mountToolBar(element, page) {
   const paste = button('paste', 'Paste (Ctrl+V)', () => actions.paste());
   const align = button('align', 'Align', () => {
     openPopup(alignPanel(page), {anchor: align, onClose: () => actions.alignPreview(null)});
-    document.querySelector('.popup input').focus();
+    focusFirst('.popup input');
   });
   const snap = button('snap', 'Snap (N)', () => actions.snapMode());
   const views = button('views', 'View angle', () => {
-    const close = openPopup(
-      viewPanel(page, () => close()),
-      {anchor: views},
-    );
-    document.querySelector('.popup button')?.focus();
+    openPopup(viewPanel(page, closePopup), {anchor: views});
+    focusFirst('.popup button');
   });
   const camera = button('camera', 'Screenshot', () => actions.screenshot());
   const record = button('video', 'Record video', () => video.toggle());
   const video = new Video(page, () => {
     record.setAttribute('aria-pressed', String(video.recording));
-    record.title = video.recording ? 'Stop and save the video' : 'Record video';
+    record.title = video.recording ? 'Stop recording and save video' : 'Record video';
   });
   const log = button('log', 'Log data (Ctrl+D)', () => actions.logs());
   const plot = button('plot', 'Plot (Ctrl+P)', () => actions.plot());
@@ -113,9 +125,9 @@ export function mountToolBar(element, page) {
       mode.setAttribute('aria-checked', String(store.mode === mode.dataset.mode));
     }
     snap.setAttribute('aria-pressed', String(store.mode === 'snap'));
-    for (const [list, one, many] of [
-      [store.history.undo, undo, undoList],
-      [store.history.redo, redo, redoList],
+    for (const {list, one, many} of [
+      {list: store.history.undo, one: undo, many: undoList},
+      {list: store.history.redo, one: redo, many: redoList},
     ]) {
       one.disabled = many.disabled = !list.length;
     }
@@ -141,7 +153,7 @@ export function mountToolBar(element, page) {
     );
     if (!element.querySelector('button[tabindex="0"]:not(:disabled)')) rove.settle();
   };
-  for (const event of [
+  for (const event of /** @type {const} */ ([
     'mode',
     'history',
     'selection',
@@ -149,12 +161,13 @@ export function mountToolBar(element, page) {
     'placing',
     'document',
     'entity',
-  ]) {
-    store.addEventListener(event, update);
+  ])) {
+    store.listen(event, update);
   }
   update();
 }
 
+/** @param {string} title @param {(anchor: HTMLElement) => void} open */
 function arrow(title, open) {
   const button = h(
     'button',
@@ -164,14 +177,19 @@ function arrow(title, open) {
       title,
       'aria-label': title,
       'aria-haspopup': 'menu',
-      onclick: () => open(button),
+      onclick: () => { open(button); },
     },
     icon('down', 12),
   );
   return button;
 }
 
-/** The history in words: choosing one takes back all down to it. */
+/**
+ * The history in words: choosing an entry undoes or redoes all steps up to it.
+ * @param {Page} page
+ * @param {'undo'|'redo'} which
+ * @param {HTMLElement} anchor
+ */
 function historyList({store, actions}, which, anchor) {
   const labels = store.history[which];
   const items = labels.map((label, at) =>
@@ -182,7 +200,7 @@ function historyList({store, actions}, which, anchor) {
         class: 'menu-item',
         role: 'menuitem',
         onclick: () => {
-          close();
+          closePopup();
           actions[which](at);
         },
       },
@@ -194,16 +212,20 @@ function historyList({store, actions}, which, anchor) {
     {class: 'menu history', role: 'menu', 'aria-label': `${which} history`},
     ...items,
   );
+  /** @param {Element|null} item */
   const mark = (item) =>
-    items.forEach((one, at) => one.classList.toggle('included', at <= items.indexOf(item)));
-  list.addEventListener('focusin', (event) => mark(event.target.closest('button')));
-  list.addEventListener('pointermove', (event) => event.target.closest('button')?.focus());
+    items.forEach((one, at) => one.classList.toggle('included', at <= items.findIndex((other) => other === item)));
+  list.addEventListener('focusin', (event) => mark(closestTo(event, 'button')));
+  list.addEventListener('pointermove', (event) => closestTo(event, 'button')?.focus());
   roving(list, 'button', {vertical: true});
-  const close = openPopup(list, {anchor});
+  openPopup(list, {anchor});
   items[0]?.focus();
 }
 
-/** Align: Min, Center, Max for each axis; hovering shows what would be, a click does it. */
+/**
+ * Align: Min, Center, Max for each axis; hovering shows what would be, a click does it.
+ * @param {Page} page
+ */
 function alignPanel({store, actions}) {
   const reverse = h('input', {type: 'checkbox'});
   const relative = h(
@@ -212,7 +234,15 @@ function alignPanel({store, actions}) {
     h('option', {value: 'first', text: 'First selected'}),
     h('option', {value: 'last', text: 'Last selected'}),
   );
-  const choice = (axis, at) => ({axis, at, reverse: reverse.checked, relative: relative.value});
+  /**
+   * @param {'x'|'y'|'z'} axis
+   * @param {'min'|'center'|'max'} at
+   * @returns {import('../align.js').AlignChoice}
+   */
+  const choice = (axis, at) => ({
+    axis, at, reverse: reverse.checked, relative: relative.value === 'last' ? 'last' : 'first',
+  });
+  /** @param {'x'|'y'|'z'} axis @param {'min'|'center'|'max'} at */
   const cell = (axis, at) => {
     const preview = () => actions.alignPreview(choice(axis, at));
     const end = () => actions.alignPreview(null);
@@ -233,24 +263,28 @@ function alignPanel({store, actions}) {
     h(
       'div',
       {class: 'align-grid'},
-      ...['x', 'y', 'z'].flatMap((axis) => [
+      ...AXES.flatMap((axis) => [
         h('b', {class: `axis-${axis}`, text: axis.toUpperCase()}),
-        ...['min', 'center', 'max'].map((at) => cell(axis, at)),
+        ...EDGES.map((at) => cell(axis, at)),
       ]),
     ),
     h('label', {}, reverse, 'Reverse'),
     h('label', {}, 'Relative to ', relative),
     !store.stats.paused &&
-      h('p', {class: 'soft', text: 'Pause first, so that nothing falls meanwhile.'}),
+      h('p', {class: 'soft', text: 'Pause the simulation before aligning.'}),
   );
 }
 
+/** @param {Page} page @param {() => void} close */
 function viewPanel({store, actions}, close) {
+  /** @param {() => void} action */
   const run = (action) => () => {
     close();
     action();
   };
+  /** @param {string} side */
   const title = (side) => side[0].toUpperCase() + side.slice(1);
+  /** @param {'perspective'|'orthographic'} name */
   const projection = (name) =>
     h('button', {
       type: 'button',
@@ -276,4 +310,9 @@ function viewPanel({store, actions}, close) {
   );
   roving(panel, 'button');
   return panel;
+}
+
+/** Puts the focus on the first element that matches. @param {string} selector */
+function focusFirst(selector) {
+  elementsOf(document, selector)[0]?.focus();
 }

@@ -16,6 +16,9 @@
  * @property {number} [index]  of a plugin
  */
 
+import {splitScoped} from '../scoped_names.js';
+/** @import {Model, World} from '../protocol.js' */
+
 const WORLD_ROWS = [
   ['gui', 'GUI', 'gui'],
   ['scene', 'Scene', 'scene'],
@@ -26,7 +29,7 @@ const WORLD_ROWS = [
 ];
 
 /**
- * @param {any} document the world, or null before it has come
+ * @param {World|null} document the world, or null before it has come
  * @param {Set<string>} open ids of opened rows
  * @param {string} [wanted] only models and lights whose name contains this, in any case
  * @returns {Row[]} those that are visible, from top to bottom
@@ -60,11 +63,10 @@ export function worldRows(document, open, wanted = '') {
         name: light.name,
       }),
   );
-  for (const [key, label, kind, glyph] of [
-    ['actors', 'Actors', 'actor', 'model'],
-    ['roads', 'Roads', 'road', 'scene'],
+  for (const {key, label, kind, glyph, all} of [
+    {key: 'actors', label: 'Actors', kind: 'actor', glyph: 'model', all: named(document.actors)},
+    {key: 'roads', label: 'Roads', kind: 'road', glyph: 'scene', all: named(document.roads)},
   ]) {
-    const all = document[key] ?? [];
     if (!all.length) continue;
     group(rows, open, key, counted(label, all, all), glyph, all, (one) =>
       rows.push({
@@ -73,7 +75,7 @@ export function worldRows(document, open, wanted = '') {
       }),
     );
   }
-  const plugins = document.plugins ?? [];
+  const plugins = document.plugins;
   if (plugins.length) {
     group(
       rows,
@@ -92,27 +94,57 @@ export function worldRows(document, open, wanted = '') {
   return rows;
 }
 
+/** @param {string} wanted */
 function fitting(wanted) {
   const word = wanted.trim().toLowerCase();
-  return (entity) => !word || entity.name.toLowerCase().includes(word);
+  return (/** @type {{name: string}} */ entity) => !word || entity.name.toLowerCase().includes(word);
 }
 
+/**
+ * @param {string} label
+ * @param {unknown[]} shown
+ * @param {unknown[]} all
+ */
 function counted(label, shown, all) {
   return shown.length === all.length
     ? `${label} (${all.length})`
     : `${label} (${shown.length} of ${all.length})`;
 }
 
+/**
+ * A row without children.
+ * @param {string} id
+ * @param {string} label
+ * @param {string} icon
+ * @param {number} level
+ * @param {string} kind
+ * @returns {Row}
+ */
 function leaf(id, label, icon, level, kind) {
   return {id, label, icon, level, kind, expandable: false, open: false};
 }
 
+/**
+ * @template {object} T
+ * @param {Row[]} rows
+ * @param {Set<string>} open
+ * @param {string} id
+ * @param {string} label
+ * @param {string} icon
+ * @param {T[]} entities
+ * @param {(entity: T, index: number) => void} add
+ */
 function group(rows, open, id, label, icon, entities, add) {
   const opened = open.has(id);
   rows.push({...leaf(id, label, icon, 1, id), expandable: entities.length > 0, open: opened});
   if (opened) entities.forEach(add);
 }
 
+/**
+ * @param {Row[]} rows
+ * @param {Set<string>} open
+ * @param {Model} model
+ */
 function modelRows(rows, open, model) {
   const id = `model:${model.name}`;
   const row = {
@@ -130,9 +162,18 @@ function modelRows(rows, open, model) {
     name: link.name,
   }));
   part(rows, model, 'JOINTS', 'joint', model.joints, (joint) => ({name: joint.name}));
-  part(rows, model, 'PLUGINS', 'plugin', model.plugins ?? [], (plugin, index) => ({index}));
+  part(rows, model, 'PLUGINS', 'plugin', model.plugins, (plugin, index) => ({index}));
 }
 
+/**
+ * @template {{name: string, filename?: string}} T
+ * @param {Row[]} rows
+ * @param {Model} model
+ * @param {string} heading
+ * @param {string} kind
+ * @param {T[]} entities
+ * @param {(entity: T, index: number) => Partial<Row>} more
+ */
 function part(rows, model, heading, kind, entities, more) {
   if (!entities.length) return;
   rows.push({...leaf(`${kind}s:${model.name}`, heading, '', 3, 'heading'), model: model.name});
@@ -155,7 +196,7 @@ function part(rows, model, heading, kind, entities, more) {
 /**
  * The row that stands for a selected name, and what must be open to see it.
  *
- * @param {any} document
+ * @param {World|null} document
  * @param {string} name model, `model::link` or light
  * @returns {{id: string, opens: string[]}|null}
  */
@@ -170,12 +211,18 @@ export function rowOf(document, name) {
   return {id: `link:${name}`, opens: ['models', `model:${model.name}`]};
 }
 
-/** The model of a name that may be scoped, `model::link::visual`; null when there is none. */
+/**
+ * The model of a name that may be scoped, `model::link::visual`; null when there is none.
+ * @param {World|null} document
+ * @param {string} name
+ */
 export function modelOf(document, name) {
-  let best = null;
-  for (const model of document?.models ?? []) {
-    const whole = name === model.name || name.startsWith(`${model.name}::`);
-    if (whole && (!best || model.name.length > best.name.length)) best = model;
-  }
-  return best;
+  const models = document?.models ?? [];
+  const [owner] = splitScoped(name, (one) => models.some((model) => model.name === one));
+  return models.find((model) => model.name === owner) ?? null;
+}
+
+/** Entities of which only the names are shown. @param {{name: string}[]} entities */
+function named(entities) {
+  return entities;
 }

@@ -2,23 +2,33 @@
  * Actors: figures that walk by sim time alone. They are seen, never touched: nothing picks them,
  * and no pose frame tells of them.
  */
-import {AnimationClip, AnimationMixer, Group} from 'three';
+import {AnimationClip, AnimationMixer, Bone, Group} from 'three';
 import {ActorPath} from '../actor_path.js';
+import {LIMITS} from '../protocol.js';
 import {SimClock} from '../sim_clock.js';
-import {place} from './convert.js';
+import {sourceOf} from './mesh_files.js';
+import {place} from './three_convert.js';
+/** @import {Actor, LogPush} from '../protocol.js' */
+/** @import {MeshSource} from './mesh_files.js' */
+/** @import {Object3D} from 'three' */
+/** @import {ViewParts} from './view.js' */
 
 /** Milliseconds between two steps, as between pose frames. */
-const PERIOD = 1000 / 30;
+const PERIOD = 1000 / LIMITS.frames_hz;
 
-/** The bone that carries all others, or undefined. */
+/** The bone that carries all others, or undefined. @param {Object3D} root */
 function rootBone(root) {
+  /** @type {Bone[]} */
   const bones = [];
-  root.traverse((object) => { if (object.isBone) bones.push(object); });
-  return bones.find((bone) => !bone.parent.isBone);
+  root.traverse((object) => { if (object instanceof Bone) bones.push(object); });
+  return bones.find((bone) => !(bone.parent instanceof Bone));
 }
 
 /**
  * Another file's movement for the bones of this name: how they turn, not how long they are.
+ * @param {AnimationClip} clip
+ * @param {Object3D} owner
+ * @param {Object3D} figure
  * @returns {AnimationClip|null} null where no bone has a name in common
  */
 function borrowed(clip, owner, figure) {
@@ -41,6 +51,11 @@ class Gait {
   #root;
   #onTheSpot;
 
+  /**
+   * @param {Object3D} figure
+   * @param {AnimationClip} clip
+   * @param {boolean} onTheSpot
+   */
   constructor(figure, clip, onTheSpot) {
     this.#mixer = new AnimationMixer(figure);
     this.#mixer.clipAction(clip).play();
@@ -60,14 +75,17 @@ class Figure {
   group = new Group();
   path;
   #actor;
+  /** @type {Gait|null} */
   #gait = null;
+  /** What it looks like: its pose and the time of its stride. @type {(number|null)[]|null} */
   #shown = null;
 
+  /** @param {Actor} actor */
   constructor(actor) {
     this.#actor = actor;
     this.path = new ActorPath(actor);
     this.group.name = actor.name;
-    this.group.scale.set(...(actor.geometry.scale ?? [1, 1, 1]));
+    if (actor.geometry.type === 'mesh') this.group.scale.fromArray(actor.geometry.scale);
   }
 
   get moves() {
@@ -76,12 +94,13 @@ class Figure {
 
   /**
    * The file that its first animation is in, when that is not the skin's own.
-   * @returns {any} a geometry or null
+   * @returns {MeshSource|null}
    */
   get foreign() {
+    const own = sourceOf(this.#actor.geometry);
     const [animation] = this.#actor.animations;
-    return animation?.geometry.url && animation.geometry.url !== this.#actor.geometry.url
-      ? animation.geometry : null;
+    const source = animation ? sourceOf(animation.geometry) : null;
+    return source && source.url !== own?.url ? source : null;
   }
 
   /**
@@ -91,7 +110,7 @@ class Figure {
    */
   dress(skin, mover) {
     const [clip] = (this.foreign ? mover?.animations : skin.animations) ?? [];
-    const own = clip && this.foreign ? borrowed(clip, mover, skin) : clip;
+    const own = clip && mover && this.foreign ? borrowed(clip, mover, skin) : clip;
     if (own && this.#actor.auto_start) this.#gait = new Gait(skin, own, this.path.moves);
     this.group.add(skin);
     this.#shown = null;
@@ -105,7 +124,7 @@ class Figure {
     if (this.#shown?.every((value, index) => value === now[index])) return false;
     this.#shown = now;
     place(this.group, pose);
-    if (stride !== null) this.#gait.show(stride);
+    if (stride !== null) this.#gait?.show(stride);
     return true;
   }
 }
@@ -115,25 +134,29 @@ export class Actors {
   #store;
   #meshes;
   #clock = new SimClock();
+  /** @type {Figure[]} */
   #figures = [];
   #known = '';
   #replaying = false;
-  #timer = null;
+  /** @type {ReturnType<typeof setTimeout>|undefined} */
+  #timer;
+  /** @type {Set<string>} */
   #told = new Set();
 
+  /** @param {ViewParts} viewParts */
   constructor({stage, store, stock}) {
     this.#stage = stage;
     this.#store = store;
     this.#meshes = stock.meshes;
-    store.addEventListener('document', () => this.#build());
-    store.addEventListener('stats', () => { if (!this.#replaying) this.#tellLive(); });
-    store.addEventListener('log', ({detail}) => this.#tellLog(detail));
+    store.listen('document', () => this.#build());
+    store.listen('stats', () => { if (!this.#replaying) this.#tellLive(); });
+    store.listen('log', ({detail}) => this.#tellLog(detail));
     this.#tellLive();
   }
 
   dispose() {
     clearTimeout(this.#timer);
-    this.#timer = null;
+    this.#timer = undefined;
     this.#figures = [];
   }
 
@@ -142,6 +165,7 @@ export class Actors {
     this.#tell(sim / 1e9, paused ? 0 : factor);
   }
 
+  /** @param {LogPush} logPush */
   #tellLog({state, time, rate}) {
     const before = this.#replaying;
     this.#replaying = state === 'open' || state === 'playing';
@@ -149,13 +173,14 @@ export class Actors {
     else if (before) this.#tellLive();
   }
 
+  /** @param {number} time @param {number} rate */
   #tell(time, rate) {
     this.#clock.tell(time, rate, performance.now());
     this.#step();
   }
 
   #build() {
-    const {actors} = this.#store.document;
+    const {actors = []} = this.#store.document ?? {};
     const text = JSON.stringify(actors);
     if (text === this.#known) return;
     this.#known = text;
@@ -165,12 +190,14 @@ export class Actors {
     this.#stage.shadowsChanged();
   }
 
+  /** @param {Actor} actor */
   #made(actor) {
     const figure = new Figure(actor);
-    const {url, problem} = actor.geometry;
-    if (problem) this.#tellOnce(`The actor ${actor.name} has no skin to show: ${problem}`);
-    if (url) {
-      Promise.all([this.#meshes.figure(actor.geometry),
+    const source = sourceOf(actor.geometry);
+    const problem = actor.geometry.type === 'mesh' ? actor.geometry.problem : null;
+    if (problem) this.#tellOnce(`Actor ${actor.name}: the skin cannot be shown: ${problem}`);
+    if (source) {
+      Promise.all([this.#meshes.figure(source),
         figure.foreign && this.#meshes.figure(figure.foreign)]).then(([skin, mover]) => {
         if (!skin || !this.#figures.includes(figure)) return;
         figure.dress(skin, mover);
@@ -182,6 +209,7 @@ export class Actors {
     return figure;
   }
 
+  /** @param {string} message */
   #tellOnce(message) {
     if (this.#told.has(message)) return;
     this.#told.add(message);
@@ -191,7 +219,7 @@ export class Actors {
   /** Shows all where they are now, and comes back while time goes on. */
   #step() {
     clearTimeout(this.#timer);
-    this.#timer = null;
+    this.#timer = undefined;
     const now = performance.now();
     const time = this.#clock.at(now);
     const changed = this.#figures.filter((figure) => figure.show(time));

@@ -2,7 +2,9 @@
  * Many bodies in few draws: what has equal geometry and material becomes one instanced mesh, from a
  * handful on; fewer are meshes of their own, which are left out when they are not in sight.
  */
-import {InstancedMesh, Matrix4, Mesh, DynamicDrawUsage} from 'three';
+import {InstancedMesh, Mesh, DynamicDrawUsage} from 'three';
+/** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
+/** @import {Owner} from './model_views.js' */
 
 const HANDFUL = 4;
 /** From here on a geometry's plainer form will do, where it has one. */
@@ -11,21 +13,33 @@ const CROWD = 64;
 /**
  * One thing drawn; also what picking looks at.
  * @typedef {object} Item
- * @property {import('three').BufferGeometry} geometry
- * @property {Matrix4} matrix  world from geometry; change it through `moveItem`
- * @property {any} owner       whatever the caller said
+ * @property {BufferGeometry} geometry
+ * @property {Material|Material[]} material
+ * @property {Matrix4} matrix  world from geometry; tell `moved` when it changes
+ * @property {Matrix4} [local] link from geometry
+ * @property {Owner} owner
+ * @property {boolean} castShadow
+ * @property {boolean} receiveShadow
+ * @property {number} renderOrder
+ * @property {string} key      of its batch
+ * @property {number} slot     its place in the batch
  */
 
 class Batch {
+  /** @type {Item[]} */
   items = [];
+  /** @type {Mesh[]} */
   #meshes = [];
+  /** @type {InstancedMesh|null} */
   #instanced = null;
 
+  /** @param {Object3D} scene @param {Item} sample */
   constructor(scene, sample) {
     this.scene = scene;
     this.sample = sample;
   }
 
+  /** @param {Item} item */
   add(item) {
     item.slot = this.items.length;
     this.items.push(item);
@@ -41,19 +55,20 @@ class Batch {
     } else this.#grow();
   }
 
-  /** The last one takes the place of the one that goes. */
+  /** The last one takes the place of the one that goes. @param {Item} item */
   remove(item) {
     const last = this.items.pop();
-    if (last !== item) {
+    if (last && last !== item) {
       last.slot = item.slot;
       this.items[item.slot] = last;
       this.move(last);
     }
     if (this.#instanced) this.#instanced.count = this.items.length;
-    else this.scene.remove(this.#meshes.pop());
+    else this.scene.remove(...this.#meshes.splice(-1));
     if (!this.items.length) this.#drop();
   }
 
+  /** @param {Item} item */
   move({slot, matrix}) {
     if (this.#instanced) {
       matrix.toArray(this.#instanced.instanceMatrix.array, slot * 16);
@@ -80,6 +95,7 @@ class Batch {
     for (const item of this.items) this.move(item);
   }
 
+  /** @param {Mesh} mesh */
   #show(mesh) {
     mesh.castShadow = this.sample.castShadow;
     mesh.receiveShadow = this.sample.receiveShadow;
@@ -98,30 +114,31 @@ class Batch {
   }
 }
 
+/** @param {Material|Material[]} material */
 const materialKey = (material) => Array.isArray(material)
   ? material.map(({uuid}) => uuid).join() : material.uuid;
 
 export class Batches {
+  /** @type {Map<string, Batch>} */
   #batches = new Map();
   #scene;
   #nextAlone = 0;
 
-  /** @param {import('three').Object3D} scene */
+  /** @param {Object3D} scene */
   constructor(scene) {
     this.#scene = scene;
   }
 
   /**
-   * @param {{geometry: any, material: any, matrix: Matrix4, owner: any, castShadow?: boolean,
-   *          receiveShadow?: boolean, renderOrder?: number}} wanted
+   * @param {Pick<Item, 'geometry'|'material'|'matrix'|'owner'> & Partial<Item>} wanted
    * @returns {Item}
    */
   add({castShadow = true, receiveShadow = true, renderOrder = 0, ...wanted}) {
-    const item = {...wanted, castShadow, receiveShadow, renderOrder};
     // What is seen through is sorted by distance, which instances are not.
-    const alone = [item.material].flat().some(({transparent}) => transparent);
-    item.key = [item.geometry.uuid, materialKey(item.material), castShadow, receiveShadow,
+    const alone = [wanted.material].flat().some(({transparent}) => transparent);
+    const key = [wanted.geometry.uuid, materialKey(wanted.material), castShadow, receiveShadow,
       renderOrder, alone ? this.#nextAlone++ : ''].join(' ');
+    const item = {...wanted, castShadow, receiveShadow, renderOrder, key, slot: 0};
     let batch = this.#batches.get(item.key);
     if (!batch) this.#batches.set(item.key, batch = new Batch(this.#scene, item));
     batch.add(item);
@@ -131,6 +148,7 @@ export class Batches {
   /** @param {Item} item */
   remove(item) {
     const batch = this.#batches.get(item.key);
+    if (!batch) return;
     batch.remove(item);
     if (!batch.items.length) this.#batches.delete(item.key);
     if (item.geometry.userData.single) item.geometry.dispose();
@@ -138,7 +156,7 @@ export class Batches {
 
   /** Tells that an item's matrix has changed. @param {Item} item */
   moved(item) {
-    this.#batches.get(item.key).move(item);
+    this.#batches.get(item.key)?.move(item);
   }
 
   /** Everything that is drawn. @returns {Generator<Item>} */

@@ -1,8 +1,12 @@
 /** The snap tool (N): a face of one model against a face of another, with two clicks. */
 import {BufferAttribute, BufferGeometry, DoubleSide, Mesh} from 'three';
 import {snapped} from '../face_math.js';
-import {through} from './marks.js';
+import {through} from './markers.js';
+/** @import {Face} from '../face_math.js' */
+/** @import {MousePoint} from './pointer.js' */
+/** @import {ViewParts} from './view.js' */
 
+/** @param {number} color */
 function triangle(color) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(9), 3));
@@ -24,8 +28,10 @@ export class FaceSnap {
   #stage;
   #hovered = triangle(0xff2a2a);
   #chosen = triangle(0xff9f1c);
+  /** The face that was chosen first. @type {{model: string, face: Face}|null} */
   #first = null;
 
+  /** @param {ViewParts} viewParts */
   constructor({store, actions, batches, models, picker, stage}) {
     this.#store = store;
     this.#actions = actions;
@@ -34,10 +40,10 @@ export class FaceSnap {
     this.#picker = picker;
     this.#stage = stage;
     stage.scene.add(this.#hovered, this.#chosen);
-    store.addEventListener('mode', () => this.#reset());
+    store.listen('mode', () => this.#reset());
   }
 
-  /** Marks the face under the mouse. */
+  /** Marks the face under the mouse. @param {MousePoint} event */
   hover(event) {
     this.#mark(this.#hovered, this.#under(event)?.face ?? null);
   }
@@ -46,7 +52,7 @@ export class FaceSnap {
     this.#mark(this.#hovered, null);
   }
 
-  /** The first click chooses what moves, the second where to. */
+  /** The first click chooses what moves, the second where to. @param {MousePoint} event */
   async click(event) {
     const hit = this.#under(event);
     if (!hit) return;
@@ -59,16 +65,20 @@ export class FaceSnap {
       return;
     }
     const {model: name, face} = this.#first;
-    const pose = snapped(this.#store.worldPose(name), face, hit.face);
+    const before = this.#store.worldPose(name);
+    if (!before) return;
+    const pose = snapped(before, face, hit.face);
     this.#store.setMode('select');
     await this.#models.carry({[name]: pose}, this.#actions.move({[name]: pose}, 'snap'));
   }
 
+  /** @param {MousePoint} mousePoint */
   #under({clientX, clientY}) {
     return this.#picker.nearest(this.#batches.items(), clientX, clientY,
       (owner) => owner.model !== undefined);
   }
 
+  /** @param {Mesh} mesh @param {Face|null} face */
   #mark(mesh, face) {
     if (!face && !mesh.visible) return;
     mesh.visible = face !== null;

@@ -3,34 +3,48 @@ import {
   BoxGeometry, ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, TorusGeometry,
   Vector3,
 } from 'three';
+/** @import {BufferGeometry, Object3D} from 'three' */
+
+/** @typedef {'translate'|'rotate'|'scale'} GizmoMode */
+/** @typedef {'x'|'y'|'z'} AxisName */
 
 const COLORS = {x: 0xe5383b, y: 0x38b000, z: 0x2f6fed};
+const AXES = /** @type {const} */ (['x', 'y', 'z']);
 const LIT = 0xffd60a;
 const PIXELS = 96;
 
+/** @param {number} color */
 const paint = (color) => new MeshBasicMaterial({color, depthTest: false, depthWrite: false,
   transparent: true, opacity: 0.95, fog: false});
 const unseen = new MeshBasicMaterial({visible: false});
 
 /** What each mode's handle along z is made of; `grip` is what the mouse hits. */
 const HANDLES = {
+  /** @param {MeshBasicMaterial} material */
   translate: (material) => [
     piece(new CylinderGeometry(0.018, 0.018, 0.8, 8), material, 0.45),
     piece(new ConeGeometry(0.07, 0.2, 16), material, 0.92),
     piece(new CylinderGeometry(0.1, 0.1, 0.95, 6), unseen, 0.6),
   ],
+  /** @param {MeshBasicMaterial} material */
   scale: (material) => [
     piece(new CylinderGeometry(0.018, 0.018, 0.8, 8), material, 0.45),
     piece(new BoxGeometry(0.13, 0.13, 0.13), material, 0.9),
     piece(new CylinderGeometry(0.1, 0.1, 0.95, 6), unseen, 0.6),
   ],
+  /** @param {MeshBasicMaterial} material */
   rotate: (material) => [
     new Mesh(new TorusGeometry(0.85, 0.016, 8, 64), material),
     new Mesh(new TorusGeometry(0.85, 0.08, 6, 32), unseen),
   ],
 };
 
-/** three's cylinders stand along y. */
+/**
+ * three's cylinders stand along y.
+ * @param {BufferGeometry} geometry
+ * @param {MeshBasicMaterial} material
+ * @param {number} height
+ */
 function piece(geometry, material, height) {
   const mesh = new Mesh(geometry.rotateX(Math.PI / 2), material);
   mesh.position.z = height;
@@ -40,9 +54,10 @@ function piece(geometry, material, height) {
 const ALONG = {x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1)};
 const UP = new Vector3(0, 0, 1);
 
+/** @param {GizmoMode} mode */
 function makeMode(mode) {
   const group = new Group();
-  for (const axis of ['x', 'y', 'z']) {
+  for (const axis of AXES) {
     const handle = new Group();
     const material = paint(COLORS[axis]);
     handle.add(...HANDLES[mode](material));
@@ -62,9 +77,12 @@ export class Gizmo {
   group = new Group();
   #modes = {translate: makeMode('translate'), rotate: makeMode('rotate'),
     scale: makeMode('scale')};
+  /** @type {GizmoMode|null} */
   #mode = null;
+  /** @type {AxisName|null} */
   #lit = null;
 
+  /** @param {Object3D} scene */
   constructor(scene) {
     this.group.add(...Object.values(this.#modes));
     scene.add(this.group);
@@ -93,20 +111,25 @@ export class Gizmo {
     return this.#mode ? this.#modes[this.#mode].children : [];
   }
 
-  /** The axis of a hit of `grips`. */
+  /** The axis of a hit of `grips`. @param {Object3D|null} object */
   static axisOf(object) {
     let node = object;
     while (node && !node.userData.axis) node = node.parent;
     return node?.userData.axis ?? null;
   }
 
-  /** Lights one axis up. @returns {boolean} whether that changes the picture */
+  /**
+   * Lights one axis up.
+   * @param {AxisName|null} axis
+   * @returns {boolean} whether that changes the picture
+   */
   light(axis) {
     if (axis === this.#lit) return false;
     this.#lit = axis;
     for (const group of Object.values(this.#modes)) {
       for (const {userData} of group.children) {
-        userData.material.color.set(userData.axis === axis ? LIT : COLORS[userData.axis]);
+        const own = /** @type {AxisName} */ (userData.axis);
+        userData.material.color.set(own === axis ? LIT : COLORS[own]);
       }
     }
     return true;

@@ -3,30 +3,84 @@ import {
   alongAxis, rotated, roundness, scaled, translated, WORLD_AXES,
 } from '../drag_math.js';
 import {orientation, position, rotate} from '../pose.js';
+import {LIMITS} from '../protocol.js';
 import {Gizmo} from './gizmo.js';
+/** @import {AxisName, GizmoMode} from './gizmo.js' */
+/** @import {KeyState, MousePoint} from './pointer.js' */
+/** @import {Pose7, Vec3} from '../pose.js' */
+/** @import {Ray} from '../drag_math.js' */
+/** @import {Under} from './selector.js' */
+/** @import {ViewParts} from './view.js' */
 
-const DRAG_INTERVAL = 40;
+/** @type {Record<AxisName, 0|1|2>} */
+const AXIS_INDEX = {x: 0, y: 1, z: 2};
+/** Milliseconds between two messages of a drag. */
+const DRAG_INTERVAL = 1000 / LIMITS.drags_hz;
+/**
+ * The modes in which a body can be moved, with the words for the history.
+ * @type {Record<string, string>}
+ */
 const LABELS = {translate: 'translate', rotate: 'rotate'};
 
 /**
+ * What is dragged, and how.
  * @typedef {object} Grasp
- * @property {string} name          what is dragged
- * @property {'translate'|'rotate'|'scale'} mode
- * @property {string|null} handle   axis of the handle, null: the body
- * @property {number[]} start       pose7 when the drag began, or its base was changed
- * @property {number[]} point       grasped, world
- * @property {any} ray              when the drag began
- * @property {number[]} size        for scaling: extent along the own axes
- * @property {Record<string, number[]>} others  what moves along, poses at the start
+ * @property {string} name
+ * @property {GizmoMode} mode
+ * @property {AxisName|null} handle  axis of the handle, null: the body
+ * @property {Pose7} first          when the drag began
+ * @property {Pose7} start          when the drag began, or its base was changed
+ * @property {Vec3} point           grasped, world
+ * @property {Ray} ray              when the drag began
+ * @property {Vec3} size            for scaling: extent along the own axes
+ * @property {Record<string, Pose7>} others  what moves along, poses at the start
  * @property {string} how           axis and frame in force; a change begins the drag anew
+ * @property {boolean} sent         the simulator was told of it
  */
 
-/** Whether a drag has left everything as it was: that is no step of the history. */
+/** What a drag has led to: new poses by name, or factors of the size.
+ * @typedef {{poses: Record<string, Pose7>, factors?: undefined}|{factors: Vec3, poses?: undefined}} DragResult */
+
+/** Whether the tool moves bodies. @param {string} mode @returns {mode is GizmoMode} */
+const isGizmoMode = (mode) => mode === 'translate' || mode === 'rotate' || mode === 'scale';
+
+/**
+ * Whether a drag has left everything as it was: that is no step of the history.
+ * @param {Grasp} grasp
+ * @param {DragResult} dragResult
+ */
 function isNothing(grasp, {poses, factors}) {
   if (factors) return factors.every((factor) => factor === 1);
   if (grasp.sent) return false;
   return poses[grasp.name].every((part, i) => Math.abs(part - grasp.first[i]) < 1e-9);
 }
+
+/**
+ * One of the own axes of what is dragged, or of the world's.
+ * @param {Grasp} grasp
+ * @param {AxisName} name
+ * @param {boolean} world
+ */
+const axisOf = (grasp, name, world) =>
+  world ? WORLD_AXES[name] : rotate(orientation(grasp.first), WORLD_AXES[name]);
+
+/**
+ * With a handle the drag is along its axis: from the point of it under the mouse.
+ * @param {Grasp} grasp
+ * @param {Vec3} point
+ */
+function graspedPoint(grasp, point) {
+  const axis = grasp.handle && axisOf(grasp, grasp.handle, false);
+  const along = axis && alongAxis(grasp.ray, point, axis);
+  return axis && along ? point.map((part, index) => part + along * axis[index]) : point;
+}
+
+/** How a drag goes: its axis and frame, as one text.
+ * @param {AxisName|null} handle
+ * @param {AxisName|null} key
+ * @param {KeyState} event
+ */
+const howOf = (handle, key, event) => `${key ?? handle ?? ''} ${Boolean(event.shiftKey)}`;
 
 export class Manipulator {
   #store;
@@ -40,14 +94,17 @@ export class Manipulator {
   #gizmo;
   /** @type {Grasp|null} */
   #grasp = null;
+  /** @type {DragResult|null} */
   #result = null;
   #lastSent = 0;
+  /** @type {MousePoint|null} */
   #lastEvent = null;
   #worldAxes = false;
 
   /** Called when something is moved by hand, so that boxes and overlays go along. */
   onMoved = () => {};
 
+  /** @param {ViewParts} viewParts */
   constructor({store, actions, connection, models, lights, rig, picker, stage}) {
     this.#store = store;
     this.#actions = actions;
@@ -58,8 +115,8 @@ export class Manipulator {
     this.#picker = picker;
     this.#stage = stage;
     this.#gizmo = new Gizmo(stage.scene);
-    for (const event of ['selection', 'mode', 'document', 'entity']) {
-      store.addEventListener(event, () => this.update());
+    for (const event of /** @type {const} */ (['selection', 'mode', 'document', 'entity'])) {
+      store.listen(event, () => this.update());
     }
   }
 
@@ -68,10 +125,10 @@ export class Manipulator {
   /** The one that has the handles: the last selected model or light. @returns {string|null} */
   get target() {
     const {mode, selection} = this.#store;
-    if (!LABELS[mode] && mode !== 'scale') return null;
+    if (!isGizmoMode(mode)) return null;
     const name = selection.at(-1);
-    const entity = name && this.#store.entity(name);
-    if (!entity) return null;
+    const entity = name ? this.#store.entity(name) : null;
+    if (!name || !entity) return null;
     if (entity.kind === 'link') return entity.model.name;
     if (entity.kind === 'light' && mode === 'scale') return null;
     return name;
@@ -80,9 +137,10 @@ export class Manipulator {
   /** Puts the handles where the target is shown. */
   update() {
     const name = this.target;
-    this.#gizmo.show(name ? this.#store.mode : null);
-    if (name) {
-      const pose = this.#shown(name);
+    const {mode} = this.#store;
+    this.#gizmo.show(name && isGizmoMode(mode) ? mode : null);
+    const pose = name && this.#shown(name);
+    if (pose) {
       const turned = this.#worldAxes && this.#store.mode !== 'scale';
       const axes = turned ? [0, 0, 0, 1] : orientation(pose);
       this.#gizmo.place([...position(pose), ...axes], this.#rig.unitAt(position(pose)));
@@ -90,9 +148,13 @@ export class Manipulator {
     this.#stage.invalidate();
   }
 
-  /** Lights up the handle under the mouse. @returns {boolean} whether there is one */
+  /**
+   * Lights up the handle under the mouse.
+   * @param {MousePoint} event
+   * @returns {boolean} whether there is one
+   */
   hover(event) {
-    this.#worldAxesWith(event.shiftKey);
+    this.#worldAxesWith(Boolean(event.shiftKey));
     const axis = this.#handleUnder(event);
     if (this.#gizmo.light(axis)) this.#stage.invalidate();
     return axis !== null;
@@ -100,19 +162,18 @@ export class Manipulator {
 
   /**
    * Takes hold of a handle, or of a body in a mode that moves bodies.
-   * @param {PointerEvent} event
-   * @param {() => {name: string, point: number[]}|null} pick  what body is under the mouse
-   * @param {string|null} key  x, y or z when held
+   * @param {MousePoint} event
+   * @param {() => Under|null} pick  what body is under the mouse
+   * @param {AxisName|null} key  x, y or z when held
    * @returns {boolean} whether the drag is ours
    */
   grab(event, pick, key) {
     const {mode} = this.#store;
-    if (!LABELS[mode] && mode !== 'scale') return false;
+    if (!isGizmoMode(mode)) return false;
     const handle = this.#handleUnder(event);
-    if (handle) {
-      const name = this.target;
-      return this.#take(event, name, handle, position(this.#shown(name)), key);
-    }
+    const name = this.target;
+    const pose = name && this.#shown(name);
+    if (handle && name && pose) return this.#take(event, name, handle, position(pose), key);
     const body = pick();
     if (!body) return false;
     if (!this.#store.selection.includes(body.name)) this.#store.select([body.name]);
@@ -121,7 +182,11 @@ export class Manipulator {
     return this.#take(event, body.name, null, body.point, key);
   }
 
-  /** Follows the mouse. */
+  /**
+   * Follows the mouse.
+   * @param {MousePoint} event
+   * @param {AxisName|null} key
+   */
   drag(event, key) {
     if (!this.#grasp) return;
     this.#lastEvent = event;
@@ -134,9 +199,13 @@ export class Manipulator {
     this.#send();
   }
 
-  /** A held key has changed while the mouse rests. */
+  /**
+   * A held key has changed while the mouse rests.
+   * @param {KeyState} event
+   * @param {AxisName|null} key
+   */
   keysChanged(event, key) {
-    this.#worldAxesWith(event.shiftKey);
+    this.#worldAxesWith(Boolean(event.shiftKey));
     if (!this.#grasp || !this.#lastEvent) return;
     const {clientX, clientY} = this.#lastEvent;
     this.drag({clientX, clientY, ctrlKey: event.ctrlKey || event.metaKey,
@@ -171,11 +240,13 @@ export class Manipulator {
     return true;
   }
 
+  /** @param {Record<string, Pose7>} poses */
   #message(poses) {
     const names = Object.keys(poses).filter((name) => this.#store.model(name));
     return {names, poses: names.map((name) => poses[name])};
   }
 
+  /** @param {Grasp} grasp @param {boolean} keep */
   #end(grasp, keep) {
     if (grasp.sent) this.#connection.send('drag_end');
     const names = [grasp.name, ...Object.keys(grasp.others)];
@@ -188,59 +259,65 @@ export class Manipulator {
     this.#moved();
   }
 
+  /** @param {string} name */
   #shown(name) {
     if (this.#grasp?.name === name && this.#result?.poses) return this.#result.poses[name];
     return this.#models.shownPose(name);
   }
 
+  /** @param {MousePoint} event */
   #handleUnder(event) {
     if (!this.#gizmo.shown) return null;
     const [hit] = this.#picker.objects(this.#gizmo.grips, event.clientX, event.clientY);
     return hit ? Gizmo.axisOf(hit.object) : null;
   }
 
+  /**
+   * @param {MousePoint} event
+   * @param {string} name
+   * @param {AxisName|null} handle
+   * @param {Vec3} point
+   * @param {AxisName|null} key
+   */
   #take(event, name, handle, point, key) {
     const {mode} = this.#store;
     const model = this.#store.model(name);
     if (mode === 'scale' && (!model || !model.scalable)) {
       this.#store.addIssue({severity: 'note', code: 'not-scalable',
-        message: `${name} cannot be scaled: it has several links or shapes that are not centred.`});
+        message: `${name} cannot be scaled: only models with one link and simple shapes can be scaled.`});
       return true;
     }
     const pose = this.#models.shownPose(name);
+    if (!pose || !isGizmoMode(mode)) return false;
+    /** @type {Record<string, Pose7>} */
     const others = {};
     if (mode === 'translate') {
       for (const other of this.#store.selection) {
-        if (other !== name && this.#store.model(other)) {
-          others[other] = this.#models.shownPose(other);
-        }
+        const shown = other !== name && this.#store.model(other) && this.#models.shownPose(other);
+        if (shown) others[other] = shown;
       }
     }
     const size = mode === 'scale' ? this.#models.bounds(name, pose) : null;
-    this.#grasp = {name, mode, handle, start: pose, first: pose, point, others, sent: false,
-      size: size ? size.max.clone().sub(size.min).toArray() : [1, 1, 1], factors: [1, 1, 1],
-      ray: this.#picker.ray(event.clientX, event.clientY), how: this.#how(handle, key, event)};
-    this.#grasp.point = this.#graspedPoint(point);
+    /** @type {Grasp} */
+    const grasp = {name, mode, handle, start: pose, first: pose, point, others, sent: false,
+      size: size ? size.max.clone().sub(size.min).toArray() : [1, 1, 1],
+      ray: this.#picker.ray(event.clientX, event.clientY), how: howOf(handle, key, event)};
+    grasp.point = graspedPoint(grasp, point);
+    this.#grasp = grasp;
     if (model) for (const one of [name, ...Object.keys(others)]) this.#models.fade(one, true);
     return true;
   }
 
-  /** With a handle the drag is along its axis: from the point of it under the mouse. */
-  #graspedPoint(point) {
-    const {handle, ray} = this.#grasp;
-    const axis = handle && this.#axis(handle, false);
-    const along = axis && alongAxis(ray, point, axis);
-    return along ? point.map((part, index) => part + along * axis[index]) : point;
-  }
-
-  #how(handle, key, event) {
-    return `${key ?? handle ?? ''} ${event.shiftKey}`;
-  }
-
-  /** x, y or z held or let go, or Shift: the drag goes on from where it is, in the new way. */
+  /**
+   * x, y or z held or let go, or Shift: the drag goes on from where it is, in the new way.
+   * @param {Ray} ray
+   * @param {MousePoint} event
+   * @param {AxisName|null} key
+   */
   #rebase(ray, event, key) {
     const grasp = this.#grasp;
-    const how = this.#how(grasp.handle, key, event);
+    if (!grasp) return;
+    const how = howOf(grasp.handle, key, event);
     if (how === grasp.how) return;
     grasp.how = how;
     if (grasp.mode === 'scale') return;
@@ -250,19 +327,20 @@ export class Manipulator {
     grasp.ray = ray;
   }
 
-  #axis(name, world) {
-    if (world) return WORLD_AXES[name];
-    return rotate(orientation(this.#grasp.first), WORLD_AXES[name]);
-  }
-
+  /**
+   * @param {Ray} ray
+   * @param {MousePoint} event
+   * @param {AxisName|null} key
+   */
   #apply(ray, event, key) {
     const grasp = this.#grasp;
-    const snap = event.ctrlKey || event.metaKey;
+    if (!grasp) return null;
+    const snap = Boolean(event.ctrlKey || event.metaKey);
     if (grasp.mode === 'scale') return this.#scaled(ray, event, key, snap);
     // A held key means the world's axis when moving (Gazebo behaviour), the handles' when turning.
     const axisName = key ?? grasp.handle;
-    const world = event.shiftKey || (grasp.mode === 'translate' && key !== null);
-    const axis = axisName ? this.#axis(axisName, world) : null;
+    const world = Boolean(event.shiftKey) || (grasp.mode === 'translate' && key !== null);
+    const axis = axisName ? axisOf(grasp, axisName, world) : null;
     const pose = grasp.mode === 'translate'
       ? translated(grasp.start, grasp.point, ray, {axis, snap})
       : axis && rotated(grasp.start, grasp.ray, ray, axis, {snap});
@@ -275,20 +353,31 @@ export class Manipulator {
     return {poses};
   }
 
+  /**
+   * @param {Ray} ray
+   * @param {MousePoint} event
+   * @param {AxisName|null} key
+   * @param {boolean} snap
+   */
   #scaled(ray, event, key, snap) {
     const grasp = this.#grasp;
+    if (!grasp) return null;
     const axisName = key ?? grasp.handle;
     if (!axisName) return null;
-    const axis = this.#axis(axisName, false);
+    const axis = axisOf(grasp, axisName, false);
     const distance = alongAxis(ray, grasp.point, axis);
     const from = alongAxis(grasp.ray, grasp.point, axis) ?? 0;
     if (distance === null) return null;
-    return {factors: scaled(grasp.size, 'xyz'.indexOf(axisName), distance - from,
-      {snap, uniform: event.shiftKey, kind: roundness(this.#store.model(grasp.name))})};
+    const model = this.#store.model(grasp.name);
+    if (!model) return null;
+    return {factors: scaled(grasp.size, AXIS_INDEX[axisName], distance - from,
+      {snap, uniform: Boolean(event.shiftKey), kind: roundness(model)})};
   }
 
+  /** @param {DragResult} dragResult */
   #show({poses, factors}) {
-    const {name} = this.#grasp;
+    const name = this.#grasp?.name;
+    if (name === undefined) return;
     if (factors) this.#models.stretch(name, factors);
     else if (this.#store.light(name)) this.#lights.move(name, poses[name]);
     else this.#models.hold(poses);
@@ -301,16 +390,17 @@ export class Manipulator {
   }
 
   #send() {
-    const {poses} = this.#result;
+    const poses = this.#result?.poses;
     const now = performance.now();
     if (!poses || now - this.#lastSent < DRAG_INTERVAL) return;
     const message = this.#message(poses);
     if (!message.names.length) return;
     this.#lastSent = now;
-    this.#grasp.sent = true;
+    if (this.#grasp) this.#grasp.sent = true;
     this.#connection.send('drag', message);
   }
 
+  /** @param {boolean} shift */
   #worldAxesWith(shift) {
     if (shift === this.#worldAxes) return;
     this.#worldAxes = shift;

@@ -3,8 +3,18 @@ import {
   CanvasTexture, DoubleSide, FrontSide, MeshBasicMaterial, MeshLambertMaterial, MeshPhongMaterial,
   RepeatWrapping, SRGBColorSpace, TextureLoader,
 } from 'three';
-import {colorOf} from './convert.js';
-import {patternCanvas} from './textures.js';
+import {colorOf} from './three_convert.js';
+import {patternCanvas} from './builtin_textures.js';
+/** @import {LoadingManager, Texture} from 'three' */
+
+/** @typedef {import('../protocol.js').Material} MaterialDocument */
+/** @typedef {Pick<MaterialDocument, 'texture'> & Partial<MaterialDocument>} Paint */
+/** @typedef {import('../protocol.js').Texture} TextureDocument */
+/** @typedef {import('three').Material} ThreeMaterial */
+/**
+ * How a surface is drawn; `pushed`: it lies just behind others.
+ * @typedef {{doubleSided?: boolean, pushed?: boolean}} MaterialUse
+ */
 
 /** Grey of what has no material (Gazebo/Grey and Gazebo/White for meshes look alike with light). */
 const GREY = [0.7, 0.7, 0.7, 1];
@@ -20,25 +30,30 @@ const DULLEST = 0.02;
  */
 
 export class Materials {
+  /** @type {Map<string, ThreeMaterial>} */
   #cache = new Map();
+  /** @type {Map<string, Texture|null>} */
   #textures = new Map();
   #manager;
 
-  /** @param {import('three').LoadingManager} manager  tells when pictures have arrived */
+  /** @param {LoadingManager} manager  tells when pictures have arrived */
   constructor(manager) {
     this.#manager = manager;
   }
 
-  /** Whether a document's material says anything that a mesh's own would not. */
+  /**
+   * Whether a document's material says anything that a mesh's own would not.
+   * @param {Paint|null|undefined} material
+   */
   static speaks(material) {
     return Boolean(material && (material.diffuse || material.ambient || material.texture ||
       material.emissive));
   }
 
   /**
-   * @param {any} material  of the document, or null for the default
+   * @param {Paint|null} material  of the document, or null for the default
    * @param {Variant} [variant]
-   * @param {{doubleSided?: boolean, pushed?: boolean}} [surface]  pushed: lies just behind others
+   * @param {MaterialUse} [surface]
    */
   get(material, variant = {}, surface = {}) {
     const key = JSON.stringify([material, variant, surface]);
@@ -47,7 +62,11 @@ export class Materials {
     return made;
   }
 
-  /** A mesh's own material in another appearance. */
+  /**
+   * A mesh's own material in another appearance.
+   * @param {ThreeMaterial} material
+   * @param {Variant} variant
+   */
   own(material, variant) {
     const {opacity = 1, wireframe = false} = variant;
     if (opacity === 1 && !wireframe) return material;
@@ -55,7 +74,7 @@ export class Materials {
     let made = this.#cache.get(key);
     if (!made) {
       made = material.clone();
-      made.wireframe = wireframe;
+      Object.assign(made, {wireframe});
       made.opacity = material.opacity * opacity;
       made.transparent = made.opacity < 1 || material.transparent;
       made.depthWrite = !made.transparent;
@@ -64,6 +83,7 @@ export class Materials {
     return made;
   }
 
+  /** @param {Paint|null} material */
   #make(material, {opacity = 1, wireframe = false}, {doubleSided = false, pushed = false}) {
     const diffuse = material?.diffuse ?? material?.ambient ??
       (material?.texture ? [1, 1, 1, 1] : GREY);
@@ -84,23 +104,18 @@ export class Materials {
     return new MeshPhongMaterial({...common, shininess: 30, specular: colorOf(specular), emissive});
   }
 
+  /** @param {TextureDocument|null|undefined} texture */
   #map(texture) {
     if (!texture || (!texture.url && !texture.pattern)) return null;
     const key = JSON.stringify(texture);
     if (!this.#textures.has(key)) this.#textures.set(key, this.#load(texture));
-    return this.#textures.get(key);
+    return this.#textures.get(key) ?? null;
   }
 
+  /** @param {TextureDocument} textureDocument */
   #load({url, pattern, scale = [1, 1]}) {
-    let map;
-    if (url) {
-      const loader = this.#manager.getHandler(url) ?? new TextureLoader(this.#manager);
-      map = loader.load(url);
-    } else {
-      const canvas = patternCanvas(pattern);
-      if (!canvas) return null;
-      map = new CanvasTexture(canvas);
-    }
+    const map = url ? this.#loadFile(url) : drawn(pattern ?? '');
+    if (!map) return null;
     map.colorSpace = SRGBColorSpace;
     map.wrapS = map.wrapT = RepeatWrapping;
     map.anisotropy = 4;
@@ -108,4 +123,16 @@ export class Materials {
     map.repeat.set(1 / (scale[0] || 1), 1 / (scale[1] || 1));
     return map;
   }
+
+  /** @param {string} url @returns {Texture} */
+  #loadFile(url) {
+    const known = /** @type {TextureLoader|null} */ (this.#manager.getHandler(url));
+    return (known ?? new TextureLoader(this.#manager)).load(url);
+  }
+}
+
+/** A built-in pattern as a texture; null for an unknown one. @param {string} pattern */
+function drawn(pattern) {
+  const canvas = patternCanvas(pattern);
+  return canvas ? new CanvasTexture(canvas) : null;
 }

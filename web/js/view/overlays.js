@@ -1,15 +1,22 @@
 /** What can be shown of models besides their looks: collisions, joints, masses, contacts, … */
 import {
-  BoxGeometry, CanvasTexture, DoubleSide, Group, LineBasicMaterial, Matrix4, Mesh,
+  BoxGeometry, CanvasTexture, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh,
   MeshBasicMaterial, MeshPhongMaterial, Quaternion, SRGBColorSpace, Vector3,
 } from 'three';
 import {equivalentBox} from '../inertia_math.js';
 import {skeletonOf} from '../skeleton.js';
-import {place} from './convert.js';
-import {meshOf, visualParts} from './geometry.js';
-import {arrow, ball, boxLines, empty, segments, through, triad} from './marks.js';
-import {patternCanvas} from './textures.js';
+import {place} from './three_convert.js';
+import {meshOf, visualParts} from './shape_meshes.js';
+import {arrow, ball, boxLines, empty, segments, through, triad} from './markers.js';
+import {patternCanvas} from './builtin_textures.js';
+/** @import {Box3, Object3D} from 'three' */
+/** @import {Contact, Joint, Link, Model} from '../protocol.js' */
+/** @import {OverlayFlag} from '../store.js' */
+/** @import {Part} from './shape_meshes.js' */
+/** @import {Vec3} from '../pose.js' */
+/** @import {ViewParts} from './view.js' */
 
+/** @type {readonly OverlayFlag[]} */
 const PER_MODEL = ['collisions', 'joints', 'com', 'inertia', 'frames', 'skeleton'];
 /** Density of lead: a ball of the link's mass is then small enough to see round. */
 const LEAD = 11340;
@@ -29,12 +36,20 @@ const socketMaterial = through(0xf5f5f5, 0.9);
 const boneMaterial = new LineBasicMaterial({color: 0xf5f5f5, depthTest: false, transparent: true});
 const unitBox = new BoxGeometry(1, 1, 1);
 
+/** The rotation whose axes are three unit vectors. @param {number[][]} vectors */
+function basisOf(vectors) {
+  const [x, y, z] = vectors.map((axis) => new Vector3().fromArray(axis));
+  return new Matrix4().makeBasis(x, y, z);
+}
+
 function massMaterial() {
-  const map = new CanvasTexture(patternCanvas('com'));
-  map.colorSpace = SRGBColorSpace;
+  const canvas = patternCanvas('com');
+  const map = canvas && new CanvasTexture(canvas);
+  if (map) map.colorSpace = SRGBColorSpace;
   return new MeshBasicMaterial({map, depthTest: false, depthWrite: false, transparent: true});
 }
 
+/** @param {Link} link @param {Box3|null} bounds */
 function massMark({inertial}, bounds) {
   const group = new Group();
   place(group, inertial.pose);
@@ -49,6 +64,7 @@ function massMark({inertial}, bounds) {
   return group;
 }
 
+/** @param {Link} link */
 function inertiaMark({inertial}) {
   const box = equivalentBox(inertial);
   if (!box) return null;
@@ -56,16 +72,17 @@ function inertiaMark({inertial}) {
   place(group, inertial.pose);
   const solid = new Mesh(unitBox, inertiaMaterial);
   const lines = boxLines(crossMaterial);
-  const axes = new Matrix4().makeBasis(...box.vectors.map((axis) => new Vector3(...axis)));
+  const axes = basisOf(box.vectors);
   for (const part of [solid, lines]) {
     part.quaternion.copy(new Quaternion().setFromRotationMatrix(axes));
-    part.scale.set(...box.size.map((edge) => Math.max(edge, 1e-4)));
+    part.scale.fromArray(box.size.map((edge) => Math.max(edge, 1e-4)));
     part.renderOrder = 51;
     group.add(part);
   }
   return group;
 }
 
+/** @param {Joint} joint */
 function jointMark(joint) {
   const group = new Group();
   place(group, joint.pose);
@@ -79,6 +96,7 @@ function jointMark(joint) {
   return group;
 }
 
+/** @param {Model} model @param {Link} link */
 function skeletonMark(model, link) {
   const {bones, sockets} = skeletonOf(model, link);
   if (!bones.length) return null;
@@ -86,7 +104,7 @@ function skeletonMark(model, link) {
   group.add(segments(bones.flat(), boneMaterial));
   for (const at of sockets) {
     const mark = new Mesh(ball, socketMaterial);
-    mark.position.set(...at);
+    mark.position.fromArray(at);
     mark.scale.setScalar(SOCKET_SIZE);
     mark.renderOrder = 52;
     group.add(mark);
@@ -100,10 +118,13 @@ export class Overlays {
   #stage;
   #stock;
   #watches;
+  /** Groups of marks by model name, then by link id. @type {Map<string, Map<number, Group>>} */
   #groups = new Map();
   #contacts = new Group();
+  /** @type {(() => void)|null} */
   #unwatch = null;
 
+  /** @param {ViewParts} viewParts */
   constructor({store, models, stage, stock, watches}) {
     this.#store = store;
     this.#models = models;
@@ -111,12 +132,12 @@ export class Overlays {
     this.#stock = stock;
     this.#watches = watches;
     stage.scene.add(this.#contacts);
-    store.addEventListener('document', () => this.#rebuildAll());
-    store.addEventListener('overlays', (event) => this.#flagsChanged(event.detail ?? {}));
-    store.addEventListener('entity', ({detail}) => {
+    store.listen('document', () => this.#rebuildAll());
+    store.listen('overlays', (event) => this.#flagsChanged(event.detail ?? {}));
+    store.listen('entity', ({detail}) => {
       if (detail.kind === 'model') this.#rebuild(detail.name);
     });
-    store.addEventListener('watch', ({detail}) => {
+    store.listen('watch', ({detail}) => {
       if (detail.topic === 'contacts') this.#showContacts(detail.contacts ?? []);
     });
   }
@@ -134,12 +155,13 @@ export class Overlays {
     }
   }
 
+  /** @param {{flag?: OverlayFlag, model?: string, layer?: number}} options */
   #flagsChanged({flag, model, layer}) {
     const names = model ? [model] : this.#store.document?.models.map(({name}) => name) ?? [];
     if (layer !== undefined || flag === 'transparent' || flag === 'wireframe') {
       for (const name of names) this.#models.rebuild(name);
     }
-    if (PER_MODEL.includes(flag)) for (const name of names) this.#rebuild(name);
+    if (flag && PER_MODEL.includes(flag)) for (const name of names) this.#rebuild(name);
     if (flag === 'contacts') this.#watchContacts();
     this.#stage.invalidate();
   }
@@ -150,16 +172,19 @@ export class Overlays {
     this.#watchContacts();
   }
 
+  /** @param {string} name */
   #drop(name) {
     for (const group of this.#groups.get(name)?.values() ?? []) this.#stage.scene.remove(group);
     this.#groups.delete(name);
   }
 
+  /** @param {string} name */
   #rebuild(name) {
     this.#drop(name);
     const model = this.#store.model(name);
     const flags = PER_MODEL.filter((flag) => this.#store.overlay(flag, name));
     if (!model || !flags.length) return;
+    /** @type {Map<number, Group>} */
     const links = new Map();
     this.#groups.set(name, links);
     for (const link of model.links) {
@@ -173,7 +198,14 @@ export class Overlays {
     this.#stage.invalidate();
   }
 
+  /**
+   * @param {Group} group
+   * @param {OverlayFlag} flag
+   * @param {Model} model
+   * @param {Link} link
+   */
   #fill(group, flag, model, link) {
+    /** @param {Object3D|null} mark */
     const add = (mark) => mark && group.add(mark);
     if (flag === 'frames') add(triad(FRAME_SIZE));
     else if (flag === 'skeleton') add(skeletonMark(model, link));
@@ -188,8 +220,10 @@ export class Overlays {
     }
   }
 
+  /** @param {Group} group @param {Link} link */
   #addCollisions(group, link) {
     for (const collision of link.collisions) {
+      /** @param {Part[]} parts */
       const add = (parts) => {
         for (const part of parts) {
           const mesh = meshOf(part);
@@ -219,17 +253,20 @@ export class Overlays {
     return scene.contacts || Object.values(models).some(({contacts}) => contacts);
   }
 
+  /** @param {Contact[]} contacts */
   #showContacts(contacts) {
     if (!contacts.length && !this.#contacts.children.length) return;
-    for (const child of this.#contacts.children) if (!child.isMesh) child.geometry.dispose();
+    for (const child of this.#contacts.children) {
+      if (child instanceof LineSegments) child.geometry.dispose();
+    }
     empty(this.#contacts);
-    const modelOf = (name) => this.#store.entity(name)?.model?.name ?? name.split('::')[0];
     const shown = contacts.filter(({a, b}) =>
-      [a, b].some((name) => this.#store.overlay('contacts', modelOf(name))));
+      [a, b].some((name) => this.#store.overlay('contacts', this.#store.split(name)[0]?.name ?? '')));
+    /** @type {Vec3[]} */
     const lines = [];
     for (const {position, normal, depth} of shown) {
       const mark = new Mesh(ball, contactMaterial);
-      mark.position.set(...position);
+      mark.position.fromArray(position);
       mark.scale.setScalar(0.02);
       mark.renderOrder = 53;
       this.#contacts.add(mark);

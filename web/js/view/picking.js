@@ -1,28 +1,40 @@
 /** What is under the mouse: bodies by their bounding spheres first, then by their triangles. */
 import {Mesh, Raycaster, Sphere, Vector2, Vector3} from 'three';
+/** @import {BufferGeometry, Intersection, Material, Object3D} from 'three' */
+/** @import {Face} from '../face_math.js' */
+/** @import {Item} from './batches.js' */
+/** @import {Owner} from './model_views.js' */
+/** @import {Ray} from '../drag_math.js' */
+/** @import {Stage} from './stage.js' */
 
 /**
  * @typedef {object} Hit
- * @property {any} owner      the item's
+ * @property {Owner} owner     the item's
  * @property {number[]} point world
  * @property {number} distance
- * @property {{corners: number[][]}} face  world
+ * @property {Face} face  world
  */
 
 export class Picker {
   #caster = new Raycaster();
+  /** @type {Mesh<BufferGeometry, Material|Material[]>} */
   #probe = new Mesh();
   #sphere = new Sphere();
   #at = new Vector3();
   #stage;
 
-  /** @param {import('./stage.js').Stage} stage */
+  /** @param {Stage} stage */
   constructor(stage) {
     this.#stage = stage;
     this.#probe.matrixAutoUpdate = false;
   }
 
-  /** The ray under a point of the page. @returns {import('../drag_math.js').Ray} */
+  /**
+   * The ray under a point of the page.
+   * @param {number} clientX
+   * @param {number} clientY
+   * @returns {Ray}
+   */
   ray(clientX, clientY) {
     this.#aim(clientX, clientY);
     const {origin, direction} = this.#caster.ray;
@@ -31,12 +43,15 @@ export class Picker {
 
   /**
    * The nearest of some items.
-   * @param {Iterable<import('./batches.js').Item>} items
-   * @param {(owner: any) => boolean} [accept]
+   * @param {Iterable<Item>} items
+   * @param {number} clientX
+   * @param {number} clientY
+   * @param {(owner: Owner) => boolean} [accept]
    * @returns {Hit|null}
    */
   nearest(items, clientX, clientY, accept = () => true) {
     this.#aim(clientX, clientY);
+    /** @type {{item: Item, distance: number}[]} */
     const candidates = [];
     for (const item of items) {
       if (!accept(item.owner)) continue;
@@ -44,6 +59,7 @@ export class Picker {
       if (distance !== null) candidates.push({item, distance});
     }
     candidates.sort((a, b) => a.distance - b.distance);
+    /** @type {Hit|null} */
     let best = null;
     for (const {item, distance} of candidates) {
       if (best && distance > best.distance) break;
@@ -52,12 +68,18 @@ export class Picker {
     return best;
   }
 
-  /** Hits of three objects, e.g. handles, nearest first. */
+  /**
+   * Hits of three objects, e.g. handles, nearest first.
+   * @param {Object3D[]} list
+   * @param {number} clientX
+   * @param {number} clientY
+   */
   objects(list, clientX, clientY) {
     this.#aim(clientX, clientY);
     return this.#caster.intersectObjects(list, true);
   }
 
+  /** @param {number} clientX @param {number} clientY */
   #aim(clientX, clientY) {
     const box = this.#stage.canvas.getBoundingClientRect();
     const point = new Vector2(((clientX - box.left) / box.width) * 2 - 1,
@@ -67,9 +89,10 @@ export class Picker {
     this.#caster.params.Line.threshold = 0.05;
   }
 
-  /** Where the ray may enter the item, or null when it passes it. */
+  /** Where the ray may enter the item, or null when it passes it. @param {Item} item */
   #entry({geometry, matrix}) {
     if (!geometry.boundingSphere) geometry.computeBoundingSphere();
+    if (!geometry.boundingSphere) return null;
     this.#sphere.copy(geometry.boundingSphere).applyMatrix4(matrix);
     const {ray} = this.#caster;
     if (this.#sphere.containsPoint(ray.origin)) return 0;
@@ -77,16 +100,18 @@ export class Picker {
     return at ? at.distanceTo(ray.origin) : null;
   }
 
+  /** @param {Item} item @param {Hit|null} best */
   #hit(item, best) {
     const probe = this.#probe;
     probe.geometry = item.geometry;
     probe.material = item.material;
     probe.matrixWorld.copy(item.matrix);
+    /** @type {Intersection[]} */
     const hits = [];
     probe.raycast(this.#caster, hits);
     hits.sort((a, b) => a.distance - b.distance);
     const [first] = hits;
-    if (!first || (best && first.distance >= best.distance)) return null;
+    if (!first?.face || (best && first.distance >= best.distance)) return null;
     const positions = item.geometry.getAttribute('position');
     const corners = [first.face.a, first.face.b, first.face.c].map((index) =>
       new Vector3().fromBufferAttribute(positions, index).applyMatrix4(item.matrix).toArray());

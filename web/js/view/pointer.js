@@ -1,27 +1,45 @@
 /** The mouse and the held keys over the view: who gets a drag, and what a click means. */
+import {closestTo} from '../panels/dom.js';
+/** @import {Vec3} from '../pose.js' */
+/** @import {ViewParts} from './view.js' */
+
+/** Where the mouse is in the page, px, and what is held. @typedef {{clientX: number, clientY: number,
+ * ctrlKey?: boolean, metaKey?: boolean, shiftKey?: boolean}} MousePoint */
+/** The keys that are held while another one changes. @typedef {{ctrlKey?: boolean, metaKey?: boolean,
+ * shiftKey?: boolean}} KeyState */
+/** The parts that the mouse works with.
+ * @typedef {{manipulator: import('./manipulator.js').Manipulator, placer: import('./insert_ghost.js').Placer,
+ * faceSnap: import('./face_snap.js').FaceSnap, forces: import('./force_arrows.js').Forces,
+ * selector: import('./selector.js').Selector, pivotMark: import('./markers.js').PivotMark}} PointerParts */
+/** A pressed button: where it was pressed and who has the drag. @typedef {{x: number, y: number,
+ * lastX: number, lastY: number, button: number, moved: number, point: Vec3,
+ * owner: 'camera'|'force'|'manipulator'}} Press */
 
 const CLICK_PIXELS = 4;
 const PLACE_PIXELS = 50;
 const WHEEL_STEP = 0.15;
-const AXIS_KEYS = ['x', 'y', 'z'];
+const AXIS_KEYS = /** @type {const} */ (['x', 'y', 'z']);
 const WALK_KEYS = ['w', 'a', 's', 'd'];
 
 /** Keys that are down, and only while the page has the keyboard. */
 class HeldKeys {
+  /** @type {Set<string>} */
   #down = new Set();
 
+  /** @param {Window} target @param {(event: KeyState, key: string) => void} onChange */
   constructor(target, onChange) {
+    /** @param {KeyboardEvent} event */
     const change = (event) => {
       const key = event.key.toLowerCase();
       if (event.type === 'keydown') {
-        if (event.repeat || event.target.closest?.('input, textarea, select')) return;
+        if (event.repeat || closestTo(event, 'input, textarea, select')) return;
         this.#down.add(key);
       } else this.#down.delete(key);
       onChange(event, key);
     };
-    const clear = (event) => {
+    const clear = () => {
       this.#down.clear();
-      onChange(event, '');
+      onChange({}, '');
     };
     target.addEventListener('keydown', change);
     target.addEventListener('keyup', change);
@@ -33,6 +51,7 @@ class HeldKeys {
     };
   }
 
+  /** @param {string} key */
   has(key) { return this.#down.has(key); }
 
   /** x, y or z when one is held. */
@@ -42,12 +61,13 @@ class HeldKeys {
 export class Pointer {
   #parts;
   #keys;
+  /** @type {Press|null} */
   #press = null;
+  /** Each stops one listener. @type {(() => void)[]} */
   #listeners = [];
 
   /**
-   * @param {{stage: any, store: any, actions: any, rig: any, manipulator: any, placer: any,
-   *          faceSnap: any, forces: any, selector: any, pivotMark: any}} parts
+   * @param {ViewParts & PointerParts} parts
    */
   constructor(parts) {
     this.#parts = parts;
@@ -67,31 +87,40 @@ export class Pointer {
 
   dispose() {
     this.#keys.dispose();
-    for (const [target, type, listener] of this.#listeners) {
-      target.removeEventListener(type, listener);
-    }
+    for (const end of this.#listeners) end();
   }
 
+  /**
+   * @template {keyof HTMLElementEventMap} T
+   * @param {HTMLElement} target
+   * @param {T} type
+   * @param {(event: HTMLElementEventMap[T]) => void} listener
+   * @param {AddEventListenerOptions} [options]
+   */
   #listen(target, type, listener, options) {
     target.addEventListener(type, listener, options);
-    this.#listeners.push([target, type, listener]);
+    this.#listeners.push(() => target.removeEventListener(type, listener));
   }
 
+  /** @param {PointerEvent} event */
   #down(event) {
     const {stage, store, manipulator, selector, forces} = this.#parts;
     if (this.#press) return;
-    stage.canvas.parentElement.focus?.({preventScroll: true});
+    stage.canvas.parentElement?.focus({preventScroll: true});
     stage.canvas.setPointerCapture(event.pointerId);
     const point = selector.point(event);
-    this.#press = {x: event.clientX, y: event.clientY, lastX: event.clientX, lastY: event.clientY,
+    /** @type {Press} */
+    const press = {x: event.clientX, y: event.clientY, lastX: event.clientX, lastY: event.clientY,
       button: event.button, moved: 0, point, owner: 'camera'};
+    this.#press = press;
     if (event.button !== 0 || store.mode === 'insert') return;
-    if (forces.grab(event)) this.#press.owner = 'force';
+    if (forces.grab(event)) press.owner = 'force';
     else if (manipulator.grab(event, () => selector.movable(event), this.#keys.axis)) {
-      this.#press.owner = 'manipulator';
+      press.owner = 'manipulator';
     }
   }
 
+  /** @param {PointerEvent} event */
   #move(event) {
     const press = this.#press;
     if (!press) {
@@ -111,6 +140,12 @@ export class Pointer {
     else this.#moveCamera(event, press, dx, dy);
   }
 
+  /**
+   * @param {PointerEvent} event
+   * @param {Press} press
+   * @param {number} dx
+   * @param {number} dy
+   */
   #moveCamera(event, press, dx, dy) {
     const {rig, store, pivotMark} = this.#parts;
     const fps = store.camera.controller === 'fps';
@@ -125,6 +160,7 @@ export class Pointer {
     } else rig.pan(x, y, press.point, this.#keys.axis);
   }
 
+  /** @param {PointerEvent} event */
   #up(event) {
     const press = this.#press;
     if (!press || event.button !== press.button) return;
@@ -155,6 +191,7 @@ export class Pointer {
     this.#parts.faceSnap.leave();
   }
 
+  /** @param {PointerEvent} event */
   #hover(event) {
     const {stage, store, manipulator, placer, faceSnap, forces} = this.#parts;
     let cursor = '';
@@ -164,6 +201,7 @@ export class Pointer {
     if (stage.canvas.style.cursor !== cursor) stage.canvas.style.cursor = cursor;
   }
 
+  /** @param {WheelEvent} event */
   #wheel(event) {
     event.preventDefault();
     const {rig, store, selector} = this.#parts;
@@ -172,20 +210,22 @@ export class Pointer {
     else rig.zoom(selector.point(event), Math.exp(steps * WHEEL_STEP * (event.ctrlKey ? 2 : 1)));
   }
 
+  /** @param {KeyState} event */
   #keysChanged(event) {
     const {manipulator, rig, store} = this.#parts;
     manipulator.keysChanged(event, this.#keys.axis);
     if (store.camera.controller !== 'fps' || event.ctrlKey) return;
     const [w, a, s, d] = WALK_KEYS.map((key) => Number(this.#keys.has(key)));
-    rig.walk(w - s, d - a, event.shiftKey);
+    rig.walk(w - s, d - a, Boolean(event.shiftKey));
   }
 
+  /** @param {DragEvent} event */
   async #drop(event) {
     event.preventDefault();
-    const uri = event.dataTransfer.getData('text/x-model-uri');
+    const uri = event.dataTransfer?.getData('text/x-model-uri');
     if (!uri) return;
     const {clientX, clientY} = event;
     const outcome = await this.#parts.actions.insertModel(uri);
-    if (outcome?.ok) this.#parts.placer.put({clientX, clientY});
+    if (outcome.ok) this.#parts.placer.put({clientX, clientY});
   }
 }

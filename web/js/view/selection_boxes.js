@@ -1,7 +1,9 @@
 /** White wire boxes round what is selected, aligned with it. */
 import {LineBasicMaterial, Vector3} from 'three';
-import {place} from './convert.js';
-import {boxLines} from './marks.js';
+import {place} from './three_convert.js';
+import {boxLines} from './markers.js';
+/** @import {LineSegments} from 'three' */
+/** @import {ViewParts} from './view.js' */
 
 const material = new LineBasicMaterial({color: 0xffffff, fog: false});
 const LIGHT_SIZE = 0.7;
@@ -10,21 +12,23 @@ export class SelectionBoxes {
   #store;
   #models;
   #stage;
+  /** @type {LineSegments[]} */
   #boxes = [];
 
+  /** @param {ViewParts} viewParts */
   constructor({store, models, stage}) {
     this.#store = store;
     this.#models = models;
     this.#stage = stage;
-    for (const event of ['selection', 'document']) {
-      store.addEventListener(event, () => this.update());
+    for (const event of /** @type {const} */ (['selection', 'document'])) {
+      store.listen(event, () => this.update());
     }
   }
 
   /** Fits the boxes to what is selected now. */
   update() {
     const {selection} = this.#store;
-    while (this.#boxes.length > selection.length) this.#stage.scene.remove(this.#boxes.pop());
+    for (const box of this.#boxes.splice(selection.length)) this.#stage.scene.remove(box);
     while (this.#boxes.length < selection.length) {
       const box = boxLines(material);
       box.renderOrder = 60;
@@ -43,11 +47,13 @@ export class SelectionBoxes {
     this.update();
   }
 
+  /** @param {string} name @param {Set<number>} ids */
   #touches(name, ids) {
     const entity = this.#store.entity(name);
     return entity?.model?.links.some(({id}) => ids.has(id));
   }
 
+  /** @param {LineSegments} box @param {string} name */
   #fit(box, name) {
     const pose = this.#models.shownPose(name);
     box.visible = pose !== null;

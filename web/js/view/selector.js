@@ -1,6 +1,15 @@
 /** What clicks select, and where the ray under the mouse meets the world. */
+import {Mesh} from 'three';
 import {rayPlane, WORLD_AXES} from '../drag_math.js';
 import {add, length, scale, subtract} from '../pose.js';
+/** @import {MousePoint} from './pointer.js' */
+/** @import {Vec3} from '../pose.js' */
+/** @import {ViewParts} from './view.js' */
+
+/**
+ * What is under the mouse.
+ * @typedef {{name: string, link?: string, point: Vec3, plane?: boolean}} Under
+ */
 
 /** Metres ahead of where nothing is, and to where the ground is taken for near the horizon. */
 const AHEAD = 10;
@@ -14,6 +23,7 @@ export class Selector {
   #picker;
   #rig;
 
+  /** @param {ViewParts} viewParts */
   constructor({store, batches, lights, models, picker, rig}) {
     this.#store = store;
     this.#batches = batches;
@@ -23,29 +33,35 @@ export class Selector {
     this.#rig = rig;
   }
 
-  /** @returns {{name: string, link?: string, point: number[], plane?: boolean}|null} */
+  /**
+   * @param {MousePoint} mousePoint
+   * @returns {{name: string, link?: string, point: number[], plane?: boolean}|null}
+   */
   under({clientX, clientY}) {
     const body = this.#picker.nearest(this.#batches.items(), clientX, clientY,
       (owner) => owner.model !== undefined);
     const icons = this.#lights.icons;
     const [light] = this.#picker.objects([...icons.values()], clientX, clientY)
-      .filter(({object}) => object.isMesh);
+      .filter(({object}) => object instanceof Mesh);
     if (light && (!body || light.distance < body.distance)) {
-      const [name] = [...icons].find(([, icon]) => icon === light.object.parent);
-      return {name, point: light.point.toArray()};
+      const found = [...icons].find(([, icon]) => icon === light.object.parent);
+      if (found) return {name: found[0], point: light.point.toArray()};
     }
     if (!body) return null;
     const {model, link, plane} = body.owner;
     return {name: model, link, point: body.point, plane};
   }
 
-  /** What a drag may take hold of. */
+  /** What a drag may take hold of. @param {MousePoint} event */
   movable(event) {
     const hit = this.under(event);
     return hit && !hit.plane ? hit : null;
   }
 
-  /** The point under the mouse: of a body, of the ground, or 10 m ahead. */
+  /**
+   * The point under the mouse: of a body, of the ground, or 10 m ahead.
+   * @param {MousePoint} event
+   */
   point(event) {
     const hit = this.under(event);
     if (hit && !hit.plane) return hit.point;
@@ -55,6 +71,7 @@ export class Selector {
     return add(ray.origin, scale(ray.direction, Math.min(distance, FAR)));
   }
 
+  /** @param {MousePoint} event */
   click(event) {
     const hit = this.movable(event);
     const several = event.ctrlKey || event.metaKey;
@@ -67,15 +84,16 @@ export class Selector {
     else this.#store.select([hit.name]);
   }
 
-  /** The second click on a model of several links means the link. */
+  /** The second click on a model of several links means the link. @param {Under} under */
   #wantsLink({name, link}) {
     const {selection, mode} = this.#store;
     const [chosen] = selection;
     const model = this.#store.model(name);
-    return mode === 'select' && link && selection.length === 1 && model?.links.length > 1 &&
-      (chosen === name || chosen.startsWith(`${name}::`));
+    return mode === 'select' && link && selection.length === 1 && model && model.links.length > 1 &&
+      this.#store.split(chosen)[0]?.name === name;
   }
 
+  /** @param {MousePoint} event */
   menu(event) {
     const hit = this.movable(event);
     if (hit && !this.#store.selection.includes(hit.name)) this.#store.select([hit.name]);
@@ -83,6 +101,7 @@ export class Selector {
       {name: hit?.name ?? null, x: event.clientX, y: event.clientY});
   }
 
+  /** @param {MousePoint} event */
   flyTo(event) {
     if (this.#store.mode === 'insert') return;
     const hit = this.movable(event);

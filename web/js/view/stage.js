@@ -6,6 +6,7 @@ import {
   Color, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, SRGBColorSpace, WebGLRenderer,
   WebGLRenderTarget,
 } from 'three';
+/** @import {Camera} from 'three' */
 
 /** Pictures that take longer (ms) make the next ones coarser, quicker than the other finer. */
 const SLOW = 45;
@@ -41,10 +42,14 @@ export class Stage {
   perspective = new PerspectiveCamera(40, 1, 0.1, 5000);
   orthographic = new OrthographicCamera(-1, 1, 1, -1, -5000, 5000);
   /** The one of the two that is looked through. */
+  /** @type {PerspectiveCamera|OrthographicCamera} */
   camera = this.perspective;
   /** Pictures in the last second, 0 at rest. */
   fps = 0;
-  /** Called before each picture with its time, ms; true: another one is wanted after it. */
+  /**
+   * Called before each picture with its time, ms; true: another one is wanted after it.
+   * @type {(time: number) => boolean}
+   */
   onBeforeDraw = () => false;
   /** Called when the canvas has another size. */
   onResize = () => {};
@@ -53,15 +58,20 @@ export class Stage {
   #wanted = 0;
   #quality = 1;
   #best = 1;
+  /** @type {number[]} */
   #times = [];
-  #restTimer = null;
+  /** @type {ReturnType<typeof setTimeout>|undefined} */
+  #restTimer;
   #lost = false;
+  /** @type {WebGLSync|null} */
   #fence = null;
   #begun = 0;
   #waited = false;
   #shadowed = -SLOW_SHADOWS;
   #drawn = false;
+  /** @type {number[]} */
   #recent = [];
+  /** @type {number|null} */
   #next = null;
   #resizes;
   #shadowsWanted = true;
@@ -83,7 +93,7 @@ export class Stage {
       this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: !software,
         powerPreference: 'high-performance'});
     } catch (error) {
-      throw new NoWebGL(String(error.message ?? error));
+      throw new NoWebGL(error instanceof Error ? error.message : String(error));
     }
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -121,7 +131,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /** Draws at once and gives the picture as a PNG. @returns {Promise<Blob>} */
+  /** Draws at once and gives the picture as a PNG. @returns {Promise<Blob|null>} */
   picture() {
     this.#drawInFull();
     return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
@@ -129,7 +139,10 @@ export class Stage {
 
   /**
    * Draws another scene into a square and comes back to this one.
-   * @returns {Promise<Blob>} PNG
+   * @param {Scene} scene
+   * @param {Camera} camera
+   * @param {number} size
+   * @returns {Promise<Blob|null>} PNG
    */
   borrow(scene, camera, size) {
     const shadows = this.renderer.shadowMap.enabled;
@@ -153,6 +166,7 @@ export class Stage {
     this.canvas.remove();
   }
 
+  /** @param {number} time */
   #frame(time) {
     this.#wanted = 0;
     if (this.#lost) return;
@@ -178,7 +192,7 @@ export class Stage {
   /** Whether the last picture is still being made; once it is not, how long that took is noted. */
   #isDrawing() {
     if (!this.#fence) return false;
-    const gl = this.renderer.getContext();
+    const gl = /** @type {WebGL2RenderingContext} */ (this.renderer.getContext());
     const done = gl.getSyncParameter(this.#fence, gl.SYNC_STATUS) === gl.SIGNALED;
     const took = performance.now() - this.#begun;
     if (!done && took < 2000) {
@@ -193,6 +207,7 @@ export class Stage {
     return false;
   }
 
+  /** @param {number} took */
   #adapt(took) {
     this.#times.push(took);
     if (this.#times.length < 4) return;
@@ -220,13 +235,14 @@ export class Stage {
     this.#draw(performance.now());
   }
 
+  /** @param {number} quality */
   #setQuality(quality) {
     if (quality === this.#quality) return;
     this.#quality = quality;
     this.#applySize();
   }
 
-  /** @returns {boolean} whether another picture is wanted */
+  /** @param {number} time @returns {boolean} whether another picture is wanted */
   #draw(time) {
     const {renderer} = this;
     const more = this.onBeforeDraw(time);
@@ -238,7 +254,7 @@ export class Stage {
       this.#shadowed = time;
     }
     renderer.render(this.scene, this.camera);
-    const gl = renderer.getContext();
+    const gl = /** @type {WebGL2RenderingContext} */ (renderer.getContext());
     if (!this.#fence) {
       this.#fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
       this.#begun = performance.now();
@@ -247,6 +263,7 @@ export class Stage {
     return more;
   }
 
+  /** @param {number} time */
   #count(time) {
     this.#recent = this.#recent.filter((then) => time - then < 1000);
     this.#recent.push(time);
@@ -269,7 +286,12 @@ export class Stage {
   }
 }
 
-/** Pixels as WebGL gives them, lowest row first. @returns {Promise<Blob>} */
+/**
+ * Pixels as WebGL gives them, lowest row first.
+ * @param {Uint8ClampedArray} pixels
+ * @param {number} size
+ * @returns {Promise<Blob|null>}
+ */
 function asPng(pixels, size) {
   const canvas = document.createElement('canvas');
   canvas.width = canvas.height = size;
@@ -278,6 +300,6 @@ function asPng(pixels, size) {
   for (let y = 0; y < size; y++) {
     upright.data.set(pixels.subarray((size - 1 - y) * row, (size - y) * row), y * row);
   }
-  canvas.getContext('2d').putImageData(upright, 0, 0);
+  canvas.getContext('2d')?.putImageData(upright, 0, 0);
   return new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
 }

@@ -3,46 +3,76 @@ import {Vector3} from 'three';
 import {subtract} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
-import {CameraRig} from './camera.js';
-import {place} from './convert.js';
+import {CameraRig} from './camera_rig.js';
+import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
-import {Forces} from './forces.js';
-import {Lights} from './lights.js';
+import {Forces} from './force_arrows.js';
+import {Lights} from './light_views.js';
 import {Manipulator} from './manipulator.js';
 import {Materials} from './materials.js';
-import {Meshes} from './meshes.js';
-import {Models} from './models.js';
+import {Meshes} from './mesh_files.js';
+import {Models} from './model_views.js';
 import {Overlays} from './overlays.js';
 import {Picker} from './picking.js';
-import {Placer} from './placer.js';
-import {PivotMark} from './marks.js';
+import {Placer} from './insert_ghost.js';
+import {PivotMark} from './markers.js';
 import {Pointer} from './pointer.js';
 import {SelectionBoxes} from './selection_boxes.js';
 import {Selector} from './selector.js';
-import {soloModel} from './solo.js';
+import {standaloneModel} from './standalone_model.js';
 import {NoWebGL, Stage} from './stage.js';
-import {Surroundings} from './surroundings.js';
+import {Surroundings} from './environment.js';
 import {thumbnail} from './thumbnails.js';
+/** @import {Actions, Outcome, ShownWrench} from '../actions.js' */
+/** @import {Connection} from '../connection.js' */
+/** @import {Pose7} from '../pose.js' */
+/** @import {Stock} from './shape_meshes.js' */
+/** @import {Store} from '../store.js' */
+/** @import {Turned} from './force_arrows.js' */
+/** @import {Watches} from '../watches.js' */
 
-const NO_WEBGL = `This browser offers no WebGL, which the 3D view needs. The tree, the properties,
-  the time bar and saving work without it. What helps: switch hardware acceleration on in the
-  browser's settings, bring the graphics driver up to date, or allow software rendering (Chromium:
-  --enable-unsafe-swiftshader).`;
+/**
+ * What the view's parts share.
+ * @typedef {object} ViewParts
+ * @property {Store} store
+ * @property {Actions} actions
+ * @property {Connection} connection
+ * @property {Watches} [watches]
+ * @property {Stage} stage
+ * @property {Stock} stock
+ * @property {Batches} batches
+ * @property {Models} models
+ * @property {Lights} lights
+ * @property {CameraRig} rig
+ * @property {Picker} picker
+ */
 
-/** What stands in for the view where there is no WebGL. */
+/** @typedef {InstanceType<typeof View>} SceneView */
+
+/** @typedef {Pick<ViewParts, 'store'|'actions'|'connection'|'watches'>} ViewOptions */
+
+const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs it. The tree, the
+  properties, the time bar and saving work without it. To get the 3D view, enable hardware
+  acceleration in the browser's settings, update the graphics driver, or allow software rendering
+  (Chromium: --enable-unsafe-swiftshader).`;
+
+/** What stands in for the view where there is no WebGL. @param {HTMLElement} element */
 function withoutWebGL(element) {
   const text = document.createElement('p');
   text.className = 'no-webgl';
   text.setAttribute('role', 'alert');
   text.textContent = NO_WEBGL;
   element.append(text);
-  return {fps: 0, available: false, thumbnail: async () => null, dispose: () => text.remove()};
+  return {
+    fps: 0, available: false, thumbnail: async () => null, redraw: () => {},
+    dispose: () => text.remove(),
+  };
 }
 
 /**
  * @param {HTMLElement} element  gets the canvas
- * @param {{store: any, actions: any, connection: any, watches?: any}} parts
- * @returns {{fps: number, available: boolean, thumbnail: Function, dispose: Function}}
+ * @param {ViewOptions} parts
+ * @returns {Pick<SceneView, 'fps'|'available'|'thumbnail'|'redraw'|'dispose'>}
  */
 export function mountView(element, parts) {
   try {
@@ -68,12 +98,16 @@ class View {
   #overlays;
   #pointer;
   #actors;
+  /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
+  /** By model URI. @type {Map<string, Promise<string|null>>} */
   #thumbnails = new Map();
+  /** Names of the models that are shown elsewhere. @type {string[]} */
   #shifted = [];
   #pictured = false;
   #connection;
 
+  /** @param {HTMLElement} element @param {ViewOptions} viewOptions */
   constructor(element, {store, actions, connection, watches}) {
     this.#store = store;
     this.#connection = connection;
@@ -137,7 +171,7 @@ class View {
       this.#coverWithShadow();
       return moving;
     };
-    this.#store.addEventListener('preview', () => this.#showPreview());
+    this.#store.listen('preview', () => this.#showPreview());
   }
 
   /** For the benchmark: when the world could be seen, since the page was asked for. */
@@ -163,13 +197,17 @@ class View {
 
   /** @param {string} side */
   viewFrom(side) {
-    const centres = this.#store.selection.map((name) => this.#centre(name)).filter(Boolean);
+    const centres = this.#store.selection.flatMap((name) => {
+      const centre = this.#centre(name);
+      return centre ? [centre] : [];
+    });
     const centre = centres.length
       ? [0, 1, 2].map((i) => centres.reduce((sum, one) => sum + one[i], 0) / centres.length)
       : [0, 0, 0];
     this.#rig.flyToSide(side, centre);
   }
 
+  /** @param {string} name */
   moveTo(name) {
     const box = this.#models.bounds(name);
     const pose = this.#models.shownPose(name);
@@ -177,36 +215,48 @@ class View {
     else if (pose) this.#rig.flyTowards(pose.slice(0, 3));
   }
 
+  /** @param {string} name */
   #centre(name) {
     const bounds = this.bounds(name);
     if (bounds) return bounds.min.map((part, index) => (part + bounds.max[index]) / 2);
     return this.#models.shownPose(name)?.slice(0, 3) ?? null;
   }
 
-  /** @returns {{min: number[], max: number[]}|null} in world axes, m */
+  /** @param {string} name @returns {{min: number[], max: number[]}|null} in world axes, m */
   bounds(name) {
     const box = this.#models.bounds(name);
     return box && {min: box.min.toArray(), max: box.max.toArray()};
   }
 
-  /** Where the middle of an entity is in the page, px, for tests. @returns {number[]|null} */
+  /**
+   * Where the middle of an entity is in the page, px, for tests.
+   * @param {string} name
+   * @returns {number[]|null}
+   */
   pixelOf(name) {
     const centre = this.#centre(name);
     if (!centre) return null;
     const {camera, canvas} = this.#stage;
-    const at = new Vector3(...centre).project(camera);
+    const at = new Vector3().fromArray(centre).project(camera);
     const box = canvas.getBoundingClientRect();
     return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height];
   }
 
-  /** Shows models elsewhere without moving them; null ends that. */
+  /**
+   * Shows models elsewhere without moving them; null ends that.
+   * @param {Record<string, Pose7>|null} poses
+   */
   setPreviewPoses(poses) {
     this.#models.release(this.#shifted);
     this.#shifted = Object.keys(poses ?? {});
     if (poses) this.#models.hold(poses);
   }
 
-  /** Shows models elsewhere until the simulator has answered. */
+  /**
+   * Shows models elsewhere until the simulator has answered.
+   * @param {Record<string, Pose7>} poses
+   * @param {Promise<Outcome>} asked
+   */
   carry(poses, asked) {
     this.setPreviewPoses(null);
     return this.#models.carry(poses, asked);
@@ -216,11 +266,12 @@ class View {
     return this.#manipulator.cancel();
   }
 
+  /** @param {ShownWrench|null} wrench @param {(turned: Turned) => void} [onTurned] */
   showForce(wrench, onTurned) {
     this.#forces.show(wrench, onTurned);
   }
 
-  /** @returns {Promise<Blob>} PNG of the view as it is */
+  /** @returns {Promise<Blob|null>} PNG of the view as it is */
   picture() {
     return this.#stage.picture();
   }
@@ -233,8 +284,8 @@ class View {
       this.#stage.scene.remove(this.#preview.group);
       this.#preview.dispose();
     }
-    this.#preview = preview ? soloModel(preview, this.#stock) : null;
-    if (this.#preview) {
+    this.#preview = preview ? standaloneModel(preview, this.#stock) : null;
+    if (preview && this.#preview) {
       const {group, ready} = this.#preview;
       place(group, preview.pose);
       // It can be picked before it is drawn for the first time.
@@ -245,11 +296,16 @@ class View {
     this.#stage.shadowsChanged();
   }
 
-  /** The link of the preview under a point of the page. @returns {{link: string}|null} */
+  /**
+   * The link of the preview under a point of the page.
+   * @param {number} clientX
+   * @param {number} clientY
+   * @returns {{link: string}|null}
+   */
   previewPick(clientX, clientY) {
     if (!this.#preview) return null;
     const [hit] = this.#picker.objects([this.#preview.group], clientX, clientY);
-    return hit ? {link: hit.object.parent.name} : null;
+    return hit ? {link: hit.object.parent?.name ?? ''} : null;
   }
 
   /** Draws the next frame although nothing has changed. */
@@ -264,12 +320,15 @@ class View {
    * @returns {Promise<string|null>} an address for an <img>
    */
   thumbnail(uri, address) {
-    if (!this.#thumbnails.has(uri)) this.#thumbnails.set(uri, this.#drawThumbnail(uri, address));
-    return this.#thumbnails.get(uri);
+    const known = this.#thumbnails.get(uri) ?? this.#drawThumbnail(uri, address);
+    this.#thumbnails.set(uri, known);
+    return known;
   }
 
+  /** @param {string} uri @param {string} [address] */
   async #drawThumbnail(uri, address) {
-    const {model} = await this.#connection.request('library_get', {uri}).catch(() => ({}));
+    const found = await this.#connection.request('library_get', {uri}).catch(() => null);
+    const model = found?.model;
     const blob = model && await thumbnail(this.#stage, model, this.#stock);
     if (!blob) return null;
     if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);

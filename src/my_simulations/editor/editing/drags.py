@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Dict, List
 
+from ...description.scoped_names import split_scoped
 from ...errors import CommandError
 from ...geometry import Pose, normalised, pose_is_finite
 from ...simulator.operations import place, pose_of
@@ -59,11 +60,6 @@ class Drags:
             self._hold()
 
     def _hold(self) -> None:
-        names = {self._model_of(name) for before in self._before.values() for name in before}
-        self._world.models.pin([name for name in sorted(names) if self._world.models.has(name)])
-
-    def _model_of(self, name: str) -> str:
-        at = name.find("::")
-        while at > 0 and not self._world.models.has(name[:at]):
-            at = name.find("::", at + 2)
-        return name[:at] if at > 0 else name
+        names = {split_scoped(name, self._world.models.has)[0]
+                 for before in self._before.values() for name in before}
+        self._world.models.pin(sorted(names - {""}))

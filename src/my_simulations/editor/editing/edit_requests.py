@@ -32,6 +32,8 @@ from ...simulator.operations import (
 from ...simulator.simulator import Simulator
 from ..scene.plain_json import pose_of as pose_from
 from ..transport.protocol import Protocol
+from . import history_labels
+from .history_labels import listed
 from .inserts import (
     Entity,
     checked,
@@ -98,7 +100,7 @@ class Edits:
             else:
                 lights.append(self._world.lights.get(name))
         if not models and not lights:
-            raise CommandError("nothing is selected that could be copied")
+            raise CommandError("no models or lights are selected")
         return write_world(world_of(models, lights)).decode()
 
     def _planned(self, op: Dict[str, Any], depth: int) -> Planned:
@@ -118,7 +120,7 @@ class Edits:
     def _insert(self, op: Dict[str, Any]) -> Planned:
         given = [name for name in ("shape", "uri", "sdf") if op.get(name)]
         if len(given) != 1:
-            raise CommandError("insert needs one of shape, uri and sdf")
+            raise CommandError("insert needs exactly one of shape, uri and sdf")
         issues: List[Issue] = []
         entity: Entity
         if given == ["shape"]:
@@ -149,7 +151,7 @@ class Edits:
         given = dict(op["light"])
         kind = given.setdefault("type", "point")
         if kind not in ("point", "spot", "directional"):
-            raise CommandError(f"there is no light {kind!r}; there are point, spot, directional")
+            raise CommandError(f"unknown light type {kind!r}; use point, spot or directional")
         taken = taken_names(self._world)
         wanted = str(given.get("name") or "")
         number = 0
@@ -172,14 +174,14 @@ class Edits:
             if name not in lights:
                 self._world.models.get(name)
             parts.append(RemoveLight(name) if name in lights else RemoveModel(name))
-        return f"Delete {_listed(names)}", _one(parts), {"names": names}
+        return f"Delete {listed(names)}", _one(parts), {"names": names}
 
     def _paste(self, op: Dict[str, Any]) -> Planned:
         entities, issues = entities_of_text(op["text"], self._resolver)
         for issue in issues:
             self._tell(issue)
         if not entities:
-            raise CommandError("there is nothing to paste")
+            raise CommandError("the pasted text contains no models or lights")
         taken = set(taken_names(self._world))
         target = _usable(pose_from(op["pose"])) if op.get("pose") else None
         first = entities[-1].pose
@@ -194,19 +196,19 @@ class Edits:
                     target, compose(inverse(first), pose))
             names.append(name)
             parts.append(self._addition(entity, name, pose))
-        return f"Paste {_listed(names)}", _one(parts), {"names": names, "name": names[-1]}
+        return f"Paste {listed(names)}", _one(parts), {"names": names, "name": names[-1]}
 
     # -- changing --------------------------------------------------------------------------------
 
     def _move(self, op: Dict[str, Any]) -> Planned:
         poses = {name: _usable(pose_from(pose)) for name, pose in op["poses"].items()}
         if not poses:
-            raise CommandError("there is nothing to move")
+            raise CommandError("no poses are given")
         for name in poses:
             pose_of(self._world, name)
         label = str(op.get("label") or "move")[:40]
         operation = Place(poses, self._dragged(list(poses)))
-        return f"{label.capitalize()} {_listed(list(poses))}", operation, {}
+        return f"{label.capitalize()} {listed(list(poses))}", operation, {}
 
     def _scale(self, op: Dict[str, Any]) -> Planned:
         model = self._world.models.get(op["name"])
@@ -218,7 +220,7 @@ class Edits:
     def _rename(self, op: Dict[str, Any]) -> Planned:
         name, to = op["name"], op["to"].strip()
         if not to or "::" in to or to in ("world", "default"):
-            raise CommandError(f"{to!r} is no name for a model or a light")
+            raise CommandError(f"{to!r} is not a valid name for a model or light")
         label = f"Rename {name} to {to}"
         if any(light.name == name for light in self._world.lights.all()):
             return (label, EditLight(name, replace(self._world.lights.get(name), name=to)),
@@ -229,7 +231,7 @@ class Edits:
     def _set(self, op: Dict[str, Any]) -> Planned:
         target, path = op["target"], op["path"]
         operation = property_change(self._world, self._resolver, target, path, op.get("value"))
-        return f"Set {path} of {target or 'the world'}", operation, {}
+        return history_labels.set_property(target, path, op.get("value")), operation, {}
 
     def _reset(self, op: Dict[str, Any]) -> Planned:
         words = {"time": "time", "poses": "model poses", "world": "world"}[op["what"]]
@@ -240,7 +242,7 @@ class Edits:
     def _wrench(self, op: Dict[str, Any]) -> Planned:
         steps = op.get("steps") or 1
         if not 0 < steps <= _MOST_STEPS:
-            raise CommandError(f"a force acts for 1 to {_MOST_STEPS} steps, not {steps}")
+            raise CommandError(f"steps must be 1 to {_MOST_STEPS}, not {steps}")
         link = op["link"]
         if self._world.models.has(link):
             model = self._world.models.get(link)
@@ -248,10 +250,11 @@ class Edits:
                 raise CommandError(f"model {link!r} has no links")
             link = f"{link}::{model.canonical_link or model.links[0].name}"
         point = op.get("point")
-        operation = Push(link, _vector(op["force"]), _vector(op["torque"]),
+        force, torque = _vector(op["force"]), _vector(op["torque"])
+        operation = Push(link, force, torque,
                          None if point is None else _vector(point),
                          bool(op.get("in_link_axes")), steps)
-        return f"Apply force to {link}", operation, {}
+        return history_labels.apply_wrench(link, force, torque), operation, {}
 
     def _joint(self, op: Dict[str, Any]) -> Planned:
         name, value = op["joint"], float(op["value"])
@@ -259,21 +262,21 @@ class Edits:
         scoped = f"{owner}::{joint.name}" + ("::1" if number else "")
         axis = joint.axis2 if number else joint.axis
         if axis is None:
-            raise CommandError(f"joint {joint.name!r} cannot move")
+            raise CommandError(f"joint {joint.name!r} has no movable axis")
         if not math.isfinite(value):
-            raise CommandError(f"joint {joint.name!r} cannot be driven with {value!r}")
+            raise CommandError(f"the target of joint {joint.name!r} must be finite")
         mode = op["mode"]
+        label = history_labels.set_joint(scoped, joint.type, mode, value)
         if mode == "force":
-            return f"Drive {scoped}", Drive(scoped, (value,) if value else ()), {}
+            return label, Drive(scoped, (value,) if value else ()), {}
         servo = JointPid(value, mode == "velocity", **_gains(op.get("gains") or {}))
-        verb = f"Drive {scoped} to" if mode == "position" else f"Turn {scoped} at"
-        return f"{verb} {value:g}", Drive(scoped, (servo,)), {}
+        return label, Drive(scoped, (servo,)), {}
 
     # -- several ---------------------------------------------------------------------------------
 
     def _group(self, op: Dict[str, Any], depth: int) -> Planned:
         if depth >= _DEEPEST_GROUP or len(op["ops"]) > _MOST_IN_A_GROUP or not op["ops"]:
-            raise CommandError(f"a group holds 1 to {_MOST_IN_A_GROUP} operations, nested "
+            raise CommandError(f"a group contains 1 to {_MOST_IN_A_GROUP} operations, nested "
                                f"{_DEEPEST_GROUP} deep at most")
         label = str(op.get("label") or "")
         deferred = _Deferred(self, op["ops"], depth + 1)
@@ -307,11 +310,6 @@ def _one(parts: List[Operation]) -> Operation:
     return parts[0] if len(parts) == 1 else Group(tuple(parts))
 
 
-def _listed(names: List[str]) -> str:
-    shown = ", ".join(names[:3])
-    return shown if len(names) <= 3 else f"{shown} and {len(names) - 3} more"
-
-
 def _gains(given: Dict[str, Any]) -> Dict[str, float]:
     """Those of a PID loop. Raises CommandError for what is no gain."""
     given = {name: gain for name, gain in given.items() if gain is not None}
@@ -331,5 +329,5 @@ def _usable(pose: Optional[Pose]) -> Pose:
     """A finite pose with a unit quaternion. Raises CommandError."""
     pose = pose or Pose()
     if not pose_is_finite(pose):
-        raise CommandError("a pose holds a number that is not finite")
+        raise CommandError("the pose contains NaN or infinite values")
     return Pose(pose.position, normalised(pose.orientation))

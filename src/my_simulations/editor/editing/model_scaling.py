@@ -19,7 +19,7 @@ def resized(model: Model, factor: Vec3) -> Model:
     Raises CommandError for a model that cannot be scaled, and for factors below `SMALLEST`.
     """
     if not is_finite(*factor) or min(factor) < SMALLEST:
-        raise CommandError(f"the factors of a scale must be {SMALLEST} or more, found {factor}")
+        raise CommandError(f"scale factors must be {SMALLEST} or more, found {factor}")
     if not is_scalable(model):
         raise CommandError(f"{model.name!r} cannot be scaled: it has several links, or a shape"
                            " without a size of its own")

@@ -47,21 +47,21 @@ def _replaced(target: Any, names: Sequence[str], value: Any, path: str) -> Any:
     name, rest = names[0], names[1:]
     if isinstance(target, list):
         if not name.isdigit() or int(name) >= len(target):
-            raise CommandError(f"there is no {path!r}")
+            raise CommandError(f"unknown property {path!r}")
         items = list(target)
         items[int(name)] = _replaced(items[int(name)], rest, value, path)
         return items
     hint = _hints_of(target).get(name)
     if hint is None or name in HIDDEN or name in _FIXED:
         known = [field for field in _hints_of(target) if field not in HIDDEN | _FIXED]
-        raise CommandError(f"{path!r} cannot be set; there are {', '.join(known)}")
+        raise CommandError(f"unknown property {path!r}; known: {', '.join(known)}")
     present = getattr(target, name)
     if not rest:
         return replace(target, **{name: _converted(value, hint, path, present)})
     if present is None:
         present = _fresh(hint, path)
     if not is_dataclass(present) and not isinstance(present, list):
-        raise CommandError(f"there is no {path!r}")
+        raise CommandError(f"unknown property {path!r}")
     return replace(target, **{name: _replaced(present, rest, value, path)})
 
 
@@ -85,7 +85,7 @@ def _fresh(hint: Any, path: str) -> Any:
                 one.default is not MISSING or one.default_factory is not MISSING
                 for one in fields(option)):
             return option()  # type: ignore[operator]
-    raise CommandError(f"there is no {path!r}")
+    raise CommandError(f"unknown property {path!r}")
 
 
 def _converted(value: Any, hint: Any, path: str, present: Any) -> Any:
@@ -139,7 +139,7 @@ def _geometry(value: Any, path: str, present: Any) -> Any:
     name = value.get("type", NAMES.get(type(present)))
     kind = _SHAPES.get(str(name))
     if kind is None:
-        raise CommandError(f"{path}: there is no shape {name!r}; there are {', '.join(_SHAPES)}")
+        raise CommandError(f"{path}: unknown shape {name!r}; known: {', '.join(_SHAPES)}")
     return _object(value, kind, path, present)
 
 
@@ -169,7 +169,7 @@ def _float(value: Any, path: str) -> float:
 
 def _int(value: Any, path: str) -> int:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or value != int(value):
-        raise CommandError(f"{path} must be a whole number, found {value!r:.60}")
+        raise CommandError(f"{path} must be an integer, found {value!r:.60}")
     return int(value)
 
 
@@ -181,7 +181,7 @@ def _bool(value: Any, path: str) -> bool:
 
 def _str(value: Any, path: str) -> str:
     if not isinstance(value, str):
-        raise CommandError(f"{path} must be a text, found {value!r:.60}")
+        raise CommandError(f"{path} must be a string, found {value!r:.60}")
     return value
 
 

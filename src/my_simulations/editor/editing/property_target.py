@@ -7,6 +7,7 @@ from typing import Any, List, Optional, Tuple
 
 from ...description.compare import BUILT_IN
 from ...description.model import Joint, Link, Model
+from ...description.scoped_names import split_scoped
 from ...description.shapes import Collision, Heightmap, ImageMap, Mesh, Visual
 from ...description.world import GuiCamera, SphericalCoordinates
 from ...errors import CommandError
@@ -64,12 +65,8 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
 
 def split_target(world: Simulator, target: str) -> Tuple[Model, str]:
     """The model a scoped name begins with, and what follows. Raises UnknownEntity."""
-    at = target.find("::")
-    while at > 0:
-        if world.models.has(target[:at]):
-            return world.models.get(target[:at]), target[at + 2:]
-        at = target.find("::", at + 2)
-    return world.models.get(target), ""
+    model, rest = split_scoped(target, world.models.has)
+    return (world.models.get(model), rest) if model else (world.models.get(target), "")
 
 
 def _of_world(world: Simulator, path: str, value: Any) -> Operation:
@@ -81,7 +78,7 @@ def _of_world(world: Simulator, path: str, value: Any) -> Operation:
         holder = with_value(replace(world.world, gravity=world.physics.gravity), path, value)
         return SetPhysics(world.physics.settings, holder.gravity)
     if name not in SETTERS:
-        raise CommandError(f"{path!r} cannot be set; there are physics, gravity, "
+        raise CommandError(f"unknown world property {path!r}; known: physics, gravity, "
                            + ", ".join(SETTERS))
     holder = world.world
     if rest and getattr(holder, name) is None and name in _NEW:
@@ -181,4 +178,4 @@ def _found(part: Any, resolver: Resolver) -> Any:
 
 def _refuse_name(path: str) -> None:
     if path == "name":
-        raise CommandError("a name is changed by `rename`, and only a model's or a light's")
+        raise CommandError("only models and lights can be renamed, by the operation `rename`")

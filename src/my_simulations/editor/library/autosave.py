@@ -87,7 +87,7 @@ class Autosave:
         """Load what was found; returns the file it belongs to. Raises CommandError."""
         found = self.found
         if found is None:
-            raise CommandError("there are no unsaved changes of an earlier session")
+            raise CommandError("no unsaved changes of an earlier session were found")
         self._files.restore(found.world, found.file, list(found.launched))
         self.keep()
         self.discard()

@@ -87,7 +87,7 @@ class LibraryRequests:
     def _get(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         uri = message["uri"]
         if not uri.startswith(("model://", "file://")) and not is_web_address(uri):
-            raise CommandError(f"{uri!r} is no URI of a model")
+            raise CommandError(f"{uri!r} is not a model URI")
         self._library.provide(uri)
         entity, issues = entity_of_uri(uri, self._resolver)
         for issue in issues:

@@ -143,10 +143,10 @@ class Library:
         wanted = os.path.expanduser(path.strip())
         folder = os.path.realpath(wanted.replace("\0", ""))
         if "\0" in path or not os.path.isabs(wanted) or not os.path.isdir(folder):
-            raise CommandError(f"there is no folder {path!r}")
+            raise CommandError(f"folder {path!r} does not exist")
         if folder == os.sep or any(folder == one or folder.startswith(one + os.sep)
                                    for one in _FORBIDDEN):
-            raise CommandError(f"{folder} is no folder of models")
+            raise CommandError(f"{folder} contains no models")
         with self._lock:
             if folder not in self._added:
                 self._added.append(folder)
@@ -157,7 +157,7 @@ class Library:
         """Forget an added folder; models already found there stay known till the end."""
         with self._lock:
             if path not in self._added:
-                raise CommandError(f"{path!r} was not added")
+                raise CommandError(f"{path!r} is not an added path")
             self._added.remove(path)
             self._write_added()
 

@@ -64,22 +64,18 @@ class WorldFiles:
             if not path:
                 if self.file not in self._ours or ships(self.file):
                     raise EditRefusedError(
-                        "path-needed",
-                        "not everything in the file could be loaded; give the world another name"
-                        if self._world.models.losses
-                        else "the world was not saved yet; give it a name",
-                    )
+                        "path-needed", "not everything in the file could be loaded; choose another "
+                        "file name" if self._world.models.losses
+                        else "the world has no file yet; give a file name")
                 path, overwrite = self.file, True
             if not os.path.splitext(path)[1]:
                 path += EXTENSIONS[0]
             target = allowed_path(path, self.roots())
             refuse_shipped(target)
             if os.path.lexists(target) and not overwrite:
-                raise EditRefusedError(
-                    "exists",
-                    f"{target} exists already" + self._would_lose(target),
-                    "replace it, or choose another name",
-                )
+                raise EditRefusedError("exists", f"{target} already exists"
+                                       + self._would_lose(target),
+                                       "overwrite it, or choose another name")
             inline = message.get("format") != "includes"
             for choice in self._chosen:
                 if message.get(choice) is not None or message.get("path"):
@@ -152,10 +148,8 @@ class WorldFiles:
         wanted = message.get("path") or (roots[0] if roots else "")
         folder = os.path.realpath(os.path.expanduser(wanted))
         if not any(_is_in(folder, root) for root in roots):
-            raise EditRefusedError(
-                "not-allowed",
-                f"{folder} is not among the folders that may be used: " + ", ".join(roots),
-            )
+            raise EditRefusedError("not-allowed", f"{folder} is not an allowed folder; allowed: "
+                          + ", ".join(roots))
         parent = os.path.dirname(folder)
         folders, files = _listed(folder)
         return {"path": folder, "roots": roots, "folders": folders, "files": files,
@@ -173,7 +167,7 @@ class WorldFiles:
 
     def _check_discard(self, message: Dict[str, Any]) -> None:
         if self._history.dirty and not message.get("discard"):
-            raise EditRefusedError("unsaved", "the world has changes that were not saved",
+            raise EditRefusedError("unsaved", "the world has unsaved changes",
                           "save it first, or discard them")
 
     def _readable(self, name: str) -> str:
@@ -184,9 +178,9 @@ class WorldFiles:
             path = os.path.realpath(os.path.join(os.path.expanduser(places[0]), name))
         roots = [*places, *self._resolver.resource_folders()]
         if not any(_is_in(path, os.path.realpath(os.path.expanduser(root))) for root in roots):
-            raise EditRefusedError("not-allowed", f"{path} lies outside of all folders of worlds")
+            raise EditRefusedError("not-allowed", f"{path} is outside of the allowed folders")
         if not os.path.isfile(path):
-            raise EditRefusedError("file-not-found", f"there is no file {path}")
+            raise EditRefusedError("file-not-found", f"{path} does not exist")
         return path
 
 

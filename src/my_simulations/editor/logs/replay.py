@@ -83,7 +83,7 @@ class Logs:
             with open(self._path(name), "rb") as stream:
                 return stream.read()
         except OSError as fault:
-            raise CommandError(f"there is no log {name!r}") from fault
+            raise CommandError(f"log {name!r} does not exist") from fault
 
     def leave(self, client: Client) -> None:
         """A client has gone."""
@@ -102,11 +102,11 @@ class Logs:
 
     async def _start(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is not None:
-            raise EditRefusedError("recording", f"the log {self._name!r} is being recorded already")
+            raise EditRefusedError("recording", f"the log {self._name!r} is already being recorded")
         name = message.get("name") or new_name()
         path = self._path(name)
         if os.path.lexists(path):
-            raise EditRefusedError("exists", f"there is a log {name!r} already")
+            raise EditRefusedError("exists", f"log {name!r} already exists")
         self._writer, self._name, self._revision = LogWriter(path), name, -1
         self._hub.listen(1)
         self._hub.push(self.state())
@@ -114,7 +114,7 @@ class Logs:
 
     async def _stop(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is None:
-            raise CommandError("nothing is being recorded")
+            raise CommandError("no log is being recorded")
         self._tick(*self._hub.now())  # steps made since the last look may have been many
         if self._fetching is not None:
             await self._fetching
@@ -180,7 +180,7 @@ class Logs:
         if name in self._more:
             return self._more[name]
         if not _NAME.match(name):
-            raise CommandError(f"{name!r} is no name for a log")
+            raise CommandError(f"{name!r} is not a valid log name")
         return os.path.join(self._folder, name, FILE)
 
     # -- playing ---------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from time import strftime
 from typing import Any, BinaryIO, Dict, List, Optional, Tuple
 
 from ...errors import CommandError
-from ..transport.pose_messages import LOG, Poses, SentPoses, record_type
+from ..transport.pose_messages import HEAD_BYTES, LOG, Poses, SentPoses, record_type
 
 FILE = "state.log"
 """What a log is called, in a folder that bears its name (Gazebo behaviour)."""
@@ -24,7 +24,6 @@ MAGIC = b"my_simulations state log 1\n"
 DOCUMENT, WHOLE, MOVED = 1, 2, 3
 
 _RECORD = struct.Struct("<BdI")
-_HEAD_BYTES = 40
 _WHOLE_EVERY_S = 5.0
 _LARGEST = 256 << 20
 
@@ -66,7 +65,7 @@ class LogWriter:
             self._whole_at = time
         frame = self._sent.frame(LOG, 0, poses)
         if frame or whole:  # a world without links has states, too
-            self._write(WHOLE if whole else MOVED, time, frame[_HEAD_BYTES:])
+            self._write(WHOLE if whole else MOVED, time, frame[HEAD_BYTES:])
         self.begin = time if self.begin is None else self.begin
         self.end = time
 
@@ -90,7 +89,7 @@ class LogWriter:
             try:
                 self._file.close()
             except OSError as fault:
-                raise CommandError(f"{self.path} is not whole: {fault.strerror}") from fault
+                raise CommandError(f"{self.path} is incomplete: {fault.strerror}") from fault
 
     def _write(self, kind: int, time: float, data: bytes) -> None:
         try:
@@ -125,12 +124,12 @@ class LogReader:
             raise CommandError(f"{path} cannot be read: {fault.strerror}") from fault
         if self._file.read(len(MAGIC)) != MAGIC:
             self._file.close()
-            raise CommandError(f"{path} is no state log")
+            raise CommandError(f"{path} is not a state log")
         self._records = self._scan(os.fstat(self._file.fileno()).st_size)
         self._states = [n for n, record in enumerate(self._records) if record.kind != DOCUMENT]
         if not self._states:
             self._file.close()
-            raise CommandError(f"{path} holds no states")
+            raise CommandError(f"{path} contains no states")
         self._times = _rising([self._records[n].time for n in self._states])
         self.begin, self.end = self._times[0], self._times[-1]
         self._poses: Dict[int, Any] = {}
@@ -160,7 +159,7 @@ class LogReader:
     def text(self, number: int) -> bytes:
         """The JSON of the world document of that number."""
         if number < 0:
-            raise CommandError("the log holds no world")
+            raise CommandError("the log contains no world")
         return self._bytes(self._records[number])
 
     def _start(self, target: int) -> int:

@@ -112,7 +112,8 @@ class Documents:
         except ResourceNotFoundError:
             path = ""
         if path.lower().endswith(".bvh"):  # a skeleton without triangles
-            return {"type": "mesh", "url": None, "problem": f"{uri} is BVH, which is not shown"}
+            return {"type": NAMES[Mesh], **plain_fields(Mesh(uri, path, (scale, scale, scale))),
+                    "url": None, "problem": f"{uri}: BVH files are not shown"}
         return self.geometry(Mesh(uri, path, (scale, scale, scale)))
 
     def _link(self, link: Link, known: int) -> Dict[str, Any]:

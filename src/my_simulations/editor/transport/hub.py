@@ -73,7 +73,7 @@ class Hub:
             client.append(text)
 
     def check(self, messages: Iterable[Dict[str, Any]]) -> None:
-        """Hold pushes to the protocol where that was asked for. Raises ProtocolFault."""
+        """Hold pushes to the protocol where that was asked for. Raises ProtocolError."""
         for message in messages if self._check else ():
             self.protocol.check_push(message)
 

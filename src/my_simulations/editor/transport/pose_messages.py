@@ -10,7 +10,18 @@ from typing import Any, Iterable, Optional
 
 LIVE, LOG = 1, 2
 
-_HEAD = struct.Struct("<IIQddII")
+HEAD = (("kind", "u32"), ("revision", "u32"), ("step", "u64"), ("sim_time", "f64"),
+        ("real_time", "f64"), ("count", "u32"), ("zero", "u32"))
+"""Fields of a frame's head and their types; a test compares them with the protocol file."""
+
+RECORD = (("id", "u32"), ("px", "f32"), ("py", "f32"), ("pz", "f32"), ("qx", "f32"),
+          ("qy", "f32"), ("qz", "f32"), ("qw", "f32"))
+"""As `HEAD`, of the record of a link; one for each that moved follows the head."""
+
+_CODES = {"u32": "I", "u64": "Q", "f64": "d", "f32": "f"}
+_HEAD = struct.Struct("<" + "".join(_CODES[kind] for _, kind in HEAD))
+HEAD_BYTES = _HEAD.size
+RECORD_BYTES = struct.calcsize("<" + "".join(_CODES[kind] for _, kind in RECORD))
 _TOLERANCE = 1e-5
 """m, and of a quaternion's parts: a body that trembles less than that stays where it was sent."""
 
@@ -33,7 +44,7 @@ class Poses:
 
 
 def record_type() -> Any:
-    """NumPy's type of one record."""
+    """NumPy's type of one record: the position and quaternion of `RECORD` as one field `pose`."""
     import numpy as np
 
     return np.dtype([("id", "<u4"), ("pose", "<f4", 7)])

@@ -72,8 +72,9 @@ class Requests:
     async def _hello(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         version = self._hub.protocol.version
         if message["version"] != version:
-            raise EditRefusedError("version", f"the page speaks version {message['version']} of the"
-                          f" protocol, the server {version}", "load the page again")
+            raise EditRefusedError(
+                "version", f"the page uses protocol version {message['version']}, the server"
+                f" {version}", "reload the page")
         given = message.get("session") or ""
         client.session = given or secrets.token_hex(8)
         await self._hub.welcome(client, new=not given)
@@ -112,7 +113,7 @@ class Requests:
         """Latest wins: while one drag is carried out, only the newest waits."""
         names: List[str] = message["names"]
         if len(names) != len(message["poses"]):
-            raise CommandError("drag: as many poses as names are needed")
+            raise CommandError("drag: names and poses must have the same length")
         waiting = client.number in self._pending
         self._pending.setdefault(client.number, {}).update(zip(names, message["poses"]))
         if not waiting:

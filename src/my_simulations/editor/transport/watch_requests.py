@@ -33,7 +33,7 @@ class Watching:
     async def _watch(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         topics = list(dict.fromkeys(message["topics"]))
         if len(topics) > MOST_TOPICS:
-            raise CommandError(f"{MOST_TOPICS} topics are the most that can be watched")
+            raise CommandError(f"at most {MOST_TOPICS} topics can be watched")
         for topic in topics:
             check_topic(topic)
         client.topics = set(topics)

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
+from ...description.scoped_names import split_scoped
 from ...engine.commands import JointPid
 from ...engine.ring import Snapshot
 from ...errors import CommandError
@@ -33,7 +34,7 @@ def check_topic(topic: str) -> None:
         owner, _, field = rest.rpartition(".")
         if rest in _WORLD or (owner and field in {**_POSE, **_TWIST, **_JOINT}):
             return
-    raise CommandError(f"there is no topic {topic!r}; there are contacts, joints:MODEL,"
+    raise CommandError(f"unknown topic {topic!r}; known: contacts, joints:MODEL,"
                        " plot:sim_time, plot:NAME.x and the like")
 
 
@@ -102,17 +103,15 @@ class Watches:
 def _owner(names: Dict[str, Entity], name: str) -> Entity:
     found = names.get(name)
     if found is None:
-        raise WatchedEntityGoneError(f"there is no model {name!r}")
+        raise WatchedEntityGoneError(f"unknown model {name!r}")
     return found
 
 
 def _split(names: Dict[str, Entity], scoped: str) -> Tuple[Entity, str]:
-    at = scoped.find("::")
-    while at > 0:
-        if scoped[:at] in names:
-            return names[scoped[:at]], scoped[at + 2:]
-        at = scoped.find("::", at + 2)
-    raise WatchedEntityGoneError(f"there is no {scoped!r}")
+    model, rest = split_scoped(scoped, names.__contains__)
+    if not model:
+        raise WatchedEntityGoneError(f"unknown name {scoped!r}")
+    return names[model], rest
 
 
 def _state(names: Dict[str, Entity], name: str, snapshot: Snapshot) -> Tuple[Pose, Twist]:
@@ -120,7 +119,7 @@ def _state(names: Dict[str, Entity], name: str, snapshot: Snapshot) -> Tuple[Pos
         return names[name].state(snapshot)
     entity, link = _split(names, name)
     if link not in entity.link_names:
-        raise WatchedEntityGoneError(f"there is no link {name!r}")
+        raise WatchedEntityGoneError(f"unknown link {name!r}")
     return snapshot.link(entity.first_link_row + entity.link_names.index(link))
 
 
@@ -130,7 +129,7 @@ def _joint_value(names: Dict[str, Entity], name: str, axis: int, which: int,
     for state in _joints(entity, snapshot):
         if state["name"] == joint and state["axis"] == axis:
             return float(state["rate" if which else "position"])
-    raise WatchedEntityGoneError(f"there is no axis {axis} of a joint {name!r}")
+    raise WatchedEntityGoneError(f"joint {name!r} does not exist or has no axis {axis}")
 
 
 def _drive(efforts: Sequence[Effort]) -> Optional[Dict[str, Any]]:

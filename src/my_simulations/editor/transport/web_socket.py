@@ -95,7 +95,7 @@ class Sockets:
     async def _answer(self, client: Client, message: Dict[str, Any]) -> Any:
         route = self._routes.get(message["type"])
         if route is None:
-            raise ProtocolError(f"{message['type']} is not offered here")
+            raise ProtocolError(f"{message['type']} is not supported")
         if route.executor is None:
             return await route.handler(client, message)
         loop = asyncio.get_running_loop()

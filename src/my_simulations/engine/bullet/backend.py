@@ -29,7 +29,7 @@ from ..commands import (
     SetModelState,
 )
 from ..ring import JOINTS, LINKS
-from . import bodies, joint_axes
+from . import bodies, collision_groups, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_builder import Builder
 from .collision_shapes import ShapeError, ShapeFactory
@@ -39,8 +39,14 @@ from .gyroscopic_rigid import GyroscopicRigid
 from .initial_state_cache import InitialStateCache, Start
 from .inter_model_joints import InterModelJoints
 from .joint_constraints import Constraints
+from .leftovers import EVERY as EVERY_LOOK
+from .leftovers import Leftovers
 from .pair_friction import EVERY, FrictionBalance
 from .pinned_bodies import PinnedBodies
+from .rolling import EVERY as EVERY_ROLL
+from .rolling import Rolling
+from .settling import EVERY as EVERY_SETTLE
+from .settling import Settling
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
@@ -60,18 +66,22 @@ class BulletBackend:
         self._rows: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
         self._readout = StateReadout(self._on_diverged)
-        self._waker = WakeUp(self._bodies, self._readout.touch)
+        self._leftovers = Leftovers()
+        self._rolling = Rolling()
+        self._waker = WakeUp(self._bodies, self._touched)
         self._forces = Forces(self._waker.around)
         self._friction = FrictionBalance(self._on_misfit)
         self._spin = GyroscopicRigid()
         self._holds = PinnedBodies(self._waker.around)
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
+        self._settling = Settling()
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
-                            self._forces, self._spin, self._holds)
+                                  self._forces, self._spin, self._holds)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
-                         self._decay, self._readout)
+                         self._decay, self._leftovers, self._rolling, self._settling,
+                         self._readout)
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -117,22 +127,48 @@ class BulletBackend:
         self._settle()
         self._readout.stepped()
         one = pybullet.stepSimulation
+        dt, gravity = self._settings.step_size, self._settings.gravity
         if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
                                       self._decay)):
-            for _ in range(count):
-                one()
+            self._step_freely(first, count, dt)
             self._forces.stepped()
             return
-        dt, gravity = self._settings.step_size, self._settings.gravity
         for step in range(first, first + count):
             if not self._friction.idle and step % EVERY == 0:
                 self._friction.balance()
+            self._settling.look(step)
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
+            self._rolling.before(step, gravity)
             free = self._spin.before(step, dt)
             one()
             self._spin.after(free, self._forces.wrenched_links, dt)
+            self._leftovers.after(step, dt)
             self._holds.apply()
+
+    def _step_freely(self, first: int, count: int, dt: float) -> None:
+        """Make steps that nothing acts on from outside: between two looks at them, no calls."""
+        one, leftovers, rolling = pybullet.stepSimulation, self._leftovers, self._rolling
+        settling = self._settling
+        step, end = first, first + count
+        while step < end:
+            settling.look(step)
+            if not rolling.idle:
+                rolling.before(step, self._settings.gravity)
+            ahead = end - step
+            if rolling.busy or leftovers.busy:
+                ahead = 1
+            else:
+                if not leftovers.idle:
+                    ahead = min(ahead, -step % EVERY_LOOK + 1)   # they look after a step
+                if not rolling.idle:
+                    ahead = min(ahead, EVERY_ROLL - step % EVERY_ROLL)   # before one
+                if not settling.idle:
+                    ahead = min(ahead, EVERY_SETTLE - step % EVERY_SETTLE)
+            for _ in range(ahead):
+                one()
+            step += ahead
+            leftovers.after(step - 1, dt)
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -164,10 +200,18 @@ class BulletBackend:
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=settings.step_size, numSolverIterations=settings.iterations,
             numSubSteps=0, deterministicOverlappingPairs=1, enableFileCaching=0,
+            collisionFilterMode=collision_groups.BOTH,
             # Overlaps are pushed out at 5 / s whatever the step: Bullet's default throws a body
             # that starts 0.2 m deep to 3 m, and makes bounces erratic (measured).
             contactERP=min(0.2, 5.0 * settings.step_size),
+            # Each step begins with what the contacts carried in the last one. PyBullet begins with
+            # a tenth of it: a stack of ten then takes four times as long and leans ten times as
+            # far; with all of it (1) a heavy body on light ones collapses (measured).
+            warmStartingFactor=0.99,
+            enableConeFriction=int(settings.cone),
+            allowedCcdPenetration=0.0,   # what flies fast stops at a wall, not in it
         )
+        self._settling.configure(settings.iterations, settings.step_size)
 
     # -- models ----------------------------------------------------------------------------------
 
@@ -197,7 +241,10 @@ class BulletBackend:
         for body in built:
             self._register(body)
             for part in body.parts:
-                self._decay.add(body, part, model.links[part.row - first_row])
+                link = model.links[part.row - first_row]
+                self._decay.add(body, part, link)
+                self._rolling.add(body, part, link)
+                extra_surfaces.store(body, part, link, dt)
             joint_axes.set_up(body, model, self._forces, dt)
         return entry
 
@@ -257,6 +304,8 @@ class BulletBackend:
         self._forces.add_body(body)
         self._friction.add(body)
         self._spin.add(body)
+        self._leftovers.add(body)
+        self._settling.add(body)
         self._readout.add(body)
 
     def _remove(self, command: RemoveModel) -> None:
@@ -273,7 +322,7 @@ class BulletBackend:
                 del self._rows[part.row]
             for axis in body.axes:
                 del self._axes[axis.row]
-            bodies.remove(body)
+        entry.builder.remove(entry.bodies)
 
     def _connect(self, command: ConnectModels) -> None:
         self._ties.connect(command, self._rows)
@@ -288,7 +337,8 @@ class BulletBackend:
                 self._forces.forget(body)
         self._models.clear()
         self._forces.clear_all()
-        for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay):
+        for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
+                       self._leftovers, self._rolling, self._settling):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
@@ -325,6 +375,12 @@ class BulletBackend:
 
     def _clear_timed_forces(self, command: ClearTimedForces) -> None:
         self._forces.clear(command.force_ids)
+
+    def _touched(self, body: Body) -> None:
+        """A command reached a body."""
+        self._readout.touch(body)
+        self._leftovers.touched(body)
+        self._rolling.touched(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

@@ -7,15 +7,16 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import pybullet
 
 from ...description.model import Link, Model
-from ...description.shapes import MeshTable
+from ...description.shapes import MeshTable, Sphere
 from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, multiply
 from ..body_plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..commands import LoadModel
 from ..principal_inertia import principal
 from ..ring_rows import AXES, axis_rows, row_name
-from . import surface_coefficients
-from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics
+from . import collision_groups, surface_coefficients
+from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics, sweep
 from .collision_shapes import Recipe, ShapeFactory
+from .extra_surfaces import gives_way
 from .implicit_axes import mobility
 from .mass_matrix import MassMatrix
 
@@ -69,7 +70,8 @@ class Builder:
         self._model: Model = command.model
         self.model_id = command.model_id
         self._first_row = command.first_link_row
-        self._articulated = command.articulated
+        self._articulated = command.articulated or (
+            not command.model.static and any(map(gives_way, command.model.links)))
         self._shapes = shapes
         self._axis_rows = {row.name: command.first_joint_row + n
                            for n, row in enumerate(axis_rows(command.model))}
@@ -94,8 +96,7 @@ class Builder:
                              else self._build_tree(each, pose))
             self._ignore_each_other(built)
         except Exception:
-            for body in built:
-                remove(body)
+            self.remove(built)
             raise
         return built
 
@@ -125,9 +126,14 @@ class Builder:
                                      useMaximalCoordinates=int(not self._articulated))
             for shape in ([piece.make() for piece in rigid.pieces] or [-1])
         ]
+        for uid, piece in zip(uids, rigid.pieces):
+            (collision_groups.static(link, piece.role) if rigid.static
+             else collision_groups.moving(link)).set(uid, BASE)
+            _fit(uid, BASE, piece)
         part = self._part(rigid.number, BASE, masses)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
+                    is_ball=[type(c.geometry) for c in link.collisions] == [Sphere],
                     may_sleep=self._may_sleep(link))
         for uid in uids:
             set_dynamics(uid, BASE, link, masses.mass, masses.moments,
@@ -135,21 +141,16 @@ class Builder:
             if body.rigid:
                 set_decay(uid, link, dt)
         body.radius = radius_of(uids[0])
+        if body.rigid and body.moves and rigid.pieces:
+            sweep(uids[0])
         return body
 
     def _part(self, number: int, index: int, masses: _Masses) -> Part:
         link = self._model.links[number]
         surface = surface_coefficients.of_link(link)
-        return Part(
-            self._first_row + number,
-            index,
-            masses.com,
-            masses.mass,
-            masses.moments,
-            surface.mu,
-            surface_coefficients.friction(surface, masses.mass == 0.0),
-            link.gravity,
-        )
+        return Part(self._first_row + number, index, masses.com, masses.mass, masses.moments,
+                    surface_coefficients.coefficient(surface),
+                    surface_coefficients.friction(surface, masses.mass == 0.0), link.gravity)
 
     def _may_sleep(self, link: Link) -> bool:
         return (self._model.allow_auto_disable and link.gravity
@@ -218,6 +219,10 @@ class Builder:
             index = n if tree.plan.fixed_base else n - 1
             link = Link("") if node.index == NO_LINK else self._model.links[node.index]
             set_dynamics(uid, index, link, masses.mass, masses.moments, False)
+            shape = tree.shapes[n]
+            if shape is not None:
+                collision_groups.moving(link).set(uid, index)
+                _fit(uid, index, shape)
             if node.index != NO_LINK:
                 parts.append(self._part(node.index, index, masses))
             if node.joint is not None and node.number is not None:
@@ -250,7 +255,13 @@ class Builder:
         return Ball(index, child, parent, multiply(conjugate(mine.orientation),
                                                    above.orientation))
 
-    def _ignore_each_other(self, built: Sequence[Body]) -> None:
+    def remove(self, built: Sequence[Body]) -> None:
+        """Take the bodies out of PyBullet."""
+        self._ignore_each_other(built, False)
+        for body in built:
+            remove(body)
+
+    def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:
         """Links of one model collide only when self_collide asks (SDF 1.7, model/self_collide)."""
         if self._model.self_collide or self._model.static:
             return
@@ -258,4 +269,10 @@ class Builder:
             for other in built[n + 1:]:
                 for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
                     for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
-                        pybullet.setCollisionFilterPair(one.uid, other.uid, a, b, 0)
+                        collision_groups.ignore(one.uid, other.uid, a, b, ignored)
+
+
+def _fit(uid: int, index: int, shape: Recipe) -> None:
+    """Take off the 1 mm that Bullet adds around a convex hull; those in compounds keep it."""
+    if shape.is_hull:
+        pybullet.changeDynamics(uid, index, collisionMargin=0.0)

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
 
 import numpy as np
@@ -25,12 +25,16 @@ from ...description.shapes import (
     Sphere,
     mesh_key,
 )
-from ...geometry import IDENTITY, Pose, compose, multiply, transform
+from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
 from ..convex.hull_points import hull_points, naming_triangles
 from ..scratch_folder import Scratch
 
 MAX_SHAPES = 16
 """Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
+
+
+_FLOOR = 1e6
+"""Half the edge of the box that stands below a plane, m."""
 
 
 class ShapeError(ValueError):
@@ -39,10 +43,18 @@ class ShapeError(ValueError):
 
 @dataclass(frozen=True)
 class Recipe:
-    """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments."""
+    """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments.
+
+    Attributes:
+        role: "plane", "floor" for the box that stands below a plane, or "" (see
+            `collision_groups`).
+        is_hull: it is one convex hull of points.
+    """
 
     names: str
     arguments: Dict[str, Any]
+    role: str = ""
+    is_hull: bool = False
 
     def make(self) -> int:
         """PyBullet's number of a new one, which goes with its body. Raises ShapeError."""
@@ -95,9 +107,16 @@ class ShapeFactory:
             ShapeError: there is no such shape.
         """
         solid = [c for c in collisions if not isinstance(c.geometry, Empty)]
-        if static or len(solid) <= MAX_SHAPES:
-            return [self._recipe(solid[at:at + MAX_SHAPES], meshes, frame, static)
-                    for at in range(0, len(solid), MAX_SHAPES)]
+        if static:
+            planes = [c for c in solid if isinstance(c.geometry, Plane)]
+            solid = [c for c in solid if not isinstance(c.geometry, Plane)]
+            parted = [recipe for plane in planes for recipe in (
+                replace(self._recipe([plane], meshes, frame, True), role="plane"),
+                replace(self._recipe([_floor_of(plane)], meshes, frame, True), role="floor"))]
+            return parted + [self._recipe(solid[at:at + MAX_SHAPES], meshes, frame, static)
+                             for at in range(0, len(solid), MAX_SHAPES)]
+        if len(solid) <= MAX_SHAPES:
+            return [self._recipe(solid, meshes, frame, static)] if solid else []
         # A moving link must be one body: curved shapes first, the rest as hulls of one file.
         solid.sort(key=lambda c: isinstance(c.geometry, (Box, Mesh)))
         kept, rest = solid[:MAX_SHAPES - 1], solid[MAX_SHAPES - 1:]
@@ -106,6 +125,8 @@ class ShapeFactory:
     def _recipe(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                 static: bool, more: Optional[Dict[str, Any]] = None) -> Recipe:
         columns = [self._column(c, meshes, frame, static) for c in collisions]
+        is_hull = (len(collisions) == 1 and more is None
+                   and _is_hull(collisions[0], meshes, static))
         if more is not None:
             columns.append(more)
         return Recipe(", ".join(c.name for c in collisions), {
@@ -119,7 +140,7 @@ class ShapeFactory:
             "flags": [c.get("flags", 0) for c in columns],
             "collisionFramePositions": [c["pose"].position for c in columns],
             "collisionFrameOrientations": [c["pose"].orientation for c in columns],
-        })
+        }, is_hull=is_hull)
 
     def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
                 static: bool) -> Dict[str, Any]:
@@ -210,6 +231,23 @@ def _pieces(collision: Collision, meshes: MeshTable) -> List[Tuple[np.ndarray, n
                 for piece in mesh.parts or [mesh]]
     points = hull_points(geometry)
     return [(points, naming_triangles(len(points)))]
+
+
+def _floor_of(plane: Collision) -> Collision:
+    """The box whose top is the plane."""
+    assert isinstance(plane.geometry, Plane)
+    turn = _to_z(plane.geometry)
+    below = compose(plane.pose, Pose(rotate(turn, (0.0, 0.0, -_FLOOR)), turn))
+    return replace(plane, geometry=Box((2.0 * _FLOOR,) * 3), pose=below)
+
+
+def _is_hull(collision: Collision, meshes: MeshTable, static: bool) -> bool:
+    """Whether a collision becomes one convex hull."""
+    geometry = collision.geometry
+    if isinstance(geometry, (Ellipsoid, Cone)):
+        return True
+    return (not static and isinstance(geometry, SOLIDS)
+            and len(meshes[mesh_key(geometry)].parts or ()) <= 1)
 
 
 def _to_z(plane: Plane) -> "tuple[float, float, float, float]":

@@ -1,6 +1,7 @@
 """Joint axes: limits, friction, damping, and no hidden motors."""
 from __future__ import annotations
 
+import math
 from typing import List, Tuple
 
 import pybullet
@@ -54,6 +55,7 @@ def _free(body: Body) -> None:
 def _limit(body: Body, axis: Axis, spec: JointAxis, mass: float) -> None:
     """A one-sided limit gets a far stop on the other side: PyBullet knows both or none."""
     lower, upper = spec.lower, spec.upper
+    axis.lower, axis.upper = (lower, upper) if lower <= upper else (-math.inf, math.inf)
     if lower <= -INFINITE and upper >= INFINITE:
         pybullet.changeDynamics(body.uid, axis.index, jointLowerLimit=1.0, jointUpperLimit=-1.0)
         return

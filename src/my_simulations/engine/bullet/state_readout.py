@@ -178,9 +178,10 @@ class StateReadout:
                 pack(table, row * _ROW_BYTES, x, y, z, *turn, vx, vy, vz, wx, wy, wz)
                 if row in offsets:
                     offset_rows.append(row)
-                if vz == 0.0 and (linear, angular) == _NO_VELOCITY:
+                if vz == 0.0 and (linear, angular) == _NO_VELOCITY and body.seen_at == position:
                     self._stands(body)
                     continue
+                body.seen_at = position
                 body.still = 0
                 if resting:
                     woken.extend(self._touched_by(uid, position, body.radius))

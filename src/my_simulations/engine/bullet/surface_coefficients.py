@@ -18,11 +18,21 @@ def of_link(link: Link) -> Surface:
     return link.collisions[0].surface if link.collisions else Surface()
 
 
+def coefficient(surface: Surface) -> float:
+    """The coefficient that counts in pairs: the larger one where both have a direction."""
+    return max(surface.mu, surface.mu2) if directed(surface) else surface.mu
+
+
 def friction(surface: Surface, static: bool) -> float:
     """The lateral friction to store."""
-    return min(surface.mu, 1.0) if static else surface.mu
+    return min(coefficient(surface), 1.0) if static else coefficient(surface)
 
 
 def restitution(surface: Surface) -> float:
     """The restitution to store: 0 unless the surface can reach its threshold."""
     return surface.restitution if surface.bounce_threshold < NEVER_BOUNCES else 0.0
+
+
+def directed(surface: Surface) -> bool:
+    """Whether mu and mu2 differ by direction; without fdir1 mu holds in all of them."""
+    return surface.mu != surface.mu2 and any(surface.fdir1)

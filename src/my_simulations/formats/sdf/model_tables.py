@@ -101,24 +101,29 @@ GEOMETRIES: Mapping[str, Table] = {
 }
 
 _ODE_FRICTION = Group({
-    "mu": Value("mu", FRICTION), "mu2": Value("mu2", FRICTION, use=KEPT),
-    "fdir1": Value("fdir1", VECTOR3, use=KEPT),
+    "mu": Value("mu", FRICTION), "mu2": Value("mu2", FRICTION), "fdir1": Value("fdir1", VECTOR3),
     "slip1": Value("slip1", FLOAT, use=KEPT), "slip2": Value("slip2", FLOAT, use=KEPT),
 })
 _ODE_CONTACT = Group({
-    **{name: Value(name, FLOAT, use=KEPT) for name in ("kp", "kd", "max_vel", "min_depth")},
+    **{name: Value(name, FLOAT) for name in ("kp", "kd", "max_vel")},
+    "min_depth": Value("min_depth", FLOAT, use=KEPT),
     **_kept("soft_cfm", "soft_erp"),
+})
+_TORSIONAL = Group({
+    "coefficient": Value("torsion", FLOAT), "patch_radius": Value("patch_radius", FLOAT),
+    "use_patch_radius": Value("use_patch_radius", BOOL),
+    "surface_radius": Value("surface_radius", FLOAT, use=KEPT), **_kept("ode"),
 })
 SURFACE_CHILDREN: Mapping[str, Entry] = {
     "bounce": Group({
         "restitution_coefficient": Value("restitution", FLOAT),
         "threshold": Value("bounce_threshold", FLOAT),
     }),
-    "friction": Group({"ode": _ODE_FRICTION, **_kept("bullet", "torsional")}),
+    "friction": Group({"ode": _ODE_FRICTION, "torsional": _TORSIONAL, **_kept("bullet")}),
     "contact": Group({
         "ode": _ODE_CONTACT,
-        "collide_without_contact": Value("collide_without_contact", BOOL, use=KEPT),
-        "collide_bitmask": Value("collide_bitmask", INT, use=KEPT),
+        "collide_without_contact": Value("collide_without_contact", BOOL),
+        "collide_bitmask": Value("collide_bitmask", INT),
         **_kept("bullet", "collide_without_contact_bitmask", "category_bitmask", "poissons_ratio",
                 "elastic_modulus"),
     }),
@@ -258,8 +263,9 @@ PHYSICS = Table("physics", Physics, {
             "iters": Value("iters", INT),
             "precon_iters": Value("precon_iters", INT, use=KEPT),
             "sor": Value("sor", FLOAT, use=KEPT),
+            "friction_model": Value("friction_model", TEXT),
             **_kept("type", "min_step_size", "island_threads", "thread_position_correction",
-                    "use_dynamic_moi_rescaling", "friction_model"),
+                    "use_dynamic_moi_rescaling"),
         }),
         "constraints": Group({
             **{name: Value(name, FLOAT, use=KEPT) for name in (

@@ -91,7 +91,7 @@ def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
     step = wanted["time_step"]
     if not is_finite(step) or not SHORTEST_STEP <= step <= 10.0:
         raise CommandError(f"time_step must be in {SHORTEST_STEP:g} to 10 s, it is {step:g}")
-    rate = between(wanted["max_update_rate"], -FASTEST, FASTEST, "max_update_rate", "Hz")
+    rate = between(wanted["max_update_rate"], 0.0, FASTEST, "max_update_rate", "Hz")
     gravity: Vec3 = tuple(  # type: ignore[assignment]
         between(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
                 f"gravity.{axis}", "m/s^2") for axis in "xyz")
@@ -100,5 +100,5 @@ def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
                            for parameter in ODE if parameter.name in values}
     physics = simulator.physics.settings
     simulator.physics.set(
-        replace(physics, max_step_size=step, real_time_update_rate=max(rate, 0.0),
+        replace(physics, max_step_size=step, real_time_update_rate=rate,
                 ode=replace(physics.ode, **ode)), gravity)

@@ -3,12 +3,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...description.scoped_names import SCOPE
 from ...simulator.simulator import Simulator
 from .entity_errors import in_gazebos_words
 from .physics_parameters import ODE, change, present
-
-SCOPE = "::"
-"""Between the names of a nested model and its link."""
 
 
 class WorldServices:

@@ -3,12 +3,12 @@ from __future__ import annotations
 
 from typing import Any, Dict, Sequence
 
+from ....description.scoped_names import SCOPE
 from ....description.world import LinkState, ModelState, SavedState
 from ...xml.values import FLOAT, INT, POSE, TEXT, VECTOR3
 from .xml_text import write_value
 
 _NANO = 1_000_000_000
-_SCOPE = "::"
 
 
 def write_state(parent: Any, state: SavedState) -> None:
@@ -60,14 +60,14 @@ class _Nested:
 
     def holder(self, name: str) -> "tuple[Any, str]":
         """The element for what is called `name` within the model, and its plain name."""
-        scope, _, plain = name.rpartition(_SCOPE)
+        scope, _, plain = name.rpartition(SCOPE)
         return self._model(scope), plain
 
     def _model(self, scope: str) -> Any:
         from lxml import etree
 
         if scope not in self._elements:
-            outer, _, plain = scope.rpartition(_SCOPE)
+            outer, _, plain = scope.rpartition(SCOPE)
             self._elements[scope] = etree.SubElement(self._model(outer), "model", name=plain)
         return self._elements[scope]
 

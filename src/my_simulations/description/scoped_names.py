@@ -1,0 +1,42 @@
+"""Scoped names, `model::link`, and the one rule that splits them.
+
+Gazebo separates the names of nested entities by `::` (SDF spec 1.8, "frame semantics"). A world
+keeps nested models flattened, so a link's own name may hold the separator as well:
+`outer::inner::link` is link `inner::link` of model `outer`, unless there is a model `outer::inner`.
+"""
+from __future__ import annotations
+
+from typing import Callable, Tuple
+
+SCOPE = "::"
+"""Between the name of a model and that of what belongs to it."""
+
+
+def scoped(*names: str) -> str:
+    """The names joined by the separator, the outermost first."""
+    return SCOPE.join(names)
+
+
+def split_scoped(name: str, is_model: Callable[[str], bool]) -> Tuple[str, str]:
+    """The model that a name begins with, and the rest of the name within it.
+
+    The longest name of an existing model wins; the page splits names by the same rule
+    (`web/js/scoped_names.js`).
+
+    Args:
+        name: `model`, `model::link`, `model::link::collision`, …, or a plain name.
+        is_model: whether a model has this name.
+
+    Returns:
+        (model, rest); rest is "" for a model itself; model is "" where no model has any beginning
+        of the name, and rest is the whole name then.
+    """
+    if is_model(name):
+        return name, ""
+    end = name.rfind(SCOPE)
+    while end > 0:
+        if is_model(name[:end]):
+            return name[:end], name[end + len(SCOPE):]
+        # Overlapping separators (`a:::b`) are looked at one character at a time.
+        end = name.rfind(SCOPE, 0, end + len(SCOPE) - 1)
+    return "", name

@@ -1,0 +1,71 @@
+"""Which links meet which, as Bullet's groups and masks say it.
+
+Two links meet when each one's group shares a bit with the other's mask. The groups hold a link's
+collide_bitmask (SDF, surface/contact), shifted, and what it is made of; the masks what it meets.
+
+A plane is two things here. Bullet finds one point a step where a shape meets a plane, and four at
+once where a box meets a box: boxes that meet a plane tilt when they land and slide short. So a
+large box stands below each plane, for links that are made of boxes, and all others meet the plane.
+"""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import pybullet
+
+from ...description.model import Link
+from ...description.shapes import Box, Empty
+
+EVERYTHING = 0xffff
+"""The collide_bitmask of a surface that says nothing."""
+
+BOTH = 0
+"""PyBullet's collisionFilterMode for what is said above; its default lets one side decide."""
+
+_BOXES, _OTHERS = 1, 2
+_SHIFT = 8
+
+
+class Filter(NamedTuple):
+    """What `setCollisionFilterGroupMask` is told of a link."""
+
+    group: int
+    mask: int
+
+    def set(self, uid: int, index: int) -> None:
+        """Let a link of a body meet what it may. Forgets the contact points it has."""
+        pybullet.setCollisionFilterGroupMask(uid, index, self.group, self.mask)
+
+
+def moving(link: Link) -> Filter:
+    """Of a link that moves: it meets what shares a bit of the collide_bitmask with it."""
+    bits = _bits(link)
+    solid = [c.geometry for c in link.collisions if not isinstance(c.geometry, Empty)]
+    kind = _BOXES if all(isinstance(geometry, Box) for geometry in solid) else _OTHERS
+    return Filter(bits << _SHIFT | kind, bits << _SHIFT)
+
+
+def static(link: Link, role: str = "") -> Filter:
+    """Of what never moves by itself; `role`: that of the recipe it was made from."""
+    bits = _bits(link)
+    return Filter(bits << _SHIFT, {"plane": _OTHERS, "floor": _BOXES}.get(role, _BOXES | _OTHERS))
+
+
+def _bits(link: Link) -> int:
+    """The collide_bitmask of a link: PyBullet filters by link, so all bits of its collisions.
+
+    A surface that collides without contact gives and takes no forces (Gazebo, ODEPhysics).
+    """
+    bits = 0
+    for collision in link.collisions:
+        if not collision.surface.collide_without_contact:
+            bits |= collision.surface.collide_bitmask & EVERYTHING
+    return bits if link.collisions else EVERYTHING
+
+
+def ignore(one: int, other: int, index: int, other_index: int, ignored: bool = True) -> None:
+    """Let two links pass through each other, or not any more.
+
+    Bullet keeps this when the bodies are removed, and gives their numbers to the next ones.
+    """
+    pybullet.setCollisionFilterPair(one, other, index, other_index, int(not ignored))

@@ -1,0 +1,78 @@
+"""What the surface of a link has besides one coefficient of friction and bounces, as PyBullet's."""
+from __future__ import annotations
+
+import math
+from typing import Any, Dict
+
+import pybullet
+
+from ...description.model import Link
+from ...description.shapes import Collision, Surface
+from ...geometry import Vec3, conjugate, rotate
+from .bodies import Body, Part
+from .surface_coefficients import directed
+
+SOFT = 1e6
+"""N/m; a stiffer contact is a hard one: 1 kg goes less than 0.01 mm deep."""
+
+_SPRINGS = 0.1         # m/s; a max_vel below it lets nothing spring out of an overlap
+_PUSHED_OUT = 5.0      # 1/s: overlaps of damped contacts shrink at this rate, as those of hard ones
+_LEAST_SHARE = 1e-3    # of the larger coefficient, along the slippery direction
+_TORSION = 3.0 * math.pi / 16.0
+_ROLLING = 1e-9        # m
+_SEEN = 2e-4           # m; a rigid body that its weight presses less deep may be a hard one
+_WEIGHT = 9.8          # N/kg
+
+
+def store(body: Body, part: Part, link: Link, dt: float) -> None:
+    """Give one link what its surface has besides friction and bounces. `dt`: step size, s.
+
+    Directions of friction (mu2, fdir1), softness (kp, kd, max_vel) and torsional friction; of the
+    first collision (SDF 1.7, collision/surface).
+    """
+    if not link.collisions:
+        return
+    surface = link.collisions[0].surface
+    settings: Dict[str, Any] = {}
+    if directed(surface):
+        settings["anisotropicFriction"] = _shares(link.collisions[0], part)
+    if surface.kp < SOFT and body.moves and not body.rigid:
+        settings["contactStiffness"] = max(surface.kp, 1e-9)
+        settings["contactDamping"] = _damping(surface, dt)
+    if surface.torsion > 0.0 and surface.use_patch_radius and surface.patch_radius > 0.0:
+        # Gazebo's limit: 3 pi / 16 times radius, coefficient and normal force.
+        settings["spinningFriction"] = _TORSION * surface.patch_radius * surface.torsion
+        settings["rollingFriction"] = _ROLLING  # Bullet looks at torsion only where this is not 0
+    for uid in body.uids if settings else ():
+        pybullet.changeDynamics(uid, part.index, **settings)
+
+
+def gives_way(link: Link) -> bool:
+    """A joint-free link on springs so soft that one sees it: it must be an articulated body.
+
+    Contacts of rigid bodies part overlaps without forces (`settling`), so they cannot be springs.
+    """
+    return bool(link.collisions) and link.collisions[0].surface.kp * _SEEN < (
+        _WEIGHT * link.inertial.mass)
+
+
+def _shares(collision: Collision, part: Part) -> Vec3:
+    """Shares of the larger coefficient along the principal axes, which are PyBullet's.
+
+    Exact where the first direction is one of them; else the diagonal of the tensor.
+    """
+    surface = collision.surface
+    inward = rotate(conjugate(part.link_from_com.orientation),
+                    rotate(collision.pose.orientation, surface.fdir1))
+    length = math.hypot(*inward)
+    most = max(surface.mu, surface.mu2)
+    along, across = (max(mu / most, _LEAST_SHARE) for mu in (surface.mu, surface.mu2))
+    x, y, z = (across + (along - across) * (value / length) ** 2 for value in inward)
+    return (x, y, z)
+
+
+def _damping(surface: Surface, dt: float) -> float:
+    """kd, N s/m, or what keeps an overlap from springing out faster than max_vel lets it."""
+    if surface.max_vel >= _SPRINGS:
+        return max(surface.kd, 1e-9)
+    return max(surface.kd, dt * surface.kp * (1.0 / min(0.2, _PUSHED_OUT * dt) - 1.0))

@@ -1,0 +1,181 @@
+"""Lets lying cylinders roll as they should: neither on by themselves, nor ever faster.
+
+Bullet keeps the contact points of a pair from step to step where they were on the surfaces. On a
+cylinder that turns they lag 0.2 to 0.4 mm behind the axle, and what they carry there drives it on:
+a can pushed to 0.05 m/s rolled at 0.4 m/s after 20 s, one at rest rolled out of the room. So the
+points of lying cylinders are dropped before each step; the step finds new ones.
+
+A step finds one new point, at one end or the other: a cylinder at rest would rock on them. So one
+that hardly moves, where the floor is level and nothing that moves touches it, keeps its points, and
+is stopped in every step and put back.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import dist
+from typing import Any, Dict, List, Optional, Set, Tuple
+
+import pybullet
+
+from ...description.model import Link
+from ...description.shapes import Capsule, Cylinder, Empty
+from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
+from ..body_plan import BASE
+from . import collision_groups
+from .bodies import Body, Part
+
+EVERY = 8
+"""Steps between two looks at who lies."""
+
+_LYING = 0.1      # of the contact normal along the axis: less is a cylinder on its side
+_TURNS = 0.01     # rad/s: joints slower than that need nothing
+_CREEP = 5e-3     # m/s: what rolls slower stands
+_TURN = 0.2       # rad/s: the same for its turning
+_LEVEL = 1e-3     # of gravity along the floor: less is a level one
+_ASLEEP = 3       # looks without velocity: it sleeps, and Bullet leaves it alone
+_SHIFT = 1e-5     # m between two looks: less is not its own
+_NONE = (0.0, 0.0, 0.0)
+
+
+@dataclass
+class _Roller:
+    """A round link: its axis in the frame of its principal axes; looks without velocity."""
+
+    body: Body
+    part: Part
+    axis: Vec3
+    meets: collision_groups.Filter
+    still: int = 0
+
+
+class Rolling:
+    """Drops the contact points of lying cylinders before each step."""
+
+    def __init__(self) -> None:
+        self._rollers: Dict[Tuple[int, int], _Roller] = {}
+        self._rolling: Dict[Tuple[int, int], collision_groups.Filter] = {}
+        self._standing: Dict[int, Pose] = {}
+        self._moving: Set[int] = set()
+
+    def add(self, body: Body, part: Part, link: Link) -> None:
+        """Know a link of a body; only moving ones that are cylinders about one axis matter."""
+        if body.moves:
+            self._moving.add(body.uid)
+        axis = _axis_of(link)
+        if axis is not None and body.moves:
+            own = rotate(conjugate(part.link_from_com.orientation), axis)
+            self._rollers[body.uid, part.index] = _Roller(body, part, own,
+                                                          collision_groups.moving(link))
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        self._standing.pop(body.uid, None)
+        self._moving.discard(body.uid)
+        for part in body.parts:
+            for table in (self._rollers, self._rolling):
+                table.pop((body.uid, part.index), None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self._rollers.clear()
+        self._rolling.clear()
+        self._standing.clear()
+        self._moving.clear()
+
+    @property
+    def idle(self) -> bool:
+        """True when no link can need it."""
+        return not self._rollers
+
+    @property
+    def busy(self) -> bool:
+        """True when something must be done before every step."""
+        return bool(self._rolling or self._standing)
+
+    def touched(self, body: Body) -> None:
+        """A rigid body was put somewhere or given another velocity: it may roll at once."""
+        self._standing.pop(body.uid, None)
+        roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
+        if roller is not None:
+            roller.still = 0
+            self._rolling[body.uid, BASE] = roller.meets
+
+    def before(self, step: int, gravity: Vec3) -> None:
+        """Act before the step that begins at count `step`."""
+        if step % EVERY == 0:
+            for key, roller in self._rollers.items():
+                if self._rolls(roller, gravity):
+                    self._rolling[key] = roller.meets
+                else:
+                    self._rolling.pop(key, None)
+        for uid in self._standing:
+            linear, angular = pybullet.getBaseVelocity(uid)
+            if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
+                pybullet.resetBaseVelocity(uid, _NONE, _NONE)
+        for (uid, index), meets in self._rolling.items():
+            pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
+
+    def _rolls(self, roller: _Roller, gravity: Vec3) -> bool:
+        """Whether a link lies on its side and does not stand; finds out whether it does."""
+        uid, index = roller.body.uid, roller.part.index
+        if roller.body.rigid:
+            linear, angular = pybullet.getBaseVelocity(uid)
+            roller.still = roller.still + 1 if linear == angular == _NONE else 0
+            if roller.still:
+                if roller.still >= _ASLEEP:
+                    self._standing.pop(uid, None)
+                return False
+            turn = pybullet.getBasePositionAndOrientation(uid)[1]
+        elif index == BASE:
+            turn = pybullet.getBasePositionAndOrientation(uid)[1]
+        else:
+            if abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
+                return False
+            turn = pybullet.getLinkState(uid, index)[1]
+        axis = rotate(turn, roller.axis)
+        contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
+        if not contacts:
+            return (uid, index) in self._rolling
+        if any(abs(dot(contact[7], axis)) > _LYING for contact in contacts):
+            return False
+        if roller.body.rigid:
+            before = self._standing.pop(uid, None)
+            if _slow(linear, angular) and self._on_level(contacts, gravity):
+                self._stand(uid, before)
+                return False
+        return True
+
+    def _stand(self, uid: int, before: Optional[Pose]) -> None:
+        """Let a body stand where it stood at the last look, if it did and moved since by itself."""
+        at = Pose(*pybullet.getBasePositionAndOrientation(uid))
+        if before is not None and dist(at.position, before.position) < _SHIFT:
+            x, y, _ = before.position
+            at = Pose((x, y, at.position[2]), before.orientation)
+            pybullet.resetBasePositionAndOrientation(uid, at.position, at.orientation)
+        self._standing[uid] = at
+
+    def _on_level(self, contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
+        """Whether a body only touches level floors that do not move."""
+        limit = _LEVEL * norm(gravity)
+        return all(contact[2] not in self._moving and norm(cross(contact[7], gravity)) <= limit
+                   for contact in contacts)
+
+
+def _slow(linear: Vec3, angular: Vec3) -> bool:
+    return norm(linear) < _CREEP and norm(angular) < _TURN
+
+
+def _axis_of(link: Link) -> Optional[Vec3]:
+    """The one axis that all shapes of a link are round about, in the link frame, or None."""
+    found: List[Pose] = []
+    for collision in link.collisions:
+        if isinstance(collision.geometry, (Cylinder, Capsule)):
+            found.append(collision.pose)
+        elif not isinstance(collision.geometry, Empty):
+            return None
+    if not found:
+        return None
+    axes = [rotate(pose.orientation, (0.0, 0.0, 1.0)) for pose in found]
+    if any(abs(dot(axis, axes[0])) < 1.0 - 1e-6 for axis in axes):
+        return None
+    return axes[0]

@@ -1,0 +1,103 @@
+"""Boxes that slide and land: on planes, on boxes, in eight directions."""
+from __future__ import annotations
+
+import math
+
+import pytest
+from conftest import Lab, box, ground, inertial_of_box, link_of, slab
+from laws import Laws
+
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Box, Collision, Surface
+from my_simulations.geometry import Pose
+
+G = 9.8
+CUBE, FLAT = (1.0, 1.0, 1.0), (1.0, 1.0, 0.1)
+
+
+def _floor(lab: Lab, kind: str) -> None:
+    if kind == "plane":
+        lab.load(ground(1.0))
+    else:
+        lab.load(slab("floor", (600.0, 600.0, 2.0)), (0, 0, -1.0))
+
+
+def _tilt(lab: Lab, model: int) -> float:
+    x, y = lab.pose(model).orientation[:2]
+    return math.degrees(2 * math.asin(math.hypot(x, y)))
+
+
+@pytest.mark.parametrize("floor", ["plane", "box"])
+@pytest.mark.parametrize("size", [CUBE, FLAT], ids=["cube", "flat"])
+def test_a_box_slides_as_far_in_every_direction(lab: Lab, laws: Laws, size, floor: str):
+    _floor(lab, floor)
+    sliding = []
+    for n, mu in enumerate((0.2, 0.4, 0.6, 0.8, 1.0)):
+        for eighth in range(8):
+            model = Model(f"b{n}{eighth}", links=[link_of(
+                Box(size), inertial_of_box(1.0, *size), Surface(mu=mu))])
+            number = lab.load(model, (30 * n - 60, 30 * eighth - 100, size[2] / 2))
+            sliding.append((number, mu, math.pi / 4 * eighth))
+    lab.steps(200)
+    starts = [lab.pose(number).position for number, _, _ in sliding]
+    for number, _, angle in sliding:
+        lab.push(number, (2 * math.cos(angle), 2 * math.sin(angle), 0))
+    lab.seconds(1.5)
+    for (number, mu, _), start in zip(sliding, starts):
+        laws.near("boxes sliding in eight directions, mu 0.2 to 1: way to a stop, m",
+                  math.dist(lab.pose(number).position, start), 4 / (2 * mu * G), rel=0.02)
+
+
+@pytest.mark.parametrize("height", [0.5, 2.0, 4.5, 5.0])
+def test_a_box_that_lands_flat_does_not_tilt(lab: Lab, laws: Laws, height: float):
+    lab.load(ground())
+    boxes = [(lab.load(box(), (0, 0, height + 0.5)), 0.5),
+             (lab.load(Model("brick", links=[link_of(
+                 Box((0.03, 0.05, 0.1)), inertial_of_box(0.2, 0.03, 0.05, 0.1))]),
+                 (5, 0, height + 0.05)), 0.05)]
+    landed = round(1000 * math.sqrt(2 * height / G))
+    for _ in range(landed + 300):
+        lab.steps(1)
+        for number, rest in boxes:
+            laws.at_most("a drop from up to 5 m: tilt, degrees", _tilt(lab, number), 0.05)
+            laws.at_most("a drop from up to 5 m: depth, in ways of one step",
+                         (rest - lab.pose(number).position[2])
+                         / (0.001 * math.sqrt(2 * G * height)), 1.0)
+    for number, rest in boxes:
+        laws.near("a drop from up to 5 m: height 0.3 s after landing, m",
+                  lab.pose(number).position[2], rest, abs=2e-3)
+
+
+def test_a_box_far_from_the_origin_meets_the_plane(lab: Lab):
+    lab.load(ground())
+    far = lab.load(box(), (300000.0, -200000.0, 0.5))
+    lab.seconds(1)
+    assert lab.pose(far).position[2] == pytest.approx(0.5, abs=1e-3)
+
+
+def test_boxes_and_other_shapes_meet_a_tilted_plane_on_one_side_only(lab: Lab):
+    from conftest import ball
+
+    from my_simulations.description.shapes import Plane
+    lab.configure(gravity=(-9.8, 0.0, 0.0))
+    wall = Model("wall", static=True, links=[Link("link", collisions=[
+        Collision("c", Plane((1.0, 0.0, 0.0)), Pose((-2.0, 0.0, 0.0)))])])
+    lab.load(wall)
+    cube, round_one = lab.load(box(), (0, 0, 0)), lab.load(ball(), (0, 5, 0))
+    lab.seconds(2)
+    for model in (cube, round_one):
+        assert lab.pose(model).position[0] == pytest.approx(-1.5, abs=1e-3)
+
+
+def test_what_is_spawned_after_a_model_of_two_bodies_left_collides(lab: Lab):
+    # Bullet gives the numbers of removed bodies again, and remembers who ignored whom.
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    inertial = inertial_of_box(1, 1, 1, 1)
+    pair = lab.load(Model("pair", links=[
+        Link(name, Pose((x, 0, 0)), inertial, [Collision("c", Box(CUBE))])
+        for name, x in (("a", 0.0), ("b", 0.6))]))
+    lab.remove(pair)
+    left, right = lab.load(box("left"), (0, 0, 0)), lab.load(box("right"), (2, 0, 0))
+    lab.push(right, (-1, 0, 0))
+    lab.seconds(2)
+    assert lab.pose(left).position[0] < -0.1

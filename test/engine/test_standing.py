@@ -1,0 +1,63 @@
+"""What stands, stands: stacks, unlike masses, cards, meshes."""
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from conftest import Lab, box, ground, inertial_of_box, link_of, slab
+from laws import Laws
+from test_contact import _cube_mesh
+
+from my_simulations.description.model import Model
+from my_simulations.description.shapes import Box, Mesh, Surface, mesh_key
+
+
+def test_twenty_boxes_on_each_other_stand(lab: Lab, laws: Laws):
+    lab.load(ground())
+    stack = [lab.load(replace(box(f"b{n}"), allow_auto_disable=False), (0, 0, 0.5 + n))
+             for n in range(20)]
+    lab.seconds(60)
+    for n, model in enumerate(stack):
+        laws.near("twenty boxes on each other, awake, for 60 s: off their place, m",
+                  lab.pose(model).position, (0, 0, 0.5 + n), abs=0.01)
+
+
+@pytest.mark.parametrize("masses", [(1, 100, 1000), (1000, 100, 1), (1, 1000, 1)])
+def test_heavy_boxes_stand_on_light_ones(lab: Lab, laws: Laws, masses):
+    lab.load(ground())
+    stack = [lab.load(replace(box(f"b{n}", mass=float(mass)), allow_auto_disable=False),
+                      (0, 0, 0.5 + n)) for n, mass in enumerate(masses)]
+    lab.seconds(20)
+    for n, model in enumerate(stack):
+        laws.near("masses 1, 100 and 1000 kg on each other for 20 s: off their place, m",
+                  lab.pose(model).position, (0, 0, 0.5 + n), abs=2e-3)
+
+
+def test_twenty_cards_lie_on_each_other(lab: Lab, laws: Laws):
+    size = (0.06, 0.09, 0.002)
+    lab.load(ground())
+    cards = [lab.load(Model(f"card{n}", allow_auto_disable=False, links=[link_of(
+        Box(size), inertial_of_box(0.002, *size), Surface(mu=0.5))]),
+        (0, 0, 0.001 + 0.002 * n)) for n in range(20)]
+    lab.seconds(20)
+    for n, card in enumerate(cards):
+        laws.near("twenty cards of 2 g for 20 s: off their place, m",
+                  lab.pose(card).position, (0, 0, 0.001 + 0.002 * n), abs=4e-3)
+
+
+@pytest.mark.parametrize("floor", ["plane", "box"])
+def test_a_mesh_rests_at_its_height(lab: Lab, laws: Laws, floor: str):
+    if floor == "plane":
+        lab.load(ground())
+    else:
+        lab.load(slab("floor", (20, 20, 1)), (0, 0, -0.5))
+    mesh = Mesh("cube", "/cube")
+    cube = lab.load(Model("cube", allow_auto_disable=False, links=[link_of(
+        mesh, inertial_of_box(1, 1, 1, 1))]), (0, 0, 0.55), meshes={mesh_key(mesh): _cube_mesh()})
+    lab.seconds(2)
+    start = lab.pose(cube).position
+    laws.near("a mesh of one convex piece at rest: height, m", start[2], 0.5, abs=1e-4)
+    lab.seconds(30)
+    laws.at_most("a mesh of one convex piece at rest: way in 30 s, m",
+                 math.dist(lab.pose(cube).position, start), 1e-4)

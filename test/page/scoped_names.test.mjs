@@ -1,0 +1,16 @@
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {test} from 'node:test';
+import {scoped, splitScoped} from '../../web/js/scoped_names.js';
+
+const {cases} = JSON.parse(readFileSync(new URL('../data/scoped_names.json', import.meta.url)));
+
+for (const {says, models, name, split} of cases) {
+  test(`a scoped name is split by the longest model name: ${says}`, () => {
+    assert.deepEqual(splitScoped(name, (one) => models.includes(one)), split);
+  });
+}
+
+test('names are joined by the separator', () => {
+  assert.equal(scoped('arm', 'hand', 'finger'), 'arm::hand::finger');
+});

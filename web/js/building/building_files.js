@@ -1,0 +1,220 @@
+/** Saving, opening and leaving: the windows that ask, and the requests behind them. */
+import {Dialog, ask, faultText, labelled} from '../panels/dialog.js';
+import {h} from '../panels/dom.js';
+import {emptyPlan} from './plan.js';
+import {rescaled, withImage} from './draw_tools.js';
+/** @import {BuildingAbout, BuildingOptions} from '../protocol.js' */
+/** @import {RequestFunction} from '../connection.js' */
+/** @import {Session} from './drawing_session.js' */
+
+/** The largest picture that is taken as a floor plan. */
+const LARGEST_IMAGE = 16 * 1024 * 1024;
+
+/** How a building is saved, besides its plan. */
+/** @typedef {BuildingOptions & BuildingAbout & {folder: string}} SaveOptions */
+
+/** @returns {BuildingAbout & {folder: string}} */
+const blankAbout = () => ({folder: '', version: '1.0', description: '', author: '', email: ''});
+
+export class Files {
+  /** @param {Session} session @param {RequestFunction} request */
+  constructor(session, request) {
+    this.session = session;
+    this.request = request;
+    this.about = blankAbout();
+  }
+
+  /** Saves where the building was saved before; asks the first time. @returns {Promise<boolean>} */
+  async save() {
+    const {file} = this.session;
+    if (!file) return this.saveAs();
+    try {
+      await this.#write(file.name, {...this.about, overwrite: true});
+      return true;
+    } catch (fault) {
+      this.session.say(faultText(fault));
+      await ask('Failed to save the building', faultText(fault), [{title: 'OK', primary: true}]);
+      return false;
+    }
+  }
+
+  /** @returns {Promise<boolean>} whether it was saved */
+  async saveAs() {
+    const {session, about} = this;
+    /** @param {string} value */
+    const text = (value, more = {}) => h('input', {type: 'text', value, ...more});
+    const name = text(session.plan.name, {placeholder: 'Untitled', autofocus: true});
+    const folder = text(about.folder, {placeholder: '~/building_editor_models'});
+    const fields = {version: text(about.version), description: text(about.description),
+      author: text(about.author), email: text(about.email)};
+    const overwrite = h('input', {type: 'checkbox'});
+    const replace = h('label', {hidden: true}, overwrite, 'Overwrite the existing building');
+    const dialog = new Dialog({
+      title: 'Save Building', name: 'building-save',
+      content: [labelled('Model name', name), labelled('Location', folder), replace,
+        h('details', {}, h('summary', {text: 'Advanced'}), labelled('Version', fields.version),
+          labelled('Description', fields.description), labelled('Author', fields.author),
+          labelled('E-mail', fields.email))],
+      buttons: [{title: 'Cancel'}, {title: 'Save', primary: true, run: async () => {
+        const chosen = {folder: folder.value.trim(), version: fields.version.value,
+          description: fields.description.value, author: fields.author.value,
+          email: fields.email.value};
+        const own = session.file && session.file.name === name.value.trim() && about.folder === chosen.folder;
+        try {
+          await this.#write(name.value, {...chosen, overwrite: overwrite.checked || Boolean(own)});
+        } catch (fault) {
+          if (/already exists|exists already/.test(faultText(fault))) replace.hidden = false;
+          throw fault;
+        }
+        this.about = chosen;
+        return 'saved';
+      }}],
+    });
+    return (await dialog.open()) === 'saved';
+  }
+
+  /** @param {string} name @param {SaveOptions} options */
+  async #write(name, options) {
+    const {session} = this;
+    const plan = {...session.history.plan, name: name.trim() || session.plan.name};
+    const given = Object.fromEntries(Object.entries(options).filter(([, value]) => value !== ''));
+    const saved = await this.request('building_save', {plan, name: plan.name, options: given});
+    if (plan.name !== session.history.plan.name) session.commit(plan, 'rename building');
+    session.history.markSaved();
+    session.file = {path: saved.path, name: plan.name};
+    session.say(`Saved to ${saved.path}`);
+    for (const issue of saved.issues) session.say(`Saved with a warning: ${issue.message}`);
+  }
+
+  /** Opens a saved building: one of the list, or the folder or SDF file that is typed. */
+  async open() {
+    if (!await this.mayDiscard()) return false;
+    const buildings = await this.request('building_list', {});
+    const path = h('input', {type: 'text', placeholder: 'folder or .sdf file'});
+    const list = h('div', {class: 'building-list', role: 'listbox', 'aria-label': 'Buildings'},
+      ...buildings.map(({name, path: where}) => h('button', {
+        type: 'button', role: 'option', class: 'wide', title: where, text: name,
+        onclick: () => { path.value = where; },
+        ondblclick: () => { path.value = where; dialog.submit(); },
+      })));
+    if (!buildings.length) list.append(h('p', {class: 'empty', text: 'No saved buildings'}));
+    const dialog = new Dialog({
+      title: 'Open Building', name: 'building-open', content: [list, labelled('Path', path)],
+      buttons: [{title: 'Cancel'}, {title: 'Open', primary: true, run: async () => {
+        await this.load(path.value.trim());
+        return 'opened';
+      }}],
+    });
+    return (await dialog.open()) === 'opened';
+  }
+
+  /** Opens a building by name or path. @param {string} name */
+  async load(name) {
+    const {plan, path, issues, about} = await this.request('building_load', {name});
+    const parts = path.split('/');
+    const isFolder = !/\.(sdf|world)$/.test(path);
+    this.about = {...blankAbout(), ...about, folder: isFolder ? parts.slice(0, -1).join('/') : ''};
+    this.session.open(plan, isFolder ? {path, name: plan.name} : null);
+    this.session.say(issues.length ? `Opened with a warning: ${issues[0].message}` : '');
+  }
+
+  /** An empty plan, after a question where something would be lost. */
+  async fresh() {
+    if (!await this.mayDiscard()) return false;
+    this.about = blankAbout();
+    this.session.open(emptyPlan());
+    return true;
+  }
+
+  /** Asks what becomes of changes: true when the plan may go. */
+  async mayDiscard() {
+    if (!this.session.dirty) return true;
+    const answer = await ask('Save building?', 'The building has unsaved changes.',
+      [{title: 'Cancel'}, {title: "Don't Save", value: 'drop', danger: true},
+        {title: 'Save', value: 'save', primary: true}]);
+    return answer === 'drop' || (answer === 'save' && this.save());
+  }
+
+  /** Asks before leaving. @returns {Promise<'cancel'|'saved'|'dropped'>} */
+  async leave() {
+    const {session} = this;
+    if (!session.dirty) return session.file ? 'saved' : 'dropped';
+    const answer = await ask('Exit building editor?', session.file
+      ? 'The building has unsaved changes.' : 'The building has not been saved.',
+    [{title: 'Cancel'}, {title: "Don't Save, Exit", value: 'drop', danger: true},
+      {title: 'Save and Exit', value: 'save', primary: true}]);
+    if (answer === 'drop') return session.file ? 'saved' : 'dropped';
+    return answer === 'save' && await this.save() ? 'saved' : 'cancel';
+  }
+}
+
+/**
+ * Asks for a picture as floor plan and how its pixels become metres.
+ * @param {Session} session
+ * @param {(done: (drawn: number) => void) => void} measure  lets the user draw a line
+ */
+export async function importImage(session, measure) {
+  const {at} = session;
+  const present = session.level.image;
+  const file = h('input', {type: 'file', accept: '.png,.jpg,.jpeg,image/png,image/jpeg', 'aria-label': 'Image'});
+  const resolution = h('input', {type: 'number', value: present?.resolution ?? 100, min: 0.01, step: 'any', 'aria-label': 'Resolution'});
+  const line = h('input', {type: 'checkbox', checked: true});
+  const dialog = new Dialog({
+    title: 'Import Floor Plan', name: 'building-import',
+    content: [h('p', {text: 'The image (PNG or JPEG) is shown below this level, centered on the origin.'}),
+      labelled('Image', file), labelled('Resolution (pixels per meter)', resolution),
+      h('label', {}, line, 'Calibrate with a line of known length')],
+    buttons: [{title: 'Cancel'}, ...(present ? [{title: 'Remove', value: 'remove', danger: true}] : []),
+      {title: 'Import', primary: true, run: async () => {
+        const scale = Number(resolution.value);
+        if (!(scale > 0)) throw new Error('The resolution must be greater than 0 pixels per meter.');
+        const chosen = file.files?.[0];
+        if (!chosen && !present) throw new Error('Select an image first.');
+        const image = chosen ? {file: chosen.name, data: await readPicture(chosen)} : present;
+        if (image) {
+          session.commit(withImage(session.history.plan, at, {...image, resolution: scale}),
+            'import floor plan');
+        }
+        return 'done';
+      }}],
+  });
+  const answer = await dialog.open();
+  if (answer === 'remove') session.commit(withImage(session.history.plan, at, null), 'remove floor plan');
+  if (answer !== 'done' || !line.checked) return;
+  measure(async (drawn) => {
+    const length = h('input', {type: 'number', min: 0.001, step: 'any', autofocus: true, 'aria-label': 'Length in meters'});
+    const done = Number(await new Dialog({
+      title: 'Length of the line', content: [labelled('Length (m)', length)],
+      buttons: [{title: 'Cancel'}, {title: 'OK', primary: true, run: () => {
+        if (!(Number(length.value) > 0)) throw new Error('The length must be greater than 0 m.');
+        return Number(length.value);
+      }}],
+    }).open());
+    const {image} = session.history.plan.levels[at] ?? {};
+    if (done && image) {
+      session.commit(withImage(session.history.plan, at, rescaled(image, drawn, done)), 'scale floor plan');
+    }
+  });
+}
+
+/** The picture as a data URL; rejects what the browser cannot show. @param {File} file */
+async function readPicture(file) {
+  if (!/^image\/(png|jpeg)$/.test(file.type)) {
+    throw new Error(`${file.name} is not a PNG or JPEG image.`);
+  }
+  if (file.size > LARGEST_IMAGE) throw new Error(`${file.name} is larger than 16 MB.`);
+  /** @type {string} */
+  const data = await new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.onload = () => resolve(String(reader.result));
+    reader.onerror = () => reject(new Error(`${file.name} cannot be read.`));
+    reader.readAsDataURL(file);
+  });
+  await new Promise((resolve, reject) => {
+    const image = new Image();
+    image.onload = resolve;
+    image.onerror = () => reject(new Error(`${file.name} is not a valid image.`));
+    image.src = data;
+  });
+  return data;
+}

@@ -1,0 +1,228 @@
+/** Mouse and keyboard on the sheet, handed to the tool in metres of the plan. */
+import {hotkey} from '../hotkeys.js';
+import {isTextInput} from '../panels/dom.js';
+import {menuList, openPopup} from '../panels/popup.js';
+import {hitOf} from './hit_test.js';
+import {inspectItem, inspectLevel} from './inspector.js';
+import {dropLevel, newLevel} from './level_bar.js';
+import {itemOfLink} from './plan.js';
+import {paintable, PaintTool} from './select_tool.js';
+import {NAMES} from './drawing_session.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {Ref} from './plan.js' */
+/** @import {Session} from './drawing_session.js' */
+
+/**
+ * @param {{session: import('./drawing_session.js').Session, canvas: import('./plan_canvas.js').Canvas,
+ *          draw: () => void}} parts
+ */
+export function listenToMouse({session, canvas, draw}) {
+  const sheet = canvas.element;
+  /** @param {MouseEvent} event */
+  const mouseOf = (event) => ({
+    point: canvas.toPlan(event.clientX, event.clientY), shift: event.shiftKey, alt: event.altKey,
+    ctrl: event.ctrlKey || event.metaKey, tolerance: canvas.tolerance,
+  });
+  /** @type {[number, number]|null} */
+  let panning = null;
+  sheet.addEventListener('pointerdown', (event) => {
+    sheet.focus({preventScroll: true});
+    sheet.setPointerCapture(event.pointerId);
+    if (event.button === 1) {
+      event.preventDefault();
+      panning = [event.clientX, event.clientY];
+    } else if (event.button === 0) {
+      session.tool.press(mouseOf(event));
+    }
+    draw();
+  });
+  sheet.addEventListener('pointermove', (event) => {
+    if (panning) {
+      canvas.pan(event.clientX - panning[0], event.clientY - panning[1]);
+      panning = [event.clientX, event.clientY];
+      return;
+    }
+    session.tool.move(mouseOf(event));
+  });
+  sheet.addEventListener('pointerup', (event) => {
+    if (event.button === 1) panning = null;
+    else if (event.button === 0) session.tool.release(mouseOf(event));
+    draw();
+  });
+  sheet.addEventListener('pointercancel', () => {
+    panning = null;
+    session.tool.cancel();
+  });
+  sheet.addEventListener('dblclick', (event) => {
+    if (session.tool.name !== 'select') {
+      session.tool.double(mouseOf(event));
+      return;
+    }
+    const hit = hitAt(event);
+    if (hit) inspectItem(session, hit.ref);
+    else inspectLevel(session);
+  });
+  sheet.addEventListener('wheel', (event) => {
+    event.preventDefault();
+    canvas.zoomAt(event.clientX, event.clientY, event.deltaY < 0 ? 1.15 : 1 / 1.15);
+  }, {passive: false});
+  sheet.addEventListener('contextmenu', (event) => {
+    event.preventDefault();
+    // A tool at work: the right button drops what it does and ends it.
+    if (session.tool.name !== 'select') {
+      if (!session.tool.cancel()) session.endTool();
+      draw();
+      return;
+    }
+    openMenu(event);
+  });
+
+  /** @param {MouseEvent} event */
+  function hitAt(event) {
+    return hitOf(session.plan, session.at, canvas.toPlan(event.clientX, event.clientY),
+      {tolerance: canvas.tolerance});
+  }
+
+  /** @param {MouseEvent} event */
+  function openMenu(event) {
+    const hit = hitAt(event);
+    if (hit && !session.isSelected(hit.ref)) session.select([hit.ref]);
+    const items = hit ? [
+      {title: `Open ${title(NAMES[hit.ref.kind])} Inspector`, run: () => inspectItem(session, hit.ref)},
+      {title: 'Copy', keys: 'Ctrl+C', run: () => session.copy()},
+      {title: 'Delete', keys: 'Delete', run: () => session.removeSelected()},
+    ] : [
+      {title: 'Add Level', run: () => newLevel(session)},
+      {title: 'Delete Level', run: () => dropLevel(session), enabled: () => session.plan.levels.length > 1},
+      {title: 'Open Level Inspector', run: () => inspectLevel(session)},
+      {title: 'Paste', keys: 'Ctrl+V', run: () => session.paste(), enabled: () => session.clipboard.length > 0},
+    ];
+    const close = openPopup(menuList(items, () => close(), 'Plan'), {x: event.clientX, y: event.clientY});
+  }
+}
+
+/** @param {string} word */
+const title = (word) => word[0].toUpperCase() + word.slice(1);
+
+/** Keys of the page that mean the same while a building is drawn. */
+const OF_THE_PAGE = new Set(['building', 'fullScreen', 'hotkeys', 'togglePanels']);
+
+/**
+ * Keys of the building editor, as long as the focus is on it or nowhere.
+ * @param {HTMLElement} element
+ * @param {{session: Session, files: import('./building_editor.js').FileCommands,
+ *          exit: () => void, draw: () => void}} parts
+ * @returns {() => void} stops listening
+ */
+export function listenToKeys(element, {session, files, exit, draw}) {
+  let typed = '';
+  /** @type {Record<string, () => unknown>} */
+  const run = {
+    'Ctrl+S': () => files.save(), 'Ctrl+Shift+S': () => files.saveAs(), 'Ctrl+O': () => files.open(),
+    'Alt+N': () => files.fresh(), 'Ctrl+X': exit,
+    'Ctrl+Z': () => session.undo(), 'Ctrl+Shift+Z': () => session.redo(), 'Ctrl+Y': () => session.redo(),
+    'Ctrl+C': () => session.copy(), 'Ctrl+V': () => session.paste(), 'Ctrl+A': () => session.selectAll(),
+    Delete: () => session.removeSelected(), Backspace: () => session.removeSelected(),
+    F: () => session.show('image'), G: () => session.show('features'),
+    Escape() {
+      if (session.tool.cancel()) return;
+      if (session.tool.name !== 'select') session.endTool();
+      else session.select([]);
+    },
+  };
+  /** @param {KeyboardEvent} event */
+  const pressed = (event) => {
+    const at = document.activeElement;
+    const here = !at || at === document.body || element.contains(at);
+    if (!here || event.defaultPrevented || isTextInput(event.target)) return;
+    if (type(event)) {
+      event.preventDefault();
+      return;
+    }
+    const action = run[spelling(event)];
+    if (action) {
+      event.preventDefault();
+      action();
+      draw();
+    } else if (hotkey(event) && !OF_THE_PAGE.has(hotkey(event)?.action ?? '')) {
+      event.preventDefault();
+    }
+  };
+
+  /**
+   * Digits become a length for the tool that draws; true when the key was taken.
+   * @param {KeyboardEvent} event
+   */
+  function type(event) {
+    if (session.tool.name === 'select' || event.ctrlKey || event.metaKey || event.altKey) return false;
+    if (/^[0-9.,]$/.test(event.key)) typed += event.key.replace(',', '.');
+    else if (event.key === 'Backspace' && typed) typed = typed.slice(0, -1);
+    else if (event.key === 'Enter') {
+      session.tool.typed(typed ? Number(typed) : null);
+      typed = '';
+    } else {
+      if (event.key === 'Escape') typed = '';
+      return false;
+    }
+    session.say(typed ? `Length: ${typed} m, then Enter` : '');
+    return true;
+  }
+
+  window.addEventListener('keydown', pressed, true);
+  return () => window.removeEventListener('keydown', pressed, true);
+}
+
+/** @param {KeyboardEvent} event */
+function spelling(event) {
+  const key = event.key.length === 1 ? event.key.toUpperCase() : event.key;
+  return [event.ctrlKey || event.metaKey ? 'Ctrl' : '', event.altKey ? 'Alt' : '',
+    event.shiftKey && (event.ctrlKey || event.metaKey) ? 'Shift' : '', key].filter(Boolean).join('+');
+}
+
+/**
+ * Painting in the 3D view: hovering shows, a click paints.
+ * @param {HTMLElement|null} view
+ * @param {{session: Session, actions: Actions}} parts
+ * @returns {() => void} stops listening
+ */
+export function listenToView(view, {session, actions}) {
+  /** @param {MouseEvent} event */
+  const target = (event) => {
+    const link = actions.previewPick(event.clientX, event.clientY)?.link;
+    const found = link ? itemOfLink(session.history.plan, link) : null;
+    return found && paintable(found.ref) ? found : null;
+  };
+  /** @type {[number, number]|null} */
+  let down = null;
+  /** What is shown painted: between two pictures of the preview nothing can be picked. */
+  /** @type {{level: number, ref: Ref}|null} */
+  let shown = null;
+  /** @param {MouseEvent} event */
+  const move = (event) => {
+    if (!(session.tool instanceof PaintTool) || event.buttons) return;
+    shown = target(event);
+    session.tool.hover(shown?.level ?? 0, shown?.ref ?? null);
+  };
+  /** @param {MouseEvent} event */
+  const press = (event) => { down = [event.clientX, event.clientY]; };
+  /** @param {MouseEvent} event */
+  const release = (event) => {
+    if (!(session.tool instanceof PaintTool) || event.button !== 0 || !down) return;
+    if (Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
+    const found = shown ?? target(event);
+    if (found) session.tool.paint(found.level, found.ref);
+  };
+  /** @param {MouseEvent} event */
+  const away = (event) => {
+    if (session.tool.name !== 'paint') return;
+    event.preventDefault();
+    session.endTool();
+  };
+  /**
+   * @type {['pointermove'|'pointerdown'|'pointerup'|'contextmenu', (event: MouseEvent) => void][]}
+   */
+  const listeners = [['pointermove', move], ['pointerdown', press], ['pointerup', release],
+    ['contextmenu', away]];
+  for (const [name, listener] of listeners) view?.addEventListener(name, listener, true);
+  return () => listeners.forEach(([name, listener]) => view?.removeEventListener(name, listener, true));
+}

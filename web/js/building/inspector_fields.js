@@ -1,0 +1,244 @@
+/** The inspectors: what they ask of each kind of item, and what their answers do to the plan. */
+import {openingFault} from './plan_check.js';
+import {distance} from './plane_geometry.js';
+import {
+  attached, itemOf, moveEnd, outerLength, setLevelHeight, setOuterLength, update, wallLength,
+  withLevel,
+} from './plan.js';
+import {outlineOf} from './rooms.js';
+/** @import {AnyItem, Kind, Ref} from './plan.js' */
+/** @import {Floor, Level, Opening, Plan, Roof} from '../protocol.js' */
+
+/**
+ * What the fields of an inspector hold, by the fields' names.
+ * Which of them there are depends on the item; an item has no others than its inspector shows.
+ * @typedef {Record<'startX'|'startY'|'endX'|'endY'|'length'|'height'|'thickness'|'width'|'depth'|
+ *   'elevation'|'x'|'y'|'angle'|'fromStart'|'fromEnd'|'steps'|'overhang'|'pitch', number> &
+ *   Record<'color'|'texture'|'type'|'name', string> &
+ *   {fit: Floor['fit'], kind: 'none'|Roof['kind']}} Values
+ *
+ * @typedef {Object} InspectorField
+ * @property {string} name
+ * @property {string} label
+ * @property {'number'|'integer'|'text'|'color'|'texture'|'choice'} type
+ * @property {number} [min]
+ * @property {number} [max]
+ * @property {[string, string][]} [choices]
+ */
+
+/**
+ * @param {string} name
+ * @param {string} label
+ * @returns {InspectorField}
+ */
+const size = (name, label) => ({name, label, type: 'number', min: 0.001, max: 1000});
+/**
+ * @param {string} name
+ * @param {string} label
+ * @returns {InspectorField}
+ */
+const place = (name, label) => ({name, label, type: 'number', min: -1000, max: 1000});
+/** @type {InspectorField} */
+const LEVEL_NAME = {name: 'name', label: 'Name', type: 'text'};
+/** @type {InspectorField[]} */
+const FLOOR_LOOK = [{name: 'color', label: 'Floor color', type: 'color'},
+  {name: 'texture', label: 'Floor texture', type: 'texture'}];
+/** @type {InspectorField[]} */
+const LOOK = [{name: 'color', label: 'Color', type: 'color'}, {name: 'texture', label: 'Texture', type: 'texture'}];
+/** @type {InspectorField} */
+const ANGLE = {name: 'angle', label: 'Angle (°)', type: 'number', min: -360, max: 360};
+/** @type {InspectorField} */
+const TYPE = {name: 'type', label: 'Type', type: 'choice', choices: [['single', 'Single']]};
+/** @param {number} radians */
+const degrees = (radians) => Math.round(radians * 180 / Math.PI * 1e6) / 1e6;
+/** @param {number} value */
+const radians = (value) => value * Math.PI / 180;
+
+/**
+ * The fields of an item's inspector.
+ * @param {Kind} kind
+ * @param {AnyItem} item
+ * @returns {InspectorField[]}
+ */
+export function fieldsOf(kind, item) {
+  switch (kind) {
+    case 'walls': return [
+      place('startX', 'Start x'), place('startY', 'Start y'), place('endX', 'End x'),
+      place('endY', 'End y'), size('length', 'Length'), size('height', 'Height'),
+      size('thickness', 'Thickness'), ...LOOK];
+    case 'windows': case 'doors': return [
+      ...(!('wall' in item) || item.wall === null
+        ? [place('x', 'x'), place('y', 'y'), ANGLE]
+        : [{...place('fromStart', 'Distance from wall start'), min: 0}, {...place('fromEnd', 'Distance from wall end'), min: 0}]),
+      {...size('elevation', 'Elevation'), min: 0}, size('width', 'Width'), size('height', 'Height'), TYPE];
+    case 'stairs': return [
+      place('x', 'x'), place('y', 'y'), ANGLE,
+      size('width', 'Width'), size('depth', 'Depth'), size('height', 'Height'),
+      {name: 'steps', label: 'Steps', type: 'integer', min: 1, max: 500}, ...LOOK];
+    case 'floors': return [size('thickness', 'Thickness'),
+      {name: 'fit', label: 'Outline', type: 'choice', choices: [['none', 'As drawn'], ['walls', 'Fit to walls']]},
+      ...LOOK];
+    default: throw new RangeError(`no inspector for ${kind}`);
+  }
+}
+
+/**
+ * What the fields show of an item.
+ * @param {AnyItem} item
+ * @param {Level} level
+ * @returns {Partial<Values>}
+ */
+export function valuesOf(item, level) {
+  const {id: _, ...values} = item;
+  if ('start' in item) {
+    return {...values, startX: item.start[0], startY: item.start[1], endX: item.end[0],
+      endY: item.end[1], length: outerLength(item)};
+  }
+  if ('outline' in item) return values;
+  const free = {...values, x: item.position[0], y: item.position[1], angle: degrees(item.yaw)};
+  if ('steps' in item) return free;
+  const wall = level.walls.find(({id}) => id === item.wall);
+  if (!wall) return {...free, type: 'single'};
+  return {...values, type: 'single', fromStart: item.along - item.width / 2,
+    fromEnd: wallLength(wall) - item.along - item.width / 2};
+}
+
+/**
+ * The plan after an inspector was applied.
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {Values} values  what the fields hold
+ * @param {Values} before  what they held when it was opened: only what differs is applied
+ * @returns {{plan: Plan, fault: string}}
+ */
+export function applied(plan, at, ref, values, before) {
+  /** @param {string} name */
+  const differs = (name) =>
+    values[/** @type {keyof Values} */ (name)] !== before[/** @type {keyof Values} */ (name)];
+  const item = itemOf(plan, at, ref);
+  if (!item) return {plan, fault: 'the item no longer exists'};
+  if ('start' in item) return wallApplied(plan, at, ref, values, differs);
+  if ('steps' in item) {
+    const {x, y, angle, width, depth, height, steps, color, texture} = values;
+    return {fault: '', plan: update(plan, at, ref, {position: [x, y], width, depth, height, steps, color, texture,
+      yaw: differs('angle') ? radians(angle) : item.yaw})};
+  }
+  if ('outline' in item) {
+    const {thickness, fit, color, texture} = values;
+    let made = update(plan, at, ref, {thickness, fit, color, texture});
+    if (fit === 'walls' && differs('fit')) made = withLevel(made, at, refitted(made.levels[at], ref.id));
+    return {plan: made, fault: ''};
+  }
+  return openingApplied(plan, at, ref, item, values, differs);
+}
+
+/** @param {Level} level @param {number} id */
+function refitted(level, id) {
+  const outline = level.walls.length ? outlineOf(level.walls) : null;
+  return outline ? {floors: level.floors.map((floor) => floor.id === id ? {...floor, outline, holes: []} : floor)} : {};
+}
+
+/**
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {Values} values
+ * @param {(name: string) => boolean} differs
+ */
+function wallApplied(plan, at, ref, values, differs) {
+  const {startX, startY, endX, endY, length, height, thickness, color, texture} = values;
+  if (distance([startX, startY], [endX, endY]) < 0.01) {
+    return {plan, fault: 'start and end of the wall must differ'};
+  }
+  let made = update(plan, at, ref, {height, thickness, color, texture});
+  if (differs('startX') || differs('startY')) made = moveEnd(made, at, ref.id, 'start', [startX, startY]);
+  if (differs('endX') || differs('endY')) made = moveEnd(made, at, ref.id, 'end', [endX, endY]);
+  else if (differs('length')) {
+    if (length <= thickness) return {plan, fault: 'the length must be greater than the thickness'};
+    made = setOuterLength(made, at, ref.id, length);
+  }
+  return {plan: made, fault: ''};
+}
+
+/**
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Ref} ref
+ * @param {Opening} item
+ * @param {Values} values
+ * @param {(name: string) => boolean} differs
+ */
+function openingApplied(plan, at, ref, item, values, differs) {
+  const {width, height, elevation, x, y, angle, fromStart, fromEnd} = values;
+  const sized = {...item, width, height, elevation};
+  const wall = plan.levels[at].walls.find(({id}) => id === item.wall);
+  if (!wall) {
+    return {fault: '', plan: update(plan, at, ref,
+      {width, height, elevation, position: [x, y], yaw: differs('angle') ? radians(angle) : item.yaw})};
+  }
+  let {along} = item;
+  if (differs('fromStart')) along = fromStart + width / 2;
+  else if (differs('fromEnd')) along = wallLength(wall) - fromEnd - width / 2;
+  const fault = openingFault({...sized, along}, wall);
+  if (fault) return {plan, fault};
+  return {fault: '', plan: update(plan, at, ref, {...attached(sized, wall, along), id: item.id})};
+}
+
+/**
+ * The level's inspector.
+ * @param {Plan} plan
+ * @param {number} at
+ * @returns {InspectorField[]}
+ */
+export const levelFields = (plan, at) => [
+  LEVEL_NAME, size('height', 'Height'),
+  ...(plan.levels[at].floors.length ? FLOOR_LOOK : [])];
+
+/** @param {Plan} plan @param {number} at */
+export function levelValues(plan, at) {
+  const {name, height, floors} = plan.levels[at];
+  return {name, height, color: floors[0]?.color, texture: floors[0]?.texture};
+}
+
+/**
+ * @param {Plan} plan
+ * @param {number} at
+ * @param {Values} values
+ */
+export function levelApplied(plan, at, {name, height, color, texture}) {
+  const made = withLevel(setLevelHeight(plan, at, height), at, {name: name.trim() || plan.levels[at].name});
+  const floors = made.levels[at].floors.map((floor) => ({...floor, color, texture}));
+  return floors.length ? withLevel(made, at, {floors}) : made;
+}
+
+/** @type {InspectorField[]} */
+export const ROOF_FIELDS = [
+  {name: 'kind', label: 'Kind', type: 'choice', choices: [['none', 'None'], ['flat', 'Flat'], ['gable', 'Gable']]},
+  size('thickness', 'Thickness'), {...size('overhang', 'Overhang'), min: 0},
+  {name: 'pitch', label: 'Pitch (°)', type: 'number', min: 1, max: 75}, ...LOOK];
+
+/**
+ * @param {Plan} plan
+ * @returns {Partial<Values>}
+ */
+export const roofValues = (plan) => ({thickness: 0.1, overhang: 0, color: '#ffffff', texture: '',
+  ...plan.roof, kind: plan.roof?.kind ?? 'none', pitch: degrees(plan.roof?.pitch ?? Math.PI / 6)});
+
+/** @param {Plan} plan @param {Values} values */
+export const roofApplied = (plan, {kind, thickness, overhang, pitch, color, texture}) => ({...plan,
+  roof: kind === 'none' ? null : {kind, thickness, overhang, pitch: radians(pitch), color, texture}});
+
+/**
+ * What is wrong with a value of a field, '' when nothing is.
+ * @param {InspectorField} field
+ * @param {unknown} value
+ */
+export function fieldFault(field, value) {
+  if (field.type !== 'number' && field.type !== 'integer') return '';
+  if (typeof value !== 'number' || !Number.isFinite(value)) return `${field.label}: not a number`;
+  if (field.type === 'integer' && !Number.isInteger(value)) return `${field.label}: must be an integer`;
+  if (field.min !== undefined && value < field.min) return `${field.label}: must be at least ${field.min}`;
+  return field.max !== undefined && value > field.max ? `${field.label}: must be at most ${field.max}` : '';
+}
+

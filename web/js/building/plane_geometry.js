@@ -1,0 +1,188 @@
+/** Points, lines and polygons in the plane: metres, y up, angles in radians. */
+
+/** x and y in m. @typedef {number[]} Point */
+
+/** @param {Point} a @param {Point} b */
+export const distance = (a, b) => Math.hypot(b[0] - a[0], b[1] - a[1]);
+/** @param {Point} a @param {Point} b */
+export const direction = (a, b) => Math.atan2(b[1] - a[1], b[0] - a[0]);
+/** @param {Point} a @param {Point} b */
+export const plus = (a, b) => [a[0] + b[0], a[1] + b[1]];
+/** @param {Point} a @param {Point} b */
+export const minus = (a, b) => [a[0] - b[0], a[1] - b[1]];
+/**
+ * @param {Point} from
+ * @param {number} angle
+ * @param {number} length
+ */
+export const polar = (from, angle, length) =>
+  [from[0] + Math.cos(angle) * length, from[1] + Math.sin(angle) * length];
+
+/** To a tenth of a millimetre, so that what is typed stays what it is. @param {number} value */
+export const tidy = (value) => Math.round(value * 1e4) / 1e4 + 0;
+/** @param {Point} point */
+export const tidyPoint = ([x, y]) => [tidy(x), tidy(y)];
+
+/**
+ * Two points that are one; ends of walls this close are linked.
+ * @param {Point} a
+ * @param {Point} b
+ */
+export const same = (a, b) => Math.abs(a[0] - b[0]) < 1e-4 && Math.abs(a[1] - b[1]) < 1e-4;
+
+/**
+ * A point turned about the origin.
+ * @param {Point} point
+ * @param {number} angle
+ * @returns {Point}
+ */
+export function turned([x, y], angle) {
+  const cos = Math.cos(angle);
+  const sin = Math.sin(angle);
+  return [cos * x - sin * y, sin * x + cos * y];
+}
+
+/**
+ * A point of the plane in axes that stand at `origin`, turned by `angle`.
+ * @param {Point} point
+ * @param {Point} origin
+ * @param {number} angle
+ */
+export const toLocal = (point, origin, angle) => turned(minus(point, origin), -angle);
+/**
+ * @param {Point} point
+ * @param {Point} origin
+ * @param {number} angle
+ */
+export const fromLocal = (point, origin, angle) => plus(turned(point, angle), origin);
+
+/**
+ * The nearest point of a line from a to b.
+ * @param {Point} point
+ * @param {Point} a
+ * @param {Point} b
+ * @returns {{along: number, distance: number, point: Point}} `along` from a, within the line
+ */
+export function nearest(point, a, b) {
+  const length = distance(a, b);
+  if (length < 1e-9) return {along: 0, distance: distance(point, a), point: a};
+  const t = ((point[0] - a[0]) * (b[0] - a[0]) + (point[1] - a[1]) * (b[1] - a[1])) / length;
+  const along = Math.min(Math.max(t, 0), length);
+  const foot = [a[0] + (b[0] - a[0]) * along / length, a[1] + (b[1] - a[1]) * along / length];
+  return {along, distance: distance(point, foot), point: foot};
+}
+
+/**
+ * On which side of the line a-b a point lies: metres, above 0 on the left.
+ * @param {Point} a
+ * @param {Point} b
+ * @param {Point} point
+ */
+export function side(a, b, point) {
+  const length = distance(a, b);
+  return ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) / (length || 1);
+}
+
+/**
+ * Where two endless lines meet, null for parallel ones.
+ * @param {Point} a
+ * @param {Point} b
+ * @param {Point} c
+ * @param {Point} d
+ */
+export function crossing(a, b, c, d) {
+  const rx = b[0] - a[0];
+  const ry = b[1] - a[1];
+  const sx = d[0] - c[0];
+  const sy = d[1] - c[1];
+  const by = rx * sy - ry * sx;
+  if (Math.abs(by) < 1e-12) return null;
+  const t = ((c[0] - a[0]) * sy - (c[1] - a[1]) * sx) / by;
+  return [a[0] + rx * t, a[1] + ry * t];
+}
+
+/** The area in a loop, above 0 where it runs counter-clockwise. @param {Point[]} loop */
+export function signedArea(loop) {
+  let sum = 0;
+  for (let at = 0; at < loop.length; at++) {
+    const [x, y] = loop[at];
+    const [nextX, nextY] = loop[(at + 1) % loop.length];
+    sum += x * nextY - nextX * y;
+  }
+  return sum / 2;
+}
+
+/** @param {Point} point @param {Point[]} loop */
+export function inPolygon([x, y], loop) {
+  let inside = false;
+  for (let at = 0, before = loop.length - 1; at < loop.length; before = at++) {
+    const [ax, ay] = loop[at];
+    const [bx, by] = loop[before];
+    if ((ay > y) !== (by > y) && x < (bx - ax) * (y - ay) / (by - ay) + ax) inside = !inside;
+  }
+  return inside;
+}
+
+/** A point well inside a polygon, where a label can stand. @param {Point[]} loop */
+export function labelPoint(loop) {
+  const area = signedArea(loop);
+  let x = 0;
+  let y = 0;
+  for (let at = 0; at < loop.length; at++) {
+    const a = loop[at];
+    const b = loop[(at + 1) % loop.length];
+    const weight = a[0] * b[1] - b[0] * a[1];
+    x += (a[0] + b[0]) * weight;
+    y += (a[1] + b[1]) * weight;
+  }
+  const centre = [x / (6 * area), y / (6 * area)];
+  if (inPolygon(centre, loop)) return centre;
+  // The middle of the longest stretch of a level line through the polygon.
+  const ys = loop.map((point) => point[1]).sort((p, q) => p - q);
+  const level = (ys[0] + ys[ys.length - 1]) / 2 + 1e-7;
+  const hits = [];
+  for (let at = 0; at < loop.length; at++) {
+    const a = loop[at];
+    const b = loop[(at + 1) % loop.length];
+    if ((a[1] > level) !== (b[1] > level)) {
+      hits.push(a[0] + (b[0] - a[0]) * (level - a[1]) / (b[1] - a[1]));
+    }
+  }
+  hits.sort((p, q) => p - q);
+  let best = [hits[0], hits[1]];
+  for (let at = 0; at + 1 < hits.length; at += 2) {
+    if (hits[at + 1] - hits[at] > best[1] - best[0]) best = [hits[at], hits[at + 1]];
+  }
+  return [(best[0] + best[1]) / 2, level];
+}
+
+/** True when no two edges of a loop cross or touch, besides neighbours. @param {Point[]} loop */
+export function isSimple(loop) {
+  const count = loop.length;
+  if (count < 3 || Math.abs(signedArea(loop)) < 1e-4) return false;
+  for (let i = 0; i < count; i++) {
+    for (let j = i + 1; j < count; j++) {
+      if (j === i + 1 || (i === 0 && j === count - 1)) continue;
+      if (segmentsMeet(loop[i], loop[(i + 1) % count], loop[j], loop[(j + 1) % count])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/**
+ * @param {Point} a
+ * @param {Point} b
+ * @param {Point} c
+ * @param {Point} d
+ */
+function segmentsMeet(a, b, c, d) {
+  /**
+   * @param {Point} p
+   * @param {Point} q
+   * @param {Point} r
+   */
+  const between = (p, q, r) => Math.sign(side(p, q, r));
+  return between(a, b, c) * between(a, b, d) <= 0 && between(c, d, a) * between(c, d, b) <= 0;
+}

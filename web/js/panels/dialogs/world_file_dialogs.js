@@ -1,0 +1,362 @@
+/**
+ * Save As and Open: the folders that the server allows, a list, a name.
+ *
+ * The server answers `folders {path}` with {path, parent, roots, folders, files}.
+ */
+import {RequestError} from '../../connection.js';
+import {Dialog, ask, faultText, labelled} from '../dialog.js';
+import {fill, h, roving} from '../dom.js';
+import {bytesText} from '../text_format.js';
+import {icon} from '../icons.js';
+/** @import {Page} from '../panels.js' */
+/** @import {RequestFunction} from '../../connection.js' */
+/** @import {Requests} from '../../protocol.js' */
+
+/**
+ * @typedef {Object} FolderHandlers
+ * @property {(file: string) => void} onFile   a file was chosen
+ * @property {(file: string) => void} onOpen   a file was double-clicked
+ * @property {(fault: unknown) => void} onFault  null: there is none any more
+ */
+
+/** What the dialogs need of the page. @typedef {Pick<Page, 'store'|'request'>} FileDialogPage */
+
+const ENDINGS = /\.(world|sdf|xml)$/i;
+
+/** The list of one folder, with its way up and the allowed roots above it. */
+class FolderList {
+  /** @param {RequestFunction} request @param {FolderHandlers} folderHandlers */
+  constructor(request, {onFile, onOpen, onFault}) {
+    this.request = request;
+    this.handlers = {onFile, onOpen, onFault};
+    /** @type {Requests['folders']['reply']|null} */
+    this.listing = null;
+    this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
+    this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
+    this.list = h('div', {class: 'folder-list', role: 'listbox', 'aria-label': 'Files'});
+    this.element = h(
+      'div',
+      {class: 'folders'},
+      this.roots,
+      h('div', {class: 'folder-main'}, this.path, this.list),
+    );
+    this.#rove = roving(this.list, '[role=option]', {vertical: true, wrap: false});
+  }
+
+  #rove;
+
+  /** @param {string} [path] */
+  async go(path) {
+    try {
+      this.listing = await this.request('folders', path ? {path} : {});
+    } catch (fault) {
+      this.handlers.onFault(fault);
+      return;
+    }
+    this.handlers.onFault(null);
+    this.#show();
+  }
+
+  #show() {
+    if (!this.listing) return;
+    const {path, parent, roots, folders, files} = this.listing;
+    this.path.textContent = path;
+    this.path.title = path;
+    fill(
+      this.roots,
+      ...roots.map((root) =>
+        h(
+          'button',
+          {
+            type: 'button',
+            class: 'plain wide',
+            title: root,
+            onclick: () => this.go(root),
+            'aria-pressed': String(path === root || path.startsWith(`${root}/`)),
+          },
+          icon('folder', 15),
+          h('span', {class: 'label', text: root.split('/').slice(-2).join('/')}),
+        ),
+      ),
+    );
+    /** @type {HTMLElement[]} */
+    const rows = [];
+    if (parent) rows.push(this.#row('..', 'up', '', () => this.go(parent)));
+    for (const folder of folders) {
+      rows.push(this.#row(folder.name, 'folder', '', () => this.go(folder.path)));
+    }
+    for (const file of files) {
+      const row = this.#row(file.name, 'file', bytesText(file.size), () =>
+        this.handlers.onOpen(file.name),
+      );
+      row.addEventListener('click', () => this.handlers.onFile(file.name));
+      row.addEventListener('focus', () => this.handlers.onFile(file.name));
+      rows.push(row);
+    }
+    if (!rows.length) rows.push(h('p', {class: 'empty', text: 'This folder is empty.'}));
+    fill(this.list, ...rows);
+    this.#rove.settle();
+  }
+
+  /**
+   * @param {string} name
+   * @param {string} glyph
+   * @param {string} more
+   * @param {() => void} open
+   */
+  #row(name, glyph, more, open) {
+    const row = h(
+      'div',
+      {
+        class: 'folder-row',
+        role: 'option',
+        tabindex: -1,
+        'aria-selected': 'false',
+        ondblclick: open,
+        onkeydown: (event) => {
+          if (event.key !== 'Enter') return;
+          event.preventDefault();
+          open();
+        },
+        onfocus: () => {
+          for (const other of this.list.children) other.setAttribute('aria-selected', 'false');
+          row.setAttribute('aria-selected', 'true');
+        },
+      },
+      icon(glyph, 15),
+      h('span', {class: 'label', text: name}),
+      h('span', {class: 'more', text: more}),
+    );
+    if (glyph !== 'file') row.addEventListener('click', open);
+    return row;
+  }
+}
+
+/**
+ * Whether a request was refused with an issue of a code.
+ * @param {unknown} fault
+ * @param {string} code
+ */
+const hasCode = (fault, code) =>
+  fault instanceof RequestError && fault.issues.some((issue) => issue.code === code);
+
+/**
+ * A file's path below a folder.
+ * @param {string} folder
+ * @param {string} name
+ */
+function joined(folder, name) {
+  return `${folder.replace(/\/$/, '')}/${name}`;
+}
+
+/**
+ * The name as it is saved: with the ending of a world, where the user gave none.
+ * @param {string} name
+ */
+export function withEnding(name) {
+  return ENDINGS.test(name) ? name : `${name}.world`;
+}
+
+/**
+ * A window with a field for a name above the list of files.
+ *
+ * @param {RequestFunction} request
+ * @param {Object} options
+ * @param {string} options.title
+ * @param {string} options.button  what its button says
+ * @param {string} options.nameless  said where no name was given
+ * @param {Record<string, unknown>} options.field  attributes of the field
+ * @param {(path: string) => Promise<string|false>} options.run  as a button's, for the chosen path
+ * @param {Node[]} [options.more]  below the list
+ * @param {(listing: any) => void} [options.onListing]  hears of the first folder's listing
+ * @returns {Promise<string|undefined>} what `run` answered, undefined when cancelled
+ */
+async function filesDialog(
+  request,
+  {title, button, nameless, field, run, more = [], onListing = () => {}},
+) {
+  const name = h('input', {
+    type: 'text',
+    spellcheck: 'false',
+    autocomplete: 'off',
+    autofocus: true,
+    'aria-label': 'File name',
+    ...field,
+  });
+  const folders = new FolderList(request, {
+    /** @param {string} file */
+    onFile: (file) => {
+      name.value = file;
+    },
+    /** @param {string} file */
+    onOpen: (file) => {
+      name.value = file;
+      dialog.submit();
+    },
+    /** @param {unknown} fault */
+    onFault: (fault) => dialog.say(fault ? faultText(fault) : ''),
+  });
+  const chosen = async () => {
+    const wanted = name.value.trim();
+    if (!wanted) {
+      dialog.say(nameless);
+      return false;
+    }
+    const folder = wanted.startsWith('/') ? null : folders.listing?.path;
+    return run(folder ? joined(folder, wanted) : wanted);
+  };
+  const dialog = new Dialog({
+    title,
+    name: 'files',
+    content: [labelled('File name', name), folders.element, ...more],
+    buttons: [{title: 'Cancel'}, {title: button, primary: true, run: chosen}],
+  });
+  const closed = dialog.open();
+  // Typing replaces the name and leaves the ending.
+  name.setSelectionRange(0, name.value.replace(ENDINGS, '').length);
+  await folders.go();
+  if (folders.listing) onListing(folders.listing);
+  const answer = await closed;
+  return typeof answer === 'string' ? answer : undefined;
+}
+
+/**
+ * Asks for a name and what belongs into the file, and saves; asks again before it overwrites.
+ *
+ * @param {FileDialogPage} page
+ * @returns {Promise<string|undefined>} the path, undefined when cancelled
+ */
+export function saveAsDialog({store, request}) {
+  const file = baseName(store.history?.file || store.document?.file);
+  const choices = new SaveChoices();
+  return filesDialog(request, {
+    title: 'Save World As',
+    button: 'Save',
+    nameless: 'Enter a file name.',
+    field: {value: file || 'untitled.world'},
+    more: [choices.element],
+    onListing: (listing) => choices.show(listing),
+    run: (path) => saveTo(request, {path: withEnding(path), ...choices.values()}),
+  });
+}
+
+/** What a saved world holds besides its models: what the launch file spawned, and its state. */
+class SaveChoices {
+  constructor() {
+    this.note = h('span', {});
+    this.launched = h('input', {type: 'checkbox'});
+    this.state = h('input', {type: 'checkbox'});
+    this.spawned = h('label', {hidden: true}, this.launched, this.note);
+    this.element = h(
+      'div',
+      {class: 'save-choices'},
+      this.spawned,
+      h(
+        'label',
+        {},
+        this.state,
+        'With state: sim time and velocities, instead of a start at time 0',
+      ),
+    );
+  }
+
+  /**
+   * What the server knows, and what was chosen the last time.
+   * @param {{launched?: string[], chosen?: {launched?: boolean, state?: boolean}}} listing
+   */
+  show({launched = [], chosen = {}}) {
+    this.spawned.hidden = launched.length === 0;
+    this.note.textContent =
+      `Include ${launched.join(', ')}, which the launch file spawns at each start`;
+    this.launched.checked = Boolean(chosen.launched);
+    this.state.checked = Boolean(chosen.state);
+  }
+
+  values() {
+    return {launched: this.launched.checked, state: this.state.checked};
+  }
+}
+
+/**
+ * @param {RequestFunction} request
+ * @param {{path: string, launched: boolean, state: boolean}} wanted
+ */
+async function saveTo(request, wanted) {
+  let said = '';
+  try {
+    return (await request('save', {...wanted, overwrite: false})).path;
+  } catch (fault) {
+    if (!hasCode(fault, 'exists')) throw fault;
+    said = fault instanceof Error ? fault.message : `${wanted.path} already exists`;
+  }
+  const overwrite = await ask('Overwrite the file?', `${said}.`, [
+    {title: 'Cancel'},
+    {title: 'Overwrite', value: true, primary: true},
+  ]);
+  return overwrite ? (await request('save', {...wanted, overwrite: true})).path : false;
+}
+
+/** @param {string|undefined} path */
+function baseName(path) {
+  return path?.split('/').pop() ?? '';
+}
+
+/**
+ * Chooses a world file and opens it.
+ *
+ * @param {FileDialogPage} page
+ * @returns {Promise<string|undefined>}
+ */
+export async function openDialog({store, request}) {
+  const discard = await mayDiscard({store, request});
+  if (!discard) return undefined;
+  return filesDialog(request, {
+    title: 'Open World',
+    button: 'Open',
+    nameless: 'Select a file.',
+    field: {placeholder: 'file name or path'},
+    async run(path) {
+      await request('open', {path, discard: true});
+      return path;
+    },
+  });
+}
+
+/**
+ * Asks what becomes of unsaved changes.
+ *
+ * @param {FileDialogPage} page
+ * @returns {Promise<boolean>} whether to go on
+ */
+export async function mayDiscard({store, request}) {
+  if (!store.history?.dirty) return true;
+  const choice = await ask('Save changes?', 'The world has unsaved changes.', [
+    {title: 'Cancel'},
+    {title: "Don't save", value: 'discard', danger: true},
+    {title: 'Save', value: 'save', primary: true},
+  ]);
+  if (choice === 'discard') return true;
+  if (choice !== 'save') return false;
+  return saved({store, request});
+}
+
+/**
+ * Saves to the world's own file, or asks for a name where it has none that may be replaced.
+ * @param {FileDialogPage} page
+ */
+async function saved(page) {
+  try {
+    if (page.store.history.file) {
+      await page.request('save', {});
+      return true;
+    }
+  } catch (fault) {
+    if (!hasCode(fault, 'path-needed')) throw fault;
+  }
+  return Boolean(await saveAsDialog(page));
+}
+
+/** An empty world in place of this one. @param {FileDialogPage} page */
+export async function newWorld(page) {
+  if (await mayDiscard(page)) await page.request('new', {discard: true});
+}

@@ -1,0 +1,280 @@
+/**
+ * The Joints panel: for the selected model a row per joint, on three tabs: Force, Position,
+ * Velocity. What a joint does now stands beside what it is asked to do.
+ */
+import {fill, h, roving} from './dom.js';
+import {numberText} from './text_format.js';
+import {icon} from './icons.js';
+import {makeInput} from './property_inputs.js';
+import {modelOf} from './world_rows.js';
+/** @import {Drive, Gains, Joint, Model, WatchPush} from '../protocol.js' */
+
+/** @typedef {Drive['mode']} DriveMode */
+/**
+ * A joint that can be driven, with its unit in each mode.
+ * @typedef {{joint: Joint, units: Record<DriveMode, string>}} DrivenJoint
+ */
+
+/**
+ * A row of the panel.
+ * @typedef {object} JointRow
+ * @property {HTMLElement} present  shows the joint's state
+ * @property {number} factor        rad or m of the shown unit
+ * @property {string} unit
+ * @property {Drive|null} [drive]   what the simulator drives the joint with
+ * @property {(drive: Drive|null|undefined) => void} show
+ */
+
+/** @type {[DriveMode, string][]} */
+const MODES = [
+  ['force', 'Force'],
+  ['position', 'Position'],
+  ['velocity', 'Velocity'],
+];
+/** As gzclient's. */
+const GAINS = {p: 1, i: 0.1, d: 0.01};
+const GAIN_NAMES = /** @type {const} */ (['p', 'i', 'd']);
+
+/**
+ * Joints that can be driven, with their units in each mode. Pure.
+ * @param {Model|null} model
+ * @returns {DrivenJoint[]}
+ */
+export function drivenJoints(model) {
+  return (model?.joints ?? [])
+    .filter((joint) => joint.axis && joint.type !== 'fixed')
+    .map((joint) => {
+      const [length, force] = joint.type === 'prismatic' ? ['m', 'N'] : ['rad', 'N m'];
+      return {joint, units: {force, position: length, velocity: `${length}/s`}};
+    });
+}
+
+export class JointsPanel {
+  /**
+   * @param {HTMLElement} element
+   * @param {import('./panels.js').Page} page
+   */
+  constructor(element, page) {
+    this.page = page;
+    this.#head = h('h2', {class: 'properties-title'});
+    this.#body = h('div', {class: 'joints-body'});
+    this.#tabs = MODES.map(([mode, title]) =>
+      h('button', {
+        type: 'button',
+        role: 'tab',
+        text: title,
+        dataset: {mode},
+        onclick: () => {
+          this.#mode = mode;
+          this.#build();
+        },
+      }),
+    );
+    const tabs = h(
+      'div',
+      {class: 'tabs', role: 'tablist', 'aria-label': 'Joint control'},
+      ...this.#tabs,
+    );
+    fill(element, this.#head, tabs, this.#body);
+    roving(tabs, '[role=tab]');
+    const {store} = page;
+    for (const event of /** @type {const} */ (['selection', 'document', 'entity'])) {
+      store.listen(event, () => this.#update());
+    }
+    store.listen('watch', (event) => this.#showStates(event.detail));
+  }
+
+  #head;
+  #body;
+  #tabs;
+  /** @type {DriveMode} */
+  #mode = 'force';
+  #shown = false;
+  /** @type {Model|null} */
+  #model = null;
+  /** @type {(() => void)|null} */
+  #off = null;
+  #signature = '';
+  /** @type {Map<string, JointRow>} */
+  #rows = new Map();
+  #degrees = false;
+
+  /** Opens or closes the panel: a closed one asks for nothing. @param {boolean} shown */
+  show(shown) {
+    this.#shown = shown;
+    this.#signature = '';
+    this.#update();
+  }
+
+  #update() {
+    const {store, watches} = this.page;
+    const name = store.selection[store.selection.length - 1];
+    this.#model = this.#shown && name ? modelOf(store.document, name) : null;
+    const topic =
+      this.#model && drivenJoints(this.#model).length ? `joints:${this.#model.name}` : '';
+    const signature = JSON.stringify([
+      topic,
+      this.#model?.name,
+      this.#model?.joints.map((joint) => [joint.name, joint.type]),
+    ]);
+    if (signature === this.#signature) return;
+    this.#signature = signature;
+    this.#off?.();
+    this.#off = topic ? watches.add(topic) : null;
+    this.#build();
+  }
+
+  #build() {
+    this.#rows.clear();
+    for (const tab of this.#tabs) {
+      tab.setAttribute('aria-selected', String(tab.dataset.mode === this.#mode));
+    }
+    const joints = drivenJoints(this.#model);
+    this.#head.textContent = this.#model ? `Joints of ${this.#model.name}` : 'Joints';
+    if (!joints.length) {
+      fill(
+        this.#body,
+        h('p', {
+          class: 'empty',
+          text: this.#model
+            ? 'This model has no movable joints.'
+            : 'Select a model with joints.',
+        }),
+      );
+      return;
+    }
+    const angular = joints.some(({units}) => units.position === 'rad') && this.#mode !== 'force';
+    fill(
+      this.#body,
+      angular &&
+        h(
+          'label',
+          {class: 'check-row'},
+          h('input', {
+            type: 'checkbox',
+            checked: this.#degrees,
+            onchange: () => {
+              this.#degrees = !this.#degrees;
+              this.#build();
+            },
+          }),
+          'Degrees',
+        ),
+      ...joints.map((one) => this.#row(one)),
+      h(
+        'div',
+        {class: 'row'},
+        h(
+          'button',
+          {type: 'button', onclick: () => this.#reset(joints)},
+          icon('reset', 14),
+          'Reset',
+        ),
+      ),
+    );
+  }
+
+  /** @param {DrivenJoint} drivenJoint */
+  #row({joint, units}) {
+    const scoped = `${this.#model?.name}::${joint.name}`;
+    const mode = this.#mode;
+    const degrees = this.#degrees && units.position === 'rad' && mode !== 'force';
+    const factor = degrees ? Math.PI / 180 : 1;
+    const unit = degrees ? units[mode].replace('rad', '°') : units[mode];
+    const note = h('span', {class: 'field-note', role: 'alert'});
+    /** @param {string} text */
+    const say = (text) => {
+      note.textContent = text;
+    };
+    /** @type {Gains} */
+    const gains = mode === 'force' ? {} : {...GAINS};
+    /** @param {number} value */
+    const send = async (value) => {
+      say('');
+      const outcome = await this.page.actions.edit(
+        {kind: 'joint', joint: scoped, mode, value, ...(mode === 'force' ? {} : {gains})}, {quiet: true});
+      if (!outcome.ok) say(outcome.issues[0].message);
+      row.show(row.drive);
+    };
+    /**
+     * @param {string} name
+     * @returns {import('./property_inputs.js').InputField}
+     */
+    const label = (name) => ({type: 'number', label: `${joint.name} ${name}`});
+    const input = makeInput(label(mode), (value) => send(Number(value) * factor), say);
+    const gainInputs = GAIN_NAMES.filter((name) => name in gains).map((name) => {
+      const gain = makeInput(
+        label(`${name.toUpperCase()} gain`),
+        (value) => {
+          gains[name] = Number(value);
+          gain.show(value);
+          if (row.drive?.mode === mode) send(row.drive.value);
+        },
+        say,
+      );
+      return {name, gain};
+    });
+    const present = h('output', {class: 'soft', 'aria-label': `${joint.name} state`});
+    /** @type {JointRow} */
+    const row = {
+      present,
+      factor,
+      unit: degrees ? '°' : units.position,
+      drive: undefined,
+      /** Shows what the simulator says it drives the joint with. */
+      show(drive) {
+        this.drive = drive;
+        const mine = drive?.mode === mode ? drive : null;
+        Object.assign(gains, mine?.gains);
+        input.show((mine?.value ?? 0) / factor);
+        for (const {name, gain} of gainInputs) gain.show(gains[name]);
+      },
+    };
+    row.show(undefined);
+    this.#rows.set(joint.name, row);
+    return h(
+      'div',
+      {class: 'joint-row'},
+      h(
+        'div',
+        {class: 'joint-name'},
+        h('span', {class: 'label', text: joint.name, title: scoped}),
+        present,
+      ),
+      h('div', {class: 'row'}, input.element, h('span', {class: 'unit', text: unit})),
+      gainInputs.length && h('div', {class: 'vector-input'}, ...gainInputs.map(gainPart)),
+      note,
+    );
+  }
+
+  /** @param {WatchPush} watchPush */
+  #showStates({topic, joints}) {
+    if (!this.#model || topic !== `joints:${this.#model.name}`) return;
+    for (const {name, axis, position, rate, drive} of joints ?? []) {
+      const row = axis === 0 && this.#rows.get(name);
+      if (!row) continue;
+      /** @param {number} value */
+      const at = (value) => numberText(Math.round((value / row.factor) * 1e4) / 1e4);
+      row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;
+      if (JSON.stringify(drive) !== JSON.stringify(row.drive)) row.show(drive);
+    }
+  }
+
+  /** Nothing is asked of the joints any more. @param {DrivenJoint[]} joints */
+  async #reset(joints) {
+    const model = this.#model?.name;
+    for (const {joint} of joints) {
+      const scoped = `${model}::${joint.name}`;
+      await this.page.actions.edit({kind: 'joint', joint: scoped, mode: 'force', value: 0});
+    }
+  }
+}
+
+/** @param {{name: string, gain: import('./property_inputs.js').Input}} part */
+const gainPart = ({name, gain}) =>
+  h(
+    'span',
+    {class: 'part'},
+    h('i', {text: name.toUpperCase(), 'aria-hidden': 'true'}),
+    gain.element,
+  );

@@ -1,0 +1,220 @@
+/** What is in the menus: titles, hotkeys and actions, out of one place for all of them. */
+import {HOTKEYS, run} from '../hotkeys.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {OverlayFlag, Store} from '../store.js' */
+/** @import {Page} from './panels.js' */
+/** @import {ThemeName} from './theme.js' */
+
+/** The hotkey of an action, '' where it has none. @param {keyof Actions} action */
+export function keysOf(action) {
+  return HOTKEYS.find((row) => row.action === action)?.keys ?? '';
+}
+
+/** @type {([OverlayFlag, string]|null)[]} */
+const OVERLAYS = [
+  ['grid', 'Grid'],
+  ['origin', 'Origin'],
+  null,
+  ['transparent', 'Transparent'],
+  ['wireframe', 'Wireframe'],
+  ['collisions', 'Collisions'],
+  ['joints', 'Joints'],
+  ['com', 'Center of Mass'],
+  ['inertia', 'Inertias'],
+  ['contacts', 'Contacts'],
+  ['frames', 'Link Frames'],
+  ['skeleton', 'Skeletons'],
+];
+
+/** Those of one model: no grid, no origin, no contacts. */
+const OF_A_MODEL = OVERLAYS.flatMap((row) =>
+  row && !['grid', 'origin', 'contacts'].includes(row[0]) ? [row] : [],
+);
+
+/** @type {readonly ThemeName[]} */
+const THEMES = ['auto', 'dark', 'light'];
+
+const LINE = {separator: true};
+
+/**
+ * The menu bar's menus.
+ *
+ * @param {import('./panels.js').Page} page
+ * @returns {{title: string, items: () => import('./popup.js').MenuItem[]}[]}
+ */
+export function menus(page) {
+  const {store, actions, theme} = page;
+  /** @param {string} title @param {keyof Actions} action */
+  const item = (title, action, more = {}) => ({
+    title,
+    keys: keysOf(action),
+    run: () => run(actions, action),
+    ...more,
+  });
+  /**
+   * @param {string} title
+   * @param {keyof Actions} action
+   * @param {keyof Store['camera']} key
+   * @param {string} value
+   */
+  const camera = (title, action, key, value) =>
+    item(title, action, {
+      checked: () => store.camera[key] === value,
+    });
+  const wholes = () => store.selection.some((name) => store.entity(name)?.kind !== 'link');
+  return [
+    {
+      title: 'File',
+      items: () => [
+        item('New World', 'newWorld'),
+        item('Open World…', 'open'),
+        LINE,
+        item('Save World', 'save'),
+        item('Save World As…', 'saveAs'),
+      ],
+    },
+    {
+      title: 'Edit',
+      items: () => [
+        item(labelOf('Undo', store.history.undo), 'undo', {
+          enabled: () => store.history.undo.length > 0,
+        }),
+        item(labelOf('Redo', store.history.redo), 'redo', {
+          enabled: () => store.history.redo.length > 0,
+        }),
+        LINE,
+        item('Copy', 'copy', {enabled: wholes}),
+        item('Paste', 'paste', {enabled: () => Boolean(store.clipboard)}),
+        item('Delete', 'remove', {enabled: () => store.selection.length > 0}),
+        item('Select All', 'selectAll'),
+        LINE,
+        item('Reset Model Poses', 'resetPoses'),
+        item('Reset World', 'resetWorld'),
+        item('Reset Time', 'resetTime'),
+        LINE,
+        item('Building Editor', 'building'),
+      ],
+    },
+    {
+      title: 'Camera',
+      items: () => [
+        camera('Orthographic', 'orthographic', 'projection', 'orthographic'),
+        camera('Perspective', 'perspective', 'projection', 'perspective'),
+        LINE,
+        camera('FPS View Control', 'fpsControl', 'controller', 'fps'),
+        camera('Orbit View Control', 'orbitControl', 'controller', 'orbit'),
+        LINE,
+        item('Reset View Angle', 'resetView'),
+        item('Move To Selection', 'moveTo', {enabled: () => store.selection.length > 0}),
+        item('Follow Selection', 'follow', {enabled: () => store.selection.length > 0}),
+      ],
+    },
+    {title: 'View', items: () => OVERLAYS.map((row) => (row ? overlayItem(page, row[0], row[1]) : LINE))},
+    {
+      title: 'Window',
+      items: () => [
+        item('Plot', 'plot'),
+        item('Log Data', 'logs'),
+        item('Joints Panel', 'joints'),
+        {title: 'Messages', run: () => page.notices.button.click()},
+        LINE,
+        item('Screenshot', 'screenshot'),
+        LINE,
+        {
+          title: 'Show GUI Overlays',
+          checked: () => !document.body.classList.contains('no-overlays'),
+          run: () => document.body.classList.toggle('no-overlays'),
+        },
+        item('Show Toolbars', 'togglePanels', {
+          checked: () => !document.body.classList.contains('bare'),
+        }),
+        item('Full Screen', 'fullScreen'),
+        LINE,
+        ...THEMES.map((name) => ({
+          title: {auto: 'Theme: browser default', dark: 'Theme: dark', light: 'Theme: light'}[
+            name
+          ],
+          checked: () => theme.get() === name,
+          run: () => theme.set(name),
+        })),
+      ],
+    },
+    {title: 'Help', items: () => [item('Hotkey Chart', 'hotkeys'), item('About', 'about')]},
+  ];
+}
+
+/** @param {string} verb @param {string[]} labels */
+function labelOf(verb, labels) {
+  return labels.length ? `${verb}: ${labels[0]}` : verb;
+}
+
+/**
+ * @param {Page} page
+ * @param {OverlayFlag} flag
+ * @param {string} title
+ * @param {string} [model]
+ */
+function overlayItem({store, actions}, flag, title, model) {
+  return {
+    title,
+    checked: () => store.overlay(flag, model),
+    run: () => actions.toggleOverlay(flag, model),
+  };
+}
+
+/**
+ * The right-click menu of a model, a light or a link.
+ *
+ * @param {import('./panels.js').Page} page
+ * @param {string} name
+ * @returns {import('./popup.js').MenuItem[]} empty where nothing has the name
+ */
+export function contextMenu(page, name) {
+  const {store, actions} = page;
+  const entity = store.entity(name);
+  if (!entity) return [];
+  const light = entity.kind === 'light';
+  const model = entity.model?.name;
+  const whole = model ?? name;
+  const chosen =
+    store.selection.includes(name) && store.selection.length > 1 ? store.selection : [whole];
+  const view = light
+    ? []
+    : [
+        {
+          title: 'View',
+          items: OF_A_MODEL.map(([flag, title]) => overlayItem(page, flag, title, model)),
+        },
+      ];
+  const force = light
+    ? []
+    : [
+        {
+          title: 'Apply Force/Torque',
+          run: () => actions.applyForce(name),
+          enabled: () => !entity.model?.static,
+        },
+      ];
+  return [
+    {title: 'Move To', run: () => actions.moveTo(name)},
+    store.camera.following === whole
+      ? {title: 'Stop Following', run: () => actions.follow(null)}
+      : {title: 'Follow', run: () => actions.follow(whole)},
+    ...force,
+    LINE,
+    ...view,
+    ...(light ? [] : [LINE]),
+    {title: 'Copy', keys: keysOf('copy'), run: () => actions.copy(chosen)},
+    {
+      title: 'Paste',
+      keys: keysOf('paste'),
+      run: () => actions.paste(),
+      enabled: () => Boolean(store.clipboard),
+    },
+    {
+      title: chosen.length > 1 ? `Delete Selection (${chosen.length})` : 'Delete',
+      keys: keysOf('remove'),
+      run: () => actions.remove(chosen),
+    },
+  ];
+}

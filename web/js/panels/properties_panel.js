@@ -1,0 +1,294 @@
+/**
+ * The property panel under the tree. A change goes to the server; what the panel then shows is what
+ * came back.
+ */
+import {compose, inverse} from '../pose.js';
+import {byId, elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
+import {faultText} from './dialog.js';
+import {icon} from './icons.js';
+import {makeInput} from './property_inputs.js';
+import {sectionsOf, valueAt} from './property_sections.js';
+import {unitGeometry} from './geometry_fields.js';
+/** @import {Field, Section} from './property_fields.js' */
+/** @import {Found} from './property_sections.js' */
+/** @import {Input} from './property_inputs.js' */
+/** @import {Row} from './world_rows.js' */
+
+export class Properties {
+  /**
+   * @param {HTMLElement} element
+   * @param {import('./panels.js').Page} page
+   */
+  constructor(element, {store, request}) {
+    this.element = element;
+    this.store = store;
+    this.request = request;
+    /** @type {Row|null} */
+    this.row = null;
+    this.#body = h('div', {class: 'properties-body'});
+    this.#title = h('h2', {class: 'properties-title'});
+    fill(element, this.#title, this.#body);
+    this.update = onceAFrame(() => this.#show());
+    // Escape leaves a field that holds nothing new; the next one is the view's.
+    element.addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') byId('view').focus();
+    });
+    for (const event of /** @type {const} */ (['document', 'entity', 'connection'])) {
+      store.listen(event, this.update);
+    }
+    store.listen('poses', () => this.#posesCame());
+  }
+
+  #body;
+  #title;
+  /** @type {string|null} */
+  #signature = null;
+  /** @type {{key: string, field: Field, input: Input, element: HTMLElement}[]} */
+  #inputs = [];
+  #turns = new WeakMap();
+  #closed = new Set(remembered.get('closed-sections', ['Inertial']));
+
+  /** Gives the focus to the field that had it. @type {(() => void)|null} */
+  #refocus = null;
+  /** What waits for the next poses. @type {(() => void)[]} */
+  #frames = [];
+  /** @type {ReturnType<typeof setTimeout>|0} */
+  #later = 0;
+
+  /** Ten times a second is as often as a person reads numbers. */
+  #posesCame() {
+    this.#frames.splice(0).forEach((resolve) => resolve());
+    if (this.#later || !['model', 'link'].includes(this.row?.kind ?? '')) return;
+    this.#later = setTimeout(() => {
+      this.#later = 0;
+      this.update();
+    }, 100);
+  }
+
+  /** Settles with the next poses: a moved model is where they say. */
+  #nextFrame() {
+    return new Promise((/** @type {(value?: unknown) => void} */ resolve) => {
+      this.#frames.push(resolve);
+      setTimeout(resolve, 500);
+    });
+  }
+
+  /**
+   * A request whose effect is told: the answer may come before the change of the document does, and
+   * what the fields show is the document.
+   * @param {string} name
+   * @param {() => Promise<unknown>} request
+   */
+  async #told(name, request) {
+    /** @type {() => void} */
+    let changed = () => {};
+    /** @type {Promise<void>} */
+    const came = new Promise((resolve) => {
+      changed = resolve;
+    });
+    const ends = [
+      this.store.listen('entity', ({detail}) => {
+        if (detail.name === name) changed();
+      }),
+      this.store.listen('document', () => changed()),
+    ];
+    try {
+      await request();
+      await Promise.race([
+        came,
+        new Promise((resolve) => {
+          setTimeout(resolve, 500);
+        }),
+      ]);
+    } finally {
+      for (const end of ends) end();
+    }
+  }
+
+  /** @param {import('./world_rows.js').Row|null} row whose properties are wanted */
+  show(row) {
+    this.row = row;
+    this.update();
+  }
+
+  /** Shows what is so now, without waiting for the next picture. */
+  refresh() {
+    this.#show();
+  }
+
+  #show() {
+    const found = sectionsOf(this.store.document, this.row);
+    const signature = found
+      ? JSON.stringify([
+          found.title,
+          this.row?.id,
+          found.sections.map(({key, fields}) => [
+            key,
+            fields.map(({path, type, fixed}) => [path, type, fixed]),
+          ]),
+        ])
+      : '';
+    if (signature !== this.#signature) {
+      this.#signature = signature;
+      this.#build(found);
+    }
+    if (!found) return;
+    const entities = new Map(found.sections.map((section) => [section.key, section.entity]));
+    for (const {key, field, input, element} of this.#inputs) {
+      // While a change is on its way the field shows the new value, not the one before it.
+      if (element.classList.contains('pending')) continue;
+      input.show(this.#value(entities.get(key), field));
+    }
+  }
+
+  /**
+   * Poses are what they are now: models in the world, links in their model.
+   * @param {unknown} entity
+   * @param {Field} field
+   */
+  #value(entity, field) {
+    const now = field.path === 'pose' ? this.#poseNow(entity) : null;
+    return now ?? valueAt(entity, field.local ?? field.path);
+  }
+
+  /**
+   * The present pose of a model or link; null for other entities.
+   * @param {unknown} entity
+   */
+  #poseNow(entity) {
+    const {kind, model, select} = this.row ?? {};
+    const [owner, own] = [model, select].map((name) => (name ? this.store.worldPose(name) : null));
+    if (kind === 'model') return own;
+    const isLink = typeof entity === 'object' && entity !== null && 'inertial' in entity;
+    return kind === 'link' && isLink && owner && own ? compose(inverse(owner), own) : null;
+  }
+
+  /** @param {Found|null} found */
+  #build(found) {
+    const focus = this.#focused() ?? this.#refocus;
+    // A renamed entity is gone for a moment; its field gets the focus back.
+    this.#refocus = found ? null : focus;
+    this.#inputs = [];
+    this.#title.textContent = found?.title ?? 'Property';
+    this.#title.title = found?.title ?? '';
+    if (!found) {
+      fill(
+        this.#body,
+        h('p', {class: 'empty', text: 'Select an item in the tree or in the 3D view.'}),
+      );
+      return;
+    }
+    fill(this.#body, ...found.sections.map((section) => this.#section(section)));
+    if (focus && document.activeElement === document.body) focus();
+  }
+
+  /** Gives the focus back to the same field of what is built next; null where it is elsewhere. */
+  #focused() {
+    const field = document.activeElement?.closest('.field');
+    if (!(field instanceof HTMLElement) || !this.#body.contains(field)) return null;
+    const {path} = field.dataset;
+    const at = elementsOf(field, 'input, select').findIndex((one) => one === document.activeElement);
+    return () => {
+      const again = elementsOf(this.#body, '.field').find((one) => one.dataset.path === path);
+      if (again) elementsOf(again, 'input, select')[at]?.focus();
+    };
+  }
+
+  /** @param {Section} section */
+  #section(section) {
+    const rows = section.fields.map((field) => this.#field(section, field));
+    if (!section.title) return h('div', {class: 'section'}, ...rows);
+    const kind = section.title.split(' ')[0];
+    const details = h(
+      'details',
+      {class: 'section', open: !this.#closed.has(kind)},
+      h('summary', {}, icon('right', 13), h('span', {text: section.title})),
+      ...rows,
+    );
+    details.addEventListener('toggle', () => {
+      if (details.open) this.#closed.delete(kind);
+      else this.#closed.add(kind);
+      remembered.set('closed-sections', [...this.#closed]);
+    });
+    return details;
+  }
+
+  /** @param {Section} section @param {Field} field */
+  #field(section, field) {
+    const note = h('div', {class: 'field-note', role: 'alert'});
+    /** @param {unknown} value */
+    const commit = (value) => this.#commit(section, field, value, element, note);
+    /** @param {string} text */
+    const refuse = (text) => {
+      note.textContent = text;
+    };
+    const input = makeInput(field, commit, refuse);
+    const wide = ['vector', 'pose', 'color', 'xml'].includes(field.type);
+    const element = h(
+      'div',
+      {
+        class: `field ${wide ? 'wide' : ''} ${field.fixed ? 'fixed' : ''}`,
+        title: field.hint,
+        dataset: {path: field.path, target: section.target},
+      },
+      h('span', {class: 'field-label', text: field.label}),
+      h(
+        'span',
+        {class: 'field-input'},
+        input.element,
+        field.unit && h('span', {class: 'unit', text: field.unit}),
+      ),
+      note,
+    );
+    this.#inputs.push({key: section.key, field, input, element});
+    return element;
+  }
+
+  /**
+   * @param {Section} section
+   * @param {Field} field
+   * @param {unknown} value
+   * @param {HTMLElement} element
+   * @param {HTMLElement} note
+   */
+  async #commit(section, field, value, element, note) {
+    note.textContent = '';
+    element.classList.add('pending');
+    // Several changes of one field may be on their way; the last one decides.
+    const turn = (this.#turns.get(element) ?? 0) + 1;
+    this.#turns.set(element, turn);
+    try {
+      if (field.rename) await this.#rename(section.target, String(value));
+      else if (field.path === 'geometry.type') {
+        await this.#set(section.target, 'geometry', unitGeometry(String(value)));
+      } else await this.#set(section.target, field.path, value);
+      if (field.path === 'pose' && this.row?.kind !== 'light') await this.#nextFrame();
+      element.classList.add('taken');
+      setTimeout(() => element.classList.remove('taken'), 700);
+    } catch (fault) {
+      note.textContent = faultText(fault);
+      note.scrollIntoView({block: 'nearest'});
+    }
+    if (this.#turns.get(element) !== turn) return;
+    element.classList.remove('pending');
+    this.#show();
+  }
+
+  /** @param {string} name @param {string} to */
+  async #rename(name, to) {
+    const renamed = to.trim();
+    await this.#told(renamed, () =>
+      this.request('edit', {op: {kind: 'rename', name, to: renamed}}));
+    this.store.select([renamed]);
+  }
+
+  /**
+   * @param {string} target
+   * @param {string} path
+   * @param {unknown} value
+   */
+  #set(target, path, value) {
+    const owner = this.row?.kind === 'light' ? target : (this.row?.model ?? '');
+    return this.#told(owner, () => this.request('edit', {op: {kind: 'set', target, path, value}}));
+  }
+}

@@ -1,0 +1,365 @@
+/**
+ * The input of a property: shows the value of the document, lets it be edited, commits on Enter or
+ * when the focus leaves. What is being typed is never overwritten by news from the server.
+ *
+ * @typedef {Object} Input
+ * @property {HTMLElement} element
+ * @property {(value: unknown) => void} show
+ *
+ * What an input needs of a field; those outside of the property panel have no path.
+ * @typedef {Omit<Field, 'path'> & {path?: string}} InputField
+ */
+import {sevenOf, sixOf} from './pose_rpy.js';
+import {h} from './dom.js';
+import {colorOf, colorText, numberText, parseNumber} from './text_format.js';
+/** @import {Field} from './property_fields.js' */
+
+/**
+ * @param {InputField} field
+ * @param {(value: unknown) => void} commit called with a new value, checked against the field
+ * @param {(text: string) => void} refuse called with what is wrong with an input
+ * @returns {Input}
+ */
+export function makeInput(field, commit, refuse) {
+  return MAKERS[field.type](field, commit, refuse);
+}
+
+/** @type {Record<Field['type'], (field: InputField, commit: (value: unknown) => void,
+ *   refuse: (text: string) => void) => Input>} */
+const MAKERS = {
+  number: numberInput,
+  integer: numberInput,
+  text: textInput,
+  flag: flagInput,
+  color: colorInput,
+  vector: vectorInput,
+  pose: poseInput,
+  choice: choiceInput,
+  optional: optionalInput,
+  xml: xmlInput,
+};
+
+/**
+ * The numbers of a value that is a list of them, else the fallback.
+ * @param {unknown} value
+ * @param {number[]} fallback
+ * @returns {number[]}
+ */
+const numbersOf = (value, fallback) => (Array.isArray(value) ? value : fallback);
+
+/**
+ * What is wrong with a number in this field; '' when nothing is.
+ * @param {InputField} field
+ * @param {number} value
+ */
+export function numberFault(field, value) {
+  if (Number.isNaN(value)) return 'not a number';
+  if (field.type === 'integer' && !Number.isInteger(value)) return 'must be an integer';
+  if (field.above !== undefined && value <= field.above) return `must be greater than ${field.above}`;
+  if (field.min !== undefined && value < field.min) return `must be at least ${field.min}`;
+  if (field.max !== undefined && value > field.max) {
+    return `must be at most ${numberText(field.max)}`;
+  }
+  return '';
+}
+
+/**
+ * A field of one line. What is typed counts on Enter or when the focus leaves; Escape drops it.
+ *
+ * @param {InputField} field
+ * @param {Record<string, unknown>} attributes
+ * @param {(value: unknown) => string} textOf
+ * @param {(text: string, shown: unknown) => boolean} take  gets what was typed; false: the field goes
+ *   back to the value before
+ * @returns {Input & {element: HTMLInputElement, type: (text: string) => void}}
+ */
+function lineInput(field, attributes, textOf, take) {
+  /** @type {unknown} */
+  let shown = null;
+  let edited = false;
+  const element = h('input', {
+    type: 'text',
+    autocomplete: 'off',
+    spellcheck: 'false',
+    'aria-label': field.label,
+    readOnly: Boolean(field.fixed),
+    title: field.hint,
+    ...attributes,
+  });
+  const restore = () => {
+    edited = false;
+    const text = textOf(shown);
+    if (element.value !== text) element.value = text;
+  };
+  const finish = () => {
+    if (!edited) return;
+    edited = false;
+    if (!take(element.value, shown)) restore();
+  };
+  element.addEventListener('input', () => {
+    edited = true;
+  });
+  element.addEventListener('blur', finish);
+  element.addEventListener('focus', () => element.select());
+  element.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter') finish();
+    else if (event.key === 'Escape' && edited) {
+      event.stopPropagation();
+      restore();
+    }
+  });
+  return {
+    element,
+    show(value) {
+      shown = value ?? null;
+      if (!edited) restore();
+    },
+    type(text) {
+      element.value = text;
+      edited = true;
+    },
+  };
+}
+
+/**
+ * @param {InputField} field
+ * @param {(value: unknown) => void} commit
+ * @param {(text: string) => void} refuse
+ */
+function numberInput(field, commit, refuse) {
+  /** @param {string} text @param {unknown} shown */
+  const take = (text, shown) => {
+    const value = parseNumber(text);
+    const fault = numberFault(field, value);
+    if (fault) refuse(`${field.label}: ${fault}`);
+    if (fault || value === shown) return false;
+    commit(value);
+    return true;
+  };
+  /** @param {unknown} value */
+  const textOf = (value) => (typeof value === 'number' ? numberText(value) : '');
+  const line = lineInput(field, {inputmode: 'decimal', class: 'number'}, textOf, take);
+  const {element} = line;
+  element.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter') {
+      event.preventDefault();
+      element.select();
+    } else if ((event.key === 'ArrowUp' || event.key === 'ArrowDown') && !field.fixed) {
+      event.preventDefault();
+      const size = event.ctrlKey ? 0.01 : event.shiftKey ? 1 : 0.1;
+      const step = field.type === 'integer' ? 1 : size;
+      const value = (parseNumber(element.value) || 0) + (event.key === 'ArrowUp' ? step : -step);
+      const limited = Math.min(Math.max(value, field.min ?? -Infinity), field.max ?? Infinity);
+      line.type(numberText(Math.round(limited * 1e6) / 1e6));
+    }
+  });
+  return line;
+}
+
+/** @param {InputField} field @param {(value: unknown) => void} commit */
+function textInput(field, commit) {
+  /** @param {unknown} value */
+  const textOf = (value) => String(value ?? '');
+  /** @param {string} text @param {unknown} shown */
+  const take = (text, shown) => {
+    if (text === textOf(shown)) return false;
+    commit(text);
+    return true;
+  };
+  const {element, show} = lineInput(field, {class: 'text'}, textOf, take);
+  return {
+    element,
+    /** @param {unknown} value */
+    show(value) {
+      show(value);
+      if (field.fixed) element.title = textOf(value);
+    },
+  };
+}
+
+/** @param {InputField} field @param {(value: unknown) => void} commit */
+function flagInput(field, commit) {
+  const element = h('input', {
+    type: 'checkbox',
+    'aria-label': field.label,
+    disabled: Boolean(field.fixed),
+    onchange: () => { commit(element.checked); },
+  });
+  return {
+    element,
+    /** @param {unknown} value */
+    show(value) {
+      element.checked = Boolean(value);
+      element.indeterminate = value === null || value === undefined;
+    },
+  };
+}
+
+/** @param {InputField} field @param {(value: unknown) => void} commit */
+function optionalInput(field, commit) {
+  const flag = flagInput(field, (on) => commit(on ? field.initial : null));
+  return {
+    element: flag.element,
+    /** @param {unknown} value */
+    show: (value) => flag.show(Boolean(value)),
+  };
+}
+
+/** @param {InputField} field @param {(value: unknown) => void} commit */
+function choiceInput(field, commit) {
+  const choices = field.choices ?? [];
+  const element = h(
+    'select',
+    {
+      'aria-label': field.label,
+      disabled: Boolean(field.fixed),
+      onchange: () => { commit(element.value); },
+    },
+    ...choices.map((choice) => h('option', {value: choice, text: choice})),
+  );
+  return {
+    element,
+    /** @param {unknown} value */
+    show(value) {
+      const text = String(value ?? '');
+      if (text && !choices.includes(text)) element.append(h('option', {value: text, text}));
+      element.value = text;
+    },
+  };
+}
+
+/**
+ * @param {InputField} field
+ * @param {(value: unknown) => void} commit
+ * @param {(text: string) => void} refuse
+ */
+function colorInput(field, commit, refuse) {
+  let shown = [0, 0, 0, 1];
+  const swatch = h('input', {
+    type: 'color',
+    'aria-label': field.label,
+    disabled: Boolean(field.fixed),
+    onchange: () => { commit(colorOf(swatch.value, shown[3] ?? 1)); },
+  });
+  const parts = ['red', 'green', 'blue', 'alpha'].map((name, at) =>
+    numberInput(
+      {type: 'number', label: `${field.label} ${name}`, min: 0, max: 1, fixed: field.fixed},
+      (value) => commit(shown.map((old, index) => (index === at ? Number(value) : old))),
+      refuse,
+    ),
+  );
+  return {
+    element: h('div', {class: 'color-input'}, swatch, ...parts.map((part) => part.element)),
+    /** @param {unknown} value */
+    show(value) {
+      swatch.classList.toggle('unset', !value);
+      shown = [...numbersOf(value, [0, 0, 0, 1])];
+      if (shown.length < 4) shown.push(1);
+      swatch.value = colorText(shown);
+      parts.forEach((part, at) => part.show(value ? shown[at] : null));
+    },
+  };
+}
+
+/**
+ * @param {InputField} field
+ * @param {(value: unknown) => void} commit
+ * @param {(text: string) => void} refuse
+ */
+function vectorInput(field, commit, refuse) {
+  const names = field.parts ?? [];
+  let shown = names.map(() => 0);
+  /** @param {number} at @param {number} value */
+  const take = (at, value) => {
+    // The next part may be typed before this one is confirmed.
+    shown = shown.map((old, index) => (index === at ? value : old));
+    commit(shown);
+  };
+  const parts = names.map((name, at) =>
+    numberInput(
+      {...field, type: 'number', label: `${field.label} ${name}`},
+      (value) => take(at, Number(value)),
+      refuse,
+    ),
+  );
+  return {
+    element: h(
+      'div',
+      {class: 'vector-input'},
+      ...parts.map((part, at) =>
+        h(
+          'span',
+          {class: `part axis-${names[at]}`},
+          h('i', {text: names[at], 'aria-hidden': 'true'}),
+          part.element,
+        ),
+      ),
+    ),
+    /** @param {unknown} value */
+    show(value) {
+      shown = numbersOf(value, names.map(() => 0));
+      parts.forEach((part, at) => part.show(shown[at]));
+    },
+  };
+}
+
+const POSE_PARTS = ['x', 'y', 'z', 'roll', 'pitch', 'yaw'];
+
+/**
+ * @param {InputField} field
+ * @param {(value: unknown) => void} commit
+ * @param {(text: string) => void} refuse
+ */
+function poseInput(field, commit, refuse) {
+  let shown = [0, 0, 0, 0, 0, 0];
+  /** @param {number} at @param {number} value */
+  const take = (at, value) => {
+    shown = shown.map((old, index) => (index === at ? value : old));
+    commit(sevenOf(shown));
+  };
+  const parts = POSE_PARTS.map((name, at) =>
+    numberInput(
+      {type: 'number', label: `${field.label} ${name}`, fixed: field.fixed},
+      (value) => take(at, Number(value)),
+      refuse,
+    ),
+  );
+  /** @param {number} at */
+  const cell = (at) =>
+    h(
+      'span',
+      {class: `part axis-${'xyz'[at % 3]}`},
+      h('i', {text: POSE_PARTS[at], 'aria-hidden': 'true'}),
+      parts[at].element,
+    );
+  return {
+    element: h('div', {class: 'pose-input'}, ...POSE_PARTS.map((_, at) => cell(at))),
+    /** @param {unknown} value */
+    show(value) {
+      shown = value ? sixOf(numbersOf(value, [])) : [0, 0, 0, 0, 0, 0];
+      parts.forEach((part, at) => part.show(tidy(shown[at], at < 3 ? 1e5 : 1e4)));
+    },
+  };
+}
+
+/**
+ * What fits the field; a physics engine's 0.49999998 is what the user put at 0.5.
+ * @param {number} value
+ * @param {number} parts
+ */
+function tidy(value, parts) {
+  const rounded = Math.round(value * parts) / parts;
+  return rounded === 0 ? 0 : rounded;
+}
+
+/** @param {InputField} field */
+function xmlInput(field) {
+  const element = h('pre', {class: 'xml', tabindex: 0, 'aria-label': field.label});
+  return {
+    element,
+    /** @param {unknown} value */
+    show: (/** @type {unknown} */ value) => {
+      element.textContent = String(value ?? '');
+    },
+  };
+}

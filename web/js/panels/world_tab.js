@@ -1,0 +1,179 @@
+/** The World tab: a filter, the tree, and the properties of the row that is chosen. */
+import {elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
+import {Properties} from './properties_panel.js';
+import {Tree} from './tree_view.js';
+import {rowOf, worldRows} from './world_rows.js';
+import {lyingBar, splitter} from './splitter.js';
+/** @import {Row} from './world_rows.js' */
+
+export class WorldTab {
+  /**
+   * @param {HTMLElement} element
+   * @param {import('./panels.js').Page} page
+   */
+  constructor(element, page) {
+    this.store = page.store;
+    this.actions = page.actions;
+    this.page = page;
+    this.#filter = h('input', {
+      type: 'search',
+      placeholder: 'Find a model or light',
+      'aria-label': 'Find a model or light',
+      oninput: () => {
+        this.#open.add('models').add('lights');
+        this.update();
+      },
+    });
+    const tree = h('div', {class: 'world-tree'});
+    const properties = h('section', {class: 'properties', 'aria-label': 'Properties'});
+    const bar = lyingBar('Height of the properties');
+    fill(element, h('div', {class: 'filter'}, this.#filter), tree, bar, properties);
+    splitter(bar, {
+      key: 'properties-height',
+      initial: 300,
+      min: 90,
+      max: 640,
+      from: 'bottom',
+      within: element,
+      apply: (size) => {
+        properties.style.height = `${size}px`;
+      },
+    });
+    this.tree = new Tree(tree, {
+      label: 'World',
+      choose: (row, event) => this.#choose(row, event),
+      toggle: (row, open) => this.#toggle(row, open),
+      activate: (row) => this.actions.moveTo(row.select),
+      menu: (row, x, y) => this.#menu(row, x, y),
+      decorate: (row) => this.#decorate(row),
+    });
+    this.properties = new Properties(properties, page);
+    this.update = onceAFrame(() => this.#update());
+    for (const event of /** @type {const} */ (['document', 'entity'])) this.store.listen(event, this.update);
+    this.store.listen('selection', () => this.#followSelection());
+    /** @type {boolean|null} */
+    let paused = null;
+    this.store.listen('stats', () => {
+      if (this.store.stats.paused === paused) return;
+      paused = this.store.stats.paused;
+      this.tree.draw();
+    });
+    this.update();
+  }
+
+  #filter;
+  #open = new Set(['models', 'lights', ...remembered.get('open-rows', [])]);
+  /** The row whose properties are shown. @type {Row|null} */
+  #row = null;
+  /** A selected name whose row has not come yet: what was just inserted. @type {string|null} */
+  #awaited = null;
+
+  #update() {
+    if (this.#awaited && rowOf(this.store.document, this.#awaited)) {
+      this.#followSelection();
+      return;
+    }
+    const rows = worldRows(this.store.document, this.#open, this.#filter.value);
+    this.tree.show(rows, this.#selectedRows());
+    this.#row = rows.find((row) => row.id === this.#row?.id) ?? this.#row;
+    this.properties.show(this.#row);
+  }
+
+  #selectedRows() {
+    const {document, selection} = this.store;
+    if (!document) return new Set();
+    const models = new Set(document.models.map(({name}) => name));
+    const lights = new Set(document.lights.map(({name}) => name));
+    /** @param {string} name */
+    const idOf = (name) =>
+      models.has(name) ? `model:${name}` : lights.has(name) ? `light:${name}` : `link:${name}`;
+    return new Set([...selection.map(idOf), ...(this.#row ? [this.#row.id] : [])]);
+  }
+
+  /** @param {Row} row @param {{ctrlKey?: boolean, metaKey?: boolean}} event */
+  #choose(row, event) {
+    if (row.kind === 'heading') return;
+    this.#row = row;
+    if (row.select) {
+      this.store.select([row.select], {toggle: event.ctrlKey || event.metaKey});
+    } else if (this.store.selection.length && !this.#belongs(row, this.store.selection)) {
+      this.store.select([]);
+    }
+    this.update();
+  }
+
+  /**
+   * A joint's or plugin's row leaves its model selected.
+   * @param {Row} row
+   * @param {string[]} selection
+   */
+  #belongs(row, selection) {
+    return row.model && selection.some((name) => this.store.split(name)[0]?.name === row.model);
+  }
+
+  /** @param {Row} row @param {boolean} open */
+  #toggle(row, open) {
+    if (open) this.#open.add(row.id);
+    else this.#open.delete(row.id);
+    const kept = [...this.#open].filter((id) =>
+      this.store.document?.models.some((model) => id.endsWith(`:${model.name}`)),
+    );
+    remembered.set('open-rows', kept.slice(-50));
+    this.update();
+  }
+
+  #followSelection() {
+    const last = this.store.selection[this.store.selection.length - 1];
+    const found = last && rowOf(this.store.document, last);
+    this.#awaited = found ? null : (last ?? null);
+    if (found && this.#row?.id !== found.id) {
+      found.opens.forEach((id) => this.#open.add(id));
+      const rows = worldRows(this.store.document, this.#open, this.#filter.value);
+      this.#row =
+        rows.find((row) => row.id === found.id) ??
+        worldRows(this.store.document, this.#open).find((row) => row.id === found.id) ??
+        null;
+      this.tree.show(rows, this.#selectedRows());
+      this.tree.reveal(found.id);
+    } else if (!last && this.#row?.select) this.#row = null;
+    // At once: what is typed next is meant for what is selected now.
+    this.#update();
+    this.properties.refresh();
+  }
+
+  /**
+   * @param {Row} row
+   * @param {number} x
+   * @param {number} y
+   */
+  #menu(row, x, y) {
+    if (!row.select) return;
+    if (!this.store.selection.includes(row.select)) this.#choose(row, {});
+    this.store.emit('contextmenu', {name: row.select, x, y});
+  }
+
+  /** @param {Row} row */
+  #decorate(row) {
+    if (row.kind === 'model') {
+      const model = this.store.document?.models.find((one) => one.name === row.name);
+      return model?.static && h('span', {class: 'tag', text: 'static'});
+    }
+    if (row.kind === 'physics' && this.store.stats.paused) {
+      return h('span', {class: 'tag', text: 'paused'});
+    }
+    return null;
+  }
+
+  /** Puts the focus where names are looked for. */
+  find() {
+    this.#filter.focus();
+    this.#filter.select();
+  }
+
+  /** Puts the focus into the name of what is selected. */
+  rename() {
+    this.#update();
+    this.properties.refresh();
+    elementsOf(this.properties.element, '[data-path="name"] input:not([readonly])')[0]?.focus();
+  }
+}

@@ -1,0 +1,249 @@
+/** The camera: the user's moves, flights between views, following, the two projections. */
+import {Matrix4, Vector3} from 'three';
+import * as views from '../camera_math.js';
+import {add, length, scale, subtract} from '../pose.js';
+/** @import {GuiCamera} from '../protocol.js' */
+/** @import {Vec3} from '../pose.js' */
+/** @import {View} from '../camera_math.js' */
+/** @import {ViewParts} from './view.js' */
+
+const FLIGHT = 500;
+const TURN_FLIGHT = 1000;
+const WALK_SPEED = {ahead: 1, aside: 0.8};
+
+export class CameraRig {
+  /** @type {View} */
+  view = views.HOME;
+  /** Resolution (pixels per meter) when orthographic. */
+  zoomLevel = views.ORTHOGRAPHIC_ZOOM;
+  /** Called after each move. */
+  onMoved = () => {};
+
+  #stage;
+  #store;
+  #models;
+  #home = views.HOME;
+  /** @type {{from: View, to: View, began: number, duration: number}|null} */
+  #flight = null;
+  #walking = {ahead: 0, aside: 0, fast: false};
+  #walkSpeed = 1;
+  #lastWalk = 0;
+  /** Where what is followed was. @type {Vec3|null} */
+  #followed = null;
+  /** File and name of the world. @type {string|null} */
+  #world = null;
+
+  /** @param {Pick<ViewParts, 'stage'|'store'|'models'>} viewParts */
+  constructor({stage, store, models}) {
+    this.#stage = stage;
+    this.#store = store;
+    this.#models = models;
+    store.listen('document', () => this.#openWorld());
+    store.listen('entity', ({detail: {kind, value}}) => {
+      if (kind === 'world' && value.gui_camera) this.#takeCamera(value.gui_camera);
+    });
+    store.listen('camera', () => this.#applyChoices());
+    this.apply();
+  }
+
+  get orthographic() { return this.#store.camera.projection === 'orthographic'; }
+  get fov() { return views.verticalFov(this.#stage.aspect); }
+
+  /** Metres a pixel covers at a point. @param {Vec3} point */
+  unitAt(point) {
+    return this.orthographic ? 1 / this.zoomLevel
+      : views.metresPerPixel(this.view, point, this.fov, this.#stage.height);
+  }
+
+  /** The point some 10 m ahead, for moves that have nothing under the mouse. */
+  get ahead() {
+    return add(this.view.position, scale(views.forward(this.view), 10));
+  }
+
+  /** Takes a view at once; a flight ends. @param {View} view */
+  set(view) {
+    this.#flight = null;
+    this.view = view;
+    this.apply();
+  }
+
+  /**
+   * @param {Vec3} pivot
+   * @param {number} dx
+   * @param {number} dy
+   * @param {'pitch'|'yaw'|null} only
+   */
+  orbit(pivot, dx, dy, only) { this.set(views.orbit(this.view, pivot, dx, dy, only)); }
+  /** @param {number} dx @param {number} dy */
+  look(dx, dy) { this.set(views.look(this.view, dx, dy)); }
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   * @param {Vec3} point
+   * @param {'x'|'y'|'z'|null} axis
+   */
+  pan(dx, dy, point, axis) { this.set(views.pan(this.view, dx, dy, this.unitAt(point), axis)); }
+
+  /**
+   * Zooms to or from a point, factor < 1 towards it.
+   * @param {Vec3} point
+   * @param {number} factor
+   */
+  zoom(point, factor) {
+    if (!this.orthographic) {
+      this.set(views.zoom(this.view, point, factor));
+      return;
+    }
+    // The point keeps its place: the camera goes beside it in the measure of the zoom.
+    const lever = subtract(point, this.view.position);
+    const side = views.right(this.view);
+    const top = views.up(this.view);
+    /** @param {Vec3} axis */
+    const part = (axis) => axis.reduce((sum, value, index) => sum + value * lever[index], 0);
+    this.zoomLevel = Math.min(Math.max(this.zoomLevel / factor, 0.5), 20000);
+    this.set({...this.view, position: add(this.view.position,
+      add(scale(side, part(side) * (1 - factor)), scale(top, part(top) * (1 - factor))))});
+  }
+
+  /** Faster or slower walking, with the wheel. @param {number} factor */
+  changeWalkSpeed(factor) {
+    this.#walkSpeed = Math.min(Math.max(this.#walkSpeed * factor, 0.05), 50);
+  }
+
+  /**
+   * Starts or stops walking.
+   * @param {number} ahead -1..1
+   * @param {number} aside -1..1
+   * @param {boolean} fast
+   */
+  walk(ahead, aside, fast) {
+    if (!this.#walking.ahead && !this.#walking.aside) this.#lastWalk = performance.now();
+    this.#walking = {ahead, aside, fast};
+    if (ahead || aside) this.#stage.invalidate();
+  }
+
+  /** Flies to a view. @param {View} to */
+  fly(to, duration = FLIGHT) {
+    this.#flight = {from: this.view, to, began: performance.now(), duration};
+    this.#stage.invalidate();
+  }
+
+  /** @param {import('three').Box3} box */
+  flyTo(box) {
+    if (this.orthographic) {
+      const size = Math.max(length(subtract(box.max.toArray(), box.min.toArray())), 0.2);
+      this.zoomLevel = Math.min(this.#stage.width, this.#stage.height) / size / 1.1;
+    }
+    this.fly(views.framing(this.view, {min: box.min.toArray(), max: box.max.toArray()}, this.fov,
+      this.#stage.aspect));
+  }
+
+  /** Flies most of the way to a point. @param {Vec3} point */
+  flyTowards(point) {
+    const position = add(this.view.position, scale(subtract(point, this.view.position), 0.8));
+    this.fly({...views.lookAt(this.view.position, point), position});
+  }
+
+  /** @param {string} side  or "home" @param {number[]} centre  what it looks at */
+  flyToSide(side, centre) {
+    this.fly(side === 'home' ? this.#home : views.fromSide(this.view, side, centre), TURN_FLIGHT);
+  }
+
+  /**
+   * Moves on with time;
+   * @param {number} now
+   * @returns {boolean} whether it goes on moving
+   */
+  advance(now) {
+    let moving = false;
+    if (this.#flight) {
+      const {from, to, began, duration} = this.#flight;
+      const part = Math.min(Math.max((now - began) / duration, 0), 1);
+      this.view = views.between(from, to, part);
+      if (part === 1) this.#flight = null;
+      moving = part < 1;
+      this.apply();
+    }
+    const {ahead, aside, fast} = this.#walking;
+    if (ahead || aside) {
+      const time = Math.min(Math.max(now - this.#lastWalk, 0), 100) / 1000;
+      const metres = time * this.#walkSpeed * (fast ? 2 : 1);
+      this.#lastWalk = now;
+      this.view = views.walk(this.view, ahead * metres * WALK_SPEED.ahead,
+        aside * metres * WALK_SPEED.aside);
+      this.apply();
+      moving = true;
+    }
+    return moving;
+  }
+
+  /** Goes with what is followed. */
+  follow() {
+    const name = this.#store.camera.following;
+    if (!name) return;
+    const pose = this.#models.shownPose(name);
+    if (!pose) {
+      this.#store.setCamera({following: null});
+      return;
+    }
+    if (this.#followed) {
+      const shift = subtract(pose, this.#followed);
+      if (length(shift) > 0) {
+        this.view = {...this.view, position: add(this.view.position, shift)};
+        this.apply();
+      }
+    }
+    this.#followed = pose.slice(0, 3);
+  }
+
+  /** Gives the view to the three camera. */
+  apply() {
+    const {perspective, orthographic} = this.#stage;
+    const camera = this.orthographic ? orthographic : perspective;
+    this.#stage.camera = camera;
+    const ahead = new Vector3().fromArray(views.forward(this.view));
+    const side = new Vector3().fromArray(views.right(this.view));
+    const top = new Vector3().fromArray(views.up(this.view));
+    camera.position.fromArray(this.view.position);
+    camera.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(side, top, ahead.negate()));
+    perspective.fov = this.fov * 180 / Math.PI;
+    perspective.aspect = this.#stage.aspect;
+    const [halfWidth, halfHeight] = [this.#stage.width / 2, this.#stage.height / 2];
+    Object.assign(orthographic, {left: -halfWidth, right: halfWidth, top: halfHeight,
+      bottom: -halfHeight, zoom: this.zoomLevel});
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+    this.onMoved();
+    this.#stage.invalidate();
+  }
+
+  /** The world's camera was edited. @param {GuiCamera} camera */
+  #takeCamera(camera) {
+    this.#home = views.fromPose(camera.pose);
+    this.fly(this.#home);
+  }
+
+  /** A world that comes again, after a lost line say, is looked at as before. */
+  #openWorld() {
+    if (!this.#store.document) return;
+    const {gui_camera: camera, file, name} = this.#store.document;
+    const which = JSON.stringify([file, name]);
+    if (which === this.#world) return;
+    this.#world = which;
+    this.#home = camera ? views.fromPose(camera.pose) : views.HOME;
+    this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
+    this.set(this.#home);
+    this.#store.setCamera({
+      projection: camera?.projection_type === 'orthographic' ? 'orthographic' : 'perspective',
+      controller: camera?.view_controller === 'fps' ? 'fps' : 'orbit',
+      following: camera?.track && this.#store.model(camera.track) ? camera.track : null,
+    });
+  }
+
+  #applyChoices() {
+    this.#followed = null;
+    this.follow();
+    if (this.#store.camera.controller !== 'fps') this.walk(0, 0, false);
+    this.apply();
+  }
+}

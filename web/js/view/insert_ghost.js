@@ -1,0 +1,88 @@
+/** The ghost of what is being added: it follows the mouse over the ground, a click puts it down. */
+import {rayPlane, WORLD_AXES} from '../drag_math.js';
+import {magnetic} from '../drag_snap.js';
+import {place} from './three_convert.js';
+import {lightIcon} from './light_views.js';
+import {standaloneModel} from './standalone_model.js';
+/** @import {Group} from 'three' */
+/** @import {Model} from '../protocol.js' */
+/** @import {MousePoint} from './pointer.js' */
+/** @import {ViewParts} from './view.js' */
+
+export class Placer {
+  #store;
+  #actions;
+  #picker;
+  #stage;
+  #stock;
+  /** @type {Group|null} */
+  #ghost = null;
+  #dispose = () => {};
+
+  /** @param {ViewParts} viewParts */
+  constructor({store, actions, picker, stage, stock}) {
+    this.#store = store;
+    this.#actions = actions;
+    this.#picker = picker;
+    this.#stage = stage;
+    this.#stock = stock;
+    store.listen('placing', () => this.#change());
+  }
+
+  /** Goes where the mouse is; with Ctrl to whole metres when near. @param {MousePoint} event */
+  follow(event) {
+    const pose = this.#pose(event);
+    if (!this.#ghost || !pose) return;
+    this.#ghost.visible = true;
+    place(this.#ghost, pose);
+    this.#stage.shadowsChanged();
+  }
+
+  /** The mouse has left the picture. */
+  hide() {
+    if (!this.#ghost?.visible) return;
+    this.#ghost.visible = false;
+    this.#stage.shadowsChanged();
+  }
+
+  /** Puts it down where the mouse is. @param {MousePoint} event */
+  put(event) {
+    const pose = this.#pose(event);
+    if (pose) this.#actions.place(pose);
+  }
+
+  /** Keeps its own height and turn (Gazebo behaviour). @param {MousePoint} mousePoint */
+  #pose({clientX, clientY, ctrlKey, metaKey}) {
+    const {placing} = this.#store;
+    if (!placing) return null;
+    const ray = this.#picker.ray(clientX, clientY);
+    const hit = rayPlane(ray, [0, 0, 0], WORLD_AXES.z);
+    if (!hit) return null;
+    const [x, y] = ctrlKey || metaKey ? hit.map((part) => magnetic(part)) : hit;
+    return [x, y, ...placing.document.pose.slice(2)];
+  }
+
+  #change() {
+    if (this.#ghost) this.#stage.scene.remove(this.#ghost);
+    this.#dispose();
+    this.#ghost = null;
+    this.#dispose = () => {};
+    const {placing} = this.#store;
+    if (placing) {
+      const ghost = placing.kind === 'light' ? lightIcon(placing.document)
+        : this.#modelGhost(placing.document);
+      ghost.visible = false;
+      this.#stage.scene.add(ghost);
+      this.#ghost = ghost;
+    }
+    this.#stage.shadowsChanged();
+  }
+
+  /** @param {Model} document */
+  #modelGhost(document) {
+    const {group, ready, dispose} = standaloneModel(document, this.#stock, {opacity: 0.75});
+    this.#dispose = dispose;
+    ready.then(() => this.#stage.shadowsChanged());
+    return group;
+  }
+}

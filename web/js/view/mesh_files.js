@@ -1,0 +1,246 @@
+/** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
+import {faultText} from '../panels/dialog.js';
+import {
+  Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
+} from 'three';
+/** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
+/** @import {Geometry} from '../protocol.js' */
+
+/** A file that holds a mesh; `fallback`: the simulator's form of it, STL.
+ * @typedef {{url: string, format?: string|null, fallback?: string|null}} MeshSource */
+
+/**
+ * @typedef {object} MeshPart
+ * @property {BufferGeometry} geometry
+ * @property {Material|Material[]} material  the file's own: a three material or, for groups, a list
+ * @property {Matrix4} matrix  file frame from part
+ * @property {string[]} names  of the part and the nodes above it
+ * @property {boolean} [whole] it is the mesh in one, its parts have no names
+ */
+
+const plainMaterial = new MeshPhongMaterial({color: 0xc8c8c8, specular: 0x0d0d0d,
+  side: DoubleSide});
+
+/** @param {string} url */
+async function bytes(url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
+  return response.arrayBuffer();
+}
+
+/** @param {string} url */
+const text = async (url) => new TextDecoder().decode(await bytes(url));
+/** three turns a scene unless its file says that y is up. */
+const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
+
+/** @param {string} url */
+const folder = (url) => url.slice(0, url.lastIndexOf('/') + 1);
+
+/** @param {string} url @param {LoadingManager} manager */
+async function readCollada(url, manager) {
+  const [{ColladaLoader}, content] = await Promise.all([
+    import('three/addons/loaders/ColladaLoader.js'), text(url)]);
+  const loader = new ColladaLoader(manager);
+  // Gazebo takes coordinates as Z up whatever the file says (public issue 1305), the unit it heeds.
+  const read = loader.parse(content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>'), folder(url));
+  if (!read) throw new Error(`${url} is not COLLADA`);
+  return read.scene;
+}
+
+/** @param {string} url */
+async function readStl(url) {
+  const [{STLLoader}, content] = await Promise.all([
+    import('three/addons/loaders/STLLoader.js'), bytes(url)]);
+  return new Mesh(new STLLoader().parse(content), plainMaterial);
+}
+
+/** @param {string} url @param {LoadingManager} manager */
+async function readObj(url, manager) {
+  const [{OBJLoader}, {MTLLoader}, content] = await Promise.all([
+    import('three/addons/loaders/OBJLoader.js'), import('three/addons/loaders/MTLLoader.js'),
+    text(url)]);
+  const loader = new OBJLoader(manager);
+  const library = /^mtllib\s+(.+?)\s*$/m.exec(content)?.[1];
+  if (library) {
+    const address = new URL(encodeURI(library), new URL(url, location.href)).href;
+    const materials = new MTLLoader(manager).parse(await text(address), folder(address));
+    materials.preload();
+    loader.setMaterials(materials);
+  }
+  return loader.parse(content);
+}
+
+/** @type {Record<string, (url: string, manager: LoadingManager) => Promise<Object3D>>} */
+const READERS = {dae: readCollada, stl: readStl, obj: readObj};
+
+/** @param {MeshSource} meshSource */
+function formatOf({format, url}) {
+  return (format || (url.split('?')[0].split('.').pop() ?? '')).toLowerCase();
+}
+
+/** @param {Mesh} object */
+function namesOf(object) {
+  /** @type {string[]} */
+  const names = [];
+  /** @type {Object3D|null} */
+  let node = object;
+  for (; node; node = node.parent) if (node.name) names.push(node.name);
+  if (object.geometry.name) names.push(object.geometry.name);
+  return names;
+}
+
+/**
+ * The file of a geometry, null where it has none that the page can load.
+ * @param {Geometry} geometry
+ * @returns {MeshSource|null}
+ */
+export function sourceOf(geometry) {
+  if (!('url' in geometry) || !geometry.url) return null;
+  const {url, format} = geometry;
+  return {url, format, fallback: geometry.type === 'mesh' ? geometry.fallback : null};
+}
+
+/** The meshes of a file that hold anything, ready to be drawn. @param {Object3D} root */
+function meshesOf(root) {
+  /** @type {Mesh[]} */
+  const found = [];
+  root.updateMatrixWorld(true);
+  root.traverse((object) => {
+    if (!(object instanceof Mesh)) return;
+    if (!object.geometry.getAttribute('position')) return;
+    if (!object.geometry.getAttribute('normal')) object.geometry.computeVertexNormals();
+    const materials = Array.isArray(object.material) ? object.material : [object.material];
+    for (const material of materials) {
+      material.side = DoubleSide;
+      if (material.map) material.map.anisotropy = 4;
+    }
+    found.push(object);
+  });
+  return found;
+}
+
+/** @param {Object3D} root */
+const partsOf = (root) => meshesOf(root).map((object) => ({geometry: object.geometry,
+  material: object.material, matrix: object.matrixWorld.clone(), names: namesOf(object)}));
+
+/** A file's scene without its lights and cameras. @param {Object3D} root */
+function figureOf(root) {
+  /** @type {Object3D[]} */
+  const left = [];
+  root.traverse((object) => {
+    if (object instanceof Light || object instanceof Camera) left.push(object);
+  });
+  for (const object of left) object.removeFromParent();
+  for (const mesh of meshesOf(root)) {
+    mesh.castShadow = mesh.receiveShadow = true;
+    // Its bounds are those of the rest pose, its bones may carry it elsewhere.
+    mesh.frustumCulled = !(mesh instanceof SkinnedMesh);
+  }
+  return root;
+}
+
+export class Meshes {
+  /** Tells of pictures that arrive after their mesh. */
+  manager = new LoadingManager();
+  #busy = false;
+  /** @type {(() => void)[]} */
+  #waiting = [];
+  /** @type {Map<string, Promise<MeshPart[]>>} */
+  #files = new Map();
+  /** @type {Map<string, MeshPart[]>} */
+  #ready = new Map();
+
+  /** @param {(problem: string) => void} onProblem  called once for each file that cannot be read */
+  constructor(onProblem) {
+    this.onProblem = onProblem;
+    /** @type {Set<string>} */
+    const told = new Set();
+    this.manager.onStart = () => { this.#busy = true; };
+    this.manager.onLoad = () => {
+      this.#busy = false;
+      for (const resolve of this.#waiting.splice(0)) resolve();
+      this.onArrived();
+    };
+    this.manager.onError = (url) => {
+      if (told.has(url)) return;
+      told.add(url);
+      onProblem(`Failed to load texture ${decodeURI(url)}`);
+    };
+  }
+
+  /** Called when pictures have come. */
+  onArrived = () => {};
+
+  /** Resolves when no picture is under way. @returns {Promise<void>} */
+  idle() {
+    return this.#busy ? new Promise((resolve) => { this.#waiting.push(resolve); }) : Promise.resolve();
+  }
+
+  /**
+   * The parts of a mesh that was read before, or undefined.
+   * @param {MeshSource} geometry
+   * @returns {MeshPart[]|undefined}
+   */
+  present(geometry) {
+    return this.#ready.get(geometry.url);
+  }
+
+  /**
+   * @param {MeshSource} geometry
+   * @returns {Promise<MeshPart[]>} empty for a file that cannot be read
+   */
+  load(geometry) {
+    const {url} = geometry;
+    const parts = this.#files.get(url) ?? this.#readSomehow(geometry, partsOf)
+      .then(({found, whole}) => {
+        const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part));
+        this.#ready.set(url, ready);
+        return ready;
+      });
+    this.#files.set(url, parts);
+    return parts;
+  }
+
+  /**
+   * A mesh as a scene of its own, with bones and `animations`, for one that moves in itself. Each
+   * call makes another one.
+   * @param {MeshSource} geometry
+   * @returns {Promise<Object3D|null>} null for a file that cannot be read
+   */
+  async figure(geometry) {
+    return (await this.#readSomehow(geometry, figureOf)).found;
+  }
+
+  /**
+   * @template T
+   * What this page cannot read the simulator may have read: its form then, without colours.
+   * @param {MeshSource} geometry
+   * @param {(root: Object3D) => T} use
+   */
+  async #readSomehow(geometry, use) {
+    try {
+      return {found: use(await this.#read(geometry)), whole: false};
+    } catch (error) {
+      if (geometry.fallback) {
+        const root = await this.#read({url: geometry.fallback, format: 'stl'}).catch(() => null);
+        if (root) return {found: use(root), whole: true};
+      }
+      this.onProblem(`Failed to load mesh ${decodeURI(geometry.url)}: ${faultText(error)}`);
+      return {found: null, whole: false};
+    }
+  }
+
+  /** @param {MeshSource} geometry */
+  async #read(geometry) {
+    const reader = READERS[formatOf(geometry)];
+    if (!reader) throw new Error(`unsupported format; supported: ${Object.keys(READERS).join(', ')}`);
+    if (formatOf(geometry) !== 'stl') await this.#withTga();
+    return reader(geometry.url, this.manager);
+  }
+
+  async #withTga() {
+    if (this.manager.getHandler('a.tga')) return;
+    const {TGALoader} = await import('three/addons/loaders/TGALoader.js');
+    this.manager.addHandler(/\.tga$/i, new TGALoader(this.manager));
+  }
+}

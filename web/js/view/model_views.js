@@ -1,0 +1,312 @@
+/** The world's models in the scene: built from the document, moved by pose frames. */
+import {Box3, Matrix4} from 'three';
+import {canonicalLink} from '../store.js';
+import {compose, inverse} from '../pose.js';
+import {matrixOf} from './three_convert.js';
+import {boxOf, visualParts} from './shape_meshes.js';
+/** @import {Batches, Item} from './batches.js' */
+/** @import {Link, Model, Visual} from '../protocol.js' */
+/** @import {Part, Stock} from './shape_meshes.js' */
+/** @import {Pose7, Vec3} from '../pose.js' */
+/** @import {Stage} from './stage.js' */
+/** @import {Store} from '../store.js' */
+
+/** @typedef {{model: string, link: string, linkId: number, plane: boolean}} Owner  of an item */
+
+class LinkView {
+  /** @type {Item[]} */
+  items = [];
+  matrix = new Matrix4();
+
+  /** @param {Link} link */
+  constructor(link) {
+    this.link = link;
+  }
+}
+
+class ModelView {
+  /** @type {Map<number, LinkView>} */
+  links = new Map();
+  gone = false;
+
+  /** @param {Model} document */
+  constructor(document) {
+    this.document = document;
+    for (const link of document.links) this.links.set(link.id, new LinkView(link));
+  }
+}
+
+export class Models {
+  #store;
+  #batches;
+  #stock;
+  #stage;
+  /** @type {Map<string, ModelView>} */
+  #views = new Map();
+  /** By link id. @type {Map<number, ModelView>} */
+  #byLink = new Map();
+  /**
+   * Poses that the user's hand holds: pose frames for these links wait.
+   * @type {Map<number, Pose7>}
+   */
+  #held = new Map();
+  /** By model name. @type {Map<string, Matrix4>} */
+  #stretched = new Map();
+  /** @type {Set<string>} */
+  #faded = new Set();
+
+  /**
+   * @param {{store: Store, batches: Batches,
+   *          stock: Stock, stage: Stage}} parts
+   */
+  constructor({store, batches, stock, stage}) {
+    this.#store = store;
+    this.#batches = batches;
+    this.#stock = stock;
+    this.#stage = stage;
+    store.listen('document', () => this.rebuildAll());
+    store.listen('entity', ({detail: {name, kind, value}}) => {
+      if (kind === 'model') this.#replace(name, value);
+    });
+    store.listen('poses', ({detail: ids}) => this.#followFrame(ids));
+  }
+
+  /**
+   * Called after models were built or moved, with the ids of links or null for any.
+   * @type {(ids: Set<number>|null) => void}
+   */
+  onMoved = () => {};
+
+  rebuildAll() {
+    for (const name of [...this.#views.keys()]) this.#replace(name, null);
+    for (const model of this.#store.document?.models ?? []) this.#replace(model.name, model);
+  }
+
+  /** Builds a model anew, after its appearance was changed. @param {string} name */
+  rebuild(name) {
+    const model = this.#store.model(name);
+    if (model) this.#replace(name, model);
+  }
+
+  /**
+   * Shows a model half transparent while the hand is on it, or as it is.
+   * @param {string} name
+   * @param {boolean} faded
+   */
+  fade(name, faded) {
+    if (this.#faded.has(name) === faded) return;
+    if (faded) this.#faded.add(name);
+    else this.#faded.delete(name);
+    this.rebuild(name);
+  }
+
+  /**
+   * Puts models where the user drags them, with every link as it lies in them.
+   * @param {Record<string, number[]>} poses  pose7 by model name
+   */
+  hold(poses) {
+    for (const [name, pose] of Object.entries(poses)) {
+      const view = this.#views.get(name);
+      if (!view) continue;
+      const here = this.#store.worldPose(name);
+      if (!here) continue;
+      const toModel = inverse(here);
+      for (const [id, linkView] of view.links) {
+        const now = this.#store.poses.get(id);
+        if (now) this.#held.set(id, compose(pose, compose(toModel, now)));
+        this.#moveLink(view, linkView);
+      }
+    }
+    this.#changed(null);
+  }
+
+  /**
+   * Lets go of models; `keep`: where they are held is where they are, until a frame says otherwise.
+   * @param {string[]} names
+   */
+  release(names, {keep = false} = {}) {
+    for (const name of names) {
+      const view = this.#views.get(name);
+      this.#stretched.delete(name);
+      if (!view) continue;
+      for (const [id, linkView] of view.links) {
+        const pose = this.#held.get(id);
+        if (keep && pose) this.#store.poses.get(id)?.set(pose);
+        this.#held.delete(id);
+        this.#moveLink(view, linkView);
+      }
+    }
+    this.#changed(null);
+  }
+
+  /**
+   * @template {{ok: boolean}} T
+   * Shows models at new places at once, and lets go when the simulator has answered: at the new
+   * places when it agreed, where they were when not.
+   * @param {Record<string, number[]>} poses
+   * @param {Promise<T>} asked
+   * @returns {Promise<T>}
+   */
+  async carry(poses, asked) {
+    this.hold(poses);
+    const outcome = await asked;
+    this.release(Object.keys(poses), {keep: outcome.ok});
+    return outcome;
+  }
+
+  /**
+   * Shows a model stretched by factors along its own axes.
+   * @param {string} name
+   * @param {Vec3} factors
+   */
+  stretch(name, factors) {
+    this.#stretched.set(name, new Matrix4().makeScale(factors[0], factors[1], factors[2]));
+    const view = this.#views.get(name);
+    if (view) for (const linkView of view.links.values()) this.#moveLink(view, linkView);
+    this.#changed(null);
+  }
+
+  /**
+   * Where an entity is shown, held or not.
+   * @param {string} name
+   * @returns {number[]|null} pose7
+   */
+  shownPose(name) {
+    const entity = this.#store.entity(name);
+    if (!entity) return null;
+    if (entity.kind === 'light') return [...entity.light.pose];
+    const link = entity.kind === 'link' ? entity.link : canonicalLink(entity.model);
+    const pose = link && this.#linkPose(link.id);
+    if (!link || !pose) return [...entity.model.pose];
+    return entity.kind === 'link' ? Array.from(pose) : compose(pose, inverse(link.pose));
+  }
+
+  /** The matrix of a link as it is shown. @param {number} id */
+  linkMatrix(id) {
+    return this.#byLink.get(id)?.links.get(id)?.matrix;
+  }
+
+  /**
+   * The bounding box of a model or link.
+   * @param {string} name
+   * @param {number[]|null} [frame]  pose7 of the axes it is aligned with; the world's without
+   * @returns {Box3|null} null when nothing of it is drawn
+   */
+  bounds(name, frame = null) {
+    const entity = this.#store.entity(name);
+    if (!entity || entity.kind === 'light') return null;
+    const view = this.#views.get(entity.model.name);
+    const links = entity.kind === 'link' ? [view?.links.get(entity.link.id)] : view?.links.values();
+    const toFrame = frame ? matrixOf(frame).invert() : null;
+    const box = new Box3();
+    const part = new Matrix4();
+    for (const linkView of links ?? []) {
+      for (const {geometry, matrix} of linkView?.items ?? []) {
+        const own = boxOf(geometry);
+        part.copy(matrix);
+        if (toFrame) part.premultiply(toFrame);
+        box.union(own.applyMatrix4(part));
+      }
+    }
+    return box.isEmpty() ? null : box;
+  }
+
+  /** @param {number} id */
+  #linkPose(id) {
+    return this.#held.get(id) ?? this.#store.poses.get(id);
+  }
+
+  /** @param {string} name @param {Model|null} model */
+  #replace(name, model) {
+    const before = this.#views.get(name);
+    if (before) {
+      before.gone = true;
+      for (const [id, {items}] of before.links) {
+        for (const item of items) this.#batches.remove(item);
+        if (this.#byLink.get(id) === before) this.#byLink.delete(id);
+      }
+      this.#views.delete(name);
+    }
+    if (model) this.#build(name, model);
+    this.#changed(null);
+  }
+
+  /** @param {string} name @param {Model} model */
+  #build(name, model) {
+    const view = new ModelView(model);
+    this.#views.set(name, view);
+    for (const [id, linkView] of view.links) {
+      this.#byLink.set(id, view);
+      this.#moveLink(view, linkView);
+      for (const visual of linkView.link.visuals) this.#addVisual(view, linkView, visual);
+    }
+  }
+
+  /**
+   * @param {ModelView} view
+   * @param {LinkView} linkView
+   * @param {Visual} visual
+   */
+  #addVisual(view, linkView, visual) {
+    const {name} = view.document;
+    if (this.#store.overlays.hiddenLayers.has(visual.layer ?? 0)) return;
+    const look = {
+      opacity: this.#store.overlay('transparent', name) || this.#faded.has(name) ? 0.5 : 1,
+      wireframe: Boolean(this.#store.overlay('wireframe', name)),
+    };
+    const owner = {model: name, link: linkView.link.name, linkId: linkView.link.id,
+      plane: visual.geometry.type === 'plane'};
+    /** @param {Part[]} parts */
+    const add = (parts) => {
+      for (const part of parts) {
+        const item = this.#batches.add({...part, matrix: new Matrix4(), owner,
+          castShadow: visual.cast_shadows && !owner.plane && !look.wireframe});
+        item.local = part.matrix;
+        linkView.items.push(item);
+      }
+      this.#moveLink(view, linkView);
+    };
+    const parts = visualParts(visual, this.#stock, look);
+    if (!(parts instanceof Promise)) add(parts);
+    else {
+      parts.then((ready) => {
+        if (view.gone) return;
+        add(ready);
+        this.#changed(null);
+      });
+    }
+  }
+
+  /** @param {ModelView} view @param {LinkView} linkView */
+  #moveLink(view, linkView) {
+    const pose = this.#linkPose(linkView.link.id);
+    if (!pose) return;
+    matrixOf(pose, linkView.matrix);
+    const stretch = this.#stretched.get(view.document.name);
+    if (stretch) {
+      const frame = matrixOf(this.shownPose(view.document.name) ?? view.document.pose);
+      linkView.matrix.premultiply(frame.clone().invert()).premultiply(stretch).premultiply(frame);
+    }
+    for (const item of linkView.items) {
+      if (item.local) item.matrix.multiplyMatrices(linkView.matrix, item.local);
+      this.#batches.moved(item);
+    }
+  }
+
+  /** @param {Set<number>} ids */
+  #followFrame(ids) {
+    for (const id of ids) {
+      if (this.#held.has(id)) continue;
+      const view = this.#byLink.get(id);
+      const linkView = view?.links.get(id);
+      if (view && linkView) this.#moveLink(view, linkView);
+    }
+    this.#changed(ids);
+  }
+
+  /** @param {Set<number>|null} ids */
+  #changed(ids) {
+    this.#stage.shadowsChanged();
+    this.onMoved(ids);
+  }
+}

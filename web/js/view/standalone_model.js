@@ -1,0 +1,43 @@
+/** A model drawn by itself, outside of the world: ghosts, previews, thumbnails. */
+import {Group, Mesh} from 'three';
+import {place} from './three_convert.js';
+import {meshOf, visualParts} from './shape_meshes.js';
+/** @import {Model} from '../protocol.js' */
+/** @import {Part, Stock} from './shape_meshes.js' */
+
+/**
+ * @param {Model} model
+ * @param {Stock} stock
+ * @param {{opacity?: number}} [look]
+ * @returns {{group: Group, ready: Promise<void>, dispose: () => void}} the group's children are
+ *          the links, named so; its own pose is left to the caller
+ */
+export function standaloneModel(model, stock, look = {}) {
+  const group = new Group();
+  /** @type {Promise<void>[]} */
+  const waits = [];
+  for (const link of model.links) {
+    const linkGroup = new Group();
+    linkGroup.name = link.name;
+    place(linkGroup, link.pose);
+    group.add(linkGroup);
+    for (const visual of link.visuals) {
+      /** @param {Part[]} parts */
+      const add = (parts) => {
+        for (const part of parts) {
+          const mesh = meshOf(part);
+          mesh.castShadow = visual.cast_shadows;
+          mesh.receiveShadow = true;
+          linkGroup.add(mesh);
+        }
+      };
+      const parts = visualParts(visual, stock, look);
+      if (parts instanceof Promise) waits.push(parts.then(add));
+      else add(parts);
+    }
+  }
+  const dispose = () => group.traverse((object) => {
+    if (object instanceof Mesh && object.geometry.userData.single) object.geometry.dispose();
+  });
+  return {group, ready: Promise.all(waits).then(() => {}), dispose};
+}
