@@ -34,8 +34,9 @@ class Reply:
 class Event:
     """Something the engine reports by itself.
 
-    `kind`: `horizon` (reached), `diverged` (a model's state became non-finite and it was put back
-    where it last was finite, at rest), `log` (what is only approximately so).
+    `kind`: `horizon` (reached), `meeting` (it stands at a consumer's credit), `diverged` (a model's
+    state became non-finite and it was put back where it last was finite, at rest), `log` (what is
+    only approximately so).
     """
 
     kind: str
@@ -53,6 +54,9 @@ class Engine(Protocol):
 
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command. The future fails with `EngineGoneError` when the engine died first."""
+
+    def nudge(self) -> None:
+        """Tell an engine that stands at a credit to look whether the credit was raised."""
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
         """Set who hears of events (called from the engine's reader thread)."""

@@ -17,6 +17,7 @@ from ..engine.commands import (
 )
 from ..geometry import STILL
 from .clock import SimClock
+from .drives import Drives
 from .initial_state import initial_commands
 from .models import Models
 from .registry import Entity
@@ -27,11 +28,12 @@ from .wrenches import Wrenches
 class Resets:
     """Resets of a running world; each holds the session's structure lock."""
 
-    def __init__(self, session: Session, models: Models, wrenches: Wrenches,
+    def __init__(self, session: Session, models: Models, wrenches: Wrenches, drives: Drives,
                  clock: SimClock) -> None:
         self._session = session
         self._models = models
         self._wrenches = wrenches
+        self._drives = drives
         self._clock = clock
 
     def reset_time(self) -> None:
@@ -75,6 +77,7 @@ class Resets:
             self._move_linkless_models(entities)
             dropped = self._wrenches.ids
             self._wrenches.replace_all()
+            self._drives.forget_all()
             if dropped:  # an engine that has just taken over may have been told of them
                 session.call(ClearTimedForces(dropped))
 
