@@ -108,6 +108,10 @@ class Appointments:
         self._lock = threading.Lock()
         self._consumers: List[Optional[Consumer]] = [None] * CONSUMERS
 
+    def now(self) -> Moment:
+        """Where the engine is, for who does not wait for it."""
+        return Moment(*self._session.ring.clock_now())
+
     def join(self) -> Consumer:
         """Become one whom the engine waits for: at once, until the first `allow`.
 

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, List, Sequence
+from typing import Dict, List, Optional, Sequence
 
 from ..engine.commands import (
     Batch,
@@ -25,12 +25,22 @@ class Drives:
         self._planar: Dict[int, PlanarVelocity] = {}
 
     def set(self, motors: Sequence[JointMotor] = (),
-            planar: Sequence[PlanarVelocity] = ()) -> None:
+            planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None) -> bool:
         """Set motors by joint row and planar velocities by model number; others stay.
+
+        Args:
+            motors: of any models.
+            planar: of any models.
+            revision: of the models when the rows were looked up (`Models.revision`).
+
+        Returns:
+            False when the models have changed since; then nothing is set.
 
         Raises CommandError when a joint is not there.
         """
         with self._session.structure_lock:
+            if revision is not None and revision != self._session.registry.revision:
+                return False
             commands: List[Command] = []
             new = [motor for motor in motors if self._motors.get(motor.row) != motor]
             if new:
@@ -39,10 +49,11 @@ class Drives:
             if any(self._planar.get(number) != one for number, one in moved.items()):
                 commands.append(SetPlanarVelocities(tuple({**self._planar, **moved}.values())))
             if not commands:
-                return
+                return True
             self._session.call(Batch(tuple(commands)) if len(commands) > 1 else commands[0])
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
+            return True
 
     def stop(self, entity: Entity) -> None:
         """Nothing drives a model any more: motors off, no planar velocity."""

@@ -35,6 +35,8 @@ class Resets:
         self._wrenches = wrenches
         self._drives = drives
         self._clock = clock
+        self.world_resets = 0        # counted when models are back where they began
+        self.simulation_resets = 0   # counted before: who hears of the new clock can tell why
 
     def reset_time(self) -> None:
         """Set sim time to 0. Models stay; timed wrenches last as long as they would have."""
@@ -58,6 +60,7 @@ class Resets:
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names)))
             self._move_linkless_models(entities)
+            self.world_resets += 1
 
     def reset_simulation(self) -> None:
         """Start again: models and joints as loaded, time 0, no timed wrenches; spawned models stay.
@@ -67,6 +70,7 @@ class Resets:
         session = self._session
         with session.structure_lock:
             entities = session.registry.entities()
+            self.simulation_resets += 1
             commands: List[Command] = [
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
                 SetClock(0, 0)]

@@ -37,9 +37,19 @@ class ModelServices:
     """Puts models into the world and takes them out."""
 
     def __init__(self, simulator: Simulator, resolver: Resolver,
-                 log: Callable[[Issue], None], launcher: int = 0) -> None:
-        """`launcher`: process id of the roslaunch that started the simulator, 0 for none."""
+                 log: Callable[[Issue], None], launcher: int = 0,
+                 changed: Callable[[], None] = lambda: None) -> None:
+        """Take over a simulator.
+
+        Args:
+            simulator: the world.
+            resolver: finds what models name.
+            log: hears of faults.
+            launcher: process id of the roslaunch that started the simulator, 0 for none.
+            changed: called after a model has come or gone, before that is answered.
+        """
         self._launcher = launcher
+        self._changed = changed
         self._simulator = simulator
         self._resolver = resolver
         self._log = log
@@ -111,6 +121,7 @@ class ModelServices:
         within(where.position, LENGTH, "m", "the model's position")
         with in_gazebos_words("", NO_FRAME):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
+        self._changed()
         self._report(arrival_advice(self._simulator, model.name, meshes))
         remarks = sum(issue.severity is not Severity.NOTE for issue in issues)
         warnings = f" ({remarks} remarks in the log)" if remarks else ""
@@ -152,6 +163,7 @@ class ModelServices:
         """Take a model out; it is in no list any more when this answers."""
         with in_gazebos_words("model does not exist"):
             self._simulator.models.delete(request.model_name)
+        self._changed()
         return "successfully deleted model"
 
 
