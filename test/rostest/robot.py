@@ -13,7 +13,7 @@ from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import JointState
-from support import Collected, Gazebo, box, run, wait_for
+from support import Collected, Gazebo, box, pose, run, wait_for
 from tf2_msgs.msg import TFMessage
 
 ROBOT = "robo"
@@ -23,7 +23,7 @@ class Robot(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.gazebo = Gazebo()
-        cls.log = Collected("/rosout_agg", Log)
+        cls.log = Collected("/rosout", Log)
         cls.odom = Collected("/odom", Odometry)
         cls.tf = Collected("/tf", TFMessage)
         cls.joints = Collected("/joint_states", JointState)
@@ -100,14 +100,13 @@ class Robot(unittest.TestCase):
     def test_what_nobody_knows_is_told_once(self):
         extra = '<gazebo><plugin name="mystery" filename="libmystery.so"/></gazebo>'
         for name in ("one", "two"):
-            self.assertTrue(self.gazebo.spawn(name, box(extra=extra)).success)
-        wait_for(lambda: [one for one in self.log.all() if "libmystery.so" in one.msg
-                          and one.level == Log.WARN], "a warning")
-        told = [one for one in self.log.all() if "libmystery.so" in one.msg
-                and one.level == Log.WARN]
-        self.assertEqual(len(told), 1)
-        for name in ("one", "two"):
+            self.assertTrue(self.gazebo.spawn(name, box(extra=extra), pose(3.0, 0.0, 1.0)).success)
             self.gazebo.delete_model(name)
+        wait_for(lambda: self.warnings("libmystery.so"), "a warning")
+        self.assertEqual(len(self.warnings("libmystery.so")), 1)
+
+    def warnings(self, text):
+        return [one for one in self.log.all() if text in one.msg and one.level == Log.WARN]
 
 
 if __name__ == "__main__":

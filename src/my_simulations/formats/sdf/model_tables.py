@@ -224,7 +224,7 @@ MODEL = Table("model", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
-    "frame": Part("1.5", kept=True), "plugin": Part(use=KEPT, told=True),
+    "frame": Part("1.5", kept=True), "plugin": Part(),
     **_kept("enable_wind"), **_told("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
@@ -234,7 +234,7 @@ INCLUDE = Table("include", Model, {
     "name": Value("name", TEXT),
     "pose": Value("pose", POSE, FATAL),
     "static": Value("static", BOOL),
-    "plugin": Part(use=KEPT, told=True),
+    "plugin": Part(),
     "placement_frame": Part("1.8"),
 }, known_attributes=("merge",))
 

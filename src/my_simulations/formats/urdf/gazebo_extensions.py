@@ -46,8 +46,6 @@ class Extensions:
         for block in self._by_reference.get("", ()):
             found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
             self.joints += found.get("joint", [])
-            for child in found.get("plugin", ()):
-                self._source.tell_unused(child)
             model.plugins += [read_plugin(child, self._source)
                               for child in found.get("plugin", ())]
 

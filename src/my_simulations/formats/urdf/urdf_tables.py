@@ -154,7 +154,7 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "static": Value("static", BOOL),
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
-    "plugin": Part(use=Use.KEPT), "joint": Part(),
+    "plugin": Part(), "joint": Part(),
     "gripper": Kept(told=True),
     **_kept("enable_wind", "frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
