@@ -56,6 +56,11 @@ class ProcessEngine:
         return self._ring
 
     @property
+    def ring_fd(self) -> int:
+        """The descriptor of the ring's memory, for other processes that look at it."""
+        return self._ring_fd
+
+    @property
     def pid(self) -> int:
         """The child's process number."""
         return self._child.pid if self._child else 0

@@ -134,11 +134,12 @@ def _link_at(values: Sequence[float], at: int) -> "tuple[Pose, Twist]":
 class Memory:
     """The mapping, as words and as doubles."""
 
-    def __init__(self, fd: Optional[int]) -> None:
+    def __init__(self, fd: Optional[int], read_only: bool = False) -> None:
         if fd is None:
             self._map = mmap.mmap(-1, SIZE)
         else:
-            self._map = mmap.mmap(fd, SIZE)
+            access = mmap.ACCESS_READ if read_only else mmap.ACCESS_WRITE
+            self._map = mmap.mmap(fd, SIZE, access=access)
         view = memoryview(self._map)
         self.words = view.cast("q")
         self.doubles = view.cast("d")

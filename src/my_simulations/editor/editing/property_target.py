@@ -5,6 +5,7 @@ import re
 from dataclasses import replace
 from typing import Any, List, Optional, Tuple
 
+from ...appearance.gazebo_materials import BUILT_IN as MATERIALS
 from ...description.compare import BUILT_IN
 from ...description.model import Joint, Link, Model
 from ...description.scoped_names import split_scoped
@@ -23,7 +24,6 @@ from ...simulator.operations import (
     SetSurrounding,
 )
 from ...simulator.simulator import Simulator
-from ..scene.gazebo_materials import BUILT_IN as MATERIALS
 from .inserts import checked
 from .property_path import with_value
 

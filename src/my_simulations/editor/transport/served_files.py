@@ -13,13 +13,12 @@ import threading
 from typing import Dict, List, Optional
 from urllib.parse import quote
 
+from ...appearance.textures import existing, places_of_mesh, places_of_script
 from ...resources.resolver import Resolver
 from .content_types import MESHES, PICTURES, extension
 
 SERVED = MESHES | PICTURES
 
-_BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials", "textures"),
-           "textures", os.path.join("..", "textures"))
 _ID = re.compile(rb'"/resource/([0-9a-f]+)/')
 
 
@@ -84,46 +83,23 @@ class ServedFiles:
             return None
         found = self._existing(wanted)
         if found is None and kind in PICTURES:
-            folder, name = os.path.split(wanted)
-            places = [os.path.normpath(os.path.join(folder, beside, name)) for beside in _BESIDE]
-            places += [os.path.join(media, "materials", "textures", name)
-                       for base in self._resolver.resource_folders()
-                       for media in (base, os.path.join(base, "media"),
-                                     os.path.join(base, "Media"))]
+            places = places_of_mesh(wanted, self._resolver.resource_folders())
             found = next((hit for hit in map(self._existing, places) if hit), None)
         return found
 
-    def picture(self, name: str, folders: List[str]) -> Optional[str]:
-        """The URL of a texture by file name, looked for in these folders first."""
-        for folder in folders:
-            for place in (os.path.join(folder, name), os.path.join(folder, "..", "textures", name)):
-                found = self._existing(os.path.normpath(place))
-                if found is not None:
-                    return self.url(found)
-        for base in self._resolver.resource_folders():
-            for media in ("", "media", "Media"):
-                found = self._existing(os.path.join(base, media, "materials", "textures", name))
-                if found is not None:
-                    return self.url(found)
-        return None
+    def texture(self, name: str, folders: List[str]) -> Optional[str]:
+        """The path of a picture that may be served, looked for in these folders first."""
+        places = places_of_script(name, folders, self._resolver.resource_folders())
+        return next((found for found in map(self._existing, places) if found), None)
 
     def _existing(self, path: str) -> Optional[str]:
         """The real path of a file that may be served; its name in any letter case.
 
         A link may have the name of a picture and lead to something else.
         """
-        real = os.path.realpath(path)
-        if not os.path.isfile(real):
-            folder, name = os.path.split(real)
-            try:
-                same = [entry for entry in os.listdir(folder) if entry.lower() == name.lower()]
-            except OSError:
-                return None
-            if not same:
-                return None
-            real = os.path.realpath(os.path.join(folder, same[0]))
-        served = extension(real) in SERVED and os.path.isfile(real)
-        return real if served and self._root_of(real) is not None else None
+        real = existing(path)
+        served = real is not None and extension(real) in SERVED
+        return real if served and self._root_of(real or "") is not None else None
 
     def _root_of(self, real: str) -> Optional[str]:
         """The root that holds a real path: the longest that fits."""

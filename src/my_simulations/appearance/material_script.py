@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional, Sequence, Tuple
 
-from ...description.shapes import Color
+from ..description.shapes import Color
 
 _TOKEN = re.compile(r'"[^"]*"|[{}]|\n|[^\s{}"]+')
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)

@@ -1,0 +1,1 @@
+"""What visuals look like: materials, scripts, textures, for everybody who draws."""

@@ -1,0 +1,128 @@
+"""What a material looks like: scripts found and read, Gazebo's own names known, colours on top."""
+from __future__ import annotations
+
+import os
+import threading
+from dataclasses import replace
+from typing import Dict, List, Optional, Protocol, Tuple
+
+from ..description.compare import BUILT_IN as BUILT_IN_SCRIPT
+from ..description.shapes import Color, Material
+from ..resources.resolver import Resolver, ResourceNotFoundError
+from .gazebo_materials import BUILT_IN, Paint, Rgb
+from .looks import Look
+from .material_script import ScriptMaterial, read_materials
+
+_COLORS = ("ambient", "diffuse", "specular", "emissive")
+_WHITE: Color = (1.0, 1.0, 1.0, 1.0)
+
+
+class Textures(Protocol):
+    """Who finds the pictures of scripts; `textures.TextureFiles`, or one who gives away fewer."""
+
+    def texture(self, name: str, folders: List[str]) -> Optional[str]:
+        """The path of a picture by file name, looked for in these folders first."""
+
+
+class Materials:
+    """Resolves materials; scripts are kept by path and time. Safe from any thread."""
+
+    def __init__(self, resolver: Resolver, textures: Textures) -> None:
+        self._resolver = resolver
+        self._textures = textures
+        self._scripts: Dict[Tuple[str, int], Dict[str, ScriptMaterial]] = {}
+        self._folders: Dict[str, List[str]] = {}
+        self._seen: Dict[str, ScriptMaterial] = {}
+        self._lock = threading.Lock()
+
+    def look(self, material: Optional[Material]) -> Optional[Look]:
+        """What a material looks like; None for none.
+
+        The script comes first, colours of the file override it (Gazebo behaviour).
+        """
+        if material is None:
+            return None
+        with self._lock:
+            found = self._named(material)
+        said = {name: getattr(material, name) for name in _COLORS}
+        found = replace(found, **{name: color for name, color in said.items() if color is not None})
+        if material.texture:
+            found = replace(found, texture=self._path(material.texture), pattern="",
+                            scale=(1.0, 1.0))
+        if found.diffuse is not None and found.transparency == 0.0:
+            found = replace(found, transparency=min(1.0, max(0.0, 1.0 - found.diffuse[3])))
+        return found
+
+    def _named(self, material: Material) -> Look:
+        name = material.script_name
+        if not name:
+            return Look()
+        folders: List[str] = []
+        for uri in material.script_uris:
+            if uri != BUILT_IN_SCRIPT:
+                folders += self._load(uri)
+        script = self._seen.get(name)
+        if name in BUILT_IN and (script is None or not folders):
+            return _of_paint(name, BUILT_IN[name])
+        if script is None:
+            return Look(name, ambient=_WHITE, diffuse=_WHITE)
+        return self._of_script(script, folders or self._folders.get(name, []))
+
+    def _of_script(self, script: ScriptMaterial, folders: List[str]) -> Look:
+        diffuse, transparency, texture = script.diffuse, 0.0, ""
+        if script.blend and diffuse is not None:
+            transparency = 1.0 - diffuse[3]
+        elif diffuse is not None:
+            diffuse = (*diffuse[:3], 1.0)  # without blending Ogre does not look at it
+        if script.texture:
+            texture = self._textures.texture(os.path.basename(script.texture), folders) or ""
+            diffuse = _WHITE if diffuse is None else diffuse
+        return Look(script.name, script.ambient, diffuse, script.specular, script.emissive,
+                    texture, scale=script.scale if texture else (1.0, 1.0),
+                    transparency=transparency, lit=script.lighting)
+
+    def _load(self, uri: str) -> List[str]:
+        """Read the scripts a URI names; returns the folders where their pictures may be."""
+        try:
+            path = self._resolver.resolve(uri)
+        except ResourceNotFoundError:
+            return []
+        if os.path.isdir(path):
+            scripts = [os.path.join(path, name) for name in sorted(os.listdir(path))
+                       if name.endswith(".material")]
+            folders = [path]
+        else:
+            scripts = [path] if path.endswith(".material") else []
+            folders = [os.path.dirname(path)]
+        for script in scripts:
+            for name, material in self._read(script).items():
+                self._seen[name] = material
+                self._folders[name] = [os.path.dirname(script)]
+        return folders
+
+    def _read(self, path: str) -> Dict[str, ScriptMaterial]:
+        try:
+            key = (path, os.stat(path).st_mtime_ns)
+            if key not in self._scripts:
+                with open(path, encoding="utf-8", errors="replace") as stream:
+                    self._scripts[key] = read_materials(stream.read(1 << 20))
+        except OSError:
+            return {}
+        return self._scripts[key]
+
+    def _path(self, uri: str) -> str:
+        try:
+            return self._resolver.resolve(uri)
+        except ResourceNotFoundError:
+            return ""
+
+
+def _of_paint(name: str, paint: Paint) -> Look:
+    part = 1.0 / paint.repeats if paint.pattern else 1.0
+    return Look(name, _opaque(paint.ambient), _opaque(paint.diffuse), _opaque(paint.specular),
+                _opaque(paint.emissive), pattern=paint.pattern, scale=(part, part),
+                transparency=1.0 - paint.alpha, lit=paint.lit)
+
+
+def _opaque(color: Rgb) -> Color:
+    return (color[0], color[1], color[2], 1.0)

@@ -1,0 +1,59 @@
+"""Where pictures of materials and meshes are kept."""
+from __future__ import annotations
+
+import os
+from typing import Iterator, List, Optional
+
+from ..resources.resolver import Resolver
+
+_MEDIA = ("", "media", "Media")
+_BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials", "textures"),
+           "textures", os.path.join("..", "textures"))
+
+
+def places_of_script(name: str, folders: List[str], resource_folders: List[str]) -> Iterator[str]:
+    """Where a picture that a script names may be: beside the script first (Gazebo behaviour)."""
+    for folder in folders:
+        for place in (os.path.join(folder, name), os.path.join(folder, "..", "textures", name)):
+            yield os.path.normpath(place)
+    yield from _shared(name, resource_folders)
+
+
+def places_of_mesh(path: str, resource_folders: List[str]) -> Iterator[str]:
+    """Where a picture that a mesh names may be when it is not at `path` (Gazebo behaviour)."""
+    folder, name = os.path.split(path)
+    for beside in _BESIDE:
+        yield os.path.normpath(os.path.join(folder, beside, name))
+    yield from _shared(name, resource_folders)
+
+
+def _shared(name: str, resource_folders: List[str]) -> Iterator[str]:
+    for base in resource_folders:
+        for media in _MEDIA:
+            yield os.path.join(base, media, "materials", "textures", name)
+
+
+def existing(path: str) -> Optional[str]:
+    """The real path of a file; its name in any letter case. None where there is none."""
+    real = os.path.realpath(path)
+    if os.path.isfile(real):
+        return real
+    folder, name = os.path.split(real)
+    try:
+        same = [entry for entry in os.listdir(folder) if entry.lower() == name.lower()]
+    except OSError:
+        return None
+    found = os.path.realpath(os.path.join(folder, same[0])) if same else ""
+    return found if os.path.isfile(found) else None
+
+
+class TextureFiles:
+    """Pictures for whoever draws on this machine."""
+
+    def __init__(self, resolver: Resolver) -> None:
+        self._resolver = resolver
+
+    def texture(self, name: str, folders: List[str]) -> Optional[str]:
+        """The path of a picture that a script names; None where there is none."""
+        places = places_of_script(name, folders, self._resolver.resource_folders())
+        return next((found for found in map(existing, places) if found), None)

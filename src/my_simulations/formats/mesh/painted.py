@@ -1,0 +1,196 @@
+"""Meshes as they are drawn: normals, texture coordinates and the file's own materials."""
+from __future__ import annotations
+
+import io
+import os
+from dataclasses import dataclass
+from typing import Any, List, Optional, Tuple
+from urllib.parse import unquote
+
+import numpy as np
+
+from ...description.shapes import Color, Mesh, MeshData
+from ...errors import InputError
+from .collada import _instances, _unit
+from .loading import load_mesh
+from .part import MeshError
+
+_PAINTED = (".obj", ".glb", ".gltf", ".ply")
+
+
+@dataclass(frozen=True)
+class PaintedPart:
+    """Triangles of one material, scale applied.
+
+    Attributes:
+        vertices: float64 (n, 3), metres; normals: (n, 3) unit; uv: (n, 2), v upwards.
+        triangles: int32 (m, 3).
+        color: diffuse of the file; None where it has no material.
+        picture: of its texture: a path that may not exist, a decoded PIL image, or None.
+    """
+
+    vertices: np.ndarray
+    normals: np.ndarray
+    uv: np.ndarray
+    triangles: np.ndarray
+    color: Optional[Color] = None
+    picture: Any = None
+
+
+def painted_parts(mesh: Mesh) -> List[PaintedPart]:
+    """A mesh file with its materials, or without where they cannot be read.
+
+    The triangles are always those of `load_mesh`, which also says what is wrong with a file.
+
+    Raises:
+        InputError: see `load_mesh`.
+    """
+    plain = load_mesh(mesh)
+    try:
+        parts = _read(mesh)
+    except (MeshError, InputError, LookupError, TypeError, ValueError, AttributeError, OSError,
+            ImportError, RecursionError, OverflowError):
+        parts = []  # what draws is lenient: the shape counts, and that has been read
+    if sum(len(part.triangles) for part in parts) != len(plain.triangles):
+        return [flat(plain)]
+    return _placed(parts, mesh)
+
+
+def flat(data: MeshData) -> PaintedPart:
+    """Triangles with a normal each, as STL files are drawn."""
+    corners = np.asarray(data.vertices)[np.asarray(data.triangles)].reshape(-1, 3)
+    return _indexed(corners, None, None, None, None)
+
+
+def _read(mesh: Mesh) -> List[PaintedPart]:
+    extension = os.path.splitext(mesh.path)[1].lower()
+    if extension == ".dae":
+        return _collada(mesh)
+    if extension in _PAINTED:
+        return _trimesh(mesh, extension)
+    return []
+
+
+def _placed(parts: List[PaintedPart], mesh: Mesh) -> List[PaintedPart]:
+    """Scale and centring of the visual, as `load_mesh` applies them."""
+    scale, shift = np.array(mesh.scale), np.zeros(3)
+    if mesh.submesh and mesh.center:
+        low = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
+        high = np.max([part.vertices.max(axis=0) for part in parts], axis=0)
+        shift = (low + high) / 2
+    mirrored = bool(np.prod(scale) < 0)
+    placed = []
+    for part in parts:
+        normals = part.normals / np.where(scale == 0, 1.0, scale)
+        triangles = part.triangles[:, ::-1] if mirrored else part.triangles
+        placed.append(PaintedPart((part.vertices - shift) * scale, _unit_rows(normals), part.uv,
+                                  triangles, part.color, part.picture))
+    return placed
+
+
+def _unit_rows(rows: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(rows, axis=1, keepdims=True)
+    unit: np.ndarray = rows / np.where(length > 0, length, 1.0)
+    return unit
+
+
+def _indexed(corners: np.ndarray, normals: Optional[np.ndarray], uv: Optional[np.ndarray],
+             color: Optional[Color], picture: Any) -> PaintedPart:
+    """Three corners a triangle, those that are the same made one."""
+    if normals is None or len(normals) != len(corners):
+        faces = corners.reshape(-1, 3, 3)
+        normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]).repeat(3, axis=0)
+    if uv is None or len(uv) != len(corners):
+        uv = np.zeros((len(corners), 2))
+    rows = np.ascontiguousarray(
+        np.column_stack([corners, _unit_rows(normals), uv[:, :2]]).astype(np.float32) + 0.0)
+    _, first, inverse = np.unique(rows.view([("", rows.dtype)] * rows.shape[1]).ravel(),
+                                  return_index=True, return_inverse=True)
+    kept = rows[first].astype(np.float64)
+    return PaintedPart(np.asarray(corners, dtype=np.float64)[first], kept[:, 3:6], kept[:, 6:],
+                       inverse.reshape(-1, 3).astype(np.int32), color, picture)
+
+
+def _collada(mesh: Mesh) -> List[PaintedPart]:
+    import collada
+    from lxml import etree
+
+    with open(mesh.path, "rb") as stream:
+        data = stream.read()
+    document = collada.Collada(io.BytesIO(data), ignore=[collada.DaeError])
+    unit = _unit(document, etree.fromstring(data))
+    parts = []
+    for names, geometry in _instances(document):
+        if mesh.submesh and mesh.submesh not in names:
+            continue
+        mirrored = np.linalg.det(geometry.matrix[:3, :3]) < 0
+        for primitive in geometry.primitives():
+            part = _of_primitive(primitive, unit, mirrored, os.path.dirname(mesh.path))
+            if part is not None:
+                parts.append(part)
+    return parts
+
+
+def _of_primitive(primitive: Any, unit: float, mirrored: bool, folder: str,
+                  ) -> Optional[PaintedPart]:
+    if not len(primitive) or primitive.vertex is None:
+        return None
+    triangles = primitive.triangleset() if hasattr(primitive, "triangleset") else primitive
+    order = slice(None, None, -1) if mirrored else slice(None)
+    corners = triangles.vertex[triangles.vertex_index[:, order]].reshape(-1, 3) * unit
+    normals = uv = None
+    if triangles.normal is not None and triangles.normal_index is not None:
+        normals = triangles.normal[triangles.normal_index[:, order]].reshape(-1, 3)
+    if triangles.texcoordset:
+        uv = triangles.texcoordset[0][triangles.texcoord_indexset[0][:, order]]
+        uv = uv.reshape(-1, uv.shape[-1])
+    color, picture = _effect(triangles.material, folder)
+    return _indexed(corners, normals, uv, color, picture)
+
+
+def _effect(material: Any, folder: str) -> Tuple[Optional[Color], Any]:
+    diffuse = getattr(getattr(material, "effect", None), "diffuse", None)
+    if diffuse is None:
+        return None, None
+    if isinstance(diffuse, tuple):
+        return (diffuse[0], diffuse[1], diffuse[2], 1.0), None
+    path = unquote(diffuse.sampler.surface.image.path or "")
+    path = path[len("file://"):] if path.startswith("file://") else path
+    return (1.0, 1.0, 1.0, 1.0), os.path.join(folder, path)
+
+
+def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
+    import trimesh
+
+    if mesh.submesh:
+        return []  # which part is meant is known to `load_mesh` only
+    scene = trimesh.load_scene(mesh.path, file_type=extension[1:], process=False)
+    parts = []
+    for node in scene.graph.nodes_geometry:
+        matrix, name = scene.graph[node]
+        shape = scene.geometry[name]
+        if not isinstance(shape, trimesh.Trimesh) or not len(shape.faces):
+            continue
+        faces = shape.faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else shape.faces
+        vertices = np.asarray(shape.vertices) @ matrix[:3, :3].T + matrix[:3, 3]
+        normals = None
+        if "vertex_normals" in shape._cache:
+            turned = np.linalg.inv(matrix[:3, :3]).T
+            normals = (np.asarray(shape.vertex_normals) @ turned.T)[faces].reshape(-1, 3)
+        uv = getattr(shape.visual, "uv", None)
+        uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
+        color, picture = _trimesh_material(getattr(shape.visual, "material", None))
+        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv, color, picture))
+    return parts
+
+
+def _trimesh_material(material: Any) -> Tuple[Optional[Color], Any]:
+    if material is None:
+        return None, None
+    picture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
+    color = getattr(material, "baseColorFactor", None)
+    color = getattr(material, "diffuse", None) if color is None else color
+    if picture is not None or color is None:
+        return (1.0, 1.0, 1.0, 1.0), picture
+    red, green, blue = (float(part) / 255.0 for part in color[:3])
+    return (red, green, blue, 1.0), None

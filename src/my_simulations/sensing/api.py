@@ -1,0 +1,287 @@
+"""The interface of the sensing process: what can be asked of it, and what comes back.
+
+Sensors hang on links; a link is known by its row in the engine's ring. A request names the state it
+is to be answered for (`At`), so the same request gives the same bytes however late it is worked on.
+
+Sensor frames are Gazebo's: +x looks forward, y left, z up (SDF `<sensor><pose>`). Nothing heavy is
+imported here: neither NumPy, Embree nor OpenGL.
+"""
+from __future__ import annotations
+
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Protocol, Tuple, Union
+
+from ..appearance.looks import Look
+from ..description.model import Model
+from ..description.world import Light, Scene
+from ..geometry import IDENTITY, Pose
+
+if TYPE_CHECKING:
+    import numpy as np
+
+WORLD_ROW = -1
+"""`Mount.row` of a sensor that stands still; its pose is in the world."""
+
+TROUBLE = -1
+"""Between the processes: the number of a message that is a sentence about what is left out."""
+
+READY = -2
+"""Between the processes: the number of the child's first message."""
+
+NO_ROW = -1
+"""Where a ray or a pixel meets nothing."""
+
+COLLISIONS, VISUALS = "collisions", "visuals"
+"""What rays see: Gazebo's `ray` sensors collisions, its `gpu_ray` sensors visuals."""
+
+RGB, DEPTH, LABELS = "rgb", "depth", "labels"
+"""What a camera can give; several of them in one request."""
+
+At = Union[None, int, bytes]
+"""The state to look at: a ring sequence, link rows as `RingReader.raw_links` gives them, or None.
+
+A sequence is copied when the request arrives at the process, and fails with `SnapshotGoneError`
+when it has been overwritten (16 snapshots later). Rows never fail. None is the newest state, for
+whoever only wants a picture now.
+"""
+
+
+class SensingError(Exception):
+    """A request without an answer; the message is one sentence for the user."""
+
+
+class SnapshotGoneError(SensingError):
+    """The state was overwritten before the process could copy it: this sample is left out."""
+
+
+class SensingGoneError(SensingError):
+    """The sensing process ended before it answered. The next request finds a new one."""
+
+
+class SensingUnavailableError(SensingError):
+    """What is needed is not installed, or the process ends again and again; says what to do."""
+
+
+@dataclass(frozen=True)
+class RayFan:
+    """Rays from one point: SDF `<ray><scan>` and `<range>`.
+
+    Angles in rad: yaw about z from +x towards y, elevation up from the x-y plane. `near` and `far`
+    in metres: nothing nearer than `near` is seen, not even what is in the way (Gazebo behaviour:
+    rays begin at the minimum range).
+
+    Attributes:
+        samples: rays in a row, samples x resolution of the file.
+        rows: of different elevation.
+    """
+
+    samples: int
+    min_angle: float = 0.0
+    max_angle: float = 0.0
+    rows: int = 1
+    min_elevation: float = 0.0
+    max_elevation: float = 0.0
+    near: float = 0.0
+    far: float = 10.0
+
+
+@dataclass(frozen=True)
+class RayBundle:
+    """Any rays: `origins` (n, 3) in metres, unit `directions` (n, 3), both in the sensor frame."""
+
+    origins: "np.ndarray"
+    directions: "np.ndarray"
+    near: float = 0.0
+    far: float = 10.0
+
+
+@dataclass(frozen=True)
+class Distortion:
+    """Brown's model on normalised image coordinates (SDF `<camera><distortion>`, as OpenCV).
+
+    `center` as a share of width and height. `crop`: a barrel distortion is scaled so that no border
+    stays empty (Gazebo's `border_crop`).
+    """
+
+    k1: float = 0.0
+    k2: float = 0.0
+    k3: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
+    center: Tuple[float, float] = (0.5, 0.5)
+    crop: bool = False
+
+
+@dataclass(frozen=True)
+class CameraSpec:
+    """A pinhole camera: square pixels, the optical axis through the middle of the picture.
+
+    Focal length in pixels: width / (2 tan(hfov / 2)). The point (x, y, z) of the sensor frame falls
+    on column (width - 1) / 2 - f y / x and row (height - 1) / 2 - f z / x, where integers are the
+    centres of pixels.
+
+    Attributes:
+        width, height: pixels.
+        hfov: rad, the whole angle.
+        near, far: metres along +x; what lies outside is not drawn.
+        samples: of a pixel, for smooth edges of RGB: 1 or 4.
+        distortion: of RGB, depth and labels alike; None for an ideal lens.
+        shadows: False leaves out those the world asks for.
+    """
+
+    width: int = 320
+    height: int = 240
+    hfov: float = 1.047
+    near: float = 0.1
+    far: float = 100.0
+    samples: int = 1
+    distortion: Optional[Distortion] = None
+    shadows: bool = True
+
+    @property
+    def focal_length(self) -> float:
+        """In pixels."""
+        from math import tan
+
+        return self.width / (2.0 * tan(self.hfov / 2.0))
+
+
+@dataclass(frozen=True)
+class Mount:
+    """Where a sensor is: `pose` in the frame of the link of `row`, or in the world."""
+
+    row: int = WORLD_ROW
+    pose: Pose = IDENTITY
+
+
+@dataclass(frozen=True)
+class CastRays:
+    """Ask for ranges. Answered with `RayReturns`."""
+
+    mount: Mount
+    rays: Union[RayFan, RayBundle]
+    sees: str = COLLISIONS
+    at: At = None
+
+
+@dataclass(frozen=True)
+class RenderCamera:
+    """Ask for pictures of one moment. Answered with `Pictures`."""
+
+    mount: Mount
+    camera: CameraSpec
+    outputs: Tuple[str, ...] = (RGB,)
+    at: At = None
+
+
+@dataclass(frozen=True)
+class RayReturns:
+    """What rays have met, in the order of the fan: row by row from `min_elevation` on, in each from
+    `min_angle` on. The arrays are the caller's own.
+
+    Attributes:
+        ranges: float64 (n,), metres from the sensor's origin (a bundle: from each ray's); inf where
+            nothing is met up to `far`. Not clipped, without noise.
+        retro: float32 (n,), `laser_retro` of what is met, 0 for nothing.
+        link_rows: int32 (n,), the link that is met, NO_ROW for nothing.
+        step: the engine's step count of the state; -1 where the request brought rows.
+    """
+
+    ranges: "np.ndarray"
+    retro: "np.ndarray"
+    link_rows: "np.ndarray"
+    step: int = -1
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """What a camera has seen; None for what was not asked for. The first row is the upper one.
+
+    Attributes:
+        rgb: uint8 (height, width, 3).
+        depth: float32 (height, width), metres along +x; inf where there is nothing up to `far`.
+        labels: int32 (height, width), link rows, NO_ROW for nothing.
+        step: as in `RayReturns`.
+    """
+
+    rgb: "Optional[np.ndarray]" = None
+    depth: "Optional[np.ndarray]" = None
+    labels: "Optional[np.ndarray]" = None
+    step: int = -1
+
+
+@dataclass(frozen=True)
+class Body:
+    """A model to look at; link n has row `first_link_row + n`.
+
+    Attributes:
+        name: of the model; a body of the same name is replaced.
+        model: flattened, mesh paths resolved.
+        looks: what each visual looks like, by (link index, visual index); without one: the mesh's
+            own materials, or white. `scene.body` makes it.
+    """
+
+    name: str
+    model: Model
+    first_link_row: int
+    looks: Dict[Tuple[int, int], Look] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LoadScene:
+    """Everything there is to see; replaces what there was."""
+
+    bodies: List[Body] = field(default_factory=list)
+    lights: List[Light] = field(default_factory=list)
+    scene: Scene = field(default_factory=Scene)
+
+
+@dataclass(frozen=True)
+class AddBody:
+    """A model has come, or has changed."""
+
+    body: Body
+
+
+@dataclass(frozen=True)
+class RemoveBody:
+    """A model has gone."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class SetLights:
+    """These are the lights and the surroundings now."""
+
+    lights: List[Light] = field(default_factory=list)
+    scene: Scene = field(default_factory=Scene)
+
+
+Change = Union[LoadScene, AddBody, RemoveBody, SetLights]
+Request = Union[CastRays, RenderCamera]
+
+
+class Sensing(Protocol):
+    """What sensors need of whoever looks; `process.SensingProcess` is the real one.
+
+    All calls return at once and are safe from any thread. Changes and requests take effect in the
+    order of the calls.
+    """
+
+    def change(self, change: Change) -> None:
+        """Tell what is in the world. Costs nothing before the first request: no process yet."""
+
+    def cast(self, request: CastRays) -> "Future[RayReturns]":
+        """Rays; the first request starts the process. The future fails with a `SensingError`."""
+
+    def render(self, request: RenderCamera) -> "Future[Pictures]":
+        """Pictures; rays do not wait for them. The future fails with a `SensingError`."""
+
+    def on_trouble(self, listener: Callable[[str], None]) -> None:
+        """Set who hears one sentence of each death and of each shape or texture left out."""
+
+    def close(self) -> None:
+        """End the process, if there is one, and wait for the end."""
+

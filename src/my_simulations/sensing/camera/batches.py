@@ -1,0 +1,101 @@
+"""Instances of the same triangles and surface, drawn together."""
+from __future__ import annotations
+
+from typing import Any, Dict, List, Tuple
+
+import numpy as np
+
+from .surfaces import Piece, Surface
+
+_INSTANCE = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
+
+
+class Batch:
+    """One mesh on the graphics card, and where it is to be seen.
+
+    Attributes:
+        owners: name of the model of each instance.
+        rows: link row of each; local: (n, 4, 4) link from shape.
+    """
+
+    def __init__(self, context: Any, programs: Dict[str, Any], piece: Piece, shadows: bool) -> None:
+        self.surface: Surface = piece.surface
+        self.casts_shadow = shadows and piece.surface.opacity >= 1.0
+        places = piece.rows[:, :3].astype(np.float64)
+        low, high = places.min(axis=0), places.max(axis=0)
+        self.center = (low + high) / 2
+        self.radius = float(np.linalg.norm(places - self.center, axis=1).max())
+        self.owners: List[str] = []
+        self.rows = np.zeros(0, dtype=np.int64)
+        self.local = np.zeros((0, 4, 4))
+        self.count = 0
+        self._context = context
+        self._programs = programs
+        self._vertices = context.buffer(piece.rows.tobytes())
+        self._index = context.buffer(piece.triangles.tobytes())
+        self._instances: Any = None
+        self._arrays: Dict[str, Any] = {}
+
+    def add(self, owner: str, row: int, local: np.ndarray) -> None:
+        """One more of it."""
+        self.owners.append(owner)
+        self.rows = np.append(self.rows, row)
+        self.local = np.concatenate([self.local, local[None]])
+
+    def remove(self, owner: str) -> None:
+        """None of a model any more."""
+        kept = np.array([one != owner for one in self.owners], dtype=bool)
+        self.owners = [one for one in self.owners if one != owner]
+        self.rows, self.local = self.rows[kept], self.local[kept]
+
+    def upload(self, frames: np.ndarray, rows: np.ndarray) -> None:
+        """Say where it is to be drawn: (n, 4, 4) view from shape, and the link rows."""
+        self.count = len(frames)
+        if not self.count:
+            return
+        table = np.empty(self.count, dtype=_INSTANCE)
+        table["rows"] = frames[:, :3]
+        table["link"] = rows
+        if self._instances is None or self._instances.size < table.nbytes:
+            self._release_arrays()
+            self._instances = self._context.buffer(reserve=table.nbytes * 2, dynamic=True)
+        self._instances.write(table.tobytes())
+
+    def draw(self, program: str) -> None:
+        """Draw what was uploaded."""
+        if not self.count:
+            return
+        if program not in self._arrays:
+            made = self._programs[program]
+            self._arrays[program] = self._context.vertex_array(
+                made, [(self._vertices, *_inputs(made, ("at", "normal", "uv"), (3, 3, 2), "f")),
+                       (self._instances, *_inputs(made, ("row0", "row1", "row2", "link"),
+                                                  (4, 4, 4, 1), "/i"))], self._index)
+        self._arrays[program].render(instances=self.count)
+
+    def _release_arrays(self) -> None:
+        for array in self._arrays.values():
+            array.release()
+        self._arrays.clear()
+        if self._instances is not None:
+            self._instances.release()
+
+    def release(self) -> None:
+        """Give the memory back."""
+        self._release_arrays()
+        self._vertices.release()
+        self._index.release()
+
+
+def _inputs(program: Any, names: Tuple[str, ...], widths: Tuple[int, ...], kind: str,
+            ) -> Tuple[str, ...]:
+    """moderngl's buffer format; what a program does not use (its compiler drops it) is skipped."""
+    words, used = [], []
+    for name, width in zip(names, widths):
+        if name in program:
+            words.append("1i" if name == "link" else f"{width}f")
+            used.append(name)
+        else:
+            words.append(f"{width * 4}x")
+    form = " ".join(words) + ("/i" if kind == "/i" else "")
+    return (form, *used)

@@ -1,0 +1,39 @@
+"""An OpenGL context without a window, on EGL: Mesa draws where there is no graphics card."""
+from __future__ import annotations
+
+import ctypes
+from typing import Any, Callable, Dict
+
+from ..api import SensingUnavailableError
+
+_EGL: Dict[str, Any] = {"backend": "egl"}
+_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
+
+
+def new_context() -> Any:
+    """A context, current in this thread.
+
+    Raises:
+        SensingUnavailableError: something is not installed; says what.
+    """
+    try:
+        import moderngl
+    except ImportError as fault:
+        raise SensingUnavailableError("cameras need the Python package 'moderngl', which cannot be "
+                                      f"imported ({fault}): pip install moderngl") from None
+    try:
+        context = moderngl.create_context(standalone=True, require=330, **_EGL)
+    except Exception as fault:  # each of its back ends fails in its own way
+        raise SensingUnavailableError(
+            f"cameras need OpenGL 3.3 on EGL, which is not to be had ({fault}): "
+            f"apt install {_PACKAGES}") from None
+    context.gc_mode = "auto"
+    return context
+
+
+def finisher() -> Callable[[], object]:
+    """glFinish that lets other threads run while it waits; moderngl's does not."""
+    egl = ctypes.CDLL("libEGL.so.1")
+    egl.eglGetProcAddress.restype = ctypes.c_void_p
+    egl.eglGetProcAddress.argtypes = [ctypes.c_char_p]
+    return ctypes.CFUNCTYPE(None)(egl.eglGetProcAddress(b"glFinish"))

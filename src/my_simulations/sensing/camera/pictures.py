@@ -1,0 +1,119 @@
+"""Pictures for textures: read from files, or drawn where Gazebo would bring its own."""
+from __future__ import annotations
+
+from typing import Any, Optional, Tuple
+
+import numpy as np
+
+from ...appearance.textures import existing, places_of_mesh
+
+LARGEST = 1024
+"""Pixels along a side; larger pictures are made smaller."""
+
+_PATTERN = 256
+Rgb = Tuple[int, int, int]
+
+
+def read_picture(picture: Any) -> Optional[np.ndarray]:
+    """uint8 (h, w, 4), the lowest row first, of a path or a PIL image; None if unreadable."""
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        image = picture
+        if isinstance(picture, str):
+            path = existing(picture) or next(
+                (hit for hit in map(existing, places_of_mesh(picture, [])) if hit), None)
+            if path is None:
+                return None
+            image = Image.open(path)
+        if max(image.size) > LARGEST:
+            image.draft("RGB", (LARGEST, LARGEST))
+            image = image.convert("RGBA")
+            image.thumbnail((LARGEST, LARGEST), Image.BILINEAR)
+        image = image.convert("RGBA").transpose(Image.FLIP_TOP_BOTTOM)
+    except (OSError, ValueError, UnidentifiedImageError, Image.DecompressionBombError):
+        return None
+    return np.asarray(image)
+
+
+def draw_pattern(name: str) -> Optional[np.ndarray]:
+    """uint8 (256, 256, 4) like the page's pattern of that name; None for one it does not know."""
+    painter = _PATTERNS.get(name)
+    if painter is None:
+        return None
+    kind, colors, count, grain = painter
+    canvas = np.zeros((_PATTERN, _PATTERN, 3))
+    _PAINTERS[kind](canvas, colors, count)
+    if grain:
+        noise = np.random.Generator(np.random.Philox(11)).random((_PATTERN, _PATTERN, 1))
+        canvas += (noise - 0.5) * grain
+    solid = np.full((_PATTERN, _PATTERN, 1), 255.0)
+    return np.concatenate([np.clip(canvas, 0, 255), solid], axis=2).astype(np.uint8)[::-1].copy()
+
+
+def _plain(canvas: np.ndarray, colors: Tuple[Rgb, ...], _count: int) -> None:
+    canvas[:] = colors[0]
+
+
+def _planks(canvas: np.ndarray, colors: Tuple[Rgb, ...], count: int) -> None:
+    size, height = len(canvas), len(canvas) / count
+    veins = np.random.Generator(np.random.Philox(7)).random(size)
+    for row in range(count):
+        top, bottom = round(row * height), round((row + 1) * height)
+        canvas[top:bottom] = colors[row % len(colors)]
+        canvas[top:bottom] -= veins[top:bottom, None, None] * 18
+        joint = round((0.3 if row % 2 else 0.75) * size)
+        canvas[top:bottom, joint:joint + 2] *= 0.5
+        canvas[top:top + 2] *= 0.5
+
+
+def _bricks(canvas: np.ndarray, colors: Tuple[Rgb, ...], count: int) -> None:
+    size, height, width = len(canvas), len(canvas) // count, len(canvas) // 4
+    canvas[:] = colors[0]
+    shades = np.random.Generator(np.random.Philox(3)).random((count, 5)) * 0.3 + 0.85
+    for row in range(count):
+        for column in range(-1, 4):
+            left = round((column + (row % 2) / 2) * width)
+            canvas[row * height + 2:(row + 1) * height - 1,
+                   max(left + 2, 0):min(left + width - 1, size)] = (
+                np.array(colors[1]) * shades[row, column])
+
+
+def _tiles(canvas: np.ndarray, colors: Tuple[Rgb, ...], count: int) -> None:
+    step = len(canvas) // count
+    canvas[:] = colors[1]
+    for x in range(count):
+        for y in range(count):
+            canvas[y * step + 1:(y + 1) * step - 1, x * step + 1:(x + 1) * step - 1] = colors[0]
+
+
+def _road(canvas: np.ndarray, colors: Tuple[Rgb, ...], count: int) -> None:
+    size = len(canvas)
+    canvas[:] = colors[0]
+    for line in range(count + 1):
+        x = round(4 + (size - 12) * line / count)
+        canvas[:size if line in (0, count) else size // 2, x:x + 4] = colors[1]
+
+
+def _checker(canvas: np.ndarray, colors: Tuple[Rgb, ...], _count: int) -> None:
+    half = len(canvas) // 2
+    canvas[:] = colors[0]
+    canvas[:half, :half] = canvas[half:, half:] = colors[1]
+
+
+_PAINTERS = {"plain": _plain, "planks": _planks, "bricks": _bricks, "tiles": _tiles,
+             "road": _road, "checker": _checker}
+_WOOD = ((169, 116, 63), (158, 106, 55))
+_FLOOR = ((185, 138, 84), (169, 123, 71), (194, 147, 92))
+_ROAD = ("road", ((75, 75, 77), (233, 231, 221)), 2, 16)
+_PATTERNS = {
+    "wood": ("planks", _WOOD, 4, 14), "wood_floor": ("planks", _FLOOR, 8, 12),
+    "bricks": ("bricks", ((185, 178, 166), (150, 74, 56)), 8, 22),
+    "ceiling_tiled": ("tiles", ((233, 232, 226), (165, 163, 155)), 2, 16),
+    "painted_wall": ("plain", ((230, 224, 207),), 1, 8), "road": _ROAD,
+    "sidewalk": ("tiles", ((181, 177, 168), (143, 139, 131)), 4, 18),
+    "steps": ("tiles", ((168, 163, 154), (124, 120, 112)), 3, 18),
+    "grass": ("plain", ((95, 138, 58),), 1, 60),
+    "granite": ("plain", ((119, 114, 109),), 1, 90),
+    "com": ("checker", ((244, 214, 22), (17, 17, 17)), 1, 0),
+}

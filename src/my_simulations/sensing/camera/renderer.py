@@ -1,0 +1,382 @@
+"""Pictures of the scene: colours with light and shadow, depth, and which link is where."""
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+import numpy as np
+
+from ...description.world import Light, Scene
+from ...errors import InputError
+from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures
+from ..poses import matrices, matrix
+from . import distortion, shaders
+from .batches import Batch
+from .context import finisher, new_context
+from .lamps import SHADOW_SIZE, ShadowView, light_uniforms, shadow_lights, shadow_view
+from .pictures import draw_pattern, read_picture
+from .sky import linear, sky_uniforms
+from .surfaces import Surface, pieces_of
+
+_SRGB = 0x8C43  # GL_SRGB8_ALPHA8
+_VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
+
+
+class Renderer:
+    """One scene and one context; all calls from the thread that made it.
+
+    `trouble` is told of meshes and textures that cannot be read.
+
+    Raises:
+        SensingUnavailableError: there is no OpenGL.
+    """
+
+    def __init__(self, trouble: Callable[[str], None]) -> None:
+        self._trouble = trouble
+        self._context = new_context()
+        self._finish = finisher()
+        program = self._context.program
+        self._programs = {
+            "lit": program(shaders.LIT_VERTEX, shaders.LIT_FRAGMENT),
+            "range": program(shaders.RANGE_VERTEX, shaders.RANGE_FRAGMENT),
+            "shadow": program(shaders.SHADOW_VERTEX, shaders.SHADOW_FRAGMENT),
+            "sky": program(shaders.SKY_VERTEX, shaders.SKY_FRAGMENT)}
+        corners = np.array([-1, -1, 3, -1, -1, 3], dtype=np.float32)
+        self._sky = self._context.vertex_array(
+            self._programs["sky"], [(self._context.buffer(corners.tobytes()), "2f", "at")])
+        self._batches: Dict[Tuple[str, int], Batch] = {}
+        self._textures: Dict[Any, Any] = {}
+        self._lights: List[Light] = []
+        self._scene = Scene()
+        self._targets: Dict[Tuple[str, int, int, int], Any] = {}
+        self._maps = [self._context.depth_texture((SHADOW_SIZE, SHADOW_SIZE))
+                      for _ in range(shaders.MOST_SHADOWS)]
+        for one in self._maps:
+            one.compare_func = "<="
+            one.repeat_x = one.repeat_y = False
+        self._map_targets = [self._context.framebuffer(depth_attachment=one) for one in self._maps]
+        self._map_keys: List[Any] = [None] * len(self._maps)
+        self._lenses: Dict[CameraSpec, Tuple[np.ndarray, np.ndarray]] = {}
+
+    def add(self, body: Body) -> None:
+        """A model has come."""
+        for n, link in enumerate(body.model.links):
+            for m, visual in enumerate(link.visuals):
+                if visual.transparency >= 1.0:
+                    continue
+                local, look = matrix(visual.pose), body.looks.get((n, m))
+                key = repr((visual.geometry, look, visual.transparency, visual.cast_shadows))
+                if (key, 0) not in self._batches and not self._prepare(key, visual, look):
+                    continue
+                for part in range(len(self._batches)):
+                    batch = self._batches.get((key, part))
+                    if batch is None:
+                        break
+                    batch.add(body.name, body.first_link_row + n, local)
+
+    def _prepare(self, key: str, visual: Any, look: Any) -> bool:
+        try:
+            pieces = pieces_of(visual, look)
+        except InputError as fault:
+            self._trouble(f"cameras do not see the visual {visual.name!r}: {fault}")
+            return False
+        for part, piece in enumerate(piece for piece in pieces if len(piece.triangles)):
+            self._batches[key, part] = Batch(self._context, self._programs, piece,
+                                             visual.cast_shadows)
+        return bool(pieces)
+
+    def remove(self, name: str) -> None:
+        """A model has gone; what only it was made of is forgotten, too."""
+        for key, batch in list(self._batches.items()):
+            if name in batch.owners:
+                batch.remove(name)
+                if not batch.owners:
+                    batch.release()
+                    del self._batches[key]
+
+    def set_lights(self, lights: List[Light], scene: Scene) -> None:
+        """Light and surroundings."""
+        self._lights, self._scene = lights, scene
+
+    def render(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
+               outputs: Tuple[str, ...], step: int) -> Pictures:
+        """Pictures from a sensor at `frame` (world from sensor), links at `poses`."""
+        view = _VIEW_FROM_SENSOR @ _inverse(frame)
+        links = matrices(poses)
+        rgb = depth = labels = None
+        clip = projection(spec)
+        if RGB in outputs:
+            shadows = self._shadows(spec, links, frame[:3, 3])
+            self._place(view, links, spec)
+            rgb = self._draw_rgb(spec, view, clip, shadows)
+        if DEPTH in outputs or LABELS in outputs:
+            if RGB not in outputs:
+                self._place(view, links, spec)
+            depth, labels = self._draw_ranges(spec, clip)
+        if spec.distortion is not None:
+            rgb, depth, labels = self._distort(spec, rgb, depth, labels)
+        return Pictures(rgb, depth if DEPTH in outputs else None,
+                        labels if LABELS in outputs else None, step)
+
+    def _place(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
+               casters: bool = False) -> None:
+        """Say to all batches where they are, leaving out what the camera cannot see."""
+        for batch in self._batches.values():
+            here = np.flatnonzero(batch.rows < len(links))
+            frames = view @ links[batch.rows[here]] @ batch.local[here]
+            if casters and not batch.casts_shadow:
+                frames, here = frames[:0], here[:0]
+            if spec is not None:
+                center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
+                near_enough = in_sight(center, batch.radius, spec)
+                frames, here = frames[near_enough], here[near_enough]
+            if batch.surface.opacity < 1.0 and len(frames) > 1:
+                far_first = np.argsort(frames[:, 2, 3], kind="stable")
+                frames, here = frames[far_first], here[far_first]
+            batch.upload(frames, batch.rows[here])
+
+    # Colours.
+
+    def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, clip: np.ndarray,
+                  shadows: List[Tuple[int, ShadowView]]) -> np.ndarray:
+        context = self._context
+        target = self._target("rgb", spec.width, spec.height, spec.samples)
+        target.use()
+        background = self._scene.background[:3]
+        target.clear(*background, 1.0, depth=1.0)
+        self._set_lit(view, clip, shadows)
+        context.enable_only(context.DEPTH_TEST)
+        clear: List[Batch] = []
+        for batch in self._batches.values():
+            if batch.surface.opacity < 1.0:
+                clear.append(batch)
+            else:
+                self._draw_lit(batch)
+        if self._scene.sky is not None:
+            self._draw_sky(spec, view)
+        if clear:
+            self._draw_clear(clear, target)
+        if spec.samples > 1:
+            whole = self._target("rgb", spec.width, spec.height, 1)
+            context.copy_framebuffer(whole, target)
+            target = whole
+        self._finish()
+        made = np.frombuffer(target.read(components=3, alignment=1), dtype=np.uint8)
+        return made.reshape(spec.height, spec.width, 3)
+
+    def _draw_clear(self, batches: List[Batch], target: Any) -> None:
+        context = self._context
+        context.enable_only(context.DEPTH_TEST | context.BLEND)
+        context.blend_func = context.SRC_ALPHA, context.ONE_MINUS_SRC_ALPHA
+        target.depth_mask = False
+        for batch in batches:
+            self._draw_lit(batch)
+        target.depth_mask = True
+
+    def _set_lit(self, view: np.ndarray, clip: np.ndarray,
+                 shadows: List[Tuple[int, ShadowView]]) -> None:
+        program = self._programs["lit"]
+        _set(program, "clip", clip.T)
+        _set(program, "ambient", np.array(self._scene.ambient[:3]))
+        _set(program, "up", view[:3, 2])
+        program["lights"] = min(len(self._lights), shaders.MOST_LIGHTS)
+        for name, values in light_uniforms(self._lights, view, [n for n, _ in shadows]):
+            program[name].write(np.ascontiguousarray(values).tobytes())
+        maps = np.zeros((shaders.MOST_SHADOWS, 4, 4), np.float32)
+        pixels = np.zeros(shaders.MOST_SHADOWS, np.float32)
+        for n, (_, one) in enumerate(shadows):
+            maps[n] = (one.clip @ one.view @ _inverse(view)).T
+            pixels[n] = one.pixel
+        program["shadow_from_view"].write(maps.tobytes())
+        program["shadow_pixel"].write(pixels.tobytes())
+        for n, one in enumerate(self._maps):
+            one.use(location=1 + n)
+            program[f"shadow{n}"] = 1 + n
+        program["picture"] = 0
+        fog = self._scene.fog
+        kind, density = 0.0, 0.0
+        if fog is not None and fog.type != "none":
+            kind = 1.0 if fog.type == "linear" else 2.0
+            density = fog.density * (0.5 if fog.type == "quadratic" else 1.0) / 10.0
+            _set(program, "fog_color", linear(fog.color))
+            program["fog"] = (fog.start, fog.end, density, kind)
+        else:
+            program["fog"] = (0.0, 1.0, 0.0, 0.0)
+
+    def _draw_lit(self, batch: Batch) -> None:
+        if not batch.count:
+            return
+        program, surface = self._programs["lit"], batch.surface
+        program["diffuse"] = (*linear(surface.diffuse), surface.opacity)
+        program["specular"] = tuple(linear(surface.specular))
+        program["emissive"] = tuple(linear(surface.emissive))
+        program["lit"] = surface.lit
+        texture = self._texture(surface)
+        program["textured"] = texture is not None
+        if texture is not None:
+            texture.use(location=0)
+        if "repeats" in program:
+            program["repeats"] = surface.repeats
+        batch.draw("lit")
+
+    def _texture(self, surface: Surface) -> Any:
+        if surface.picture is None and not surface.pattern:
+            return None
+        key = surface.picture if isinstance(surface.picture, str) else (
+            id(surface.picture) if surface.picture is not None else ("pattern", surface.pattern))
+        if key not in self._textures:
+            pixels = (read_picture(surface.picture) if surface.picture is not None
+                      else draw_pattern(surface.pattern))
+            if pixels is None and surface.picture is not None:
+                self._trouble(f"the picture {surface.picture} cannot be read: cameras see its "
+                              "material without")
+            self._textures[key] = None if pixels is None else self._uploaded(pixels)
+        return self._textures[key]
+
+    def _uploaded(self, pixels: np.ndarray) -> Any:
+        height, width = pixels.shape[:2]
+        texture = self._context.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes(),
+                                        internal_format=_SRGB)
+        texture.build_mipmaps()
+        texture.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)
+        texture.repeat_x = texture.repeat_y = True
+        return texture
+
+    def _draw_sky(self, spec: CameraSpec, view: np.ndarray) -> None:
+        program = self._programs["sky"]
+        half = math.tan(spec.hfov / 2)
+        program["slope"] = (half, half * spec.height / spec.width)
+        _set(program, "world_from_view", view[:3, :3])  # its transpose, column by column
+        if self._scene.sky is not None:
+            for name, value in sky_uniforms(self._scene.sky).items():
+                program[name] = value
+        self._context.depth_func = "<="
+        self._sky.render(vertices=3)
+        self._context.depth_func = "<"
+
+    # Shadows.
+
+    def _shadows(self, spec: CameraSpec, links: np.ndarray, eye: np.ndarray,
+                 ) -> List[Tuple[int, ShadowView]]:
+        """The maps that lights need, drawn again only where something has moved."""
+        if not (spec.shadows and self._scene.shadows):
+            return []
+        wanted = shadow_lights(self._lights)
+        if not wanted:
+            return []
+        low, high, places = self._casters(links)
+        found = []
+        for n, index in enumerate(wanted):
+            light = self._lights[index]
+            one = shadow_view(light, low, high, eye)
+            key = (light, one.view.tobytes(), one.clip.tobytes(), places)
+            if key != self._map_keys[n]:
+                self._map_keys[n] = key
+                self._draw_map(n, one, links)
+            found.append((index, one))
+        return found
+
+    def _casters(self, links: np.ndarray) -> Tuple[np.ndarray, np.ndarray, bytes]:
+        low, high, places = np.full(3, np.inf), np.full(3, -np.inf), []
+        for key, batch in self._batches.items():
+            if not batch.casts_shadow:
+                continue
+            here = batch.rows < len(links)
+            frames = links[batch.rows[here]] @ batch.local[here]
+            places.append(repr((key, batch.radius)).encode() + frames.tobytes())
+            if batch.radius > 1000.0 or not len(frames):  # a ground casts on nothing
+                continue
+            center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
+            low = np.minimum(low, center.min(axis=0) - batch.radius)
+            high = np.maximum(high, center.max(axis=0) + batch.radius)
+        if not np.isfinite(low).all():
+            low, high = np.zeros(3), np.ones(3)
+        return np.floor(low), np.ceil(high), b"".join(places)
+
+    def _draw_map(self, n: int, one: ShadowView, links: np.ndarray) -> None:
+        context, target = self._context, self._map_targets[n]
+        self._place(one.view, links, None, casters=True)
+        target.use()
+        target.clear(depth=1.0)
+        context.enable_only(context.DEPTH_TEST)
+        _set(self._programs["shadow"], "clip", one.clip.T)
+        for batch in self._batches.values():
+            if batch.casts_shadow:
+                batch.draw("shadow")
+
+    # Depth and labels.
+
+    def _draw_ranges(self, spec: CameraSpec, clip: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        context = self._context
+        target = self._target("range", spec.width, spec.height, 1)
+        target.use()
+        target.clear(depth=1.0)
+        depth, labels = target.color_attachments
+        context.enable_only(context.DEPTH_TEST)
+        _set(self._programs["range"], "clip", clip.T)
+        for batch in self._batches.values():
+            batch.draw("range")
+        self._finish()
+        away = np.frombuffer(depth.read(alignment=4), np.float32).reshape(spec.height, spec.width)
+        link = np.frombuffer(labels.read(alignment=4), np.int32).reshape(spec.height, spec.width)
+        empty = away <= 0.0
+        return (np.where(empty, np.float32(np.inf), away),
+                np.where(empty, np.int32(NO_ROW), link))
+
+    def _target(self, kind: str, width: int, height: int, samples: int) -> Any:
+        key = (kind, width, height, samples)
+        found = self._targets.get(key)
+        if found is None:
+            context, size = self._context, (width, height)
+            if kind == "range":
+                found = context.framebuffer(
+                    [context.texture(size, 1, dtype="f4"), context.texture(size, 1, dtype="i4")],
+                    context.depth_renderbuffer(size))
+            else:
+                many = samples if samples > 1 else 0
+                found = context.framebuffer([context.renderbuffer(size, 4, samples=many)],
+                                            context.depth_renderbuffer(size, samples=many))
+            self._targets[key] = found
+        return found
+
+    def _distort(self, spec: CameraSpec, rgb: Optional[np.ndarray], depth: Optional[np.ndarray],
+                 labels: Optional[np.ndarray]) -> Tuple[Optional[np.ndarray], ...]:
+        if spec not in self._lenses:
+            self._lenses[spec] = distortion.sources(spec)
+        column, row = self._lenses[spec]
+        return (None if rgb is None else distortion.blended(rgb, column, row),
+                None if depth is None else distortion.nearest(depth, column, row, np.inf),
+                None if labels is None else distortion.nearest(labels, column, row, NO_ROW))
+
+
+def _inverse(frame: np.ndarray) -> np.ndarray:
+    """Of a rigid transform."""
+    made = np.eye(4)
+    made[:3, :3] = frame[:3, :3].T
+    made[:3, 3] = -frame[:3, :3].T @ frame[:3, 3]
+    return made
+
+
+def _set(program: Any, name: str, values: np.ndarray) -> None:
+    if name in program:
+        program[name].write(np.ascontiguousarray(values, dtype=np.float32).tobytes())
+
+
+def projection(spec: CameraSpec) -> np.ndarray:
+    """Clip space from view (x right, y up, looking along -z); the first row read is the upper."""
+    near, far = spec.near, spec.far
+    across = 1.0 / math.tan(spec.hfov / 2)
+    return np.array([[across, 0, 0, 0], [0, -across * spec.width / spec.height, 0, 0],
+                     [0, 0, (far + near) / (near - far), 2 * far * near / (near - far)],
+                     [0, 0, -1.0, 0]])
+
+
+def in_sight(centers: np.ndarray, radius: float, spec: CameraSpec) -> np.ndarray:
+    """Which balls (view frame) the camera's pyramid may touch."""
+    seen = (centers[:, 2] < radius - spec.near) & (centers[:, 2] > -spec.far - radius)
+    half = math.tan(spec.hfov / 2)
+    for axis, slope in ((0, half), (1, half * spec.height / spec.width)):
+        outside = (np.abs(centers[:, axis]) + centers[:, 2] * slope) / math.hypot(1.0, slope)
+        seen &= outside < radius
+    found: np.ndarray = seen
+    return found

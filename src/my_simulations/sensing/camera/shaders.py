@@ -1,0 +1,166 @@
+"""The programs of the renderer, GLSL 3.30.
+
+Light and colour are those of the editor's page: colours of files are sRGB, light is added up in
+linear units, a lamp of colour 1 falls on a white wall as 1. Places are given relative to the
+camera, so that a world far from its origin keeps its accuracy.
+"""
+from __future__ import annotations
+
+MOST_LIGHTS = 8
+MOST_SHADOWS = 2
+
+_INSTANCE = """#version 330
+in vec3 at; in vec3 normal; in vec2 uv;
+in vec4 row0; in vec4 row1; in vec4 row2; in int link;
+uniform mat4 clip;
+vec3 placed() { vec4 p = vec4(at, 1.0); return vec3(dot(row0, p), dot(row1, p), dot(row2, p)); }
+"""
+
+LIT_VERTEX = _INSTANCE + """
+uniform vec2 repeats;
+out vec3 place; out vec3 out_normal; out vec2 out_uv;
+void main() {
+  place = placed();
+  out_normal = vec3(dot(row0.xyz, normal), dot(row1.xyz, normal), dot(row2.xyz, normal));
+  out_uv = uv * repeats;
+  gl_Position = clip * vec4(place, 1.0);
+}"""
+
+COLOR = """
+vec3 encoded(vec3 c) {
+  return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+}
+"""
+
+LIT_FRAGMENT = f"""#version 330
+#define LIGHTS {MOST_LIGHTS}
+#define SHADOWS {MOST_SHADOWS}
+""" + """in vec3 place; in vec3 out_normal; in vec2 out_uv;
+out vec4 seen;
+uniform vec4 diffuse;
+uniform vec3 specular, emissive, ambient, up;
+uniform sampler2D picture;
+uniform bool textured, lit;
+uniform int lights;
+uniform vec4 light_at[LIGHTS];       // xyz: place, or direction to it with w = 0
+uniform vec3 light_color[LIGHTS];
+uniform vec3 light_way[LIGHTS];      // of a spot
+uniform vec4 light_fade[LIGHTS];     // constant, linear, quadratic, range
+uniform vec3 light_cone[LIGHTS];     // cosines of half the inner and outer angle, falloff; or -2
+uniform int light_shadow[LIGHTS];    // which map, or -1
+uniform mat4 shadow_from_view[SHADOWS];
+uniform float shadow_pixel[SHADOWS];
+uniform sampler2DShadow shadow0, shadow1;
+uniform vec4 fog;                    // start, end, density, kind
+uniform vec3 fog_color;
+""" + COLOR + """
+float lightened(int map, vec3 n) {
+  vec4 p = shadow_from_view[map] * vec4(place + n * shadow_pixel[map] * 1.5, 1.0);
+  vec3 at = p.xyz / p.w * 0.5 + 0.5;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  at.z -= 0.0004;
+  return map == 0 ? texture(shadow0, at) : texture(shadow1, at);
+}
+void main() {
+  vec3 albedo = diffuse.rgb;
+  float opacity = diffuse.a;
+  if (textured) { vec4 t = texture(picture, out_uv); albedo *= t.rgb; opacity *= t.a; }
+  if (opacity < 0.004) discard;
+  vec3 color = albedo;
+  if (lit) {
+    vec3 n = normalize(out_normal), eye = -normalize(place);
+    if (dot(n, eye) < 0.0) n = -n;
+    vec3 fallen = ambient * mix(0.6, 1.0, 0.5 * dot(n, up) + 0.5), shine = vec3(0.0);
+    for (int k = 0; k < lights; k++) {
+      vec3 way = light_at[k].xyz - place * light_at[k].w;
+      float far = length(way), strength = 1.0;
+      way /= max(far, 1e-6);
+      float facing = dot(n, way);
+      if (facing <= 0.0) continue;
+      if (light_at[k].w > 0.0) {
+        vec4 fade = light_fade[k];
+        if (far > fade.w) continue;
+        strength = 1.0 / max(fade.x + far * (fade.y + far * fade.z), 1e-6);
+        vec3 cone = light_cone[k];
+        if (cone.x >= -1.0) {
+          float part = (dot(-way, light_way[k]) - cone.y) / max(cone.x - cone.y, 1e-6);
+          if (part <= 0.0) continue;
+          strength *= pow(min(part, 1.0), cone.z);
+        }
+      }
+      if (light_shadow[k] >= 0) strength *= lightened(light_shadow[k], n);
+      vec3 falling = light_color[k] * (strength * facing);
+      fallen += falling;
+      if (specular.r + specular.g + specular.b > 0.06)
+        shine += falling * specular * 4.0 * pow(max(dot(n, normalize(way + eye)), 0.0), 30.0);
+    }
+    color = albedo * fallen + shine + emissive;
+  }
+  if (fog.w > 0.0) {
+    float d = -place.z, clear = fog.w < 1.5
+      ? clamp((fog.y - d) / max(fog.y - fog.x, 1e-6), 0.0, 1.0) : exp(-fog.z * fog.z * d * d);
+    color = mix(fog_color, color, clear);
+  }
+  seen = vec4(encoded(clamp(color, 0.0, 1.0)), opacity);
+}"""
+
+SHADOW_VERTEX = _INSTANCE + "void main() { gl_Position = clip * vec4(placed(), 1.0); }"
+SHADOW_FRAGMENT = "#version 330\nvoid main() {}"
+
+RANGE_VERTEX = _INSTANCE + """
+out float away; flat out int out_link;
+void main() {
+  vec3 place = placed();
+  away = -place.z;
+  out_link = link;
+  gl_Position = clip * vec4(place, 1.0);
+}"""
+
+RANGE_FRAGMENT = """#version 330
+in float away; flat in int out_link;
+layout(location = 0) out float depth;
+layout(location = 1) out int label;
+void main() { depth = away; label = out_link; }"""
+
+SKY_VERTEX = """#version 330
+in vec2 at;
+uniform vec2 slope;
+uniform mat3 world_from_view;
+out vec3 ahead;
+void main() {
+  ahead = world_from_view * vec3(at * slope, -1.0);
+  gl_Position = vec4(at.x, -at.y, 1.0, 1.0);
+}"""
+
+SKY_FRAGMENT = """#version 330
+in vec3 ahead;
+out vec4 seen;
+uniform vec3 sun, zenith, horizon, cloud_color;
+uniform float cover, size, drift;
+float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
+float noise(vec2 p) {
+  vec2 i = floor(p), f = fract(p);
+  f = f * f * (3.0 - 2.0 * f);
+  return mix(mix(hash(i), hash(i + vec2(1, 0)), f.x),
+             mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y);
+}
+""" + COLOR + """
+void main() {
+  vec3 way = normalize(ahead);
+  vec3 color = mix(horizon, zenith, pow(max(way.z, 0.0), 0.45));
+  float glow = max(dot(way, sun), 0.0);
+  color += vec3(1.0, 0.85, 0.6) * (pow(glow, 900.0) + 0.18 * pow(glow, 12.0)) * step(-0.05, sun.z);
+  if (way.z > 0.01) {
+    vec2 at = way.xy / (way.z + 0.12) / size + vec2(drift, 0.0);
+    float density = 0.0, part = 0.55;
+    for (int octave = 0; octave < 5; octave++) {
+      density += part * noise(at);
+      at *= 2.1;
+      part *= 0.5;
+    }
+    float cloud = smoothstep(1.0 - cover, 1.15 - 0.3 * cover, density);
+    cloud *= smoothstep(0.01, 0.2, way.z);
+    color = mix(color, cloud_color, cloud * 0.85);
+  }
+  seen = vec4(encoded(clamp(color, 0.0, 1.0)), 1.0);
+}"""

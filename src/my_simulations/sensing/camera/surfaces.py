@@ -1,0 +1,87 @@
+"""Visuals as what is drawn: triangles with a surface each."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, List, Optional, Tuple
+
+import numpy as np
+
+from ...appearance.looks import Look
+from ...description.shapes import SOLIDS, Color, Mesh, Visual
+from ...formats.mesh.loading import load_solid
+from ...formats.mesh.painted import flat, painted_parts
+from ..tessellation import triangles_of
+
+_GREY: Color = (0.7, 0.7, 0.7, 1.0)
+_OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
+_DULL: Color = (0.0, 0.0, 0.0, 1.0)
+_SIDES = 48
+
+
+@dataclass(frozen=True)
+class Surface:
+    """How triangles look; colours sRGB.
+
+    `picture`: a path, a PIL image, or None; `pattern`: a drawn one.
+    """
+
+    diffuse: Color = _GREY
+    specular: Color = _DULL
+    emissive: Color = _DULL
+    picture: Any = None
+    pattern: str = ""
+    repeats: Tuple[float, float] = (1.0, 1.0)
+    opacity: float = 1.0
+    lit: bool = True
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Triangles to be drawn: float32 rows of place, normal and uv (n, 8), and int32 (m, 3)."""
+
+    rows: np.ndarray
+    triangles: np.ndarray
+    surface: Surface
+
+
+def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
+    """What a visual is drawn as, in its own frame.
+
+    Raises:
+        InputError: a mesh or its like cannot be read.
+    """
+    opacity = 1.0 - visual.transparency
+    shape = visual.geometry
+    speaks = look is not None and bool(look.diffuse or look.ambient or look.emissive
+                                       or look.texture or look.pattern)
+    if isinstance(shape, SOLIDS):
+        parts = (painted_parts(shape) if isinstance(shape, Mesh)
+                 else [flat(load_solid(shape))])
+        return [_piece(part.vertices, part.normals, part.uv, part.triangles,
+                       surface_of(look, opacity) if speaks else
+                       Surface(part.color or _OF_MESH, picture=part.picture, opacity=opacity))
+                for part in parts]
+    made = triangles_of(shape, _SIDES)
+    if made is None or made.normals is None or made.uv is None:
+        return []
+    return [_piece(made.vertices, made.normals, made.uv, made.triangles,
+                   surface_of(look, opacity))]
+
+
+def _piece(vertices: np.ndarray, normals: np.ndarray, uv: np.ndarray, triangles: np.ndarray,
+           surface: Surface) -> Piece:
+    rows = np.column_stack([vertices, normals, uv]).astype(np.float32)
+    return Piece(np.ascontiguousarray(rows), np.ascontiguousarray(triangles, dtype=np.int32),
+                 surface)
+
+
+def surface_of(look: Optional[Look], opacity: float) -> Surface:
+    """A material as the editor's page reads it."""
+    if look is None:
+        return Surface(opacity=opacity)
+    textured = bool(look.texture or look.pattern)
+    white: Color = (1.0, 1.0, 1.0, 1.0)
+    diffuse = look.diffuse or look.ambient or (white if textured else _GREY)
+    return Surface(diffuse, look.specular or _DULL, look.emissive or _DULL, look.texture or None,
+                   look.pattern, (1.0 / (look.scale[0] or 1.0), 1.0 / (look.scale[1] or 1.0)),
+                   (1.0 - look.transparency) * opacity, look.lit)

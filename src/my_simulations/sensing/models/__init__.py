@@ -1,0 +1,1 @@
+"""What sensors that look at nothing measure: pure functions of the state."""

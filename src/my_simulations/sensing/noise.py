@@ -1,0 +1,114 @@
+"""Noise of sensors, drawn by counting: no sample depends on whether the one before was taken.
+
+Every draw comes from Philox (a generator that is a function of key and counter), keyed by the
+world's seed, the sensor's scoped name and the quantity, counted by the sample. The models are those
+of Gazebo Classic 11 (`GaussianNoiseModel`): a bias drawn once with a random sign, white noise, a
+wandering bias, rounding to a precision.
+"""
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+from typing import Any
+
+GAUSSIAN, QUANTIZED = "gaussian", "gaussian_quantized"
+_WHITE, _BIAS, _WANDERING = range(3)
+
+
+@dataclass(frozen=True)
+class NoiseSpec:
+    """SDF `<noise>`; `type` none, gaussian or gaussian_quantized; in the unit of the quantity.
+
+    `dynamic_bias_correlation_time` in s; `precision` 0 for none.
+    """
+
+    type: str = "none"
+    mean: float = 0.0
+    stddev: float = 0.0
+    bias_mean: float = 0.0
+    bias_stddev: float = 0.0
+    dynamic_bias_stddev: float = 0.0
+    dynamic_bias_correlation_time: float = 0.0
+    precision: float = 0.0
+
+
+def generator(seed: int, sensor: str, quantity: str, sample: int, purpose: int = _WHITE) -> Any:
+    """A numpy.random.Generator for one sample of one quantity of one sensor."""
+    import numpy as np
+
+    name = f"{seed}\0{sensor}\0{quantity}".encode()
+    key = np.frombuffer(hashlib.blake2b(name, digest_size=16).digest(), dtype=np.uint64)
+    counter = np.array([0, 0, sample % (1 << 64), purpose], dtype=np.uint64)
+    return np.random.Generator(np.random.Philox(key=key, counter=counter))
+
+
+class Noise:
+    """The noise of one quantity of one sensor, e.g. `range` or `angular_velocity/x`.
+
+    Only the wandering bias remembers anything: where it was at the sample before. Over samples left
+    out it wanders in one stride, which has the same distribution.
+    """
+
+    def __init__(self, spec: NoiseSpec, seed: int, sensor: str, quantity: str = "") -> None:
+        self.spec = spec
+        self._name = (seed, sensor, quantity)
+        self._active = spec.type in (GAUSSIAN, QUANTIZED)
+        self._wandering = 0.0
+        self.bias = self._first_bias() if self._active else 0.0
+
+    def _first_bias(self) -> float:
+        spec = self.spec
+        if spec.bias_mean == 0.0 and spec.bias_stddev == 0.0:
+            return 0.0
+        draws = generator(*self._name, 0, _BIAS)
+        bias = draws.normal(spec.bias_mean, spec.bias_stddev)
+        return float(-bias if draws.random() < 0.5 else bias)
+
+    def reset(self) -> None:
+        """The world begins anew: the wandering bias is 0 again."""
+        self._wandering = 0.0
+
+    def apply(self, values: Any, sample: int, elapsed: float) -> Any:
+        """Values of a sample with their noise; what is not finite stays.
+
+        Args:
+            values: a float or an array, in the quantity's unit.
+            sample: its number; the same number gives the same draws.
+            elapsed: sim time since the sample before, s.
+        """
+        if not self._active:
+            return values
+        import numpy as np
+
+        spec = self.spec
+        self._wander(sample, elapsed)
+        plain = np.asarray(values, dtype=np.float64)
+        noisy = plain + (self.bias + self._wandering + spec.mean)
+        if spec.stddev > 0.0:
+            noisy = noisy + generator(*self._name, sample).normal(0.0, spec.stddev, plain.shape)
+        if spec.type == QUANTIZED and spec.precision > 0.0:
+            steps = noisy / spec.precision
+            noisy = np.copysign(np.floor(np.abs(steps) + 0.5), steps) * spec.precision
+        noisy = np.where(np.isfinite(plain), noisy, plain)
+        return noisy if plain.ndim else float(noisy)
+
+    def _wander(self, sample: int, elapsed: float) -> None:
+        """An Ornstein-Uhlenbeck step, exact for any length."""
+        spec, tau = self.spec, self.spec.dynamic_bias_correlation_time
+        if spec.dynamic_bias_stddev <= 0.0 or tau <= 0.0 or elapsed <= 0.0:
+            return
+        spread = spec.dynamic_bias_stddev * math.sqrt(-tau / 2.0 * math.expm1(-2.0 * elapsed / tau))
+        draw = generator(*self._name, sample, _WANDERING).normal(0.0, spread)
+        self._wandering = math.exp(-elapsed / tau) * self._wandering + float(draw)
+
+
+def noisy_picture(rgb: Any, spec: NoiseSpec, seed: int, sensor: str, sample: int) -> Any:
+    """A picture (h, w, 3) uint8 with Gazebo's image noise: grey, in parts of full brightness."""
+    import numpy as np
+
+    if spec.type not in (GAUSSIAN, QUANTIZED):
+        return rgb
+    grey = generator(seed, sensor, "image", sample).standard_normal(rgb.shape[:2], np.float32)
+    shift = (grey * np.float32(spec.stddev) + np.float32(spec.mean)) * np.float32(255.0)
+    return np.clip(np.rint(rgb + shift[..., None]), 0, 255).astype(np.uint8)

@@ -1,0 +1,280 @@
+"""The sensing process, seen from the parent."""
+from __future__ import annotations
+
+import contextlib
+import logging
+import queue
+import signal
+import socket
+import subprocess
+import threading
+import time
+from concurrent.futures import Future
+from typing import Any, Callable, Dict, Optional, Tuple, Union
+
+from ..engine import child_process
+from ..engine.message_pipe import Wire
+from .api import (
+    READY,
+    TROUBLE,
+    CastRays,
+    Change,
+    Pictures,
+    RayReturns,
+    RenderCamera,
+    Request,
+    SensingError,
+    SensingGoneError,
+    SensingUnavailableError,
+)
+from .scene import SceneState
+
+_log = logging.getLogger(__name__)
+_END_S = 3.0  # how long a child may take to end by itself
+_START_S = 60.0  # and to start, on a machine that does much else
+_MOST_WAITING = 256
+_MOST_DEATHS = 3
+
+
+class _Waiting:
+    """A request on its way."""
+
+    def __init__(self, request: Request) -> None:
+        self.request = request
+        self.future: "Future[Any]" = Future()
+        self.since = time.monotonic()
+
+
+class SensingProcess:
+    """A child that casts rays and draws. Satisfies `api.Sensing`.
+
+    Nothing but this object exists before the first request. All that could block is done by threads
+    of its own, so a child that hangs holds nobody up: it is ended after `patience` s. After a death
+    the next request starts another child with the same scene; three deaths in a row without an
+    answer, and requests fail at once until the scene changes.
+
+    Args:
+        ring_fd: descriptor of the engine's ring; -1 where all requests bring their rows.
+        patience: s without an answer to a request, once the child has started.
+    """
+
+    def __init__(self, ring_fd: int = -1, patience: float = 60.0) -> None:
+        self._ring_fd = ring_fd
+        self._patience = patience
+        self._lock = threading.Lock()
+        self._scene = SceneState()  # the writer's, once there is one
+        self._outbox: "queue.Queue[Union[None, Change, Tuple[int, _Waiting]]]" = queue.Queue()
+        self._waiting: Dict[int, _Waiting] = {}
+        self._numbers = 0
+        self._deaths = 0
+        self._refusal = ""
+        self._closing = False
+        self._writer: Optional[threading.Thread] = None
+        self._reader: Optional[threading.Thread] = None
+        self._child: "Optional[subprocess.Popen[bytes]]" = None
+        self._wire: Optional[Wire] = None
+        self._verdict = ""
+        self._listener: Callable[[str], None] = _log.warning
+
+    @property
+    def pid(self) -> int:
+        """The child's process number; 0 where there is none."""
+        child = self._child
+        return child.pid if child is not None and child.poll() is None else 0
+
+    def on_trouble(self, listener: Callable[[str], None]) -> None:
+        """Set who hears one sentence of each death and of what is left out of the scene."""
+        self._listener = listener
+
+    def change(self, change: Change) -> None:
+        """Tell what is in the world."""
+        with self._lock:
+            self._refusal, self._deaths = "", 0
+            if self._writer is None:
+                self._scene.apply(change)
+            else:
+                self._outbox.put(change)
+
+    def cast(self, request: CastRays) -> "Future[RayReturns]":
+        """Ask for ranges; see `api.Sensing`."""
+        return self._submit(request)
+
+    def render(self, request: RenderCamera) -> "Future[Pictures]":
+        """Ask for pictures; see `api.Sensing`."""
+        return self._submit(request)
+
+    def _submit(self, request: Request) -> "Future[Any]":
+        waiting = _Waiting(request)
+        with self._lock:
+            fault = self._fault()
+            if fault is None:
+                self._numbers += 1
+                self._waiting[self._numbers] = waiting
+                self._outbox.put((self._numbers, waiting))
+                if self._writer is None:
+                    self._writer = threading.Thread(target=self._write, name="sensing requests",
+                                                    daemon=True)
+                    self._writer.start()
+        if fault is not None:
+            waiting.future.set_exception(fault)
+        return waiting.future
+
+    def _fault(self) -> Optional[SensingError]:
+        if self._closing:
+            return SensingGoneError("the sensing process is being closed")
+        if self._refusal:
+            return SensingUnavailableError(self._refusal)
+        if len(self._waiting) >= _MOST_WAITING:
+            return SensingError(f"{_MOST_WAITING} rays and pictures are waiting already: "
+                                "this one is left out")
+        return None
+
+    def close(self) -> None:
+        """End the child and wait for the end."""
+        with self._lock:
+            self._closing = True
+            writer, child = self._writer, self._child
+        if writer is None:
+            return
+        self._outbox.put(None)
+        self._hang_up()
+        if child is not None:
+            try:
+                child.wait(_END_S)
+            except subprocess.TimeoutExpired:
+                child.kill()
+                child.wait()
+        writer.join(_END_S)
+        reader = self._reader
+        if reader is not None:
+            reader.join(_END_S)
+
+    def _hang_up(self) -> None:
+        with self._lock:
+            wire = self._wire
+        if wire is not None:
+            with contextlib.suppress(OSError):  # it may have hung up already
+                wire.sock.shutdown(socket.SHUT_RDWR)
+
+    # The writer: keeps the scene, starts children. It lives as long as this object, as it must: the
+    # kernel ends a child with the thread that started it.
+
+    def _write(self) -> None:
+        while True:
+            item = self._outbox.get()
+            if item is None:
+                break
+            if not isinstance(item, tuple):
+                self._scene.apply(item)
+                if self._wire is not None:
+                    self._send((0, item))
+                continue
+            number, waiting = item
+            with self._lock:
+                known = number in self._waiting
+            if known:
+                if self._wire is None and not self._start():
+                    continue
+                self._send((number, waiting.request))
+        self._hang_up()
+
+    def _start(self) -> bool:
+        reader = self._reader
+        if reader is not None:
+            reader.join()  # the one before has been buried
+        with self._lock:
+            if self._closing:
+                return False
+        ours, theirs = socket.socketpair()
+        inherited = [theirs.fileno()] + ([self._ring_fd] if self._ring_fd >= 0 else [])
+        arguments = [str(theirs.fileno()), str(self._ring_fd)]
+        with child_process.shielded():
+            child = subprocess.Popen(
+                child_process.command("sensing", *arguments), pass_fds=inherited,
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                env=child_process.environment())
+        theirs.close()
+        wire = Wire(ours)
+        with self._lock:
+            self._child, self._wire = child, wire
+        self._reader = threading.Thread(target=self._read, args=(child, wire),
+                                        name="sensing answers", daemon=True)
+        self._reader.start()
+        self._send((0, self._scene.whole()))
+        return True
+
+    def _send(self, message: object) -> None:
+        wire = self._wire
+        try:
+            if wire is not None:
+                wire.send(message)
+        except OSError as fault:
+            # The reader sees the same end, and fails what waits.
+            _log.debug("the sensing process does not listen: %s", fault)
+
+    # The reader of one child.
+
+    def _read(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+        patience = max(_START_S, self._patience)
+        while True:
+            try:
+                messages = wire.receive(min(1.0, self._patience / 4))
+            except (EOFError, OSError):
+                break
+            for number, message in messages:
+                self._answer(number, message)
+                if number == READY:
+                    patience = self._patience
+            if not messages and self._overdue(patience):
+                self._verdict = (f"the sensing process has not answered for {patience:g} s "
+                                 "and was ended")
+                child.kill()
+        child.wait()
+        self._bury(child, wire)
+
+    def _answer(self, number: int, message: Any) -> None:
+        if number == TROUBLE:
+            self._listener(message)
+            return
+        with self._lock:
+            waiting = self._waiting.pop(number, None)
+            if waiting is not None:
+                self._deaths = 0
+            for later in self._waiting.values():
+                later.since = time.monotonic()  # it works through them
+        if waiting is None:
+            return  # the first message, which asks for nothing
+        if isinstance(message, SensingError):
+            waiting.future.set_exception(message)
+        else:
+            waiting.future.set_result(message)
+
+    def _overdue(self, patience: float) -> bool:
+        with self._lock:
+            oldest = min((one.since for one in self._waiting.values()), default=None)
+        return oldest is not None and time.monotonic() - oldest > patience
+
+    def _bury(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+        reason = self._verdict or _reason(child.returncode)
+        with self._lock:
+            self._verdict = ""
+            if self._wire is wire:
+                self._wire = None
+            waiting, self._waiting = self._waiting, {}
+            closing = self._closing
+            wire.sock.close()
+            self._deaths += 1
+            if self._deaths >= _MOST_DEATHS:
+                self._refusal = (f"{reason}, the {_MOST_DEATHS}rd time in a row: lasers and "
+                                 "cameras stay off until the world changes")
+        if not closing:
+            self._listener(f"{reason}; physics goes on, and the next ray or picture starts "
+                           "another" if not self._refusal else self._refusal)
+        for one in waiting.values():
+            one.future.set_exception(SensingGoneError(reason))
+
+
+def _reason(code: int) -> str:
+    if code < 0:
+        return f"the sensing process was killed by {signal.Signals(-code).name}"
+    return f"the sensing process ended with code {code}"

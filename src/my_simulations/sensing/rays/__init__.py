@@ -1,0 +1,1 @@
+"""Rays, cast by Embree."""

@@ -1,0 +1,334 @@
+"""What rays can meet: one instance a link, moved by its transform, and endless planes."""
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass, field
+from typing import Callable, Dict, List, Sequence, Tuple
+
+import numpy as np
+
+from ...description.shapes import Capsule, Ellipsoid, Geometry, Plane, Sphere
+from ...errors import InputError
+from ...geometry import Pose
+from ..api import NO_ROW
+from ..poses import matrices, matrix
+from ..tessellation import sides, tapered, triangles_of
+from .embree import (
+    BODY,
+    DIRECTION,
+    FAR,
+    FIELDS,
+    FLOAT3,
+    FLOAT4,
+    GEOMETRY,
+    INDEX,
+    INSTANCE,
+    MASK,
+    MATRIX,
+    NEAR,
+    NOTHING,
+    ORIGIN,
+    PACKET,
+    SPHERES,
+    TIME,
+    TRIANGLES,
+    UINT3,
+    VERTEX,
+    Embree,
+)
+
+_ALIGNED = 64
+
+
+@dataclass(frozen=True)
+class RayShape:
+    """A collision or a visual: what rays meet, where it is on its link, and how bright it is."""
+
+    geometry: Geometry
+    pose: Pose
+    retro: float
+    endless: bool = False
+
+
+@dataclass
+class _Parts:
+    """A scene of the shapes of a link, shared by all links with the same."""
+
+    scene: int
+    retro: List[float]
+    users: int = 0
+
+
+@dataclass
+class _Instance:
+    geometry: int
+    row: int
+    key: Tuple[RayShape, ...]
+    shown: bool = True
+
+
+@dataclass
+class _PlaneOnLink:
+    row: int
+    point: np.ndarray  # in the link frame
+    normal: np.ndarray
+    retro: float
+
+
+@dataclass
+class _Model:
+    instances: List[int] = field(default_factory=list)
+    planes: List[_PlaneOnLink] = field(default_factory=list)
+
+
+class RayScene:
+    """A top-level scene. Not thread safe.
+
+    `trouble` is told of shapes that cannot be read, which rays then pass through.
+    """
+
+    def __init__(self, embree: Embree, trouble: Callable[[str], None]) -> None:
+        self._embree = embree
+        self._trouble = trouble
+        self._top = embree.scene(dynamic=True)
+        self._parts: Dict[str, _Parts] = {}
+        self._instances: Dict[int, _Instance] = {}
+        self._models: Dict[str, _Model] = {}
+        self._changed = True
+        self._rows = np.zeros(0, dtype=np.int64)
+        self._last = np.zeros((0, 7))
+        self._poses = np.zeros((0, 7))
+        self._buffer = _packets(PACKET)
+
+    def add(self, name: str, links: Sequence[Tuple[int, Sequence[RayShape]]]) -> None:
+        """A model of links with rows; it is seen once `move` has given it a place."""
+        self.remove(name)
+        model = _Model()
+        self._models[name] = model
+        for row, shapes in links:
+            for shape in shapes:
+                if shape.endless and isinstance(shape.geometry, Plane):
+                    frame = matrix(shape.pose)
+                    normal = frame[:3, :3] @ np.array(shape.geometry.normal)
+                    model.planes.append(_PlaneOnLink(row, frame[:3, 3], normal, shape.retro))
+            solid = tuple(s for s in shapes if not (s.endless and isinstance(s.geometry, Plane)))
+            if solid:
+                model.instances.append(self._instantiate(row, solid))
+        self._changed = True
+
+    def remove(self, name: str) -> None:
+        """A model has gone; nothing happens where there is none."""
+        model = self._models.pop(name, None)
+        for number in model.instances if model else ():
+            instance = self._instances.pop(number)
+            self._embree.rtcDetachGeometry(self._top, number)
+            self._embree.rtcReleaseGeometry(instance.geometry)
+            parts = self._parts[repr(instance.key)]
+            parts.users -= 1
+            if not parts.users:
+                self._embree.rtcReleaseScene(parts.scene)
+                del self._parts[repr(instance.key)]
+        self._changed = True
+
+    def clear(self) -> None:
+        """Everything has gone."""
+        for name in list(self._models):
+            self.remove(name)
+
+    def _instantiate(self, row: int, shapes: Tuple[RayShape, ...]) -> int:
+        embree, key = self._embree, repr(shapes)
+        parts = self._parts.get(key)
+        if parts is None:
+            parts = self._parts[key] = self._build(shapes)
+        parts.users += 1
+        geometry = embree.rtcNewGeometry(embree.device, INSTANCE)
+        embree.rtcSetGeometryInstancedScene(geometry, parts.scene)
+        embree.rtcCommitGeometry(geometry)
+        number: int = embree.rtcAttachGeometry(self._top, geometry)
+        self._instances[number] = _Instance(geometry, row, shapes)
+        return number
+
+    def _build(self, shapes: Tuple[RayShape, ...]) -> _Parts:
+        scene = self._embree.scene(dynamic=False)
+        retro: List[float] = []
+        for shape in shapes:
+            try:
+                made = _buffers(shape)
+            except InputError as fault:
+                self._trouble(f"rays do not see a shape: {fault}")
+                continue
+            for kind, buffers in made:
+                self._embree.attach(scene, kind, buffers)
+                retro.append(shape.retro)
+        self._embree.rtcCommitScene(scene)
+        self._embree.check()
+        return _Parts(scene, retro)
+
+    def move(self, poses: np.ndarray) -> None:
+        """Put every link where (n, 7) poses of link rows say; a link without a row is not seen."""
+        if self._changed:
+            self._index()
+        here = self._rows < len(poses)
+        now = np.full((len(self._rows), 7), np.nan)
+        now[here] = poses[self._rows[here]]
+        moved = np.flatnonzero((now != self._last).any(axis=1))
+        if len(moved) or self._changed:
+            self._place(moved, now)
+            self._embree.rtcCommitScene(self._top)
+        self._last, self._changed, self._poses = now, False, poses
+
+    def _index(self) -> None:
+        """Tables by place in the list of instances, after a change of the scene."""
+        self._numbers = list(self._instances)
+        instances = list(self._instances.values())
+        self._handles = [one.geometry for one in instances]
+        self._rows = np.array([one.row for one in instances], dtype=np.int64)
+        self._last = np.full((len(instances), 7), np.inf)
+        most = max(self._numbers, default=-1) + 1
+        self._row_of = np.full(most, NO_ROW, dtype=np.int32)
+        self._first_retro = np.zeros(most, dtype=np.int64)
+        retro: List[float] = []
+        for number, one in self._instances.items():
+            self._row_of[number] = one.row
+            self._first_retro[number] = len(retro)
+            retro += self._parts[repr(one.key)].retro
+        self._retro = np.array(retro, dtype=np.float32)
+        self._planes = [plane for model in self._models.values() for plane in model.planes]
+
+    def _place(self, moved: np.ndarray, now: np.ndarray) -> None:
+        embree = self._embree
+        seen = np.isfinite(now[moved]).all(axis=1)
+        frames = matrices(np.where(seen[:, None], now[moved], 0.0))
+        columns = np.ascontiguousarray(frames[:, :3, :].transpose(0, 2, 1), dtype=np.float32)
+        at, size = columns.ctypes.data, columns[:1].nbytes
+        for n, index in enumerate(moved.tolist()):
+            geometry, one = self._handles[index], self._instances[self._numbers[index]]
+            if seen[n]:
+                embree.rtcSetGeometryTransform(geometry, 0, MATRIX, at + n * size)
+                if not one.shown:
+                    embree.rtcEnableGeometry(geometry)
+                    one.shown = True
+            elif one.shown:
+                embree.rtcDisableGeometry(geometry)
+                one.shown = False
+            embree.rtcCommitGeometry(geometry)
+
+    def cast(self, origins: np.ndarray, directions: np.ndarray, near: float, far: float,
+             ) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Ranges (float64, inf for nothing), retro (float32) and link rows (int32) of rays.
+
+        `origins` (3,) or (n, 3) and unit `directions` (n, 3), in the world. Call `move` before.
+        """
+        count = len(directions)
+        packets = -(-count // PACKET)
+        if len(self._buffer) < packets:
+            self._buffer = _packets(packets)
+        buffer = self._buffer[:packets]
+        words = buffer.view(np.uint32)
+        _fill(buffer[:, ORIGIN:ORIGIN + 3], origins, count)
+        _fill(buffer[:, DIRECTION:DIRECTION + 3], directions, count)
+        buffer[:, NEAR] = near
+        buffer[:, FAR] = far
+        buffer[:, TIME] = 0.0
+        words[:, MASK] = NOTHING
+        words[:, GEOMETRY:] = NOTHING
+        intersect, top, valid = self._embree.rtcIntersect16, self._top, _ALL.ctypes.data
+        at, size = buffer.ctypes.data, FIELDS * PACKET * 4
+        for n in range(packets):
+            intersect(valid, top, at + n * size, None)
+        geometry = words[:, GEOMETRY].ravel()[:count]
+        met = geometry != NOTHING
+        ranges = np.where(met, buffer[:, FAR].ravel()[:count], np.inf).astype(np.float64)
+        rows = np.full(count, NO_ROW, dtype=np.int32)
+        retro = np.zeros(count, dtype=np.float32)
+        if met.any():
+            body = words[:, BODY].ravel()[:count][met]
+            rows[met] = self._row_of[body]
+            retro[met] = self._retro[self._first_retro[body] + geometry[met]]
+        for plane in self._planes:
+            self._meet(plane, origins, directions, near, far, (ranges, retro, rows))
+        return ranges, retro, rows
+
+    def _meet(self, plane: _PlaneOnLink, origins: np.ndarray, directions: np.ndarray, near: float,
+              far: float, found: Tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
+        """An endless plane, from both sides (Gazebo's ODE), to the last digit."""
+        if plane.row >= len(self._poses):
+            return
+        frame = matrices(self._poses[plane.row:plane.row + 1])[0]
+        normal = frame[:3, :3] @ plane.normal
+        height = (origins - (frame[:3, :3] @ plane.point + frame[:3, 3])) @ normal
+        ranges, retro, rows = found
+        with np.errstate(divide="ignore", invalid="ignore"):
+            distance = -height / (directions @ normal)
+        nearer = (distance >= near) & (distance <= far) & (distance < ranges)
+        ranges[nearer], retro[nearer], rows[nearer] = distance[nearer], plane.retro, plane.row
+
+
+def _packets(count: int) -> np.ndarray:
+    """Room for packets, where Embree wants it: at a multiple of 64 bytes."""
+    raw = np.zeros(count * FIELDS * PACKET + _ALIGNED // 4, dtype=np.float32)
+    first = -raw.ctypes.data % _ALIGNED // ctypes.sizeof(ctypes.c_float)
+    return raw[first:first + count * FIELDS * PACKET].reshape(count, FIELDS, PACKET)
+
+
+_ALL = _packets(1)[0, 0].view(np.int32)  # of a packet's rays, every one is valid; aligned, too
+_ALL[:] = -1
+
+
+def _fill(fields: np.ndarray, values: np.ndarray, count: int) -> None:
+    """Put (3,) or (n, 3) values into (packets, 3, PACKET); what is left over repeats the last."""
+    if values.ndim == 1:
+        fields[:] = values[None, :, None]
+        return
+    whole = count // PACKET
+    fields[:whole] = values[:whole * PACKET].reshape(whole, PACKET, 3).transpose(0, 2, 1)
+    if whole < len(fields):
+        rest = values[whole * PACKET:]
+        fields[whole, :, :len(rest)] = rest.T
+        fields[whole, :, len(rest):] = rest[-1][:, None]
+
+
+def _buffers(shape: RayShape) -> "List[Tuple[int, Tuple[Tuple[int, int, np.ndarray], ...]]]":
+    """The Embree geometries of a shape, in the link frame."""
+    frame, solid = matrix(shape.pose), shape.geometry
+    if isinstance(solid, Sphere):
+        return [_spheres(frame, [(0.0, 0.0, 0.0, solid.radius)])]
+    if isinstance(solid, Capsule):
+        side = tapered(solid.radius, solid.radius, solid.length, sides(solid.radius))
+        half = solid.length / 2
+        return [_triangles(frame, side.vertices, side.triangles),
+                _spheres(frame, [(0, 0, -half, solid.radius), (0, 0, half, solid.radius)])]
+    if isinstance(solid, Ellipsoid) and len(set(solid.radii)) == 1:
+        return [_spheres(frame, [(0.0, 0.0, 0.0, solid.radii[0])])]
+    surface = triangles_of(solid)
+    return [] if surface is None else [_triangles(frame, surface.vertices, surface.triangles)]
+
+
+def _spheres(frame: np.ndarray, balls: Sequence[Tuple[float, float, float, float]],
+             ) -> "Tuple[int, Tuple[Tuple[int, int, np.ndarray], ...]]":
+    table = np.array(balls, dtype=np.float64)
+    table[:, :3] = table[:, :3] @ frame[:3, :3].T + frame[:3, 3]
+    return SPHERES, ((VERTEX, FLOAT4, np.ascontiguousarray(table, dtype=np.float32)),)
+
+
+def _triangles(frame: np.ndarray, vertices: np.ndarray, triangles: np.ndarray,
+               ) -> "Tuple[int, Tuple[Tuple[int, int, np.ndarray], ...]]":
+    placed = vertices @ frame[:3, :3].T + frame[:3, 3]
+    return TRIANGLES, ((VERTEX, FLOAT3, np.ascontiguousarray(placed, dtype=np.float32)),
+                       (INDEX, UINT3, np.ascontiguousarray(triangles, dtype=np.uint32)))
+
+
+def fan_directions(samples: int, min_angle: float, max_angle: float, rows: int,
+                   min_elevation: float, max_elevation: float) -> np.ndarray:
+    """Unit directions (rows * samples, 3) of a fan, row by row; a single one is the minimum."""
+    yaw, pitch = np.meshgrid(_spread(samples, min_angle, max_angle),
+                             _spread(rows, min_elevation, max_elevation))
+    yaw, pitch = yaw.ravel(), pitch.ravel()
+    return np.stack([np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)],
+                    axis=1)
+
+
+def _spread(count: int, low: float, high: float) -> np.ndarray:
+    return np.linspace(low, high, count) if count > 1 else np.array([low])
+
+

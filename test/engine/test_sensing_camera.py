@@ -1,0 +1,315 @@
+"""Pictures against closed forms: projection, depth, clipping, light, shadow, textures."""
+from __future__ import annotations
+
+import hashlib
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from sensing_scene import body, table
+
+from my_simulations.appearance.looks import Look
+from my_simulations.description.shapes import Box, Mesh, Plane, Sphere
+from my_simulations.description.world import Fog, Light, Scene, Sky
+from my_simulations.geometry import Pose, compose, quat_from_rpy, rotate
+from my_simulations.sensing.api import DEPTH, LABELS, RGB, CameraSpec, Distortion
+from my_simulations.sensing.camera.distortion import distorted
+from my_simulations.sensing.camera.renderer import Renderer
+from my_simulations.sensing.poses import matrix
+
+ALL = (RGB, DEPTH, LABELS)
+DARK = Scene(ambient=(0.0, 0.0, 0.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))
+BRIGHT = Scene(ambient=(1.0, 1.0, 1.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))
+FLAT_WHITE = Look(diffuse=(1.0, 1.0, 1.0, 1.0), lit=False)
+SPEC = CameraSpec(640, 480)
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    return Renderer(lambda text: None)
+
+
+@pytest.fixture
+def view(renderer):
+    names = []
+    renderer.said = []
+    renderer._trouble = renderer.said.append
+    renderer.set_lights([], BRIGHT)
+
+    def see(bodies, poses, eye=Pose(), spec=SPEC, outputs=ALL):
+        for one in bodies:
+            names.append(one.name)
+            renderer.remove(one.name)
+            renderer.add(one)
+        return renderer.render(spec, matrix(eye), table(poses), outputs, 7)
+
+    see.renderer = renderer
+    yield see
+    for name in names:
+        renderer.remove(name)
+    assert not renderer._batches
+
+
+def middle_of(mask):
+    rows, columns = np.nonzero(mask)
+    return columns.mean(), rows.mean()
+
+
+@pytest.mark.parametrize("spec", [SPEC, CameraSpec(321, 241, 2.0), CameraSpec(1280, 720, 0.5)])
+@pytest.mark.parametrize("place", [(4.0, 0.0, 0.0), (6.0, 1.0, -0.4), (3.0, -0.5, 0.35)])
+def test_a_point_falls_on_the_pixel_that_the_pinhole_says_within_a_tenth(view, spec, place):
+    # A plate that faces the camera keeps its middle under a perspective projection; it is turned
+    # about the optical axis, so that its edges cross pixels in all their parts.
+    eye = Pose((10.0, -3.0, 2.0), quat_from_rpy(0.1, -0.2, 0.7))
+    ahead = place[0] - 0.0005
+    size = (80.0 if spec.width > 400 else 30.0) * ahead / spec.focal_length
+    turned = Pose(place, quat_from_rpy(0.3, 0.0, 0.0))
+    found = view([body("b", Box((0.001, size, size)), 0)], [compose(eye, turned)], eye, spec,
+                 (LABELS,))
+    expected = ((spec.width - 1) / 2 - spec.focal_length * place[1] / ahead,
+                (spec.height - 1) / 2 - spec.focal_length * place[2] / ahead)
+    assert middle_of(found.labels == 0) == pytest.approx(expected, abs=0.1)
+
+
+def test_an_edge_lies_between_the_pixels_that_the_pinhole_says(view):
+    for offset in np.linspace(0.0, 0.01, 21):
+        found = view([body("b", Box((0.001, 2.0, 2.0)), 0)],
+                     [Pose((2.0005, 1.0 + offset, 0.0))], outputs=(LABELS,))
+        edge = (found.labels[240] == 0).sum() - 0.5
+        assert edge == pytest.approx(319.5 - SPEC.focal_length * offset / 2.0, abs=0.501)
+
+
+def test_depth_is_the_distance_along_the_axis_within_a_fifth_of_a_millimetre(view):
+    eye = Pose((100.0, 50.0, 3.0), quat_from_rpy(0.0, 0.3, 1.0))
+    ground = Pose((100.0, 50.0, 0.0))
+    found = view([body("g", Plane(size=(100.0, 100.0)), 0)], [ground], eye)
+    column, row = np.meshgrid(np.arange(640), np.arange(480))
+    ways = np.stack([np.ones((480, 640)), (319.5 - column) / SPEC.focal_length,
+                     (239.5 - row) / SPEC.focal_length], axis=-1)
+    down = np.array(rotate((-eye.orientation[0], -eye.orientation[1], -eye.orientation[2],
+                            eye.orientation[3]), (0.0, 0.0, -1.0)))
+    expected = 3.0 / (ways @ down)
+    seen = np.isfinite(found.depth) & (expected > 0) & (expected < 10.0)
+    assert seen.sum() > 100000
+    errors = np.abs(found.depth[seen] - expected[seen])
+    assert np.quantile(errors, 0.99) < 2e-4
+    assert (found.labels[seen] == 0).all()
+
+
+def test_depth_of_a_ball(view):
+    found = view([body("s", Sphere(1.0), 0)], [Pose((4.0, 0.0, 0.0))], outputs=(DEPTH,))
+    assert found.rgb is None and found.labels is None and found.step == 7
+    assert found.depth[239:241, 319:321] == pytest.approx(3.0, abs=2e-3)
+    assert found.depth[0, 0] == math.inf
+
+
+def test_near_and_far_clip(view):
+    spec = CameraSpec(64, 48, near=1.0, far=5.0)
+    boxes = [body("a", Box((0.2, 9, 9)), 0), body("b", Box((0.2, 9, 9)), 1)]
+    for places, label, depth in (((0.5, 3.0), 1, 2.9), ((1.2, 3.0), 0, 1.1),
+                                 ((0.5, 5.2), -1, math.inf)):
+        found = view(boxes, [Pose((x, 0, 0)) for x in places], spec=spec)
+        assert found.labels[24, 32] == label
+        assert found.depth[24, 32] == pytest.approx(depth, abs=1e-4)
+
+
+def test_colours_come_through_unlit_and_under_full_ambient_light(view):
+    color = (0.8, 0.4, 0.1, 1.0)
+    for look in (Look(diffuse=color, lit=False), Look(ambient=color)):
+        found = view([body("b", Box((1.0, 9, 9)), 0, look)], [Pose((3.0, 0, 0))])
+        wanted = np.array(color[:3]) * 255
+        factor = 1.0 if not look.lit else 0.8 ** (1 / 2.4)  # the sky half of the ambient light
+        assert np.abs(found.rgb[240, 320] - wanted * factor).max() < (1.5 if not look.lit else 5)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5, 1.2])
+def test_a_lamp_falls_by_the_cosine_of_its_angle(view, angle):
+    sun = Light("sun", "directional", direction=(math.cos(angle), 0.0, -math.sin(angle)),
+                diffuse=(0.5, 0.5, 0.5, 1.0))
+    view.renderer.set_lights([sun], DARK)
+    white = Look(diffuse=(1.0, 1.0, 1.0, 1.0))
+    found = view([body("b", Box((1.0, 9, 9)), 0, white)], [Pose((3.0, 0, 0))])
+    shade = found.rgb[240, 320, 0] / 255.0
+    linear = ((shade + 0.055) / 1.055) ** 2.4
+    assert linear == pytest.approx(0.5 * math.cos(angle), abs=0.01)
+
+
+def test_a_lamp_fades_as_its_attenuation_says_and_ends_at_its_range(view):
+    lamp = Light("l", "point", Pose((1.0, 0, 0)), range=3.0, constant=0.5, linear=0.3,
+                 quadratic=0.2)
+    view.renderer.set_lights([lamp], DARK)
+    white = Look(diffuse=(1.0, 1.0, 1.0, 1.0))
+    for away, expected in ((2.0, 1.0 / (0.5 + 0.6 + 0.8)), (3.5, 0.0)):
+        found = view([body("b", Box((1.0, 9, 9)), 0, white)], [Pose((1.5 + away, 0, 0))])
+        linear = ((found.rgb[240, 320, 0] / 255.0 + 0.055) / 1.055) ** 2.4
+        assert linear == pytest.approx(expected, abs=0.01)
+
+
+def shadow_world(view, scene=DARK, casts=True, **camera):
+    sun = Light("sun", "directional", cast_shadows=casts, direction=(0.0, 0.0, -1.0))
+    view.renderer.set_lights([sun], scene)
+    bodies = [body("g", Plane(size=(20, 20)), 0, Look(diffuse=(1.0, 1.0, 1.0, 1.0))),
+              body("b", Box((1.0, 1.0, 0.2)), 1)]
+    eye = Pose((3.0, 0.0, 0.9), quat_from_rpy(0.0, 0.4, 0.0))  # looks below the box
+    return view(bodies, [Pose((6.0, 0, 0)), Pose((6.0, 0, 3.0))], eye,
+                CameraSpec(640, 480, **camera))
+
+
+def seen_at(x, y):
+    """The pixel where `shadow_world`'s camera sees a point of the ground."""
+    turn = np.array(rotate(quat_from_rpy(0.0, -0.4, 0.0), (x - 3.0, y, -0.9)))
+    f = SPEC.focal_length
+    return round(239.5 - f * turn[2] / turn[0]), round(319.5 - f * turn[1] / turn[0])
+
+
+def test_a_shadow_lies_where_the_light_is_kept_off(view):
+    found = shadow_world(view).rgb
+    for x, y in ((5.6, 0.0), (6.4, 0.0), (6.0, 0.4), (6.0, -0.4)):
+        assert found[seen_at(x, y)].max() < 5, (x, y)
+    for x, y in ((5.35, 0.0), (6.65, 0.0), (6.0, 0.65), (6.0, -0.65)):
+        assert found[seen_at(x, y)].min() > 250, (x, y)
+
+
+def test_shadows_can_be_off_for_a_light_a_world_and_a_camera(view):
+    dull = Scene(ambient=DARK.ambient, background=DARK.background, shadows=False)
+    for found in (shadow_world(view, casts=False), shadow_world(view, dull),
+                  shadow_world(view, shadows=False)):
+        assert found.rgb[seen_at(6.0, 0.0)].min() > 250
+
+
+def test_a_kept_shadow_map_gives_the_bytes_of_a_new_one_and_follows_what_moves(view):
+    first = shadow_world(view).rgb.tobytes()
+    again = shadow_world(view).rgb.tobytes()
+    moved = view([], [Pose((6.0, 0, 0)), Pose((6.0, 2.0, 3.0))],
+                 Pose((3.0, 0.0, 0.9), quat_from_rpy(0.0, 0.4, 0.0))).rgb
+    back = shadow_world(view).rgb.tobytes()
+    assert first == again == back
+    assert moved[seen_at(6.0, 0.0)].min() > 250 and moved[seen_at(6.0, 1.6)].max() < 5
+
+
+def test_a_texture_lies_upright_on_a_wall_and_repeats(view, tmp_path):
+    from PIL import Image
+
+    path = str(tmp_path / "four.png")
+    Image.fromarray(np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]],
+                             dtype=np.uint8).repeat(32, axis=0).repeat(32, axis=1)).save(path)
+    wall = [Pose((3.0, 0, 0))]
+    look = Look(diffuse=(1, 1, 1, 1), texture=path, lit=False)
+    found = view([body("b", Box((1.0, 1.0, 1.0)), 0, look)], wall).rgb
+    corners = {name: found[240 + dy, 320 + dx].tolist() for name, dy, dx in (
+        ("upper left", -60, -60), ("upper right", -60, 60), ("lower left", 60, -60),
+        ("lower right", 60, 60))}
+    assert corners == {"upper left": [255, 0, 0], "upper right": [0, 255, 0],
+                       "lower left": [0, 0, 255], "lower right": [255, 255, 255]}
+    small = Look(diffuse=(1, 1, 1, 1), texture=path, scale=(0.5, 0.5), lit=False)
+    found = view([body("b", Box((1.0, 1.0, 1.0)), 0, small)], wall).rgb
+    assert found[240 - 90, 320 - 90].tolist() == found[240 - 90, 320 + 20].tolist() == [255, 0, 0]
+
+
+def test_an_unreadable_picture_is_told_and_the_rest_is_drawn(view):
+    look = Look(diffuse=(1, 0, 0, 1), texture="/nowhere/wood.png", lit=False)
+    found = view([body("b", Box((1.0, 9, 9)), 0, look)], [Pose((3.0, 0, 0))])
+    assert found.rgb[240, 320].tolist() == [255, 0, 0]
+    assert "/nowhere/wood.png" in view.renderer.said[0]
+
+
+def test_a_mesh_brings_its_own_colours_unless_the_visual_says_others(view, tmp_path):
+    (tmp_path / "m.mtl").write_text("newmtl a\nKd 0 1 0\n")
+    path = tmp_path / "m.obj"
+    path.write_text("mtllib m.mtl\nv 0 -1 -1\nv 0 1 -1\nv 0 1 1\nv 0 -1 1\nusemtl a\n"
+                    "f 1 4 3\nf 1 3 2\n")
+    mesh = Mesh("m.obj", str(path))
+    view.renderer.set_lights([], Scene(ambient=(1, 1, 1, 1)))
+    green = view([body("b", mesh, 0)], [Pose((3.0, 0, 0))]).rgb[240, 320]
+    assert green[1] > 200 and green[0] == green[2] == 0
+    red = view([body("b", mesh, 0, Look(diffuse=(1, 0, 0, 1)))], [Pose((3.0, 0, 0))]).rgb[240, 320]
+    assert red[0] > 200 and red[1] == red[2] == 0
+
+
+def test_what_is_half_transparent_is_mixed_and_invisible_is_not_there(view):
+    back = body("w", Box((0.2, 9, 9)), 0, Look(diffuse=(1, 1, 1, 1), lit=False))
+    glass = Look(diffuse=(1, 0, 0, 1), transparency=0.5, lit=False)
+    places = [Pose((5.0, 0, 0)), Pose((3.0, 0, 0))]
+    found = view([back, body("g", Box((0.2, 1, 1)), 1, glass)], places).rgb[240, 320]
+    assert found[0] == 255 and abs(int(found[1]) - 64) < 4  # twice: its two faces
+    found = view([back, body("g", Box((0.2, 1, 1)), 1, glass, transparency=1.0)], places)
+    assert found.rgb[240, 320].tolist() == [255] * 3 and found.labels[240, 320] == 0
+
+
+def test_the_background_the_sky_and_fog(view):
+    view.renderer.set_lights([], Scene(background=(0.2, 0.4, 0.6, 1.0)))
+    assert view([], []).rgb[0, 0] == pytest.approx([51, 102, 153], abs=1)
+    view.renderer.set_lights([], Scene(sky=Sky()))
+    sky = view([], []).rgb
+    assert sky[0, 0, 2] > sky[0, 0, 0] and sky[0].tobytes() != sky[200].tobytes()
+    view.renderer.set_lights([], Scene(fog=Fog("linear", (0, 0, 1, 1), 1.0, 3.0)))
+    wall = view([body("b", Box((1.0, 9, 9)), 0, FLAT_WHITE)], [Pose((5.0, 0, 0))])
+    assert wall.rgb[240, 320].tolist() == [0, 0, 255]
+
+
+def test_the_same_picture_has_the_same_sum_in_another_context(view):
+    view.renderer.set_lights([Light("s", "directional", cast_shadows=True,
+                                    direction=(0.3, 0.1, -1.0))], Scene(sky=Sky()))
+    bodies = [body("g", Plane(size=(20, 20)), 0, Look(pattern="bricks", diffuse=(1, 1, 1, 1))),
+              body("s", Sphere(0.5), 1, Look(diffuse=(1, 0, 0, 1), specular=(1, 1, 1, 1)))]
+    places, eye = [Pose(), Pose((4.0, 0, 0.5))], Pose((0.0, 0.0, 1.0))
+
+    def sum_of(picture):
+        return hashlib.md5(picture.rgb.tobytes() + picture.depth.tobytes()).hexdigest()
+
+    here = sum_of(view(bodies, places, eye))
+    def elsewhere():  # a context belongs to its thread
+        other = Renderer(lambda text: None)
+        for one in bodies:
+            other.add(one)
+        other.set_lights(view.renderer._lights, view.renderer._scene)
+        return sum_of(other.render(SPEC, matrix(eye), table(places), ALL, 0))
+
+    with ThreadPoolExecutor(1) as thread:
+        assert thread.submit(elsewhere).result() == here
+
+
+def test_smooth_edges_have_shades_and_plain_ones_have_none(view):
+    def shades(samples):
+        found = view([body("s", Sphere(1.0), 0, FLAT_WHITE)], [Pose((4.0, 0, 0))],
+                     spec=CameraSpec(160, 120, samples=samples), outputs=(RGB,))
+        return set(np.unique(found.rgb)) - {0, 255}
+
+    assert not shades(1)
+    assert shades(4)
+
+
+@pytest.mark.parametrize("k1", [-0.25, 0.1])
+def test_distortion_moves_points_as_browns_model_says(view, k1):
+    lens = Distortion(k1=k1, k2=0.01, p1=0.001, p2=-0.002)
+    spec = CameraSpec(640, 480, 1.2, distortion=lens)
+    for y, z in ((0.5, 0.3), (-0.9, -0.6), (0.0, 0.8)):
+        found = view([body("b", Box((0.001, 0.4, 0.4)), 0, FLAT_WHITE)],
+                     [Pose((3.0005, y, z), quat_from_rpy(0.3, 0.0, 0.0))], spec=spec)
+        rim = np.array([(side * 0.2, part) for side in (-1, 1)
+                        for part in np.linspace(-0.2, 0.2, 50) * side])
+        rim = np.concatenate([rim[:50], np.flip(rim[:50], 1) * (-1, 1), rim[50:],
+                              np.flip(rim[50:], 1) * (-1, 1)])
+        turned = rim @ np.array([[math.cos(0.3), math.sin(0.3)], [-math.sin(0.3), math.cos(0.3)]])
+        u, v = distorted(lens, -(y + turned[:, 0]) / 3.0, -(z + turned[:, 1]) / 3.0)
+        expected = centroid(319.5 + spec.focal_length * u, 239.5 + spec.focal_length * v)
+        assert middle_of(found.rgb[..., 0] > 127) == pytest.approx(expected, abs=0.2)
+        assert middle_of(found.labels == 0) == pytest.approx(expected, abs=0.2)
+
+
+def centroid(x, y):
+    """Of a polygon."""
+    following_x, following_y = np.roll(x, -1), np.roll(y, -1)
+    cross = x * following_y - following_x * y
+    return (((x + following_x) * cross).sum() / (3 * cross.sum()),
+            ((y + following_y) * cross).sum() / (3 * cross.sum()))
+
+
+def test_a_cropped_barrel_distortion_leaves_no_border_empty(view):
+    wall = body("b", Box((1.0, 99, 99)), 0, FLAT_WHITE)
+    for crop in (False, True):
+        spec = CameraSpec(320, 240, 1.2, distortion=Distortion(k1=-0.3, crop=crop))
+        found = view([wall], [Pose((3.0, 0, 0))], spec=spec)
+        assert (found.rgb[120, 0].min() == 255) == crop
+        assert (found.depth[120, 0] < 10.0) == crop

@@ -1,0 +1,281 @@
+"""The sensing process: started late, repeatable, and no loss when it dies."""
+from __future__ import annotations
+
+import math
+import os
+import signal
+import sys
+
+import numpy as np
+import pytest
+from conftest import ball, ground
+from sensing_scene import DEADLINE_S, body, rows, until
+
+from my_simulations.description.model import Model
+from my_simulations.description.shapes import Box, Mesh, Plane, Sphere
+from my_simulations.description.world import Light, Physics, World
+from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.geometry import STILL, Pose
+from my_simulations.sensing.api import (
+    COLLISIONS,
+    DEPTH,
+    LABELS,
+    RGB,
+    VISUALS,
+    AddBody,
+    Body,
+    CameraSpec,
+    CastRays,
+    LoadScene,
+    Mount,
+    RayBundle,
+    RayFan,
+    RemoveBody,
+    RenderCamera,
+    SensingError,
+    SensingGoneError,
+    SensingUnavailableError,
+    SnapshotGoneError,
+)
+from my_simulations.sensing.process import SensingProcess
+from my_simulations.simulator.simulator import Simulator
+
+FAN = RayFan(31, -math.pi / 2, math.pi / 2, far=20.0)
+AHEAD = RayFan(1, far=20.0)
+WALL = body("wall", Box((0.2, 10.0, 12.0)), 1)
+FLOOR = body("floor", Plane(size=(50.0, 50.0)), 0)
+PLACES = rows([Pose(), Pose((5.1, 0.0, 0.0)), Pose((2.0, 0.0, 1.0))])
+SPEC = CameraSpec(160, 120)
+MOUNT = Mount(pose=Pose((0.0, 0.0, 1.0)))
+SUN = Light("sun", "directional", Pose((0, 0, 10)), True, direction=(-0.5, 0.2, -1.0))
+
+
+@pytest.fixture
+def start():
+    made = []
+
+    def begin(*arguments, **options):
+        sensing = SensingProcess(*arguments, **options)
+        made.append(sensing)
+        sensing.said = []
+        sensing.on_trouble(sensing.said.append)
+        return sensing
+
+    yield begin
+    for sensing in made:
+        sensing.close()
+        assert sensing.pid == 0
+
+
+@pytest.fixture
+def sensing(start):
+    made = start()
+    made.change(LoadScene([FLOOR, WALL], [SUN]))
+    return made
+
+
+def ahead(sensing, at=PLACES, **options) -> float:
+    found = sensing.cast(CastRays(MOUNT, AHEAD, at=at, **options)).result(DEADLINE_S)
+    return float(found.ranges[0])
+
+
+def picture(sensing, at=PLACES):
+    return sensing.render(RenderCamera(MOUNT, SPEC, (RGB, DEPTH, LABELS), at)).result(DEADLINE_S)
+
+
+def test_nothing_is_started_or_imported_before_the_first_request(sensing):
+    sensing.change(AddBody(body("ball", Sphere(0.5), 2)))
+    assert sensing.pid == 0
+    assert not {"embreex", "moderngl", "PIL"} & set(sys.modules)
+    assert ahead(sensing) == pytest.approx(1.5, abs=1e-6)
+    assert sensing.pid > 0
+
+
+def test_changes_and_requests_take_effect_in_the_order_of_the_calls(sensing):
+    first = sensing.cast(CastRays(MOUNT, AHEAD, at=PLACES))
+    sensing.change(AddBody(body("ball", Sphere(0.5), 2)))
+    second = sensing.cast(CastRays(MOUNT, AHEAD, at=PLACES))
+    sensing.change(AddBody(body("ball", Box((2.0, 2.0, 2.0)), 2)))
+    third = sensing.cast(CastRays(MOUNT, AHEAD, at=PLACES))
+    sensing.change(RemoveBody("ball"))
+    last = sensing.cast(CastRays(MOUNT, AHEAD, at=PLACES))
+    found = [one.result(DEADLINE_S).ranges[0] for one in (first, second, third, last)]
+    assert found == pytest.approx([5.0, 1.5, 1.0, 5.0], abs=1e-6)
+
+
+def test_pictures_follow_late_changes_of_the_scene(sensing):
+    assert set(np.unique(picture(sensing).labels)) == {0, 1}
+    sensing.change(AddBody(body("ball", Sphere(0.5), 2)))
+    assert set(np.unique(picture(sensing).labels)) == {0, 1, 2}
+    sensing.change(RemoveBody("wall"))
+    assert set(np.unique(picture(sensing).labels)) == {-1, 0, 2}
+    sensing.change(LoadScene([WALL]))
+    assert set(np.unique(picture(sensing).labels)) == {1}
+
+
+def test_the_same_request_gives_the_same_bytes_in_another_process_too(start):
+    def answers():
+        made = start()
+        made.change(LoadScene([FLOOR, WALL, body("ball", Sphere(0.5), 2)], [SUN]))
+        seen = [picture(made) for _ in range(2)]
+        elsewhere = made.render(RenderCamera(Mount(pose=Pose((0.3, 0.2, 1.5))), SPEC, (RGB,),
+                                             PLACES)).result(DEADLINE_S)
+        assert elsewhere.rgb.tobytes() != seen[0].rgb.tobytes()
+        seen.append(picture(made))
+        rays = made.cast(CastRays(MOUNT, FAN, at=PLACES)).result(DEADLINE_S)
+        return [(one.rgb.tobytes(), one.depth.tobytes(), one.labels.tobytes()) for one in seen], \
+            rays.ranges.tobytes()
+
+    first, second = answers(), answers()
+    assert first == second
+    assert first[0][0] == first[0][1] == first[0][2]
+
+
+def test_a_killed_process_is_replaced_and_the_scene_is_there_again(sensing):
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    sensing.change(AddBody(body("ball", Sphere(0.5), 2)))
+    before, pid = picture(sensing).rgb.tobytes(), sensing.pid
+    os.kill(pid, signal.SIGKILL)
+    until(lambda: sensing.said, "nobody was told")
+    assert "SIGKILL" in sensing.said[0] and "physics goes on" in sensing.said[0]
+    assert ahead(sensing) == pytest.approx(1.5, abs=1e-6)
+    assert picture(sensing).rgb.tobytes() == before
+    assert sensing.pid not in (0, pid)
+
+
+def test_what_waits_fails_when_the_process_dies_and_says_why(start):
+    sensing = start()
+    sensing.change(LoadScene([FLOOR]))
+    assert ahead(sensing) == math.inf
+    os.kill(sensing.pid, signal.SIGSTOP)
+    waiting = sensing.cast(CastRays(MOUNT, AHEAD, at=PLACES))
+    os.kill(sensing.pid, signal.SIGKILL)
+    with pytest.raises(SensingGoneError, match="SIGKILL"):
+        waiting.result(DEADLINE_S)
+
+
+def test_a_process_that_hangs_holds_nobody_up_and_is_replaced(start):
+    sensing = start(patience=1.0)
+    sensing.change(LoadScene([FLOOR, WALL]))
+    until(lambda: _answers(sensing), "no answer")
+    os.kill(sensing.pid, signal.SIGSTOP)
+    futures = [sensing.cast(CastRays(MOUNT, FAN, at=PLACES * 100)) for _ in range(300)]
+    with pytest.raises(SensingError, match="waiting already"):
+        futures[-1].result(0.0)
+    with pytest.raises(SensingGoneError, match="has not answered"):
+        futures[0].result(DEADLINE_S)
+    until(lambda: _answers(sensing), "no other process came")
+
+
+def _answers(sensing) -> bool:
+    try:
+        return ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    except SensingError:
+        return False
+
+
+def test_a_process_that_dies_again_and_again_is_left_alone_until_the_world_changes(
+        start, monkeypatch):
+    sensing = start()
+    sensing.change(LoadScene([FLOOR, WALL]))
+    with monkeypatch.context() as broken:
+        broken.setattr("my_simulations.engine.child_process.command",
+                       lambda *words: [sys.executable, "-c", "import sys; sys.exit(3)"])
+        for _ in range(3):
+            with pytest.raises(SensingGoneError, match="code 3"):
+                ahead(sensing)
+        with pytest.raises(SensingUnavailableError, match="until the world changes"):
+            ahead(sensing)
+    sensing.change(LoadScene([FLOOR, WALL]))
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+
+
+def test_what_is_not_installed_is_named_with_what_to_install(start, monkeypatch, tmp_path):
+    for name in ("embreex", "moderngl"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "__init__.py").write_text("raise ImportError('not for this Python')\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    command = "my_simulations.engine.child_process.environment"
+    monkeypatch.setattr(command, lambda: {**os.environ, "PYTHONPATH": os.pathsep.join(
+        [str(tmp_path), *sys.path])})
+    sensing = start()
+    sensing.change(LoadScene([FLOOR]))
+    with pytest.raises(SensingUnavailableError, match="pip install embreex"):
+        ahead(sensing)
+    with pytest.raises(SensingUnavailableError, match="pip install moderngl"):
+        picture(sensing)
+    assert sensing.pid
+
+
+def test_a_sensor_on_a_link_that_the_state_lacks_is_refused_and_bodies_without_rows_unseen(
+        sensing):
+    sensing.change(AddBody(body("late", Sphere(0.5), 7)))
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    with pytest.raises(SensingError, match="no link 7"):
+        sensing.cast(CastRays(Mount(7), AHEAD, at=PLACES)).result(DEADLINE_S)
+    assert 7 not in picture(sensing).labels
+
+
+def test_an_unreadable_mesh_is_left_out_and_named_once_for_rays_and_once_for_cameras(sensing):
+    gone = Mesh("model://none/a.dae", "")
+    sensing.change(AddBody(body("gone", gone, 2)))
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    picture(sensing)
+    picture(sensing)
+    assert len(sensing.said) == 2
+    assert all("model://none/a.dae" in text for text in sensing.said)
+
+
+def test_rays_see_collisions_or_visuals(sensing):
+    glass = body("glass", Sphere(0.5), 2, transparency=1.0)
+    sensing.change(AddBody(glass))
+    assert ahead(sensing, sees=COLLISIONS) == pytest.approx(1.5, abs=1e-6)
+    assert ahead(sensing, sees=VISUALS) == pytest.approx(5.0, abs=1e-6)
+
+
+def test_a_fan_and_a_bundle_of_the_same_rays_see_the_same(sensing):
+    fan = sensing.cast(CastRays(MOUNT, FAN, at=PLACES)).result(DEADLINE_S)
+    yaw = np.linspace(-math.pi / 2, math.pi / 2, 31)
+    ways = np.stack([np.cos(yaw), np.sin(yaw), np.zeros(31)], axis=1)
+    bundle = sensing.cast(CastRays(MOUNT, RayBundle(np.zeros((31, 3)), ways, far=20.0),
+                                   at=PLACES)).result(DEADLINE_S)
+    assert np.array_equal(fan.ranges, bundle.ranges)
+    assert np.array_equal(fan.link_rows, bundle.link_rows)
+
+
+def test_requests_name_a_state_of_the_running_engine(start):
+    sim = Simulator(World(models=[ground(), ball()], physics=Physics()),
+                    engine_factory=ProcessEngine, paused=True, log=lambda issue: None)
+    sim.start()
+    try:
+        engine = sim._session.supervisor._engine
+        sim.states.set_model_state("ball", Pose((3.0, 0.0, 5.0)), STILL)
+        sensing = start(engine.ring_fd)
+        row = sim._session.registry.link("ball::link")[0].first_link_row
+        sensing.change(LoadScene([body("ball", Sphere(0.5), row)]))
+        down = Mount(pose=Pose((3.0, 0.0, 10.0), (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))))
+        request = CastRays(down, AHEAD, at=engine.ring.latest)
+        found = sensing.cast(request).result(DEADLINE_S)
+        assert found.ranges[0] == pytest.approx(4.5, abs=1e-6)
+        assert found.step == engine.ring.step
+        newest = sensing.cast(CastRays(Mount(row), AHEAD)).result(DEADLINE_S)
+        assert newest.ranges[0] == pytest.approx(0.5, abs=1e-6)  # from inside the ball
+        for _ in range(17):
+            sim.clock.advance(1)
+        with pytest.raises(SnapshotGoneError):
+            sensing.cast(request).result(DEADLINE_S)
+    finally:
+        sim.close()
+
+
+def test_a_process_without_a_ring_wants_rows(start):
+    sensing = start()
+    sensing.change(LoadScene([]))
+    with pytest.raises(SensingError, match="bring rows"):
+        ahead(sensing, at=None)
+
+
+def test_a_model_without_links_is_nothing_to_see(sensing):
+    sensing.change(AddBody(Body("empty", Model("empty"), 0)))
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
