@@ -10,6 +10,7 @@ from typing import Any, Callable, List, Optional, Protocol
 
 from ..description.sensor import Sensor
 from ..geometry import Pose, Twist, Vec3
+from ..sensing.api import RayFan, RayReturns
 from .parameters import Parameters
 
 
@@ -132,6 +133,14 @@ class Context(Protocol):
         """The contacts of the last step: (link, other link, `engine.commands.Contact`).
 
         Links by their scoped names; of all models.
+        """
+
+    def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
+        """Cast rays from the plugin's sensor, as of now.
+
+        `call` gets what they have met, and the sim time (ns) they were cast at, up to one scan
+        later; the world does not run further ahead. `visuals`: rays see what is drawn, else what
+        collides.
         """
 
     # -- topics, services, parameters ------------------------------------------------------------

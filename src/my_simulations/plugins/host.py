@@ -21,6 +21,7 @@ from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
 from .base import Plugin
 from .context import PluginError
+from .eyes import Eyes
 from .graph import Graph
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .simulated_context import SimulatedContext
@@ -76,6 +77,7 @@ class PluginHost:
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
                  log: Callable[[Issue], None]) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
+        self._eyes = Eyes(simulator, log)
         self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
         self._told: Dict[str, bool] = {}
         self._revision = self._followed = -1
@@ -129,6 +131,7 @@ class PluginHost:
             self._stop.set()
             for name in list(self._models):
                 self._end_model(name)
+            self._eyes.close()
             if self._consumer is not None:
                 self._consumer.leave()
                 self._consumer = None
@@ -288,7 +291,7 @@ class PluginHost:
 
     def _load(self, entity: Entity, found: Found, into: List[Running]) -> None:
         context = SimulatedContext(self._simulator, self._graph, entity, found.spec, found.scope,
-                                   self._log, self.wake, found.sensor, found.link)
+                                   self._log, self.wake, self._eyes, found.sensor, found.link)
         running = Running(found, context, None)
         into.append(running)
         if self._registry.is_provided(found.spec.filename):

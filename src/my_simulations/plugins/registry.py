@@ -23,6 +23,12 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
     "libgazebo_ros_force.so": "state.force:Force",
+    "libgazebo_ros_laser.so": "sensors.laser:Laser",
+    "libgazebo_ros_gpu_laser.so": "sensors.laser:Laser",
+    "libgazebo_ros_range.so": "sensors.range:Range",
+    "libgazebo_ros_imu.so": "sensors.imu:ModelImu",
+    "libgazebo_ros_imu_sensor.so": "sensors.imu:SensorImu",
+    "libgazebo_ros_bumper.so": "sensors.bumper:Bumper",
 }
 """Classes in this package, by library."""
 

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..description.model import Joint as JointSpec
@@ -11,14 +13,18 @@ from ..description.sensor import Sensor
 from ..engine.commands import FOREVER, JointMotor, PlanarVelocity, TimedWrench
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, Twist, Vec3, compose
+from ..sensing.api import RayFan, RayReturns, SensingError
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
 from .context import PluginError
+from .eyes import Eyes
 from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
 from .parameters import Parameters
 
 Report = Callable[[Issue], None]
+
+_SCAN_S = 10.0  # of wall time, for rays
 
 
 class Appointment:
@@ -103,7 +109,7 @@ class SimulatedContext:
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
                  scope: str, report: Report, wake: Callable[[], None],
-                 sensor: Optional[Sensor] = None, sensor_link: str = "") -> None:
+                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "") -> None:
         self.simulator = simulator
         self.model = entity.model.name
         self.sensor, self.sensor_link = sensor, sensor_link
@@ -121,7 +127,11 @@ class SimulatedContext:
         self.inbox: Deque[Callable[[], None]] = deque()
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
+        self._scan_fault = ""
         self._pushes: Dict[str, List[int]] = {}
+        self._eyes = eyes
+        self._scan: "Optional[Tuple[Future[RayReturns], Callable[[RayReturns, int], None], int]]" \
+            = None
         self._namespace = ""
         self._open: List[Closing] = []
 
@@ -251,6 +261,32 @@ class SimulatedContext:
         self.simulator.joints.set_positions(
             {f"{self.model}::{self.joint(name).spec_name}": value
              for name, value in positions.items()})
+
+    def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
+        """Cast rays from the plugin's sensor."""
+        self._end_scan()
+        assert self.sensor is not None
+        future = self._eyes.cast(self._link_row(self.sensor_link), self.sensor.pose, fan, visuals)
+        self._scan = (future, call, self.now_ns)
+        future.add_done_callback(self._scanned)
+
+    def _scanned(self, future: "Future[RayReturns]") -> None:
+        self.inbox.append(lambda: self._end_scan(future))
+        self._wake()
+
+    def _end_scan(self, only: "Optional[Future[RayReturns]]" = None) -> None:
+        """Wait for the scan on its way, if there is one, and hand it over."""
+        if self._scan is None or only not in (None, self._scan[0]):
+            return
+        (future, call, ns), self._scan = self._scan, None
+        try:
+            found = future.result(_SCAN_S)
+        except (SensingError, FutureTimeoutError) as fault:
+            if str(fault) != self._scan_fault:
+                self._scan_fault = str(fault)
+                self.warn(f"a scan is left out: {fault or 'it took too long'}")
+            return
+        call(found, ns)
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""

@@ -77,6 +77,8 @@ class FakeContext:
         said: what was told the user.
         pushes: the last wrench of each link.
         level: the last planar velocity.
+        returns: what rays meet; `fans`: (fan, visuals) of the scans.
+        touching: the contacts.
         ros_parameters: what `search_parameter` finds.
     """
 
@@ -101,6 +103,8 @@ class FakeContext:
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
         self.ros_parameters: Dict[str, Any] = {}
+        self.returns: Any = None
+        self.fans: List[Any] = []
         self._namespace = ""
         self._heard: Dict[str, Callable[[Any], None]] = {}
         self.services: Dict[str, Callable[[Any, Any], None]] = {}
@@ -160,6 +164,11 @@ class FakeContext:
         """Joints jump."""
         for name, value in positions.items():
             self.joint(name).position = value
+
+    def scan(self, fan: Any, visuals: bool, call: Callable[[Any, int], None]) -> None:
+        """Rays meet what a test says (`returns`)."""
+        self.fans.append((fan, visuals))
+        call(self.returns, self.now_ns)
 
     def contacts(self) -> List[Any]:
         """What a test says."""
