@@ -180,7 +180,7 @@ LINK = Table("link", Link, {
         "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
     }),
     **_kept("frame", "light", "must_be_base_link", "enable_wind"),
-    "sensor": Part(use=KEPT, told=True, kept=True),
+    "sensor": Part(use=KEPT, kept=True),
     **_told("projector", "audio_source", "audio_sink", "battery", "particle_emitter", "plugin"),
 }, known_attributes=("name",))
 
@@ -211,7 +211,7 @@ JOINT = Table("joint", Joint, {
     "screw_thread_pitch": Part("1.10"),
     "gearbox_ratio": Value("gearbox_ratio", FLOAT),
     "gearbox_reference_body": Value("gearbox_reference", TEXT),
-    "sensor": Part(use=KEPT, told=True, kept=True),
+    "sensor": Part(use=KEPT, kept=True),
     **_kept("frame", "physics"),
 }, known_attributes=("name", "type"))
 

@@ -9,6 +9,9 @@ from ..xml.binding import fill, to_xml
 from ..xml.source import Source
 from .sensor_tables import BLOCKS, CAMERA, FIELDS, SENSOR
 
+ACTING = ("ray", "gpu_ray", "imu", "contact")
+"""Types for which there are plugins here; what else does nothing is said."""
+
 
 def read_sensor(element: Any, source: Source) -> Sensor:
     """A sensor. A value that cannot be read is a warning, and its default is used.
@@ -17,6 +20,8 @@ def read_sensor(element: Any, source: Source) -> Sensor:
     """
     sensor = Sensor(element.get("name", ""), file=source.file, line=element.sourceline or 0)
     found = fill(sensor, element, SENSOR, source, [])
+    if sensor.type not in ACTING:
+        source.tell_unused(element)
     for tag, table in BLOCKS.items():
         for child in found.get(tag, ())[:1]:
             block = table.of()

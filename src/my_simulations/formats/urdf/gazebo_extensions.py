@@ -146,7 +146,7 @@ class Extensions:
 
 BUILT_IN_MATERIALS = "file://media/materials/scripts/gazebo.material"
 _DECAY = {"linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT)}
-_TOLD = ("sensor", "projector", "audio_source", "audio_sink", "battery", "plugin")
+_TOLD = ("projector", "audio_source", "audio_sink", "battery", "plugin")
 _PLACED = ("<sensor", "<light", "<projector")
 _KEEP = {"preserveFixedJoint": "fixed", "disableFixedJointLumping": "revolute"}
 _RANK = ["", "revolute", "fixed"]
