@@ -5,6 +5,7 @@ import threading
 import time
 
 import pytest
+from plugin_graph import Graph
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec
@@ -21,53 +22,6 @@ from my_simulations.simulator.simulator import Simulator
 DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 <leftJoint>left</leftJoint><rightJoint>right</rightJoint><wheelDiameter>0.2</wheelDiameter>
 <odometrySource>encoder</odometrySource></plugin>"""
-
-
-class Graph:
-    """Keeps what is published; a test sends what is heard."""
-
-    def __init__(self):
-        self.sent, self.heard, self.transforms = [], {}, []
-
-    def message(self, kind):
-        return Message()
-
-    def stamp(self, ns):
-        return ns
-
-    def publish(self, name, kind, queue, latch):
-        graph = self
-
-        class Topic:
-            wanted = True
-
-            def send(self, message):
-                graph.sent.append((name, message))
-
-            def close(self):
-                graph.sent.append((name, None))
-        return Topic()
-
-    def subscribe(self, name, kind, call, queue):
-        self.heard[name] = call
-        heard = self.heard
-
-        class Closing:
-            def close(self):
-                heard.pop(name, None)
-        return Closing()
-
-    def serve(self, name, kind, call):
-        return self.subscribe(name, kind, call, 1)
-
-    def search_parameter(self, namespace, name, default):
-        return default
-
-    def send_transforms(self, transforms, ns):
-        self.transforms += [(ns, *one) for one in transforms]
-
-    def on(self, name):
-        return [message for topic, message in self.sent if topic == name and message is not None]
 
 
 class Failing(Plugin):
