@@ -6,14 +6,11 @@ time k / rate. So they never drift, and the same run has the same ones.
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING, List, NamedTuple, Optional
+from typing import List, NamedTuple, Optional
 
 from ..engine.ring import CONSUMERS, CREDITS, NO_LIMIT, Clock, credit_word
 from ..errors import CommandError
 from .session import Session
-
-if TYPE_CHECKING:
-    from fractions import Fraction
 
 _PS = 10 ** 12
 
@@ -43,8 +40,9 @@ class Rate:
     def __init__(self, hertz: float) -> None:
         from fractions import Fraction  # a world without appointments starts without it
 
-        self._period_ps: Fraction = (_PS / Fraction(hertz).limit_denominator(10 ** 6) if hertz > 1e-6
-                           else Fraction(0))
+        self._period_ps = Fraction(0)
+        if hertz > 1e-6:
+            self._period_ps = _PS / Fraction(hertz).limit_denominator(10 ** 6)
 
     def after(self, step: int, clock: Clock) -> int:
         """The first appointment after a step."""
