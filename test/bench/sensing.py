@@ -21,6 +21,7 @@ sys.path.insert(0, __file__.rsplit("/", 1)[0])
 from server import processor, resident
 
 from my_simulations.appearance.looks import Look
+from my_simulations.description.light import Light
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import (
     Box,
@@ -31,7 +32,6 @@ from my_simulations.description.shapes import (
     Sphere,
     Visual,
 )
-from my_simulations.description.world import Light
 from my_simulations.geometry import Pose
 from my_simulations.sensing.api import (
     DEPTH,

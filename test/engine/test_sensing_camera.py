@@ -10,8 +10,9 @@ import pytest
 from sensing_scene import body, table
 
 from my_simulations.appearance.looks import Look
+from my_simulations.description.light import Light
 from my_simulations.description.shapes import Box, Mesh, Plane, Sphere
-from my_simulations.description.world import Fog, Light, Scene, Sky
+from my_simulations.description.surroundings import Fog, Scene, Sky
 from my_simulations.geometry import Pose, compose, quat_from_rpy, rotate
 from my_simulations.sensing.api import DEPTH, LABELS, RGB, CameraSpec, Distortion
 from my_simulations.sensing.camera.distortion import distorted

@@ -11,9 +11,10 @@ import pytest
 from conftest import ball, ground
 from sensing_scene import DEADLINE_S, body, rows, until
 
+from my_simulations.description.light import Light
 from my_simulations.description.model import Model
 from my_simulations.description.shapes import Box, Mesh, Plane, Sphere
-from my_simulations.description.world import Light, Physics, World
+from my_simulations.description.world import Physics, World
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.geometry import STILL, Pose
 from my_simulations.sensing.api import (

@@ -50,7 +50,7 @@ def _compare(a: Any, b: Any, tolerance: float, path: str) -> Iterator[str]:
 
 
 def _counts(owner: Any, name: str) -> bool:
-    if name in ("file", "base_dir", "guide"):
+    if name in ("file", "line", "base_dir", "guide"):
         return False
     if name == "uri":
         return hasattr(owner, "path") and not owner.path

@@ -1,11 +1,14 @@
-"""Models: links, joints, inertia, plugins."""
+"""Models: links, joints, inertia."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import List, Optional
 
 from ..geometry import IDENTITY, Pose, Vec3
+from .plugin import PluginSpec as PluginSpec
+from .sensor import Sensor
 from .shapes import Collision, Visual
+from .transmission import Transmission
 
 INFINITE = 1e16
 """SDF's spelling of "no limit" (joint/axis/limit lower and upper)."""
@@ -53,7 +56,8 @@ class Link:
             model's own value.
         linear_decay: share of the linear velocity that is removed in every step, 0 to 1.
         angular_decay: share of the angular velocity that is removed in every step, 0 to 1.
-        extra: XML of child elements that no field holds.
+        extra: XML of child elements that no field holds, and of sensors.
+        sensors: what the XML of the sensors says.
     """
 
     name: str
@@ -66,6 +70,7 @@ class Link:
     self_collide: Optional[bool] = None
     linear_decay: float = 0.0
     angular_decay: float = 0.0
+    sensors: List[Sensor] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
 
 
@@ -148,22 +153,8 @@ class Joint:
     thread_pitch: float = 1.0
     gearbox_ratio: float = 1.0
     gearbox_reference: str = ""
+    sensors: List[Sensor] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
-
-
-@dataclass
-class PluginSpec:
-    """A `<plugin>`, which is kept and not loaded.
-
-    Attributes:
-        name: name of the plugin.
-        filename: file name of its library.
-        xml: the whole element as written.
-    """
-
-    name: str
-    filename: str
-    xml: str = ""
 
 
 @dataclass
@@ -200,6 +191,7 @@ class Model:
     joints: List[Joint] = field(default_factory=list)
     models: List["Model"] = field(default_factory=list)
     plugins: List[PluginSpec] = field(default_factory=list)
+    transmissions: List[Transmission] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
     uri: str = ""
     guide: Optional["Model"] = field(default=None, compare=False, repr=False)

@@ -35,8 +35,9 @@ class Reply:
 class Event:
     """Something the engine reports by itself.
 
-    `kind`: `diverged` (a model's state became non-finite; it was restored to its last finite pose,
-    at rest) or `log` (a setting is simulated approximately).
+    `kind`: `meeting` (the engine stands at a consumer's credit), `diverged` (a model's state became
+    non-finite; it was restored to its last finite pose, at rest) or `log` (a setting is simulated
+    approximately).
     """
 
     kind: str
@@ -54,6 +55,9 @@ class Engine(Protocol):
 
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command. The future fails with `EngineDiedError` when the engine died first."""
+
+    def nudge(self) -> None:
+        """Tell an engine that stands at a credit to look whether the credit was raised."""
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
         """Set who hears of events (called from the engine's reader thread)."""

@@ -243,6 +243,51 @@ class SetAxes(Command):
 
 
 @dataclass(frozen=True)
+class JointMotor:
+    """A motor that drives a joint axis to a rate with a limited effort (ODE's `vel` and `fmax`).
+
+    Attributes:
+        row: joint row.
+        rate: rad/s or m/s.
+        effort: N m or N at most; 0 turns the motor off, and the axis has its friction again.
+    """
+
+    row: int
+    rate: float
+    effort: float
+
+
+@dataclass(frozen=True)
+class SetMotors(Command):
+    """Set the motors of some joint axes; those of others stay. A motor replaces the friction."""
+
+    motors: Tuple[JointMotor, ...]
+
+
+@dataclass(frozen=True)
+class PlanarVelocity:
+    """A velocity that a model is given anew before every step, in its own frame's heading.
+
+    Attributes:
+        model_id: the model.
+        x, y: m/s, along the model frame's x and y axis, level; the vertical velocity is 0.
+        yaw_rate: rad/s, about the vertical.
+    """
+
+    model_id: int
+    x: float
+    y: float
+    yaw_rate: float
+
+
+@dataclass(frozen=True)
+class SetPlanarVelocities(Command):
+    """Models that move as they are told, whatever acts on them; replaces those told so far."""
+
+    velocities: Tuple[PlanarVelocity, ...]
+
+
+@dataclass(frozen=True)
 class PinModels(Command):
     """Hold models where they are, at rest, whatever acts on them; `SetModelState` moves them.
 
@@ -365,6 +410,11 @@ class ClearTimedForces(Command):
     """Clear timed wrenches and efforts by id; unknown ids have run out and are ignored."""
 
     force_ids: Tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Nudge(Command):
+    """Look at the credits again. It is no question, and gets no answer."""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from typing import Callable, Dict, List, Tuple
 
 from .api import Backend, EngineDiedError, Event, Reply
-from .commands import Command
+from .commands import Command, Nudge
 from .ring import Memory, RingReader, RingWriter
 from .runner import Runner
 
@@ -96,6 +96,10 @@ class InlineEngine:
             self._waiting[self._numbers] = (command, future)
             self._channel.commands.put((self._numbers, command))
         return future
+
+    def nudge(self) -> None:
+        """Have the thread look at the credits."""
+        self._channel.commands.put((0, Nudge()))
 
     def answer(self, number: int, reply: Reply) -> None:
         """The engine's side: a command is done."""

@@ -14,10 +14,12 @@ from .commands import (
     ClearTimedForces,
     Command,
     ConnectModels,
+    JointMotor,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
+    PlanarVelocity,
     ReadContacts,
     RemoveModel,
     Restart,
@@ -25,6 +27,8 @@ from .commands import (
     SetJoints,
     SetLinkState,
     SetModelState,
+    SetMotors,
+    SetPlanarVelocities,
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
@@ -42,6 +46,8 @@ class KinematicBackend:
         self.models: Dict[int, Tuple[Model, int, int, bool]] = {}
         self.timed_forces: Dict[int, object] = {}
         self.held: Tuple[int, ...] = ()
+        self.motors: Dict[int, JointMotor] = {}
+        self.planar: Dict[int, PlanarVelocity] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
@@ -55,6 +61,8 @@ class KinematicBackend:
             ),
             SetAxes: self._set_axes,
             PinModels: self._hold,
+            SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
+            SetPlanarVelocities: self._set_planar,
             ReadContacts: lambda _: (),
             ConnectModels: lambda _: None,
             AddTimedForces: lambda c: self.timed_forces.update(
@@ -80,6 +88,7 @@ class KinematicBackend:
     def step(self, first: int, count: int) -> None:
         """Move every link along its twist."""
         span = self.settings.step_size * count
+        self._turn_motors(span)
         for row, state in self.links.items():
             pose, twist = state.pose, state.twist
             spin: Quat = (*scale(twist.angular, span / 2.0), 1.0)
@@ -119,6 +128,8 @@ class KinematicBackend:
         for model_id in list(self.models):
             self._remove(model_id)
         self.timed_forces.clear()
+        self.motors.clear()
+        self.planar.clear()
 
     def _restart(self, command: Restart) -> None:
         before = {number: self.models[number] for number, _ in command.models}
@@ -126,6 +137,16 @@ class KinematicBackend:
         for number, pose in command.models:
             model, first_link, first_joint, _ = before[number]
             self._load(LoadModel(number, model, pose, first_link, first_joint))
+
+    def _set_planar(self, command: SetPlanarVelocities) -> None:
+        self.planar = {one.model_id: one for one in command.velocities}
+
+    def _turn_motors(self, span: float) -> None:
+        """Axes with a motor turn as fast as they are told at once."""
+        for row, motor in self.motors.items():
+            if motor.effort > 0.0 and row in self.joints:
+                self.joints[row] = (self.joints[row][0] + motor.rate * span, motor.rate)
+                self._dirty = True
 
     def _set_link(self, command: SetLinkState) -> None:
         self.links[command.row] = LinkState(

@@ -16,7 +16,7 @@ from typing import Callable, Dict, List, Optional, Tuple
 from . import child_process
 from . import ring as ring_module
 from .api import EngineDiedError, Event, Reply
-from .commands import Command, SetJoints, SetLinkState, SetModelState
+from .commands import Command, Nudge, SetJoints, SetLinkState, SetModelState
 from .message_pipe import Wire
 from .ring import RingReader
 from .scratch_folder import sweep
@@ -107,6 +107,15 @@ class ProcessEngine:
                 # The reader thread sees the same end, and fails this future with the others.
                 _log.debug("the engine does not listen: %s", fault)
         return future
+
+    def nudge(self) -> None:
+        """Have the child look at the credits."""
+        with self._lock:
+            if self._wire is not None:
+                try:
+                    self._wire.send((0, Nudge()))
+                except OSError as fault:
+                    _log.debug("the engine does not listen: %s", fault)
 
     def wait_bell(self, timeout: float) -> bool:
         """Wait for the bell and empty it; False after `timeout` s."""

@@ -9,6 +9,10 @@ newer than the latest slot while nothing has moved, or when the read-out is thin
 Who only wants to see where everything is, is served from a second, smaller ring: its slots hold
 link rows whose poses are new and whose twists may be older. To read twists costs as much again.
 
+Whoever must act at an exact step has a credit word in the control page: the step at which the
+engine stops until the word is raised. A credit counts for one setting of the clock only: once the
+clock is set, or the step size changes, the engine stands until every consumer gave a new one.
+
 The memory is sparse (memfd): capacity costs nothing until rows are used.
 """
 from __future__ import annotations
@@ -37,8 +41,14 @@ _SLOT_WORDS = -(-(HEAD_WORDS + _LINK_WORDS + _JOINT_WORDS) * 8 // _PAGE) * _PAGE
 SIZE = _PAGE + (SLOTS + POSE_SLOTS) * _SLOT_WORDS * 8
 
 # Words of the control page. The first group is the engine's, the second the simulator's.
-STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER, PROGRESS = range(7)
+(STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER, PROGRESS, CLOCK_SETS) = range(8)
 DEMAND_NS, BELL, POSE_DEMAND_NS = 8, 9, 10
+CREDITS, CONSUMERS = 16, 8   # the first credit word, and how many there are
+
+NO_LIMIT = 1 << 62
+"""The step at which an engine without consumers stops."""
+
+_CREDIT_STEP_BITS = 46
 
 # Words of a slot's head.
 (SEQ_BEGIN, SEQ_END, SLOT_STEP, EPOCH_STEP, EPOCH_NS, STEP_PS, USED_LINKS, USED_JOINTS,
@@ -68,6 +78,11 @@ class Clock(NamedTuple):
     def sim_ns(self, step: int) -> int:
         """Sim time in nanoseconds after `step` steps."""
         return self.epoch_ns + (step - self.epoch_step) * self.step_ps // 1000
+
+
+def credit_word(clock_sets: int, step: int) -> int:
+    """The credit up to `step`, for the clock that was set for the `clock_sets`-th time."""
+    return (clock_sets & 0x7FFF) << _CREDIT_STEP_BITS | (step + 1)
 
 
 def picoseconds(step_size: float) -> int:
@@ -152,6 +167,20 @@ class RingWriter:
         """The world is `step` steps old; the latest slot still holds unless a new one follows."""
         self.words[STEP] = step
 
+    def credit_limit(self, clock_sets: int, since: int) -> int:
+        """The smallest step that the consumers allow; NO_LIMIT without consumers.
+
+        A credit that was given for an earlier setting of the clock allows no step after `since`,
+        the step at which the clock was set.
+        """
+        limit = NO_LIMIT
+        for word in self.words[CREDITS:CREDITS + CONSUMERS]:
+            if word:
+                valid = word >> _CREDIT_STEP_BITS == clock_sets & 0x7FFF
+                allowed = (word & (1 << _CREDIT_STEP_BITS) - 1) - 1 if valid else since
+                limit = min(limit, allowed)
+        return limit
+
     def write(self, step: int, clock: Clock, links: Buffer, joints: Buffer,
               applied: int = 0) -> int:
         """Write a snapshot and return its sequence.
@@ -235,6 +264,24 @@ class RingReader:
             step = words[STEP]
             if words[LATEST] == sequence:
                 return step, clock
+
+    def clock_now(self) -> "tuple[int, int, Clock]":
+        """How often the clock was set, the step count now, and the clock that belongs to both."""
+        while True:
+            sets = self.words[CLOCK_SETS]
+            step, clock = self.clock()
+            if self.words[CLOCK_SETS] == sets:
+                return sets, step, clock
+
+    def joint(self, row: int) -> "tuple[float, float]":
+        """Newest position and rate of one joint axis, without copying the rest."""
+        while True:
+            sequence = self.words[LATEST]
+            slot = self.memory.slot(sequence)
+            at = slot + HEAD_WORDS + _LINK_WORDS + row * JOINT_WIDTH
+            found = self.memory.doubles[at], self.memory.doubles[at + 1]
+            if self._is_whole(slot, sequence):
+                return found
 
     def link(self, row: int) -> "tuple[Pose, Twist]":
         """Newest state of one link, without copying the rest."""

@@ -16,6 +16,7 @@ from .commands import (
     Advance,
     Batch,
     Command,
+    Nudge,
     Pause,
     PhysicsSettings,
     Ping,
@@ -25,9 +26,11 @@ from .commands import (
 )
 from .ring import (
     BELL,
+    CLOCK_SETS,
     DEMAND_NS,
     HEARTBEAT,
     LATEST,
+    NO_LIMIT,
     POSE_DEMAND_NS,
     PROGRESS,
     STATUS,
@@ -41,6 +44,7 @@ from .ring import (
 _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 2.0            # heartbeat while paused
+_MEETING_S = 0.02        # between two looks at credits while a consumer works; nudges come earlier
 _MAKE_UP_S = 0.05        # of read-outs that somebody waits for, after a delay
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
@@ -81,6 +85,12 @@ class Runner:
         self._running = False
         self._horizon = 0
         self._horizon_written = -1
+        self._clock_sets = self._words[CLOCK_SETS] + 1  # a new engine: old credits do not count
+        self._clock_set_at = 0
+        self._limit = NO_LIMIT
+        # Setting of the clock and step of the last meeting: none before the clock is set, since the
+        # last states must stay readable for who puts them back.
+        self._met = (self._clock_sets, self._step)
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
         self._due = 0.0
         self._burst = 1
@@ -101,6 +111,9 @@ class Runner:
         try:
             while True:
                 self._words[HEARTBEAT] += 1
+                self._limit = self._writer.credit_limit(self._clock_sets, self._clock_set_at)
+                if self._step >= self._limit and self._meet():
+                    continue
                 if self._advance is not None:
                     self._serve(0.0)
                     self._advance_burst()
@@ -116,13 +129,29 @@ class Runner:
         except EOFError:
             return
 
+    def _meet(self) -> bool:
+        """Tell the consumers, once, that the engine stands at a credit; wait if steps are wanted.
+
+        False while paused: then there is nothing to wait for.
+        """
+        here = (self._clock_sets, self._step)
+        if self._met != here:
+            self._met = here
+            self._write(force=True)
+            self._channel.event(Event("meeting", "", step=self._step))
+        if self._advance is None and not (self._running and self._step < self._horizon):
+            return False
+        self._serve(_MEETING_S)
+        return True
+
     # -- commands --------------------------------------------------------------------------------
 
     def _serve(self, timeout: float) -> bool:
         """Apply what has arrived; a snapshot that shows it precedes the replies."""
-        commands = self._channel.receive(timeout)
+        received = self._channel.receive(timeout)
+        commands = [pair for pair in received if not isinstance(pair[1], Nudge)]
         if not commands:
-            return False
+            return bool(received)
         answers = []
         refused = False
         for number, command in commands:
@@ -171,6 +200,7 @@ class Runner:
             self._step = command.step
             self._clock = Clock(command.step, command.sim_ns,
                                 picoseconds(self._settings.step_size))
+            self._end_credits()
             return None
         if isinstance(command, Ping):
             return None
@@ -184,10 +214,16 @@ class Runner:
         if settings.step_size != self._settings.step_size:
             now = self._clock.sim_ns(self._step)
             self._clock = Clock(self._step, now, picoseconds(settings.step_size))
+            self._end_credits()
         if settings.rate != self._settings.rate:
             self._due = time.perf_counter()
         self._settings = settings
         self._backend.configure(settings)
+
+    def _end_credits(self) -> None:
+        """The clock is another: appointments must be made anew before the next step."""
+        self._clock_sets += 1
+        self._clock_set_at = self._limit = self._step
 
     # -- stepping --------------------------------------------------------------------------------
 
@@ -205,6 +241,8 @@ class Runner:
             if not self._running:
                 return
             now = time.perf_counter()
+        if self._step >= self._limit:
+            return
         self._backend.step(self._step, 1)
         self._step += 1
         self._step_cost += 0.1 * (time.perf_counter() - now - self._step_cost)
@@ -231,7 +269,9 @@ class Runner:
         self._patient_at = time.perf_counter()
 
     def _free_burst(self) -> None:
-        count = min(self._burst, self._horizon - self._step)
+        count = min(self._burst, min(self._horizon, self._limit) - self._step)
+        if count <= 0:
+            return
         self._burst_of(count)
         self._after_steps(_SHARE_LATE)
 
@@ -239,10 +279,11 @@ class Runner:
         if self._advance is None:
             return
         number, last = self._advance
-        count = min(self._burst, last - self._step)
+        count = min(self._burst, min(last, self._limit) - self._step)
         if count > 0:
             self._burst_of(count)
-        if self._step < last:
+        # Who has an appointment at the last step acts before the answer.
+        if self._step < last or self._step >= self._limit:
             self._after_steps(_SHARE_LATE)
             return
         self._advance = None
@@ -296,6 +337,7 @@ class Runner:
             return self._words[LATEST]
         links, joints = self._backend.tables()
         sequence = self._writer.write(self._step, self._clock, links, joints, self._applied)
+        self._words[CLOCK_SETS] = self._clock_sets
         if force and self._words[BELL]:
             self._channel.bell()
         return sequence

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 from typing import Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
-from .sdf import model_tables, world_tables
-from .urdf import urdf_tables
+from .sdf import model_tables, sensor_tables, world_tables
+from .urdf import transmission, urdf_tables
 from .xml.binding import Entry, Group, Kept, Part, Table, Use, Value
 
 
@@ -39,11 +39,15 @@ _SDF: Tuple[Table, ...] = (
     *model_tables.GEOMETRIES.values(),
     model_tables.JOINT,
     model_tables.AXIS,
+    sensor_tables.SENSOR,
+    sensor_tables.CAMERA,
+    *{table.name: table for table in sensor_tables.BLOCKS.values()}.values(),
 )
 _URDF: Tuple[Table, ...] = (
     urdf_tables.ROBOT, urdf_tables.LINK, urdf_tables.INERTIAL, urdf_tables.COLLISION,
     urdf_tables.VISUAL, urdf_tables.MATERIAL, *(t[0] for t in urdf_tables.GEOMETRIES.values()),
     urdf_tables.JOINT, urdf_tables.GAZEBO_MODEL,
+    transmission.TRANSMISSION,
 )
 
 

@@ -17,6 +17,7 @@ from .issue_logging import log_issue
 from .lifecycle import abandoned
 from .lifecycle.launch_info import Launch
 from .lifecycle.master_membership import Membership
+from .plugins.plugin_starter import PluginStarter
 from .services.editor_service import Open
 from .services.world_services import WorldServices
 
@@ -57,6 +58,7 @@ class Node:
         self._parameters = _private_parameters()
         self._network = _flag(self._parameters, "enable_ros_network", True)
         self._extensions = _flag(self._parameters, "extensions", True)
+        self._plugins = PluginStarter(simulator, log_issue, _plugin_classes(self._parameters))
         self._engine_pid = 0
         self._announce_editor = announce_editor
         self._membership = Membership(master_uri, rospy.get_name(),
@@ -144,7 +146,8 @@ class Node:
     def _models(self) -> ModelServices:
         from .services.model_services import ModelServices
 
-        return ModelServices(self._simulator, self._resolver, log_issue, self._launch.pid)
+        return ModelServices(self._simulator, self._resolver, log_issue, self._launch.pid,
+                             self._plugins.settle)
 
     def _late_handlers(self) -> Dict[str, Any]:
         from .services.editor_service import EditorService
@@ -173,6 +176,8 @@ class Node:
 
         While the master is unreachable, the next call tries again.
         """
+        if self._network:
+            self._plugins.look()
         try:
             if self._membership is not None and not self._membership.keep_up():
                 return
@@ -189,9 +194,11 @@ class Node:
             self._engine_pid = pid
 
     def start_publishing(self) -> None:
-        """Start to publish `/clock` and the state topics."""
+        """Start to publish `/clock` and the state topics, and the plugins of the world's models."""
         if self._publishers is not None:
             self._publishers.start()
+        if self._network:
+            self._plugins.settle()
 
     def spawn_robot(self) -> None:
         """Spawn the parameter `robot_description` if `~spawn_robot` is true.
@@ -220,6 +227,7 @@ class Node:
 
     def stop(self) -> None:
         """Stop publishing; rospy's own shutdown unregisters the services."""
+        self._plugins.stop()
         for publishers in (self._publishers, self._metrics):
             if publishers is not None:
                 publishers.stop()
@@ -256,6 +264,14 @@ def fail(lines: List[str]) -> None:
 def _private_parameters() -> Dict[str, Any]:
     found = rospy.get_param("~", {})
     return found if isinstance(found, dict) else {}
+
+
+def _plugin_classes(parameters: Dict[str, Any]) -> Dict[str, str]:
+    found = parameters.get("plugins", {})
+    if isinstance(found, dict) and all(isinstance(where, str) for where in found.values()):
+        return {str(library): where for library, where in found.items()}
+    rospy.logerr("parameter ~plugins must map libraries to package.module:Class, it is %r", found)
+    return {}
 
 
 def _flag(parameters: Dict[str, Any], name: str, default: bool) -> bool:

@@ -13,8 +13,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Protocol, Tuple, Union
 
 from ..appearance.looks import Look
+from ..description.light import Light
 from ..description.model import Model
-from ..description.world import Light, Scene
+from ..description.surroundings import Scene
 from ..geometry import IDENTITY, Pose
 
 if TYPE_CHECKING:

@@ -5,8 +5,9 @@ from typing import Dict, List, Tuple
 
 from ..appearance.looks import Look
 from ..appearance.materials import Materials
+from ..description.light import Light
 from ..description.model import Model
-from ..description.world import Light, Scene
+from ..description.surroundings import Scene
 from .api import AddBody, Body, Change, LoadScene, RemoveBody, SetLights
 
 

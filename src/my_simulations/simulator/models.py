@@ -22,6 +22,7 @@ from ..errors import CommandError, error
 from ..formats.mesh.loading import without_missing_meshes
 from ..geometry import Pose, compose, normalised
 from .convex_meshes import ConvexParts
+from .drives import Drives
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .order_slot import OrderSlot
@@ -37,9 +38,11 @@ class Models:
     and rows change; reads take the registry lock.
     """
 
-    def __init__(self, session: Session, wrenches: Wrenches, convex_meshes: ConvexParts) -> None:
+    def __init__(self, session: Session, wrenches: Wrenches, drives: Drives,
+                 convex_meshes: ConvexParts) -> None:
         self._session = session
         self._wrenches = wrenches
+        self._drives = drives
         self._convex_meshes = convex_meshes
         self._between = InterModelJoints()
         self._pinned: List[str] = []
@@ -192,6 +195,7 @@ class Models:
         """An entity that is not in the engine (any more): its rows may be used by others."""
         with self._session.registry_lock:
             self._wrenches.forget_entity(entity)
+            self._drives.forget_entity(entity)
             self._session.free_rows(entity)
 
     # -- changing ----------------------------------------------------------------------------------
@@ -227,12 +231,13 @@ class Models:
             entity.pose, entity.articulated = old.pose, old.articulated
             entity.launched = old.launched
             forces = self._wrenches.transferred(old, entity)
+            driving = self._drives.transferred(old, entity)
             try:
                 session.call(Batch((
                     replaced(load_command(entity), inherit=old.model_id),
                     RemoveModel(old.model_id),
                     *self._between.commands(session.registry, name, entity),
-                    *([AddTimedForces(tuple(forces))] if forces else []))))
+                    *([AddTimedForces(tuple(forces))] if forces else []), *driving)))
             except CommandError:
                 self._forget(entity)
                 raise
@@ -241,6 +246,7 @@ class Models:
                 self._between = self._between.renamed(name, model.name).present(session.registry)
                 self._forget(old)
             self._wrenches.keep(forces)
+            self._drives.adopt(driving)
             self._pinned = [model.name if pinned == name else pinned for pinned in self._pinned]
             if model.name in self._pinned:
                 session.call(self._pin_command())

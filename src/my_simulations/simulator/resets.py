@@ -17,6 +17,7 @@ from ..engine.commands import (
 )
 from ..geometry import STILL
 from .clock import SimClock
+from .drives import Drives
 from .initial_state import initial_commands
 from .models import Models
 from .registry import Entity
@@ -27,12 +28,15 @@ from .wrenches import Wrenches
 class Resets:
     """Resets of a running world; each holds the session's structure lock."""
 
-    def __init__(self, session: Session, models: Models, wrenches: Wrenches,
+    def __init__(self, session: Session, models: Models, wrenches: Wrenches, drives: Drives,
                  clock: SimClock) -> None:
         self._session = session
         self._models = models
         self._wrenches = wrenches
+        self._drives = drives
         self._clock = clock
+        self.world_resets = 0        # counted when models are back where they began
+        self.simulation_resets = 0   # counted before: who hears of the new clock can tell why
 
     def reset_time(self) -> None:
         """Set sim time to 0. Models stay; timed wrenches last as long as they would have."""
@@ -56,6 +60,7 @@ class Resets:
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names)))
             self._move_linkless_models(entities)
+            self.world_resets += 1
 
     def reset_simulation(self) -> None:
         """Start again: models and joints as loaded, time 0, no timed wrenches; spawned models stay.
@@ -65,6 +70,7 @@ class Resets:
         session = self._session
         with session.structure_lock:
             entities = session.registry.entities()
+            self.simulation_resets += 1
             commands: List[Command] = [
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
                 SetClock(0, 0)]
@@ -75,6 +81,7 @@ class Resets:
             self._move_linkless_models(entities)
             dropped = self._wrenches.ids
             self._wrenches.replace_all()
+            self._drives.forget_all()
             if dropped:  # an engine that has just taken over may have been told of them
                 session.call(ClearTimedForces(dropped))
 

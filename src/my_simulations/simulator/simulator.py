@@ -21,8 +21,10 @@ from ..engine.commands import (
     SetClock,
 )
 from ..errors import CommandError, Issue, Severity, error, warning
+from .appointments import Appointments
 from .clock import SimClock
 from .convex_meshes import ConvexParts
+from .drives import Drives
 from .feeds import StateFeed
 from .joints import Joints
 from .lights import Lights
@@ -43,6 +45,8 @@ class Simulator:
         models: spawn, delete, edit, pin; descriptions by name.
         joints: find, read, set and edit joints.
         states: poses, twists and contacts; capture and restore.
+        drives: motors of joints, planar velocities of models.
+        appointments: steps at which somebody acts.
         wrenches: timed wrenches on links, efforts and PID controllers on joints.
         lights: the lights.
         scene: scene, camera, wind, air, place on Earth.
@@ -69,13 +73,15 @@ class Simulator:
         self.clock = SimClock(session, paused, steps)
         self.physics = WorldPhysics(session)
         self.wrenches = Wrenches(session)
-        self.models = Models(session, self.wrenches, ConvexParts(
+        self.drives = Drives(session)
+        self.appointments = Appointments(session)
+        self.models = Models(session, self.wrenches, self.drives, ConvexParts(
             log, lambda text: log(Issue(Severity.NOTE, "meshes", text))))
         self.joints = Joints(session, self.models)
         self.states = States(session, self.clock)
         self.lights = Lights(session)
         self.scene = SceneSettings(session)
-        self.resets = Resets(session, self.models, self.wrenches, self.clock)
+        self.resets = Resets(session, self.models, self.wrenches, self.drives, self.clock)
         self.feed = StateFeed(session)
 
     @property
@@ -115,6 +121,7 @@ class Simulator:
             session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids))))
             self.models.forget_all()
             self.wrenches.replace_all()
+            self.drives.forget_all()
             # Once more: an engine that took over just now was told of the old models.
             session.call(Batch((Pause(), Clear())))
             session.world, self._world_meshes = world, meshes or {}
@@ -132,7 +139,9 @@ class Simulator:
             self.models.load_all(self._world_meshes)
 
     def _on_event(self, event: Event) -> None:
-        if event.kind == "diverged":
+        if event.kind == "meeting":
+            self.appointments.ring_all()
+        elif event.kind == "diverged":
             self._session.log(error("state-diverged", event.message))
         elif event.kind == "log":
             self._session.log(warning("physics-approximate", event.message))
@@ -145,7 +154,8 @@ class Simulator:
             self.clock.pause_after_recovery()
         commands: List[Command] = [self.physics.command(),
                                    SetClock(snapshot.step, clock.sim_ns(snapshot.step)),
-                                   *self.models.restore_commands(snapshot)]
+                                   *self.models.restore_commands(snapshot),
+                                   *self.drives.restore_commands()]
         pending = self.wrenches.pending(snapshot.step)
         if pending:
             commands.append(AddTimedForces(pending))

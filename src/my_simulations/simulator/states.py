@@ -63,6 +63,14 @@ class States:
             snapshot = session.snapshot()
         return relative(snapshot.link(row), anchor, snapshot)
 
+    def link_at(self, row: int) -> Tuple[Pose, Twist]:
+        """World pose and twist of the link in a row, for who has looked its row up."""
+        return self._session.ring.link(row)
+
+    def axis_at(self, row: int) -> Tuple[float, float]:
+        """Position and rate of the joint axis in a row, for who has looked its row up."""
+        return self._session.ring.joint(row)
+
     def latest(self) -> Tuple[List[Entity], Snapshot]:
         """All entities in load order, and the newest snapshot; it is old where nothing moves."""
         session = self._session

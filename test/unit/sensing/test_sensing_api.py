@@ -10,9 +10,10 @@ import pytest
 
 from my_simulations.appearance.materials import Materials
 from my_simulations.appearance.textures import TextureFiles
+from my_simulations.description.light import Light
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Box, Cone, Cylinder, Material, Sphere, Visual
-from my_simulations.description.world import Light, Scene
+from my_simulations.description.surroundings import Scene
 from my_simulations.geometry import Pose, compose, quat_from_rpy
 from my_simulations.resources.resolver import Resolver
 from my_simulations.sensing import scene

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from my_simulations.description.world import SphericalCoordinates
+from my_simulations.description.surroundings import SphericalCoordinates
 from my_simulations.geometry import (
     IDENTITY,
     STILL,

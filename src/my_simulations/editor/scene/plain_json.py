@@ -8,8 +8,8 @@ from typing import Any, Dict
 from ...description.model import INFINITE
 from ...geometry import Pose
 
-HIDDEN = frozenset(("extra", "base_dir", "path", "script_uris"))
-"""Fields that are the files' business."""
+HIDDEN = frozenset(("extra", "base_dir", "path", "script_uris", "sensors", "transmissions"))
+"""Fields that are the files' business, besides those that do not count in comparisons."""
 
 
 def plain(value: Any) -> Any:
@@ -30,7 +30,7 @@ def plain(value: Any) -> Any:
 def plain_fields(value: Any, *left_out: str) -> Dict[str, Any]:
     """All fields but the hidden ones and those named."""
     return {field.name: plain(getattr(value, field.name)) for field in fields(value)
-            if field.name not in HIDDEN and field.name not in left_out}
+            if field.compare and field.name not in HIDDEN and field.name not in left_out}
 
 
 def number(value: float) -> float:

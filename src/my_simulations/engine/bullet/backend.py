@@ -27,6 +27,8 @@ from ..commands import (
     SetJoints,
     SetLinkState,
     SetModelState,
+    SetMotors,
+    SetPlanarVelocities,
 )
 from ..ring import JOINTS, LINKS
 from . import bodies, collision_groups, extra_surfaces, joint_axes
@@ -41,8 +43,10 @@ from .gyroscopic_rigid import GyroscopicRigid
 from .initial_state_cache import InitialStateCache, Start
 from .inter_model_joints import InterModelJoints
 from .joint_constraints import Constraints
+from .joint_motors import JointMotors
 from .pair_friction import EVERY, FrictionBalance
 from .pinned_bodies import PinnedBodies
+from .planar_motion import PlanarMotion
 from .residual_friction import EVERY as EVERY_FRICTION
 from .residual_friction import ResidualFriction
 from .rolling_contacts import EVERY as EVERY_ROLL
@@ -81,10 +85,12 @@ class BulletBackend:
         self._settling = ContactSettling()
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
+        self._motors = JointMotors(self._axes, self._waker.around)
+        self._planar = PlanarMotion(self._models, self._mover.model_pose, self._waker.around)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
                          self._decay, self._residual, self._rolling, self._sliding,
-                         self._settling, self._readout)
+                         self._settling, self._motors, self._planar, self._readout)
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -96,6 +102,8 @@ class BulletBackend:
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,
             ConnectModels: self._connect,
+            SetMotors: lambda command: self._motors.set(command.motors),
+            SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit,
                                                         self._sliding.friction),
             AddTimedForces: self._add_timed_forces,
@@ -121,7 +129,7 @@ class BulletBackend:
         if settings.step_size != before.step_size:
             for entry in self._models.values():
                 for body in entry.bodies:
-                    joint_axes.set_up(body, entry.model, self._forces, settings.step_size)
+                    self._set_up_axes(body, entry.model)
                     if body.rigid and body.moves:
                         link = entry.model.links[body.parts[0].row - entry.first_row]
                         bodies.set_decay(body.uid, link, settings.step_size)
@@ -133,7 +141,7 @@ class BulletBackend:
         one = pybullet.stepSimulation
         dt, gravity = self._settings.step_size, self._settings.gravity
         if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
-                                      self._decay)):
+                                      self._decay, self._planar)):
             self._step_freely(first, count, dt)
             self._forces.stepped()
             return
@@ -143,6 +151,7 @@ class BulletBackend:
             self._settling.look(step)
             self._forces.apply(step, dt, gravity)
             self._decay.apply(dt)
+            self._planar.apply()
             self._rolling.before(step, dt, gravity)
             self._sliding.before()
             free = self._spin.before(step, dt)
@@ -257,7 +266,7 @@ class BulletBackend:
                 self._rolling.add(body, part, link)
                 self._sliding.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
-            joint_axes.set_up(body, model, self._forces, dt)
+            self._set_up_axes(body, model)
         return entry
 
     def _restart(self, command: Restart) -> None:
@@ -350,7 +359,8 @@ class BulletBackend:
         self._models.clear()
         self._forces.clear_all()
         for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
-                       self._residual, self._rolling, self._sliding, self._settling):
+                       self._residual, self._rolling, self._sliding, self._settling,
+                       self._motors, self._planar):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
@@ -372,7 +382,11 @@ class BulletBackend:
         entry.model = replace(entry.model, joints=list(command.joints))
         self._waker.around(entry.bodies)
         for body in entry.bodies:
-            joint_axes.set_up(body, entry.model, self._forces, self._settings.step_size)
+            self._set_up_axes(body, entry.model)
+
+    def _set_up_axes(self, body: Body, model: Model) -> None:
+        joint_axes.set_up(body, model, self._forces, self._settings.step_size)
+        self._motors.set_up(body, model)
 
     def _hold(self, command: PinModels) -> None:
         self._holds.set(body for number in command.model_ids

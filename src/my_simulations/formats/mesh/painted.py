@@ -17,6 +17,8 @@ from .part import MeshError
 
 _PAINTED = (".obj", ".glb", ".gltf", ".ply")
 
+Array = Any  # a numpy array; its shape is said where it is used
+
 
 @dataclass(frozen=True)
 class PaintedPart:
@@ -29,10 +31,10 @@ class PaintedPart:
         picture: of its texture: a path that may not exist, a decoded PIL image, or None.
     """
 
-    vertices: np.ndarray
-    normals: np.ndarray
-    uv: np.ndarray
-    triangles: np.ndarray
+    vertices: Array
+    normals: Array
+    uv: Array
+    triangles: Array
     color: Optional[Color] = None
     picture: Any = None
 
@@ -83,18 +85,26 @@ def _placed(parts: List[PaintedPart], mesh: Mesh) -> List[PaintedPart]:
     for part in parts:
         normals = part.normals / np.where(scale == 0, 1.0, scale)
         triangles = part.triangles[:, ::-1] if mirrored else part.triangles
-        placed.append(PaintedPart((part.vertices - shift) * scale, _unit_rows(normals), part.uv,
-                                  triangles, part.color, part.picture))
+        placed.append(
+            PaintedPart(
+                (part.vertices - shift) * scale,
+                _unit_rows(np.asarray(normals)),
+                part.uv,
+                triangles,
+                part.color,
+                part.picture,
+            )
+        )
     return placed
 
 
-def _unit_rows(rows: np.ndarray) -> np.ndarray:
+def _unit_rows(rows: Array) -> Array:
     length = np.linalg.norm(rows, axis=1, keepdims=True)
-    unit: np.ndarray = rows / np.where(length > 0, length, 1.0)
+    unit: Array = rows / np.where(length > 0, length, 1.0)
     return unit
 
 
-def _indexed(corners: np.ndarray, normals: Optional[np.ndarray], uv: Optional[np.ndarray],
+def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
              color: Optional[Color], picture: Any) -> PaintedPart:
     """Three corners a triangle, those that are the same made one."""
     if normals is None or len(normals) != len(corners):
@@ -103,7 +113,9 @@ def _indexed(corners: np.ndarray, normals: Optional[np.ndarray], uv: Optional[np
     if uv is None or len(uv) != len(corners):
         uv = np.zeros((len(corners), 2))
     rows = np.ascontiguousarray(
-        np.column_stack([corners, _unit_rows(normals), uv[:, :2]]).astype(np.float32) + 0.0)
+        np.column_stack([corners, _unit_rows(np.asarray(normals)), uv[:, :2]]).astype(np.float32)
+        + 0.0
+    )
     _, first, inverse = np.unique(rows.view([("", rows.dtype)] * rows.shape[1]).ravel(),
                                   return_index=True, return_inverse=True)
     kept = rows[first].astype(np.float64)

@@ -58,7 +58,7 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
         probe.pose = IDENTITY  # an empty one, too, replaces that of the model
     changes = IncludeOverrides(
         probe.name or None, probe.pose, relative_to(found), probe.static,
-        [read_plugin(plugin) for plugin in found.get("plugin", ())],
+        [read_plugin(plugin, source) for plugin in found.get("plugin", ())],
         next(((e.text or "").strip() for e in found.get("placement_frame", ())), ""),
     )
     read = functools.partial(read_model, static=static, outer=outer, alone=alone and not outer)

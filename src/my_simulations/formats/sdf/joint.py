@@ -13,6 +13,7 @@ from ..xml.source import FaultLevel, Source
 from ..xml.values import FLOAT, TEXT, VECTOR3
 from .frame_graph import FrameError
 from .model_tables import AXIS, AXIS2, JOINT
+from .sensor import read_sensor
 from .upgrade import WORLD_AXES
 
 
@@ -53,6 +54,7 @@ def read_joint(element: Any, source: Source) -> Tuple[Joint, Found]:
     """
     joint = Joint(element.get("name", ""), _type(element, source), "", "")
     found = fill(joint, element, JOINT, source, joint.extra)
+    joint.sensors = [read_sensor(child, source) for child in found.get("sensor", ())]
     joint.axis = _axis("axis", AXIS, found, source, joint)
     joint.axis2 = _axis("axis2", AXIS2, found, source, joint)
     _default_axes(joint, element, source)

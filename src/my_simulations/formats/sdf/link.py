@@ -11,6 +11,7 @@ from ..xml.source import FaultLevel, Source
 from .collision_visual import read_collision, read_visual
 from .frame_graph import FrameTree
 from .model_tables import INERTIAL, LINK
+from .sensor import read_sensor
 
 
 def relative_to(found: Found) -> str:
@@ -90,6 +91,12 @@ class LinkReader:
                 link.visuals.append(visual[0])
                 self.elements[id(visual[0])] = child
                 self._note_pose(*visual, link)
+        for child in found.get("sensor", ()):
+            link.sensors.append(read_sensor(child, source))
+            self.elements[id(link.sensors[-1])] = child
+            pose = child.find("pose")
+            if pose is not None and pose.get("relative_to"):
+                self.given_in.append((link.sensors[-1], pose.get("relative_to"), link.name))
         if not (static or link.kinematic):
             self._complete_inertia(link)
         self._distinct("collision", link.collisions, link)

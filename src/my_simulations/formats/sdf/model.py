@@ -75,7 +75,7 @@ class _ModelReader:
         included = self._read_includes(self._within_depth(found.get("include", ()), model), model,
                                        placement)
         static = model.static or self._outer_static
-        model.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+        model.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
         model.plugins += changes.plugins
         model.links = self._links.read_all(found.get("link", ()), static)
         self._force_static_if_needed(model, static)

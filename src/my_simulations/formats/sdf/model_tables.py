@@ -182,8 +182,8 @@ LINK = Table("link", Link, {
         "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
     }),
     **_kept("frame", "light", "must_be_base_link", "enable_wind"),
-    **_told("sensor", "projector", "audio_source", "audio_sink", "battery", "particle_emitter",
-            "plugin"),
+    "sensor": Part(use=KEPT, kept=True),
+    **_told("projector", "audio_source", "audio_sink", "battery", "particle_emitter", "plugin"),
 }, known_attributes=("name",))
 
 _AXIS_CHILDREN: Mapping[str, Entry] = {
@@ -213,7 +213,8 @@ JOINT = Table("joint", Joint, {
     "screw_thread_pitch": Part("1.10"),
     "gearbox_ratio": Value("gearbox_ratio", FLOAT),
     "gearbox_reference_body": Value("gearbox_reference", TEXT),
-    **_kept("frame", "physics"), **_told("sensor"),
+    "sensor": Part(use=KEPT, kept=True),
+    **_kept("frame", "physics"),
 }, known_attributes=("name", "type"))
 
 FRAME = Table("frame", Link, {"pose": Value("pose", POSE, FATAL)},
@@ -225,7 +226,7 @@ MODEL = Table("model", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
-    "frame": Part("1.5", kept=True), "plugin": Part(use=KEPT, told=True),
+    "frame": Part("1.5", kept=True), "plugin": Part(),
     "enable_wind": Value("enable_wind", BOOL, use=KEPT),
     **_told("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
@@ -236,7 +237,7 @@ INCLUDE = Table("include", Model, {
     "name": Value("name", TEXT),
     "pose": Value("pose", POSE, FATAL),
     "static": Value("static", BOOL),
-    "plugin": Part(use=KEPT, told=True),
+    "plugin": Part(),
     "placement_frame": Part("1.8"),
 }, known_attributes=("merge",))
 

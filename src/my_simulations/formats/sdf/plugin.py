@@ -3,10 +3,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...description.model import PluginSpec
+from ...description.plugin import PluginSpec
 from ..xml.binding import to_xml
+from ..xml.source import Source
 
 
-def read_plugin(element: Any) -> PluginSpec:
-    """A `<plugin>` with its whole XML. Source: SDF spec 1.7, plugin."""
-    return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element))
+def read_plugin(element: Any, source: Source) -> PluginSpec:
+    """A `<plugin>` with its whole XML, file and line. Source: SDF spec 1.7, plugin."""
+    return PluginSpec(element.get("name", ""), element.get("filename", ""), to_xml(element),
+                      source.file, element.sourceline or 0)

@@ -36,7 +36,7 @@ def read_world_element(element: Any, source: Source, seed: int = 0, profile: str
     """
     world = World(element.get("name") or "default", file=source.file, seed=seed)
     found = fill(world, element, WORLD, source, world.extra)
-    world.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+    world.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
     _read_physics(found.get("physics", ()), world, source, profile)
     read_surroundings(found, world, source)
     _Entities(world, source, found).read(element)

@@ -33,7 +33,7 @@ def read_surroundings(found: Found, world: World, source: Source) -> None:
         _read_scene(element, world.scene, source)
     for element in found.get("gui", ()):
         inside = fill(world.gui, element, GUI, source, world.gui.extra)
-        world.gui.plugins += [read_plugin(plugin) for plugin in inside.get("plugin", ())]
+        world.gui.plugins += [read_plugin(plugin, source) for plugin in inside.get("plugin", ())]
         for camera in inside.get("camera", ()):
             world.gui_camera = GuiCamera()
             fill(world.gui_camera, camera, GUI_CAMERA, source, world.gui_camera.extra)
@@ -69,7 +69,7 @@ def read_actor(element: Any, source: Source) -> Actor:
     """An actor with its path; none of it is simulated. Source: SDF spec 1.7, actor."""
     actor = Actor(element.get("name", ""), base_dir=source.base_dir)
     found = fill(actor, element, ACTOR, source, actor.extra)
-    actor.plugins = [read_plugin(plugin) for plugin in found.get("plugin", ())]
+    actor.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
     for child in found.get("animation", ()):
         animation = Animation(child.get("name", ""))
         fill(animation, child, ANIMATION, source, animation.extra)

@@ -4,12 +4,13 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any, DefaultDict, List, Sequence, Set
 
-from ...description.model import Model, PluginSpec
+from ...description.model import Model
 from ...description.shapes import Material
 from ...geometry import Pose, compose
 from ..sdf.collision_visual import fill_material
 from ..sdf.model_tables import COLLISION as SDF_COLLISION
 from ..sdf.model_tables import VISUAL as SDF_VISUAL
+from ..sdf.plugin import read_plugin
 from ..xml.binding import Value, closest, fill, set_value, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.values import BOOL, FLOAT, POSE
@@ -45,12 +46,8 @@ class Extensions:
         for block in self._by_reference.get("", ()):
             found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
             self.joints += found.get("joint", [])
-            for child in found.get("plugin", ()):
-                self._source.tell_unused(child)
-            model.plugins += [
-                PluginSpec(child.get("name", ""), child.get("filename", ""), to_xml(child))
-                for child in found.get("plugin", ())
-            ]
+            model.plugins += [read_plugin(child, self._source)
+                              for child in found.get("plugin", ())]
 
     def to_link(self, body: Body) -> None:
         """Settings of a link and of its own collisions and visuals, before any lumping."""
@@ -149,7 +146,7 @@ class Extensions:
 
 BUILT_IN_MATERIALS = "file://media/materials/scripts/gazebo.material"
 _DECAY = {"linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT)}
-_TOLD = ("sensor", "projector", "audio_source", "audio_sink", "battery", "plugin")
+_TOLD = ("projector", "audio_source", "audio_sink", "battery", "plugin")
 _PLACED = ("<sensor", "<light", "<projector")
 _KEEP = {"preserveFixedJoint": "fixed", "disableFixedJointLumping": "revolute"}
 _RANK = ["", "revolute", "fixed"]

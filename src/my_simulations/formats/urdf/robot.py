@@ -1,14 +1,15 @@
 """URDF robots as models. Source: the URDF specification and the behaviour of Gazebo's converter."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Union
 
-from ...description.model import WORLD, JointAxis, Model
+from ...description.model import WORLD, Joint, JointAxis, Link, Model
 from ...description.validate import faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose
 from ..default_inertia import usable_inertia
 from ..include_overrides import IncludeOverrides
+from ..sdf.sensor import kept_sensors
 from ..xml.binding import closest, fill
 from ..xml.source import FaultLevel, Source
 from .fixed_joint_lumping import lump, lumped_into
@@ -18,6 +19,7 @@ from .joint import read_connection, turned_to
 from .kinematic_tree import LUMP, Body, Connection, parents_first
 from .link import read_body, read_origin, read_palette
 from .lumped_references import Renamed, rename
+from .transmission import read_transmission
 from .urdf_tables import ROBOT
 
 
@@ -64,10 +66,13 @@ class _RobotReader:
         for connection in self._connections:
             extensions.to_connection(connection)
         extensions.report_unused()
+        model.transmissions = [read_transmission(child, source)
+                               for child in found.get("transmission", ())]
         root = self._root()
         if root is not None:
             poses = self._build(root)
             rename(model, self._renamed)
+            self._read_sensors()
             for child in extensions.joints:
                 joint = read_sdf_joint(child, source, self._bodies, poses, model.name)
                 if joint is not None:
@@ -75,6 +80,14 @@ class _RobotReader:
                     model.joints.append(joint)
         self._check()
         return model
+
+    def _read_sensors(self) -> None:
+        """From the XML that links and joints keep: it was moved and renamed by the lumping."""
+        lines = {element.get("name", ""): element.sourceline
+                 for element in self._element.iter("sensor")}
+        holders: List[Union[Link, Joint]] = [*self._model.links, *self._model.joints]
+        for holder in holders:
+            holder.sensors = kept_sensors(holder.extra, self._source, lines)
 
     def _read_bodies(self, elements: Any, palette: Any) -> None:
         for element in elements:

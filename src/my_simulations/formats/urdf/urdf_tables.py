@@ -86,7 +86,8 @@ ORIGIN = Table("origin", Origin, attributes={
 
 ROBOT = Table("robot", Model, {
     "link": Part(), "joint": Part(), "material": Part(), "gazebo": Part(), "origin": Part(),
-    **_ignored("transmission", "sensor", "verbose", "group_state", "ros2_control"),
+    "transmission": Part(use=Use.IGNORED),
+    **_ignored("sensor", "verbose", "group_state", "ros2_control"),
 }, known_attributes=("name", "version", "static", "type"), strict=True)
 
 LINK = Table("link", Link, {
@@ -154,7 +155,7 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "enable_wind": Value("enable_wind", BOOL, use=Use.KEPT),
-    "plugin": Part(use=Use.KEPT), "joint": Part(),
+    "plugin": Part(), "joint": Part(),
     "gripper": Kept(told=True),
     **_kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })

@@ -37,9 +37,19 @@ class ModelServices:
     """Spawns and deletes models, and spawns lights."""
 
     def __init__(self, simulator: Simulator, resolver: Resolver,
-                 log: Callable[[Issue], None], launcher: int = 0) -> None:
-        """`launcher`: process id of the roslaunch that started the simulator, 0 for none."""
+                 log: Callable[[Issue], None], launcher: int = 0,
+                 changed: Callable[[], None] = lambda: None) -> None:
+        """Take over a simulator.
+
+        Args:
+            simulator: the world.
+            resolver: finds what models name.
+            log: hears of faults.
+            launcher: process id of the roslaunch that started the simulator, 0 for none.
+            changed: called after a model has come or gone, before that is answered.
+        """
         self._launcher = launcher
+        self._changed = changed
         self._simulator = simulator
         self._resolver = resolver
         self._log = log
@@ -144,6 +154,7 @@ class ModelServices:
         within(where.position, LENGTH, "m", "position of the model")
         with gazebo_prefix("", NO_FRAME):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
+        self._changed()
         self._report(arrival_advice(self._simulator, model.name, meshes))
         warned = sum(issue.severity is not Severity.NOTE for issue in issues)
         counted = "1 warning" if warned == 1 else f"{warned} warnings"
@@ -185,6 +196,7 @@ class ModelServices:
         """Delete a model; it is gone when this returns."""
         with gazebo_prefix("model does not exist"):
             self._simulator.models.delete(request.model_name)
+        self._changed()
         return "successfully deleted model"
 
 

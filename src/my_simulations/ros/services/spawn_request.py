@@ -79,7 +79,9 @@ def _plugin(plugin: PluginSpec, namespace: str) -> PluginSpec:
 def _link(link: Link, namespace: str) -> Link:
     if not any("<plugin" in text for text in link.extra):
         return link
-    return replace(link, extra=_extra(link.extra, namespace))
+    sensors = [replace(sensor, plugins=[_plugin(plugin, namespace) for plugin in sensor.plugins])
+               for sensor in link.sensors]
+    return replace(link, extra=_extra(link.extra, namespace), sensors=sensors)
 
 
 def _extra(texts: List[str], namespace: str) -> List[str]:

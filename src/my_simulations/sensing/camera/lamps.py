@@ -7,7 +7,7 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from ...description.world import Light
+from ...description.light import Light
 from ...geometry import rotate
 from .shaders import MOST_LIGHTS, MOST_SHADOWS
 

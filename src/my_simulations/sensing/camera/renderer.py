@@ -6,7 +6,8 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 
-from ...description.world import Light, Scene
+from ...description.light import Light
+from ...description.surroundings import Scene
 from ...errors import InputError
 from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures
 from ..poses import matrices, matrix
@@ -190,8 +191,8 @@ class Renderer:
             pixels[n] = one.pixel
         program["shadow_from_view"].write(maps.tobytes())
         program["shadow_pixel"].write(pixels.tobytes())
-        for n, one in enumerate(self._maps):
-            one.use(location=1 + n)
+        for n, texture in enumerate(self._maps):
+            texture.use(location=1 + n)
             program[f"shadow{n}"] = 1 + n
         program["picture"] = 0
         fog = self._scene.fog

@@ -6,7 +6,7 @@ from typing import Any, Dict, Sequence
 
 import numpy as np
 
-from ...description.world import Sky
+from ...description.surroundings import Sky
 
 
 def linear(color: Sequence[float]) -> np.ndarray:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Tuple
 
-from ...description.world import SphericalCoordinates
+from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3
 
 _A, _B = 6378137.0, 6356752.314245  # WGS 84, m

@@ -1,0 +1,69 @@
+"""Motors of joint axes: a rate, and the effort that may be spent on it (ODE's `vel` and `fmax`)."""
+from __future__ import annotations
+
+from typing import Callable, Dict, Iterable, List, Mapping, Tuple
+
+import pybullet
+
+from ...description.model import JointAxis, Model
+from ..api import CommandRefusedError
+from ..commands import JointMotor
+from .bodies import Axis, Body
+
+
+class JointMotors:
+    """Keeps PyBullet's velocity motors as told; on axes without one they are the friction."""
+
+    def __init__(self, axes: Mapping[int, Tuple[Body, Axis]],
+                 wake: Callable[[List[Body]], None]) -> None:
+        self._axes = axes
+        self._wake = wake
+        self._motors: Dict[int, JointMotor] = {}
+        self._specs: Dict[int, JointAxis] = {}
+
+    def set(self, motors: Iterable[JointMotor]) -> None:
+        """Set these; others stay. Raises CommandRefusedError, and then none is set."""
+        changed = list(motors)
+        for motor in changed:
+            if motor.row not in self._axes:
+                raise CommandRefusedError("the joint of the motor does not exist")
+        woken: Dict[int, Body] = {}
+        for motor in changed:
+            body, axis = self._axes[motor.row]
+            before = self._motors.get(motor.row)
+            if before == motor:
+                continue
+            self._motors[motor.row] = motor
+            self._drive(body, axis, motor)
+            if before is None or before.rate != motor.rate:
+                woken[body.uid] = body
+        if woken:
+            self._wake(list(woken.values()))
+
+    def set_up(self, body: Body, model: Model) -> None:
+        """The axes of a body of `model` got their limits and friction (anew): motors go on."""
+        specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
+        for axis in body.axes:
+            self._specs[axis.row] = specs[axis.name][axis.number] or JointAxis()
+            motor = self._motors.get(axis.row)
+            if motor is not None:
+                self._drive(body, axis, motor)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        for axis in body.axes:
+            self._motors.pop(axis.row, None)
+            self._specs.pop(axis.row, None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self._motors.clear()
+        self._specs.clear()
+
+    def _drive(self, body: Body, axis: Axis, motor: JointMotor) -> None:
+        rate, effort = motor.rate, motor.effort
+        if effort <= 0.0:
+            spec = self._specs.get(axis.row) or JointAxis()
+            rate, effort = spec.motor_rate, max(0.0, spec.friction)
+        pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
+                                       targetVelocity=rate, force=effort)

@@ -1,0 +1,62 @@
+"""Models that move level as they are told, whatever acts on them."""
+from __future__ import annotations
+
+import math
+from typing import Callable, Dict, Iterable, List, Mapping
+
+import pybullet
+
+from ...geometry import Pose, cross, rpy_from_quat, subtract
+from ..commands import PlanarVelocity
+from .bodies import Body
+from .state_restore import Entry
+
+
+class PlanarMotion:
+    """Gives bodies their velocity before every step."""
+
+    def __init__(self, models: Mapping[int, Entry], model_pose: Callable[[Entry], Pose],
+                 wake: Callable[[List[Body]], None]) -> None:
+        self._models = models
+        self._model_pose = model_pose
+        self._wake = wake
+        self._velocities: Dict[int, PlanarVelocity] = {}
+
+    @property
+    def idle(self) -> bool:
+        """True when no model is told how to move."""
+        return not self._velocities
+
+    def set(self, velocities: Iterable[PlanarVelocity]) -> None:
+        """Move these models, and no others; those that have gone are ignored."""
+        before = self._velocities
+        self._velocities = {one.model_id: one for one in velocities
+                            if one.model_id in self._models}
+        changed = [number for number, one in self._velocities.items() if before.get(number) != one]
+        if changed:
+            self._wake([body for number in changed for body in self._models[number].bodies])
+
+    def forget(self, body: Body) -> None:
+        """A body is gone, and its model with it."""
+        self._velocities.pop(body.model_id, None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self._velocities.clear()
+
+    def apply(self) -> None:
+        """Act before the next step."""
+        for number, wanted in self._velocities.items():
+            entry = self._models[number]
+            at, turn = self._model_pose(entry)
+            yaw = rpy_from_quat(turn)[2]
+            c, s = math.cos(yaw), math.sin(yaw)
+            linear = (c * wanted.x - s * wanted.y, s * wanted.x + c * wanted.y, 0.0)
+            angular = (0.0, 0.0, wanted.yaw_rate)
+            for body in entry.bodies:
+                if not body.moves or (not body.rigid and body.base is None):
+                    continue
+                com = pybullet.getBasePositionAndOrientation(body.uid)[0]
+                lever = cross(angular, subtract(com, at))
+                pybullet.resetBaseVelocity(
+                    body.uid, (linear[0] + lever[0], linear[1] + lever[1], 0.0), angular)

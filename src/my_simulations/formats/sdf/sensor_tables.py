@@ -1,0 +1,165 @@
+"""SDF's sensors as tables. Source: SDF specification 1.7, sensor."""
+from __future__ import annotations
+
+from typing import Dict, Mapping
+
+from ...description.sensor import (
+    AirPressure,
+    Altimeter,
+    Camera,
+    ContactSensor,
+    ForceTorque,
+    Gps,
+    Imu,
+    LogicalCamera,
+    Magnetometer,
+    Ray,
+    Sensor,
+    Sonar,
+    Transceiver,
+)
+from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.source import FaultLevel
+from ..xml.values import BOOL, FLOAT, INT, LIMIT, POSE, TEXT, VECTOR2, VECTOR3
+
+_WARNING, _KEPT = FaultLevel.WARNING, Use.KEPT
+
+
+def _kept(*names: str) -> Dict[str, Entry]:
+    return {name: Kept() for name in names}
+
+
+def _noise(part: str) -> Group:
+    numbers: Dict[str, Entry] = {name: Value(name, FLOAT) for name in (
+        "mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
+        "dynamic_bias_correlation_time", "precision")}
+    # SDF 1.4 and robots of its time have the type as an element.
+    return Group({**numbers, "type": Value("type", TEXT)}, {"type": Value("type", TEXT)}, part=part)
+
+
+def _noisy(part: str) -> Group:
+    """A quantity that says nothing but its noise."""
+    return Group({"noise": _noise(part)})
+
+
+def _axes(prefix: str) -> Group:
+    return Group({axis: _noisy(f"{prefix}_{axis}") for axis in "xyz"})
+
+
+def _table(name: str, of: type, children: Mapping[str, Entry], **more: object) -> Table:
+    return Table(name, of, children, level=_WARNING, use=_KEPT, **more)  # type: ignore[arg-type]
+
+
+def _scan(part: str) -> Group:
+    return Group({
+        "samples": Value("samples", INT), "resolution": Value("resolution", FLOAT),
+        "min_angle": Value("min_angle", FLOAT), "max_angle": Value("max_angle", FLOAT),
+    }, part=part)
+
+
+RAY = _table("ray", Ray, {
+    "scan": Group({"horizontal": _scan("horizontal"), "vertical": _scan("vertical")}),
+    "range": Group({
+        "min": Value("min_range", LIMIT), "max": Value("max_range", LIMIT),
+        "resolution": Value("range_resolution", FLOAT),
+    }),
+    "noise": _noise("noise"),
+    **_kept("visibility_mask"),
+})
+
+CAMERA = _table("camera", Camera, {
+    "pose": Value("pose", POSE),
+    "horizontal_fov": Value("horizontal_fov", FLOAT),
+    "image": Group({
+        "width": Value("width", INT), "height": Value("height", INT),
+        "format": Value("format", TEXT), "anti_aliasing": Value("anti_aliasing", INT),
+    }),
+    "clip": Group({"near": Value("near", FLOAT), "far": Value("far", FLOAT)}),
+    "depth_camera": Group({
+        "output": Value("depth_output", TEXT),
+        "clip": Group({"near": Value("depth_near", FLOAT), "far": Value("depth_far", FLOAT)}),
+    }),
+    "noise": _noise("noise"),
+    "distortion": Group({
+        **{name: Value(name, FLOAT) for name in ("k1", "k2", "k3", "p1", "p2")},
+        "center": Value("distortion_center", VECTOR2),
+    }),
+    **_kept("save", "lens", "visibility_mask", "frame", "segmentation_type", "box_type",
+            "optical_frame_id", "camera_info_topic", "trigger_topic", "triggered"),
+}, attributes={"name": Value("name", TEXT)})
+
+CONTACT = _table("contact", ContactSensor, {
+    "collision": Value("collisions", TEXT, repeated=True), "topic": Value("topic", TEXT),
+})
+
+IMU = _table("imu", Imu, {
+    "angular_velocity": _axes("angular_velocity"),
+    "linear_acceleration": _axes("linear_acceleration"),
+    "orientation_reference_frame": Group({
+        "localization": Value("localization", TEXT),
+        "custom_rpy": Value("custom_rpy", VECTOR3), "grav_dir_x": Value("grav_dir_x", VECTOR3),
+    }),
+    "enable_orientation": Value("enable_orientation", BOOL),
+    **_kept("topic", "noise"),
+})
+
+GPS = _table("gps", Gps, {
+    "position_sensing": Group({
+        "horizontal": _noisy("position_horizontal"), "vertical": _noisy("position_vertical")}),
+    "velocity_sensing": Group({
+        "horizontal": _noisy("velocity_horizontal"), "vertical": _noisy("velocity_vertical")}),
+})
+
+FORCE_TORQUE = _table("force_torque", ForceTorque, {
+    "frame": Value("frame", TEXT), "measure_direction": Value("measure_direction", TEXT),
+    "force": _axes("force"), "torque": _axes("torque"),
+})
+
+SONAR = _table("sonar", Sonar, {
+    "geometry": Value("geometry", TEXT), "min": Value("min", FLOAT), "max": Value("max", FLOAT),
+    "radius": Value("radius", FLOAT),
+})
+
+ALTIMETER = _table("altimeter", Altimeter, {
+    "vertical_position": _noisy("vertical_position"),
+    "vertical_velocity": _noisy("vertical_velocity"),
+})
+
+MAGNETOMETER = _table("magnetometer", Magnetometer, {axis: _noisy(axis) for axis in "xyz"})
+
+AIR_PRESSURE = _table("air_pressure", AirPressure, {
+    "reference_altitude": Value("reference_altitude", FLOAT), "pressure": _noisy("pressure"),
+})
+
+LOGICAL_CAMERA = _table("logical_camera", LogicalCamera, {
+    name: Value(name, FLOAT) for name in ("near", "far", "aspect_ratio", "horizontal_fov")
+})
+
+TRANSCEIVER = _table("transceiver", Transceiver, {
+    "essid": Value("essid", TEXT),
+    **{name: Value(name, FLOAT) for name in (
+        "frequency", "min_frequency", "max_frequency", "gain", "power", "sensitivity")},
+})
+
+BLOCKS: Mapping[str, Table] = {
+    "ray": RAY, "lidar": RAY, "contact": CONTACT, "imu": IMU, "gps": GPS, "navsat": GPS,
+    "force_torque": FORCE_TORQUE, "sonar": SONAR, "altimeter": ALTIMETER,
+    "magnetometer": MAGNETOMETER, "air_pressure": AIR_PRESSURE,
+    "logical_camera": LOGICAL_CAMERA, "transceiver": TRANSCEIVER,
+}
+"""Tables of the blocks by tag; cameras, of which there may be several, apart."""
+
+FIELDS: Mapping[str, str] = {"lidar": "ray", "navsat": "gps"}
+"""Fields of the blocks that are not called as their tag is."""
+
+SENSOR = _table("sensor", Sensor, {
+    "pose": Value("pose", POSE),
+    "always_on": Value("always_on", BOOL),
+    "update_rate": Value("update_rate", FLOAT),
+    "visualize": Value("visualize", BOOL),
+    "topic": Value("topic", TEXT),
+    "camera": Part(), "plugin": Part(),
+    **{tag: Part() for tag in BLOCKS},
+    **_kept("frame", "rfid", "rfidtag", "enable_metrics", "force_torque_sensor", "gz_frame_id",
+            "ignition_frame_id"),
+}, attributes={"type": Value("type", TEXT)}, known_attributes=("name",))

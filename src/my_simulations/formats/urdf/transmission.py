@@ -1,0 +1,49 @@
+"""URDF's transmissions. Source: ROS wiki, urdf/XML/Transmission."""
+from __future__ import annotations
+
+from typing import Any
+
+from ...description.transmission import Actuator, Transmission, TransmissionJoint
+from ..xml.binding import Kept, Part, Table, Use, Value, fill
+from ..xml.source import FaultLevel, Source
+from ..xml.values import FLOAT, TEXT
+
+_TYPE = Value("interfaces", TEXT, repeated=True)
+
+TRANSMISSION_JOINT = Table("joint", TransmissionJoint, {
+    "hardwareInterface": _TYPE, "role": Kept(use=Use.IGNORED),
+    "mechanicalReduction": Kept(use=Use.IGNORED), "offset": Kept(use=Use.IGNORED),
+}, level=FaultLevel.WARNING, use=Use.IGNORED, known_attributes=("name",))
+
+ACTUATOR = Table("actuator", Actuator, {
+    "hardwareInterface": _TYPE, "mechanicalReduction": Value("reduction", FLOAT),
+    "role": Kept(use=Use.IGNORED), "motorTorqueConstant": Kept(use=Use.IGNORED),
+}, level=FaultLevel.WARNING, use=Use.IGNORED, known_attributes=("name",))
+
+TRANSMISSION = Table("transmission", Transmission, {
+    "type": Value("type", TEXT), "joint": Part(), "actuator": Part(),
+    "robotNamespace": Value("namespace", TEXT),
+    "leftActuator": Kept(use=Use.IGNORED), "rightActuator": Kept(use=Use.IGNORED),
+    "flexJoint": Kept(use=Use.IGNORED), "rollJoint": Kept(use=Use.IGNORED),
+    "gap_joint": Kept(use=Use.IGNORED), "passive_joint": Kept(use=Use.IGNORED),
+    "mechanicalReduction": Kept(use=Use.IGNORED), "compensator": Kept(use=Use.IGNORED),
+    "simulated_actuated_joint": Kept(use=Use.IGNORED), "use_simulated_gripper_joint": Kept(
+        use=Use.IGNORED), "motorTorqueConstant": Kept(use=Use.IGNORED),
+}, attributes={"type": Value("type", TEXT)}, level=FaultLevel.WARNING, use=Use.IGNORED,
+    known_attributes=("name",))
+
+
+def read_transmission(element: Any, source: Source) -> Transmission:
+    """A `<transmission>`, of today's form or, with its type as an attribute, of 2012."""
+    found_in = Transmission(element.get("name", ""), file=source.file,
+                            line=element.sourceline or 0)
+    found = fill(found_in, element, TRANSMISSION, source, [])
+    for child in found.get("joint", ()):
+        joint = TransmissionJoint(child.get("name", ""))
+        fill(joint, child, TRANSMISSION_JOINT, source, [])
+        found_in.joints.append(joint)
+    for child in found.get("actuator", ()):
+        actuator = Actuator(child.get("name", ""))
+        fill(actuator, child, ACTUATOR, source, [])
+        found_in.actuators.append(actuator)
+    return found_in

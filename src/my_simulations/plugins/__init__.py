@@ -1,0 +1,1 @@
+"""What robots do by themselves: plugins behind Gazebo's library names."""

@@ -1,0 +1,113 @@
+"""libgazebo_ros_diff_drive.so: two driven wheels, odometry, tf.
+
+Parameters, defaults, topics and laws are those of gazebo_plugins. Where it differs: wheel frames
+are given in the links that carry the wheels (there: in the model); encoder odometry comes from the
+positions of the wheels, so that it has no drift of its own; its forward velocity has a sign.
+"""
+from __future__ import annotations
+
+import math
+from typing import Tuple
+
+from ..base import Plugin
+from ..parameters import namespace_or
+from .odometry import Odometer, in_base, planar
+from .wheels import VelocityCommand, WheelFrames, WheelStates
+
+_REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plugins)
+
+
+class DiffDrive(Plugin):
+    """A differential drive."""
+
+    def load(self) -> None:
+        """Read parameters; take the motors."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, context.model))
+        self._separation = p.number("wheelSeparation", 0.34)
+        self._radius = p.number("wheelDiameter", 0.15) / 2.0
+        self._acceleration = p.number("wheelAcceleration", 0.0)
+        self._torque = p.number("wheelTorque", 5.0)
+        self._encoder = p.choice("odometrySource", {"encoder": True, "world": False}, False)
+        self._publishes = p.flag("publishTf", True)
+        self._broadcasts = p.flag("publishOdomTF", True)
+        self._joints = (context.joint(p.text("leftJoint", "left_joint")),
+                        context.joint(p.text("rightJoint", "right_joint")))
+        self._odometer = Odometer(
+            context, p.text("odometryTopic", "odom") if self._publishes else "",
+            p.text("odometryFrame", "odom"), p.text("robotBaseFrame", "base_footprint"))
+        self._frames = WheelFrames(context, self._joints) if p.flag("publishWheelTF", False) \
+            else None
+        self._states = WheelStates(context, self._joints) \
+            if p.flag("publishWheelJointState", False) else None
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
+        hertz = p.number("updateRate", 100.0)
+        self.reset()
+        context.every(hertz, self.update)
+
+    def reset(self) -> None:
+        """Stand, and count from here."""
+        self._command.stop()
+        self._estimate = (0.0, 0.0, 0.0)
+        self._instructed = [0.0, 0.0]
+        self.clock_set()
+        self._drive((0.0, 0.0))
+
+    def clock_set(self) -> None:
+        """Time begins anew; where the robot is does not."""
+        self._last_ns = self.context.now_ns
+        self._last = tuple(joint.position for joint in self._joints)
+
+    def update(self) -> None:
+        """Odometry first, then the command (as the original)."""
+        dt = (self.context.now_ns - self._last_ns) * 1e-9
+        self._last_ns = self.context.now_ns
+        velocity = self._count(dt)
+        if self._publishes:
+            self._tell(velocity)
+        if self._frames is not None:
+            self._frames.send()
+        if self._states is not None:
+            self._states.send()
+        self._drive(self._speeds(dt))
+
+    def _count(self, dt: float) -> Tuple[float, float, float]:
+        """Add up what the wheels have turned; Siegwart, Autonomous Mobile Robots, 5.2.4."""
+        now = tuple(joint.position for joint in self._joints)
+        left, right = ((a - b) * self._radius for a, b in zip(now, self._last))
+        self._last = now
+        way, turn = (left + right) / 2.0, (right - left) / self._separation
+        x, y, yaw = self._estimate
+        self._estimate = (x + way * math.cos(yaw + turn / 2.0),
+                          y + way * math.sin(yaw + turn / 2.0), yaw + turn)
+        return (way / dt, 0.0, turn / dt) if dt > 0.0 else (0.0, 0.0, 0.0)
+
+    def _tell(self, velocity: Tuple[float, float, float]) -> None:
+        if self._encoder:
+            pose = planar(*self._estimate)
+        else:
+            pose = self.context.pose
+            velocity = in_base(pose, self.context.twist)
+        if self._broadcasts:
+            self._odometer.transform(pose)
+        self._odometer.publish(pose, velocity)
+
+    def _speeds(self, dt: float) -> Tuple[float, float]:
+        """Of the rims, m/s, within the acceleration."""
+        command = self._command
+        turn = command.yaw * self._separation / 2.0
+        wanted = (command.x - turn, command.x + turn)
+        if self._acceleration <= 0.0:
+            return wanted
+        present = [joint.velocity * self._radius for joint in self._joints]
+        if any(abs(a - b) < _REACHED for a, b in zip(wanted, present)):
+            self._instructed = list(wanted)
+            return wanted
+        most = self._acceleration * dt
+        for n in (0, 1):
+            self._instructed[n] += max(-most, min(most, wanted[n] - present[n]))
+        return self._instructed[0], self._instructed[1]
+
+    def _drive(self, speeds: Tuple[float, float]) -> None:
+        for joint, speed in zip(self._joints, speeds):
+            joint.drive(speed / self._radius, self._torque)

@@ -1,0 +1,77 @@
+"""nav_msgs/Odometry, as the drives of Gazebo publish it."""
+from __future__ import annotations
+
+import math
+from typing import Any, List, Tuple
+
+from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
+from ..context import Context
+from ..frames import resolve
+
+_NO_IDEA = 1e12  # of what a wheeled robot does not measure
+
+DRIVE_COVARIANCE = (1e-5, 1e-5, _NO_IDEA, _NO_IDEA, _NO_IDEA, 1e-3)
+
+
+def planar(x: float, y: float, yaw: float) -> Pose:
+    """A pose on the ground."""
+    return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, yaw))
+
+
+def in_base(pose: Pose, twist: Twist) -> Tuple[float, float, float]:
+    """Forward and sideways velocity in the robot's heading, and the yaw rate in the world."""
+    yaw = rpy_from_quat(pose.orientation)[2]
+    (vx, vy, _), c, s = twist.linear, math.cos(yaw), math.sin(yaw)
+    return c * vx + s * vy, c * vy - s * vx, twist.angular[2]
+
+
+def diagonal(values: Tuple[float, ...]) -> List[float]:
+    """A 6 x 6 covariance matrix with this diagonal."""
+    matrix = [0.0] * 36
+    matrix[::7] = values
+    return matrix
+
+
+class Odometer:
+    """Publishes odometry and its transform.
+
+    Args:
+        context: of the plugin.
+        frame, base: tf frames, before `tf_prefix` is applied.
+        topic: of the odometry; "" for none.
+        covariance: diagonal of the pose's; `twist_covariance` that of the twist's.
+    """
+
+    def __init__(self, context: Context, topic: str, frame: str, base: str,
+                 covariance: Tuple[float, ...] = DRIVE_COVARIANCE,
+                 twist_covariance: Tuple[float, ...] = (0.0,) * 6) -> None:
+        self._context = context
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self.frame, self.base = resolve(prefix, frame), resolve(prefix, base)
+        self._topic = context.publish(topic, "nav_msgs/Odometry") if topic else None
+        self._covariance, self._twist_covariance = diagonal(covariance), diagonal(twist_covariance)
+
+    def transform(self, pose: Pose) -> None:
+        """Broadcast odom -> base."""
+        self._context.transform(self.frame, self.base, pose)
+
+    def publish(self, pose: Pose, velocity: Tuple[float, float, float]) -> None:
+        """Publish a pose, and (forward, sideways, yaw) velocity in the base frame."""
+        if self._topic is None:
+            return
+        message = self._context.message("nav_msgs/Odometry")
+        message.header.stamp = self._context.stamp()
+        message.header.frame_id, message.child_frame_id = self.frame, self.base
+        fill_pose(message.pose.pose, pose)
+        message.pose.covariance = list(self._covariance)
+        message.twist.twist.linear.x, message.twist.twist.linear.y = velocity[:2]
+        message.twist.twist.angular.z = velocity[2]
+        message.twist.covariance = list(self._twist_covariance)
+        self._topic.publish(message)
+
+
+def fill_pose(message: Any, pose: Pose) -> None:
+    """Fill a geometry_msgs/Pose."""
+    at, turn = message.position, message.orientation
+    at.x, at.y, at.z = pose.position
+    turn.x, turn.y, turn.z, turn.w = pose.orientation

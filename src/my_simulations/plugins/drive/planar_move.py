@@ -1,0 +1,66 @@
+"""libgazebo_ros_planar_move.so: a model that moves level as it is told.
+
+Parameters, defaults, topics and laws are those of gazebo_plugins: before every step the model gets
+the velocity of the last command, its vertical velocity included, which is 0.
+"""
+from __future__ import annotations
+
+import math
+from typing import Tuple
+
+from ...geometry import Pose, Twist, rpy_from_quat
+from ..base import Plugin
+from ..parameters import namespace_or
+from .odometry import Odometer, in_base
+from .wheels import VelocityCommand
+
+
+class PlanarMove(Plugin):
+    """Moves a model in its own x and y, and about the vertical."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
+                                  p.text("odometryFrame", "odom"),
+                                  p.text("robotBaseFrame", "base_footprint"))
+        timeout = p.number("cmdTimeout", -1.0)
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"), timeout)
+        self._last: Tuple[int, Pose] = (context.now_ns, context.pose)
+        context.every(100.0 if timeout < 0.0 else 0.0, self.move)
+        hertz = p.number("odometryRate", 20.0)
+        if hertz > 0.0:
+            context.every(hertz, self.tell)
+        self.move()
+
+    def reset(self) -> None:
+        """Stand."""
+        self._command.stop()
+        self.clock_set()
+        self.move()
+
+    def clock_set(self) -> None:
+        """Velocities are of what comes."""
+        self._last = (self.context.now_ns, self.context.pose)
+
+    def move(self) -> None:
+        """Pass the command on; the engine keeps it up in every step."""
+        self._command.look()
+        self.context.drive_level(self._command.x, self._command.y, self._command.yaw)
+
+    def tell(self) -> None:
+        """Publish odometry: where the model is, and how fast it went since the last time."""
+        (before_ns, before), pose = self._last, self.context.pose
+        self._last = (self.context.now_ns, pose)
+        dt = (self.context.now_ns - before_ns) * 1e-9
+        self._odometer.transform(pose)
+        if dt <= 0.0:
+            return
+        linear = tuple((a - b) / dt for a, b in zip(pose.position, before.position))
+        turned = math.remainder(rpy_from_quat(pose.orientation)[2]
+                                - rpy_from_quat(before.orientation)[2], 2.0 * math.pi)
+        yaw = self._command.yaw if abs(self._command.yaw) > math.pi / dt else turned / dt
+        x, y, _ = pose.position
+        self._odometer.publish(pose._replace(position=(x, y, 0.0)), in_base(
+            pose, Twist((linear[0], linear[1], 0.0), (0.0, 0.0, yaw))))

@@ -1,0 +1,62 @@
+"""libgazebo_ros_skid_steer_drive.so: four driven wheels that skid, odometry of the world.
+
+Parameters, defaults, topics and laws are those of gazebo_plugins.
+"""
+from __future__ import annotations
+
+from ..base import Plugin
+from ..parameters import namespace_or
+from .odometry import Odometer, in_base
+from .wheels import VelocityCommand
+
+_CORNERS = ("leftFront", "rightFront", "leftRear", "rightRear")
+
+
+class SkidSteerDrive(Plugin):
+    """A skid-steered drive."""
+
+    def load(self) -> None:
+        """Read parameters; take the motors."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._separation = p.number("wheelSeparation", 0.4)
+        self._radius = p.number("wheelDiameter", 0.15) / 2.0
+        self._torque = p.number("torque", 5.0)
+        self._joints = [context.joint(p.text(f"{corner}Joint", _default(corner)))
+                        for corner in _CORNERS]
+        unsure = (p.number("covariance_x", 1e-4), p.number("covariance_y", 1e-4), 1e12, 1e12,
+                  1e12, p.number("covariance_yaw", 1e-2))
+        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
+                                  p.text("odometryFrame", "odom"),
+                                  p.text("robotBaseFrame", "base_footprint"), unsure, unsure)
+        self._broadcasts = p.flag("broadcastTF", False)
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
+        self.reset()
+        context.every(p.number("updateRate", 100.0), self.update)
+
+    def reset(self) -> None:
+        """Stand."""
+        self._command.stop()
+        self._drive()
+
+    def update(self) -> None:
+        """Odometry first, then the command."""
+        pose = self.context.pose
+        if self._broadcasts:
+            self._odometer.transform(pose)
+        x, y, _ = pose.position
+        self._odometer.publish(pose._replace(position=(x, y, 0.0)),
+                               in_base(pose, self.context.twist))
+        self._drive()
+
+    def _drive(self) -> None:
+        turn = self._command.yaw * self._separation / 2.0
+        for n, joint in enumerate(self._joints):
+            speed = self._command.x + (turn if n % 2 else -turn)
+            joint.drive(speed / self._radius, self._torque)
+
+
+def _default(corner: str) -> str:
+    """`left_front_joint` of leftFront."""
+    return "".join(f"_{letter.lower()}" if letter.isupper() else letter
+                   for letter in corner) + "_joint"

@@ -1,0 +1,73 @@
+"""What drives with wheels share: commands, wheel frames, joint states of wheels."""
+from __future__ import annotations
+
+from typing import Any, Sequence
+
+from ...geometry import compose, inverse
+from ..context import Context, Joint
+from ..frames import resolve
+
+
+class VelocityCommand:
+    """The last geometry_msgs/Twist; it holds for ever, as in Gazebo, unless it is given a time.
+
+    Attributes:
+        x, y: m/s.
+        yaw: rad/s.
+    """
+
+    def __init__(self, context: Context, topic: str, timeout: float = -1.0) -> None:
+        """`timeout`: s of sim time after which a command counts no more; negative for never."""
+        self._context, self._timeout = context, timeout
+        self.stop()
+        context.subscribe(topic, "geometry_msgs/Twist", self._hear)
+
+    def stop(self) -> None:
+        """As if none had come."""
+        self.x = self.y = self.yaw = 0.0
+        self._heard_ns = 0
+
+    def _hear(self, message: Any) -> None:
+        self.x, self.y, self.yaw = message.linear.x, message.linear.y, message.angular.z
+        self._heard_ns = self._context.now_ns
+
+    def look(self) -> None:
+        """Forget a command that is too old."""
+        if self._timeout >= 0.0 and (self._context.now_ns - self._heard_ns) * 1e-9 > self._timeout:
+            self.x = self.y = self.yaw = 0.0
+
+
+class WheelFrames:
+    """Broadcasts where wheels are in the links that carry them."""
+
+    def __init__(self, context: Context, joints: Sequence[Joint]) -> None:
+        self._context = context
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self._pairs = [(resolve(prefix, joint.parent), resolve(prefix, joint.child),
+                        context.link(joint.parent), context.link(joint.child))
+                       for joint in joints]
+
+    def send(self) -> None:
+        """As of now."""
+        for parent, child, carrier, wheel in self._pairs:
+            self._context.transform(parent, child, compose(inverse(carrier.pose), wheel.pose))
+
+
+class WheelStates:
+    """Publishes sensor_msgs/JointState of the wheels."""
+
+    def __init__(self, context: Context, joints: Sequence[Joint], motion: bool = False) -> None:
+        """`motion`: with velocities."""
+        self._context, self._joints, self._motion = context, list(joints), motion
+        self._topic = context.publish("joint_states", "sensor_msgs/JointState", 1000)
+
+    def send(self) -> None:
+        """As of now."""
+        message = self._context.message("sensor_msgs/JointState")
+        message.header.stamp = self._context.stamp()
+        message.name = [joint.name for joint in self._joints]
+        message.position = [joint.position for joint in self._joints]
+        if self._motion:
+            message.velocity = [joint.velocity for joint in self._joints]
+            message.effort = [0.0] * len(self._joints)
+        self._topic.publish(message)

@@ -1,0 +1,62 @@
+"""What plugins need of ROS: the interface that the front end of ROS satisfies."""
+from __future__ import annotations
+
+from typing import Any, Callable, List, Protocol, Tuple
+
+from ..geometry import Pose
+
+TransformOf = Tuple[str, str, Pose]
+"""Parent frame, child frame, pose of the child in the parent."""
+
+
+class MissingTypeError(Exception):
+    """A message or service type whose package is not installed."""
+
+
+class Topic(Protocol):
+    """A topic that is offered."""
+
+    @property
+    def wanted(self) -> bool:
+        """Whether anybody listens."""
+
+    def send(self, message: Any) -> None:
+        """Publish."""
+
+    def close(self) -> None:
+        """Take it off the graph."""
+
+
+class Closing(Protocol):
+    """Something that can be taken off the graph."""
+
+    def close(self) -> None:
+        """Take it off."""
+
+
+class Graph(Protocol):
+    """Names are relative to the node's namespace unless they begin with a slash."""
+
+    def message(self, kind: str) -> Any:
+        """A new message. Raises MissingTypeError."""
+
+    def stamp(self, ns: int) -> Any:
+        """A time as messages have it."""
+
+    def publish(self, name: str, kind: str, queue: int, latch: bool) -> Topic:
+        """Offer a topic. Raises MissingTypeError."""
+
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
+        """Hear a topic; `call` comes from another thread. Raises MissingTypeError."""
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
+        """Offer a service; `call` (request, response) comes from another thread.
+
+        Raises MissingTypeError.
+        """
+
+    def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
+        """A parameter of a namespace or of the next one above that has it."""
+
+    def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
+        """Broadcast to tf, as of a sim time."""

@@ -1,0 +1,37 @@
+"""Noise that a run repeats: drawn from a counter, keyed by seed and by who draws."""
+from __future__ import annotations
+
+import hashlib
+import math
+import struct
+from typing import List
+
+
+class WhiteNoise:
+    """Gaussian noise without a mean. The n-th draw is the same in every run with the same seed.
+
+    Args:
+        seed: of the world.
+        who: names the plugin; another one draws other numbers.
+        stddev: in the unit of what is measured; 0 draws zeros.
+    """
+
+    def __init__(self, seed: int, who: str, stddev: float) -> None:
+        self._key = f"{seed}\0{who}".encode()
+        self._stddev = stddev
+        self._drawn = 0
+
+    def draw(self, count: int) -> List[float]:
+        """Some numbers, by Box and Muller."""
+        if self._stddev <= 0.0:
+            return [0.0] * count
+        self._drawn += 1
+        found: List[float] = []
+        while len(found) < count:
+            digest = hashlib.blake2b(self._key, digest_size=16, salt=struct.pack(
+                "=QQ", self._drawn, len(found))).digest()
+            one, other = (word / 2.0 ** 64 for word in struct.unpack("=QQ", digest))
+            radius = self._stddev * math.sqrt(-2.0 * math.log(1.0 - one))
+            found += [radius * math.cos(2.0 * math.pi * other),
+                      radius * math.sin(2.0 * math.pi * other)]
+        return found[:count]

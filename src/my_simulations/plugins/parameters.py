@@ -1,0 +1,85 @@
+"""What a `<plugin>` element says: its children, by name and type."""
+from __future__ import annotations
+
+from typing import Any, Callable, List, Mapping, Optional, Tuple, TypeVar
+
+from ..geometry import IDENTITY_QUAT, Quat, Vec3, quat_from_rpy
+
+T = TypeVar("T")
+
+Warn = Callable[[str], None]
+
+
+class Parameters:
+    """The children of a plugin's element. A text that cannot be read is warned of once.
+
+    Args:
+        xml: the whole element.
+        warn: hears of values that are not what they should be; the default is used then.
+    """
+
+    def __init__(self, xml: str, warn: Warn = lambda text: None) -> None:
+        from lxml import etree
+
+        self._warn = warn
+        # Prefixes may be declared outside of the element.
+        self._root: Any = etree.fromstring(xml, etree.XMLParser(
+            recover=True, resolve_entities=False)) if xml else etree.Element("plugin")
+
+    def __contains__(self, name: str) -> bool:
+        return self._root.find(name) is not None
+
+    def text(self, name: str, default: str = "") -> str:
+        """The text of a child without blanks around it; the default where there is none."""
+        found = self._root.find(name)
+        return default if found is None else (found.text or "").strip()
+
+    def texts(self, name: str) -> List[str]:
+        """The texts of all children of that name."""
+        return [(child.text or "").strip() for child in self._root.findall(name)]
+
+    def number(self, name: str, default: float) -> float:
+        """A number."""
+        return self._read(name, default, float, "a number")
+
+    def integer(self, name: str, default: int) -> int:
+        """A whole number."""
+        return self._read(name, default, lambda text: int(float(text)), "a whole number")
+
+    def flag(self, name: str, default: bool) -> bool:
+        """true or false, 1 or 0, in any letters."""
+        words = {"true": True, "1": True, "false": False, "0": False}
+        return self._read(name, default, lambda text: words[text.lower()], "true or false")
+
+    def vector(self, name: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
+        """Three numbers."""
+        return self._read(name, default, _three, "three numbers")
+
+    def turn(self, name: str, default: Quat = IDENTITY_QUAT) -> Quat:
+        """Roll, pitch and yaw in rad, as a quaternion."""
+        return self._read(name, default, lambda text: quat_from_rpy(*_three(text)),
+                          "three numbers")
+
+    def choice(self, name: str, options: Mapping[str, T], default: T) -> T:
+        """One of some words."""
+        return self._read(name, default, lambda text: options[text], " or ".join(options))
+
+    def _read(self, name: str, default: T, read: Callable[[str], T], wanted: str) -> T:
+        text = self.text(name)
+        if not text:
+            return default
+        try:
+            return read(text)
+        except (ValueError, KeyError):
+            self._warn(f"<{name}> must be {wanted}, it is {text!r}; {default!r} is used")
+            return default
+
+
+def _three(text: str) -> Tuple[float, float, float]:
+    x, y, z = map(float, text.split())
+    return (x, y, z)
+
+
+def namespace_or(parameters: Parameters, default: Optional[str]) -> str:
+    """`<robotNamespace>`; where it is missing or empty the default."""
+    return parameters.text("robotNamespace") or (default or "")

@@ -1,0 +1,119 @@
+"""Which class stands for which library of Gazebo.
+
+Other packages add theirs by an export in their package.xml,
+
+    <export><my_simulations plugin="package.module:Class" library="libfoo.so"/></export>
+
+or a user by the parameter `~plugins` of the node, a map from library to class. Packages are looked
+at when a library is met that is known in no other way.
+"""
+from __future__ import annotations
+
+import importlib
+import os
+import re
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Type
+
+from .base import Plugin
+
+BUILT_IN: Mapping[str, str] = {
+    "libgazebo_ros_diff_drive.so": "drive.diff_drive:DiffDrive",
+    "libgazebo_ros_skid_steer_drive.so": "drive.skid_steer_drive:SkidSteerDrive",
+    "libgazebo_ros_planar_move.so": "drive.planar_move:PlanarMove",
+    "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
+    "libgazebo_ros_p3d.so": "state.p3d:P3d",
+    "libgazebo_ros_force.so": "state.force:Force",
+    "libgazebo_ros_laser.so": "sensors.laser:Laser",
+    "libgazebo_ros_gpu_laser.so": "sensors.laser:Laser",
+    "libgazebo_ros_range.so": "sensors.range:Range",
+    "libgazebo_ros_imu.so": "sensors.imu:ModelImu",
+    "libgazebo_ros_imu_sensor.so": "sensors.imu:SensorImu",
+    "libgazebo_ros_bumper.so": "sensors.bumper:Bumper",
+}
+"""Classes in this package, by library."""
+
+PROVIDED = ("libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so",
+            "libgazebo_ros_init.so", "libgazebo_ros_factory.so")
+"""What these libraries do, the simulator itself does."""
+
+_EXPORT = re.compile(r"<my_simulations\b([^>]*)>")
+_ATTRIBUTE = re.compile(r"""(plugin|library)\s*=\s*["']([^"']*)["']""")
+
+
+class UnknownPluginError(Exception):
+    """There is no class for a library; the message is one sentence for the user."""
+
+
+def library_name(filename: str) -> str:
+    """`libfoo.so` of whatever a file calls a library: a path, a bare name."""
+    name = os.path.basename(filename.strip())
+    if name and not name.endswith((".so", ".dylib", ".dll")):
+        name = f"{name}.so" if name.startswith("lib") else f"lib{name}.so"
+    return name
+
+
+class PluginRegistry:
+    """Finds classes.
+
+    Args:
+        extra: further classes as `package.module:Class`, by library; they come first.
+        folders: lists the folders of all packages, whose package.xml may export plugins.
+    """
+
+    def __init__(self, extra: Optional[Mapping[str, str]] = None,
+                 folders: Callable[[], Iterable[str]] = list) -> None:
+        self._extra = {library_name(name): where for name, where in (extra or {}).items()}
+        self._folders = folders
+        self._exported: Optional[Dict[str, str]] = None
+
+    def is_provided(self, filename: str) -> bool:
+        """Whether the simulator does by itself what the library does."""
+        return library_name(filename) in PROVIDED
+
+    def find(self, filename: str) -> Type[Plugin]:
+        """The class for a library.
+
+        Raises UnknownPluginError: there is none, or its module cannot be imported.
+        """
+        name = library_name(filename)
+        where = self._extra.get(name)
+        if where is None and name in BUILT_IN:
+            where = f"{__package__}.{BUILT_IN[name]}"
+        if where is None:
+            where = self._of_packages().get(name)
+        if where is None:
+            raise UnknownPluginError(f"there is no plugin for {name or 'a library without a name'}")
+        return _imported(where, name)
+
+    def _of_packages(self) -> Dict[str, str]:
+        if self._exported is None:
+            self._exported = {}
+            for folder in self._folders():
+                for attributes in exports(os.path.join(folder, "package.xml")):
+                    self._exported.setdefault(library_name(attributes.get("library", "")),
+                                              attributes.get("plugin", ""))
+        return self._exported
+
+
+def exports(manifest: str) -> List[Dict[str, str]]:
+    """The attributes of the `<my_simulations>` exports of a package.xml."""
+    try:
+        with open(manifest, encoding="utf-8", errors="replace") as stream:
+            text = stream.read()
+    except OSError:
+        return []
+    found = [dict(_ATTRIBUTE.findall(tag)) for tag in _EXPORT.findall(text)]
+    return [attributes for attributes in found if attributes.get("plugin")]
+
+
+def _imported(where: str, library: str) -> Type[Plugin]:
+    module, _, name = where.partition(":")
+    try:
+        found = getattr(importlib.import_module(module), name)
+    except (ImportError, AttributeError, ValueError) as fault:
+        raise UnknownPluginError(f"the plugin {where} for {library} cannot be imported: "
+                                 f"{fault}") from fault
+    if not (isinstance(found, type) and issubclass(found, Plugin)):
+        raise UnknownPluginError(f"the plugin {where} for {library} is not a class derived from "
+                                 f"{Plugin.__module__}.Plugin")
+    return found

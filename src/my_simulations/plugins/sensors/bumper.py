@@ -1,0 +1,82 @@
+"""libgazebo_ros_bumper.so: gazebo_msgs/ContactsState of a contact sensor.
+
+Parameters, defaults, topic and header are those of gazebo_plugins. Positions, normals and forces
+are in world axes (there forces are in those of the link); torques about the link's origin.
+"""
+from __future__ import annotations
+
+from typing import Any, Dict, List, Tuple
+
+from ...geometry import Vec3, add, cross, scale, subtract
+from ..base import Plugin
+from ..context import PluginError
+from ..frames import resolve
+from ..parameters import namespace_or
+
+
+class Bumper(Plugin):
+    """Publishes while somebody listens; without a contact `states` is empty."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        if context.sensor is None:
+            raise PluginError("it belongs into a <sensor> of type contact")
+        context.use_namespace(namespace_or(p, ""))
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self._frame = resolve(prefix, p.text("frameName", "world"))
+        self._link = context.link(context.sensor_link)
+        block = context.sensor.contact
+        self._collision = block.collisions[0] if block is not None and block.collisions else ""
+        self._topic = context.publish(p.text("bumperTopicName", "bumper_states"),
+                                      "gazebo_msgs/ContactsState")
+        context.every(context.sensor.update_rate, self.update)
+
+    def update(self) -> None:
+        """Look at the contacts of the last step."""
+        if not self._topic.wanted:
+            return
+        context = self.context
+        mine = f"{context.model}::{context.sensor_link}"
+        touching: Dict[str, List[Tuple[Any, float]]] = {}
+        for one, other, contact in context.contacts():
+            if mine in (one, other):
+                touching.setdefault(other if one == mine else one, []).append(
+                    (contact, 1.0 if one == mine else -1.0))
+        message = context.message("gazebo_msgs/ContactsState")
+        message.header.stamp, message.header.frame_id = context.stamp(), self._frame
+        message.states = [self._state(mine, other, points) for other, points in touching.items()]
+        self._topic.publish(message)
+
+    def _state(self, mine: str, other: str, points: List[Tuple[Any, float]]) -> Any:
+        context, at = self.context, self._link.pose.position
+        state = context.message("gazebo_msgs/ContactState")
+        state.collision1_name = f"{mine}::{self._collision}" if self._collision else mine
+        state.collision2_name = other
+        state.info = f"{len(points)} points at {context.now_ns * 1e-9:.3f} s"
+        state.wrenches, state.contact_positions = [], []
+        state.contact_normals, state.depths = [], []
+        total: Tuple[Vec3, Vec3] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        for contact, sign in points:
+            force = scale(add(scale(contact.normal, contact.force), contact.friction), sign)
+            torque = cross(subtract(contact.position, at), force)
+            total = (add(total[0], force), add(total[1], torque))
+            state.wrenches.append(_wrench(context, force, torque))
+            state.contact_positions.append(_vector(context, contact.position))
+            state.contact_normals.append(_vector(context, scale(contact.normal, sign)))
+            state.depths.append(contact.depth)
+        state.total_wrench = _wrench(context, *total)
+        return state
+
+
+def _vector(context: Any, values: Vec3) -> Any:
+    made = context.message("geometry_msgs/Vector3")
+    made.x, made.y, made.z = values
+    return made
+
+
+def _wrench(context: Any, force: Vec3, torque: Vec3) -> Any:
+    made = context.message("geometry_msgs/Wrench")
+    made.force.x, made.force.y, made.force.z = force
+    made.torque.x, made.torque.y, made.torque.z = torque
+    return made

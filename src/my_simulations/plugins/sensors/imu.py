@@ -1,0 +1,128 @@
+"""libgazebo_ros_imu.so (of a model) and libgazebo_ros_imu_sensor.so (of a sensor): sensor_msgs/Imu.
+
+Parameters, defaults, topics and frames are those of gazebo_plugins. Both measure in the sensor's
+frame and feel gravity, +9.8 upwards at rest, as the message is defined; the original of the first
+turns its vectors the wrong way and leaves gravity out.
+"""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from ...description.sensor import Imu as ImuBlock
+from ...geometry import IDENTITY, IDENTITY_QUAT, Pose, Quat, Vec3, compose, multiply
+from ...sensing.models.imu import ImuSample, measure
+from ...sensing.models.motion import acceleration_between, velocity_at
+from ..base import Plugin
+from ..context import Link, PluginError
+from ..noise import WhiteNoise
+from ..parameters import namespace_or
+from .rays import SampledNoise
+
+
+class _Imu(Plugin):
+    """What both have: a link, a place on it, and the velocity at the sample before."""
+
+    _link: Link
+    _mount: Pose = IDENTITY
+    _offset: Quat = IDENTITY_QUAT
+    _reference: Quat = IDENTITY_QUAT
+    _before: Vec3
+
+    def _begin(self, topic: str, frame: str, who: str) -> None:
+        context, p = self.context, self.context.parameters
+        self._frame, self._stddev = frame, p.number("gaussianNoise", 0.0)
+        self._white = WhiteNoise(context.seed, f"{context.model}::{who}::imu", self._stddev)
+        self._topic = context.publish(topic, "sensor_msgs/Imu")
+        self._offset = p.turn("rpyOffset")
+        self.reset()
+
+    def reset(self) -> None:
+        """Accelerations are of what comes."""
+        self._last_ns = self.context.now_ns
+        self._before = self._velocity()
+
+    clock_set = reset
+
+    def _velocity(self) -> Vec3:
+        return velocity_at(self._link.pose, self._link.twist, self._mount)
+
+    def _measure(self) -> ImuSample:
+        context, now = self.context, self._velocity()
+        elapsed = (context.now_ns - self._last_ns) * 1e-9
+        acceleration = acceleration_between(self._before, now, elapsed)
+        self._before, self._last_ns = now, context.now_ns
+        return measure(self._link.pose, self._link.twist, acceleration, context.gravity,
+                       self._mount, self._reference)
+
+    def update(self) -> None:
+        """Measure always, publish while somebody listens."""
+        sample = self._noisy(self._measure())
+        if not self._topic.wanted:
+            return
+        context, noise = self.context, self._white.draw(6)
+        message = context.message("sensor_msgs/Imu")
+        message.header.stamp, message.header.frame_id = context.stamp(), self._frame
+        turn = message.orientation
+        turn.x, turn.y, turn.z, turn.w = multiply(self._offset, sample.orientation)
+        rate, push = message.angular_velocity, message.linear_acceleration
+        rate.x, rate.y, rate.z = (w + n for w, n in zip(sample.angular_velocity, noise))
+        push.x, push.y, push.z = (a + n for a, n in zip(sample.linear_acceleration, noise[3:]))
+        variance = [0.0] * 9
+        variance[::4] = [self._stddev ** 2] * 3
+        message.orientation_covariance = variance
+        message.angular_velocity_covariance = list(variance)
+        message.linear_acceleration_covariance = list(variance)
+        self._topic.publish(message)
+
+    def _noisy(self, sample: ImuSample) -> ImuSample:
+        return sample
+
+
+class ModelImu(_Imu):
+    """On the link `<bodyName>`."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        body = p.text("bodyName")
+        if not body:
+            raise PluginError("it has no <bodyName>")
+        self._link = context.link(body)
+        self._mount = Pose(p.vector("xyzOffset"))
+        self._begin(p.text("topicName", "/default_imu"), p.text("frameName", body), body)
+        context.serve(p.text("serviceName", "/default_imu"), "std_srvs/Empty",
+                      lambda request, response: None)
+        context.every(p.number("updateRate", 0.0), self.update)
+
+
+class SensorImu(_Imu):
+    """Of a `<sensor type="imu">`, with the noise of its block."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        if context.sensor is None:
+            raise PluginError("it belongs into a <sensor> of type imu")
+        context.use_namespace(namespace_or(p, context.model))
+        frame = p.text("frameName")
+        if not frame:
+            raise PluginError("it has no <frameName>")
+        self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
+        if p.flag("initialOrientationAsReference", False):
+            self._reference = compose(self._link.pose, self._mount).orientation
+        self._block: Optional[ImuBlock] = context.sensor.imu
+        self._axes = [SampledNoise(context, getattr(self._block, f"{kind}_{axis}"),
+                                   f"{kind}/{axis}")
+                      for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"
+                      ] if self._block is not None else []
+        self._begin(p.text("topicName", "imu_data"), frame, context.sensor.name)
+        context.every(p.number("updateRateHZ", 1.0), self.update)
+
+    def _noisy(self, sample: ImuSample) -> ImuSample:
+        if not self._axes:
+            return sample
+        ns = self.context.now_ns
+        values: Any = [noise.apply(value, ns) for noise, value in zip(
+            self._axes, (*sample.angular_velocity, *sample.linear_acceleration))]
+        return ImuSample(sample.orientation, tuple(values[:3]), tuple(values[3:]))

@@ -1,0 +1,60 @@
+"""libgazebo_ros_laser.so and libgazebo_ros_gpu_laser.so: sensor_msgs/LaserScan.
+
+Parameters, defaults, topic and frame are those of gazebo_plugins; of the ranges, what is at the
+maximum or beyond is +inf, at the minimum or nearer -inf (Gazebo 11), and noise leaves both alone.
+"""
+from __future__ import annotations
+
+from typing import Any
+
+from ..base import Plugin
+from ..frames import resolve
+from ..parameters import namespace_or
+from .rays import SampledNoise, fan_of, ray_of
+
+
+class Laser(Plugin):
+    """Publishes scans while somebody listens."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        self._ray, self._visuals = ray_of(context)
+        context.use_namespace(namespace_or(
+            p, context.model if "robotNamespace" in p else ""))
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self._frame = resolve(prefix, p.text("frameName", "/world"))
+        self._fan = fan_of(self._ray)
+        self._noise = SampledNoise(context, self._ray.noise, "range")
+        self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/LaserScan")
+        assert context.sensor is not None
+        context.every(context.sensor.update_rate, self.update)
+
+    def reset(self) -> None:
+        """Noise begins anew."""
+        self._noise.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Look, if somebody listens."""
+        if self._topic.wanted:
+            self.context.scan(self._fan, self._visuals, self._publish)
+
+    def _publish(self, returns: Any, ns: int) -> None:
+        import numpy as np
+
+        ray, fan, context = self._ray, self._fan, self.context
+        true = np.asarray(returns.ranges)
+        noisy = np.clip(self._noise.apply(true, ns), fan.near, fan.far)
+        ranges = np.where(true >= fan.far, np.inf, np.where(true <= fan.near, -np.inf, noisy))
+        message = context.message("sensor_msgs/LaserScan")
+        message.header.stamp, message.header.frame_id = context.stamp(ns), self._frame
+        message.angle_min, message.angle_max = ray.horizontal.min_angle, ray.horizontal.max_angle
+        message.angle_increment = ((message.angle_max - message.angle_min)
+                                   / max(1, fan.samples - 1))
+        message.time_increment = message.scan_time = 0.0
+        message.range_min, message.range_max = ray.min_range, ray.max_range
+        message.ranges = ranges.tolist()
+        message.intensities = np.asarray(returns.retro).tolist()
+        self._topic.publish(message)

@@ -1,0 +1,52 @@
+"""libgazebo_ros_range.so: sensor_msgs/Range, the nearest of all rays.
+
+Parameters, defaults, topic and frame are those of gazebo_plugins.
+"""
+from __future__ import annotations
+
+from typing import Any
+
+from ..base import Plugin
+from ..frames import resolve
+from ..noise import WhiteNoise
+from ..parameters import namespace_or
+from .rays import fan_of, ray_of
+
+_ULTRASOUND, _INFRARED = 0, 1  # of sensor_msgs/Range
+
+
+class Range(Plugin):
+    """Publishes while somebody listens; where nothing is met, the maximum range."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        self._ray, self._visuals = ray_of(context)
+        context.use_namespace(namespace_or(p, ""))
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self._frame = resolve(prefix, p.text("frameName", "/world"))
+        self._kind = _ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" \
+            else _INFRARED
+        self._view = p.number("fov", 0.05)
+        self._noise = WhiteNoise(context.seed, f"{context.model}::{context.sensor_link}::range",
+                                 p.number("gaussianNoise", 0.0))
+        self._fan = fan_of(self._ray)
+        self._topic = context.publish(p.text("topicName", "/range"), "sensor_msgs/Range")
+        assert context.sensor is not None
+        context.every(p.number("updateRate", 0.0) or context.sensor.update_rate, self.update)
+
+    def update(self) -> None:
+        """Look, if somebody listens."""
+        if self._topic.wanted:
+            self.context.scan(self._fan, self._visuals, self._publish)
+
+    def _publish(self, returns: Any, ns: int) -> None:
+        most = self._ray.max_range
+        nearest = min(float(min(returns.ranges)), most)
+        if nearest < most:
+            nearest = min(most, nearest + self._noise.draw(1)[0])
+        message = self.context.message("sensor_msgs/Range")
+        message.header.stamp, message.header.frame_id = self.context.stamp(ns), self._frame
+        message.radiation_type, message.field_of_view = self._kind, self._view
+        message.min_range, message.max_range, message.range = self._ray.min_range, most, nearest
+        self._topic.publish(message)

@@ -1,0 +1,57 @@
+"""What range sensors share: the fan of a `<ray>` and the noise of its ranges."""
+from __future__ import annotations
+
+from typing import Any, Tuple
+
+from ...description.sensor import Noise, Ray
+from ...sensing.api import RayFan
+from ...sensing.noise import Noise as SensorNoise
+from ...sensing.noise import NoiseSpec
+from ..context import Context, PluginError
+
+_NO_END = 1e6  # m: a sensor without a maximum range
+
+
+def fan_of(ray: Ray) -> RayFan:
+    """The rays of a sensor: samples times resolution points, rows likewise."""
+    def count(samples: int, resolution: float) -> int:
+        return max(1, int(samples * resolution))
+
+    flat, high = ray.horizontal, ray.vertical
+    far = ray.max_range if 0.0 < ray.max_range < _NO_END else _NO_END
+    return RayFan(count(flat.samples, flat.resolution), flat.min_angle, flat.max_angle,
+                  count(high.samples, high.resolution), high.min_angle, high.max_angle,
+                  max(0.0, ray.min_range), far)
+
+
+def ray_of(context: Context) -> Tuple[Ray, bool]:
+    """The block of the plugin's sensor, and whether its rays see visuals. Raises PluginError."""
+    sensor = context.sensor
+    if sensor is None or sensor.ray is None:
+        raise PluginError("it belongs into a <sensor> of type ray or gpu_ray with a <ray>")
+    return sensor.ray, sensor.type in ("gpu_ray", "gpu_lidar")
+
+
+class SampledNoise:
+    """SDF's noise, sample by sample."""
+
+    def __init__(self, context: Context, noise: Noise, quantity: str) -> None:
+        name = f"{context.model}::{context.sensor_link}::" + (
+            context.sensor.name if context.sensor is not None else "")
+        self._noise = SensorNoise(NoiseSpec(
+            noise.type, noise.mean, noise.stddev, noise.bias_mean, noise.bias_stddev,
+            noise.dynamic_bias_stddev, noise.dynamic_bias_correlation_time, noise.precision),
+            context.seed, name, quantity)
+        self._last_ns = context.now_ns
+        self._sample = 0
+
+    def apply(self, values: Any, ns: int) -> Any:
+        """Values of the sample taken at a sim time, with their noise."""
+        self._sample += 1
+        elapsed, self._last_ns = (ns - self._last_ns) * 1e-9, ns
+        return self._noise.apply(values, self._sample, max(0.0, elapsed))
+
+    def reset(self, ns: int) -> None:
+        """The world begins anew."""
+        self._noise.reset()
+        self._last_ns, self._sample = ns, 0

@@ -1,0 +1,1 @@
+"""Plugins that tell or set the state of a robot."""

@@ -1,0 +1,34 @@
+"""libgazebo_ros_force.so: a wrench on a link, from a topic."""
+from __future__ import annotations
+
+from typing import Any
+
+from ...geometry import ZERO3, Vec3
+from ..base import Plugin
+from ..parameters import namespace_or
+
+
+class Force(Plugin):
+    """The last geometry_msgs/Wrench acts in every step, world axes, at the centre of mass."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._body = context.link(p.text("bodyName")).name
+        self._force: Vec3 = ZERO3
+        self._torque: Vec3 = ZERO3
+        context.subscribe(p.text("topicName"), "geometry_msgs/Wrench", self._hear)
+
+    def reset(self) -> None:
+        """The wrench goes on, as in Gazebo."""
+        self._act()
+
+    def _hear(self, message: Any) -> None:
+        force, torque = message.force, message.torque
+        self._force = (force.x, force.y, force.z)
+        self._torque = (torque.x, torque.y, torque.z)
+        self._act()
+
+    def _act(self) -> None:
+        self.context.push(self._body, self._force, self._torque)

@@ -1,0 +1,29 @@
+"""libgazebo_ros_joint_state_publisher.so: positions and velocities of joints."""
+from __future__ import annotations
+
+from ..base import Plugin
+from ..parameters import namespace_or
+
+
+class JointStatePublisher(Plugin):
+    """Publishes `joint_states` (sensor_msgs/JointState), with or without subscribers."""
+
+    def load(self) -> None:
+        """Find the joints of `<jointName>`, a list with commas."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, context.model))
+        names = [name.strip() for name in p.text("jointName").split(",") if name.strip()]
+        if not names:
+            context.warn("it has no <jointName>, and publishes empty joint_states")
+        self._joints = [context.joint(name) for name in names]
+        self._topic = context.publish("joint_states", "sensor_msgs/JointState", 1000)
+        context.every(p.number("updateRate", 100.0), self.update)
+
+    def update(self) -> None:
+        """Publish."""
+        message = self.context.message("sensor_msgs/JointState")
+        message.header.stamp = self.context.stamp()
+        message.name = [joint.name for joint in self._joints]
+        message.position = [joint.position for joint in self._joints]
+        message.velocity = [joint.velocity for joint in self._joints]
+        self._topic.publish(message)

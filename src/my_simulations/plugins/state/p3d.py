@@ -1,0 +1,68 @@
+"""libgazebo_ros_p3d.so: ground truth of a link as odometry.
+
+Parameters, defaults and topic are those of gazebo_plugins. In another frame than the world, pose
+and twist are given in that frame's axes (there they are rotated by the wrong sign).
+"""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from ...geometry import Pose, Twist, add, compose, conjugate, inverse, multiply, rotate, subtract
+from ..base import Plugin
+from ..context import Link
+from ..frames import resolve
+from ..noise import WhiteNoise
+from ..parameters import namespace_or
+
+_WORLD = ("", "world", "/world", "map", "/map")
+
+
+class P3d(Plugin):
+    """Publishes nav_msgs/Odometry of a link, while somebody listens."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        name = p.text("bodyName")
+        self._link = context.link(name)
+        frame = p.text("frameName", "world")
+        self._frame: Optional[Link] = None if frame in _WORLD else context.link(frame)
+        self._offset = Pose(p.vector("xyzOffset", p.vector("xyzOffsets")),
+                            p.turn("rpyOffset", p.turn("rpyOffsets")))
+        self._stddev = p.number("gaussianNoise", 0.0)
+        self._noise = WhiteNoise(context.seed, f"{context.model}::{name}::p3d", self._stddev)
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self._frame_id, self._child_id = resolve(prefix, frame), resolve(prefix, name)
+        self._topic = context.publish(p.text("topicName"), "nav_msgs/Odometry")
+        context.every(p.number("updateRate", 0.0), self.update)
+
+    def update(self) -> None:
+        """Publish."""
+        if not self._topic.wanted:
+            return
+        pose, twist = self._link.pose, self._link.twist
+        if self._frame is not None:
+            at, motion = self._frame.pose, self._frame.twist
+            back = conjugate(at.orientation)
+            pose = compose(inverse(at), pose)
+            twist = Twist(rotate(back, subtract(twist.linear, motion.linear)),
+                          rotate(back, subtract(twist.angular, motion.angular)))
+        self._topic.publish(self._message(pose, twist))
+
+    def _message(self, pose: Pose, twist: Twist) -> Any:
+        context, noise = self.context, self._noise.draw(6)
+        message = context.message("nav_msgs/Odometry")
+        message.header.stamp = context.stamp()
+        message.header.frame_id, message.child_frame_id = self._frame_id, self._child_id
+        at, turn = message.pose.pose.position, message.pose.pose.orientation
+        at.x, at.y, at.z = add(pose.position, self._offset.position)
+        turn.x, turn.y, turn.z, turn.w = multiply(self._offset.orientation, pose.orientation)
+        linear, angular = message.twist.twist.linear, message.twist.twist.angular
+        linear.x, linear.y, linear.z = (v + n for v, n in zip(twist.linear, noise))
+        angular.x, angular.y, angular.z = (w + n for w, n in zip(twist.angular, noise[3:]))
+        variance = [0.0] * 36
+        variance[::7] = [self._stddev ** 2] * 6
+        message.pose.covariance = variance
+        message.twist.covariance = list(variance)
+        return message

@@ -1,0 +1,218 @@
+"""A world without ROS and physics, in which a plugin can be tested.
+
+context = FakeContext('<plugin><updateRate>10</updateRate></plugin>', joints=("left", "right"))
+plugin = MyPlugin(context); plugin.load()
+context.hear("cmd_vel", linear={"x": 0.5})
+context.advance(1.0)
+assert context.joints["left"].motor == (5.0, 1.0)
+assert context.published["odom"][-1].pose.pose.position.x == 0.5
+"""
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+from ..description.sensor import Sensor
+from ..engine.ring import Clock
+from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
+from ..simulator.appointments import Rate
+from .context import PluginError
+from .parameters import Parameters
+
+
+class Message:
+    """A message of any type: fields that are asked for come into being."""
+
+    def __init__(self, **fields: Any) -> None:
+        for name, value in fields.items():
+            setattr(self, name, Message(**value) if isinstance(value, dict) else value)
+
+    def __getattr__(self, name: str) -> "Message":
+        if name.startswith("__"):
+            raise AttributeError(name)
+        made = Message()
+        setattr(self, name, made)
+        return made
+
+
+class FakeLink:
+    """A link that is where a test puts it."""
+
+    def __init__(self, name: str) -> None:
+        self.name, self.pose, self.twist = name, IDENTITY, STILL
+
+
+class FakeJoint:
+    """A joint that turns as its motor says, without delay.
+
+    Attributes:
+        motor: rate and effort that it was driven with; None before.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name, self.parent, self.child = name, "base", name
+        self.position = self.velocity = 0.0
+        self.motor: Optional[Tuple[float, float]] = None
+
+    def drive(self, rate: float, effort: float) -> None:
+        """Turn the motor."""
+        self.motor = (rate, effort)
+
+
+class _Topic:
+    def __init__(self, messages: List[Any]) -> None:
+        self._messages, self.wanted = messages, True
+
+    def publish(self, message: Any) -> None:
+        self._messages.append(message)
+
+
+class FakeContext:
+    """A `Context` for tests.
+
+    Attributes:
+        links, joints: by name; a link that is asked for comes into being.
+        pose, twist: of the model.
+        published: messages by topic, as named with the namespace.
+        transforms: (parent, child, pose), in order.
+        said: what was told the user.
+        pushes: the last wrench of each link.
+        level: the last planar velocity.
+        returns: what rays meet; `fans`: (fan, visuals) of the scans.
+        touching: the contacts.
+        ros_parameters: what `search_parameter` finds.
+    """
+
+    def __init__(self, xml: str = "<plugin/>", *, model: str = "robot",
+                 joints: Sequence[str] = (), links: Optional[Sequence[str]] = None,
+                 sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 step_size: float = 0.001) -> None:
+        self.model, self.sensor, self.sensor_link = model, sensor, sensor_link
+        self.said: List[str] = []
+        self.parameters = Parameters(xml, self.said.append)
+        self.joints = {name: FakeJoint(name) for name in joints}
+        self.links: Dict[str, FakeLink] = {name: FakeLink(name) for name in links or ()}
+        self._closed_links = links is not None
+        self.pose: Pose = IDENTITY
+        self.twist: Twist = STILL
+        self.gravity: Vec3 = (0.0, 0.0, -9.8)
+        self.seed = 0
+        self.step_size, self.step = step_size, 0
+        self.published: Dict[str, List[Any]] = {}
+        self.transforms: List[Tuple[str, str, Pose]] = []
+        self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
+        self.level: Optional[Tuple[float, float, float]] = None
+        self.touching: List[Any] = []
+        self.ros_parameters: Dict[str, Any] = {}
+        self.returns: Any = None
+        self.fans: List[Any] = []
+        self._namespace = ""
+        self._heard: Dict[str, Callable[[Any], None]] = {}
+        self.services: Dict[str, Callable[[Any, Any], None]] = {}
+        self._calls: List[Tuple[Rate, Callable[[], None]]] = []
+
+    # -- what a test does --------------------------------------------------------------------------
+
+    def advance(self, seconds: float) -> None:
+        """Let sim time pass: joints turn, and the plugin is called when it wants to be."""
+        clock = Clock(0, 0, round(self.step_size * 1e12))
+        for _ in range(round(seconds / self.step_size)):
+            for joint in self.joints.values():
+                if joint.motor is not None and joint.motor[1] > 0.0:
+                    joint.velocity = joint.motor[0]
+                    joint.position += joint.velocity * self.step_size
+            self.step += 1
+            for rate, call in self._calls:
+                if rate.is_at(self.step, clock):
+                    call()
+
+    def hear(self, topic: str, **fields: Any) -> None:
+        """Have a message arrive; dictionaries are messages in it."""
+        self._heard[topic](Message(**fields))
+
+    # -- Context -----------------------------------------------------------------------------------
+
+    @property
+    def now_ns(self) -> int:
+        """Sim time."""
+        return round(self.step * self.step_size * 1e9)
+
+    def every(self, hertz: float, call: Callable[[], None]) -> None:
+        """Be called at a rate."""
+        self._calls.append((Rate(hertz), call))
+
+    def link(self, name: str) -> FakeLink:
+        """A link."""
+        if self._closed_links and name not in self.links:
+            raise PluginError(f"model '{self.model}' has no link '{name}'")
+        return self.links.setdefault(name, FakeLink(name))
+
+    def joint(self, name: str) -> FakeJoint:
+        """A joint."""
+        if name not in self.joints:
+            raise PluginError(f"model '{self.model}' has no joint '{name}'")
+        return self.joints[name]
+
+    def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
+        """Noted."""
+        self.level = (x, y, yaw_rate)
+
+    def push(self, link: str, force: Vec3, torque: Vec3) -> None:
+        """Noted."""
+        self.pushes[link] = (force, torque)
+
+    def set_joint_positions(self, positions: Dict[str, float]) -> None:
+        """Joints jump."""
+        for name, value in positions.items():
+            self.joint(name).position = value
+
+    def scan(self, fan: Any, visuals: bool, call: Callable[[Any, int], None]) -> None:
+        """Rays meet what a test says (`returns`)."""
+        self.fans.append((fan, visuals))
+        call(self.returns, self.now_ns)
+
+    def contacts(self) -> List[Any]:
+        """What a test says."""
+        return self.touching
+
+    def use_namespace(self, namespace: str) -> None:
+        """Before names."""
+        self._namespace = namespace.strip("/")
+
+    def _name(self, name: str) -> str:
+        return name if name.startswith("/") or not self._namespace else f"{self._namespace}/{name}"
+
+    def message(self, kind: str) -> Any:
+        """A message of any kind."""
+        return Message()
+
+    def stamp(self, ns: Optional[int] = None) -> Any:
+        """Nanoseconds."""
+        return self.now_ns if ns is None else ns
+
+    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
+        """Offer a topic."""
+        return _Topic(self.published.setdefault(self._name(name), []))
+
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
+        """Hear a topic."""
+        self._heard[self._name(name)] = call
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+        """Offer a service."""
+        self.services[self._name(name)] = call
+
+    def search_parameter(self, name: str, default: Any) -> Any:
+        """What a test says."""
+        return self.ros_parameters.get(name, default)
+
+    def transform(self, parent: str, child: str, pose: Pose) -> None:
+        """Noted."""
+        self.transforms.append((parent, child, pose))
+
+    def info(self, text: str) -> None:
+        """Noted."""
+        self.said.append(text)
+
+    def warn(self, text: str) -> None:
+        """Noted."""
+        self.said.append(text)

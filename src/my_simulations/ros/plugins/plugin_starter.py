@@ -1,0 +1,84 @@
+"""Starts the plugins' host when the first model with a plugin is there, and not before."""
+from __future__ import annotations
+
+import threading
+from typing import Any, Callable, Iterator, Mapping, Optional
+
+from ...description.model import Model
+from ...errors import Issue
+from ...simulator.simulator import Simulator
+
+LOOK_SECONDS = 0.5
+"""How soon the plugins of a model run that came in another way than by a service."""
+
+
+class PluginStarter:
+    """Knows the host, if there is one.
+
+    Args:
+        simulator: the world.
+        log: hears of plugins that are unknown or fail.
+        extra: the parameter `~plugins`: classes by library.
+    """
+
+    def __init__(self, simulator: Simulator, log: Callable[[Issue], None],
+                 extra: Optional[Mapping[str, str]] = None) -> None:
+        self._simulator, self._log, self._extra = simulator, log, dict(extra or {})
+        self._lock = threading.Lock()
+        self._host: Optional[Any] = None
+        self._seen = -1
+        self._ended = False
+
+    def settle(self) -> None:
+        """Have the plugins of all models run; returns when they do.
+
+        Cheap where no model has a plugin, and where nothing has changed.
+        """
+        with self._lock:
+            if self._ended:
+                return
+            revision, entities = self._simulator.models.inventory()
+            if revision == self._seen:
+                return
+            self._seen = revision
+            if self._host is None:
+                if not any(_has_plugin(entity.model) for entity in entities):
+                    return
+                self._host = self._made()
+                self._host.start()
+                return
+        self._host.settle()
+
+    def look(self) -> None:
+        """Start the host if a model has come that needs it; for models from the editor."""
+        if self._host is None:
+            self.settle()
+
+    def stop(self) -> None:
+        """End all plugins."""
+        with self._lock:
+            self._ended = True
+        if self._host is not None:
+            self._host.stop()
+
+    def _made(self) -> Any:
+        from ...plugins.host import PluginHost
+        from ...plugins.registry import PluginRegistry
+        from ...resources.ros_packages import PackageIndex
+        from .ros_graph import RosGraph
+
+        return PluginHost(self._simulator, RosGraph(),
+                          PluginRegistry(self._extra, PackageIndex().folders), self._log)
+
+
+def _has_plugin(model: Model) -> bool:
+    return any(True for _ in _plugins(model))
+
+
+def _plugins(model: Model) -> Iterator[Any]:
+    yield from model.plugins
+    for link in model.links:
+        for sensor in link.sensors:
+            yield from sensor.plugins
+    for nested in (model.guide.models if model.guide is not None else model.models):
+        yield from _plugins(nested)

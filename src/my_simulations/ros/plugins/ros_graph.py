@@ -1,0 +1,123 @@
+"""ROS for plugins: message types by name, topics, services, tf."""
+from __future__ import annotations
+
+import contextlib
+import importlib
+from typing import Any, Callable, Dict, List
+
+import genpy
+import rospy
+
+from ...geometry import Pose
+from ...plugins.graph import Closing, MissingTypeError, Topic, TransformOf
+
+_TF_QUEUE = 100
+
+
+class RosTopic:
+    """A publisher."""
+
+    def __init__(self, publisher: rospy.Publisher) -> None:
+        self._publisher = publisher
+
+    @property
+    def wanted(self) -> bool:
+        """Whether anybody listens."""
+        return bool(self._publisher.get_num_connections() > 0)
+
+    def send(self, message: Any) -> None:
+        """Publish; nobody hears it any more while the node ends."""
+        try:
+            self._publisher.publish(message)
+        except rospy.ROSException:
+            if not rospy.is_shutdown():
+                raise
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        with contextlib.suppress(OSError):  # the master has gone: nothing is registered any more
+            self._publisher.unregister()
+
+
+class _Closing:
+    def __init__(self, close: Callable[[], Any]) -> None:
+        self._close = close
+
+    def close(self) -> None:
+        with contextlib.suppress(OSError):
+            self._close()
+
+
+class RosGraph:
+    """See `plugins.graph.Graph`. Names are remapped as the node's arguments say."""
+
+    def __init__(self) -> None:
+        self._types: Dict[str, Any] = {}
+        self._tf: Any = None
+
+    def message(self, kind: str) -> Any:
+        """A new message."""
+        return self._type(kind, "msg")()
+
+    def stamp(self, ns: int) -> Any:
+        """A time."""
+        return genpy.Time(ns // 10 ** 9, ns % 10 ** 9)
+
+    def publish(self, name: str, kind: str, queue: int, latch: bool) -> Topic:
+        """Offer a topic."""
+        return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), queue_size=queue,
+                                        latch=latch, tcp_nodelay=True))
+
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
+        """Hear a topic."""
+        return _Closing(rospy.Subscriber(name, self._type(kind, "msg"), call, queue_size=queue,
+                                         tcp_nodelay=True).unregister)
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
+        """Offer a service."""
+        service = self._type(kind, "srv")
+
+        def answer(request: Any) -> Any:
+            response = service._response_class()
+            call(request, response)
+            return response
+
+        return _Closing(rospy.Service(name, service, answer).shutdown)
+
+    def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
+        """A parameter of a namespace or of the next one above that has it."""
+        at = rospy.resolve_name(namespace) if namespace else rospy.get_namespace()
+        while True:
+            found = rospy.get_param(f"{at.rstrip('/')}/{name}", None)
+            if found is not None:
+                return found
+            if at in ("", "/"):
+                return default
+            at = at.rstrip("/").rpartition("/")[0] or "/"
+
+    def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
+        """Broadcast to /tf, all in one message."""
+        if self._tf is None:
+            self._tf = self.publish("/tf", "tf2_msgs/TFMessage", _TF_QUEUE, False)
+        message = self.message("tf2_msgs/TFMessage")
+        stamp = self.stamp(ns)
+        message.transforms = [self._transform(*one, stamp) for one in transforms]
+        self._tf.send(message)
+
+    def _transform(self, parent: str, child: str, pose: Pose, stamp: Any) -> Any:
+        found = self.message("geometry_msgs/TransformStamped")
+        found.header.stamp, found.header.frame_id, found.child_frame_id = stamp, parent, child
+        at, turn = found.transform.translation, found.transform.rotation
+        at.x, at.y, at.z = pose.position
+        turn.x, turn.y, turn.z, turn.w = pose.orientation
+        return found
+
+    def _type(self, kind: str, sort: str) -> Any:
+        if kind not in self._types:
+            package, _, name = kind.partition("/")
+            try:
+                self._types[kind] = getattr(importlib.import_module(f"{package}.{sort}"), name)
+            except (ImportError, AttributeError) as fault:
+                raise MissingTypeError(f"{kind} is not there; install the package ros-{package}"
+                                       f" ({fault})") from fault
+        return self._types[kind]

@@ -1,0 +1,113 @@
+"""Motors of joints and planar velocities of models, which the engine keeps up by itself."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, List, Optional, Sequence
+
+from ..engine.commands import (
+    Batch,
+    Command,
+    JointMotor,
+    PlanarVelocity,
+    SetMotors,
+    SetPlanarVelocities,
+)
+from .registry import Entity
+from .session import Session
+
+
+class Drives:
+    """Owns what drives models from within. Changes take the structure lock."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._motors: Dict[int, JointMotor] = {}
+        self._planar: Dict[int, PlanarVelocity] = {}
+
+    def set(self, motors: Sequence[JointMotor] = (),
+            planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None) -> bool:
+        """Set motors by joint row and planar velocities by model number; others stay.
+
+        Args:
+            motors: of any models.
+            planar: of any models.
+            revision: of the models when the rows were looked up (`Models.revision`).
+
+        Returns:
+            False when the models have changed since; then nothing is set.
+
+        Raises CommandError when a joint is not there.
+        """
+        with self._session.structure_lock:
+            if revision is not None and revision != self._session.registry.revision:
+                return False
+            commands: List[Command] = []
+            new = [motor for motor in motors if self._motors.get(motor.row) != motor]
+            if new:
+                commands.append(SetMotors(tuple(new)))
+            moved = {one.model_id: one for one in planar}
+            if any(self._planar.get(number) != one for number, one in moved.items()):
+                commands.append(SetPlanarVelocities(tuple({**self._planar, **moved}.values())))
+            if not commands:
+                return True
+            self._session.call(Batch(tuple(commands)) if len(commands) > 1 else commands[0])
+            self._motors.update({motor.row: motor for motor in new})
+            self._planar.update(moved)
+            return True
+
+    def stop(self, entity: Entity) -> None:
+        """Nothing drives a model any more: motors off, no planar velocity."""
+        with self._session.structure_lock:
+            mine = [motor for row, motor in self._motors.items() if entity.has_joint_row(row)]
+            commands: List[Command] = []
+            if mine:
+                commands.append(SetMotors(tuple(replace(motor, effort=0.0) for motor in mine)))
+            if entity.model_id in self._planar:
+                commands.append(SetPlanarVelocities(tuple(
+                    one for number, one in self._planar.items() if number != entity.model_id)))
+            self.forget_entity(entity)
+            if commands:
+                self._session.call(Batch(tuple(commands)))
+
+    # -- for the other parts, which hold the structure lock ----------------------------------------
+
+    def restore_commands(self) -> List[Command]:
+        """What a new engine must be told."""
+        commands: List[Command] = []
+        if self._motors:
+            commands.append(SetMotors(tuple(self._motors.values())))
+        if self._planar:
+            commands.append(SetPlanarVelocities(tuple(self._planar.values())))
+        return commands
+
+    def forget_entity(self, entity: Entity) -> None:
+        """Drop what drives a model that has left the engine."""
+        self._motors = {row: motor for row, motor in self._motors.items()
+                        if not entity.has_joint_row(row)}
+        self._planar.pop(entity.model_id, None)
+
+    def forget_all(self) -> None:
+        """The engine has begun anew without them."""
+        self._motors.clear()
+        self._planar.clear()
+
+    def transferred(self, old: Entity, new: Entity) -> List[Command]:
+        """What drives a model, for the entity that replaces it; they are kept from now on."""
+        names = {old.first_joint_row + n: name for n, name in enumerate(old.joint_names)}
+        motors = [replace(motor, row=new.first_joint_row + new.joint_names.index(names[row]))
+                  for row, motor in self._motors.items() if names.get(row) in new.joint_names]
+        planar = self._planar.get(old.model_id)
+        commands: List[Command] = [SetMotors(tuple(motors))] if motors else []
+        if planar is not None:
+            moved = replace(planar, model_id=new.model_id)
+            others = [one for one in self._planar.values() if one is not planar]
+            commands.append(SetPlanarVelocities((*others, moved)))
+        return commands
+
+    def adopt(self, commands: Sequence[Command]) -> None:
+        """The engine has carried out what `transferred` gave."""
+        for command in commands:
+            if isinstance(command, SetMotors):
+                self._motors.update({motor.row: motor for motor in command.motors})
+            elif isinstance(command, SetPlanarVelocities):
+                self._planar = {one.model_id: one for one in command.velocities}

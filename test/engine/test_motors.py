@@ -1,0 +1,85 @@
+"""Joint motors and planar motion against closed forms."""
+from __future__ import annotations
+
+import math
+
+import pytest
+from conftest import Lab, arm, box, ground
+
+from my_simulations.description.model import JointAxis
+from my_simulations.engine.api import CommandRefusedError
+from my_simulations.engine.commands import (
+    JointMotor,
+    PhysicsSettings,
+    PlanarVelocity,
+    SetMotors,
+    SetPlanarVelocities,
+)
+
+Z = (0.0, 0.0, 1.0)
+
+
+def wheel(lab: Lab, **axis):
+    """An arm of 1 kg m^2 about a vertical axis, which gravity does not turn."""
+    model = lab.load(arm("revolute", JointAxis(Z, **axis), moment=1e-6))
+    return model, lab.joint_rows[model, "hinge"]
+
+
+def test_a_motor_brings_an_axis_to_its_rate_and_keeps_it_there(lab: Lab):
+    model, row = wheel(lab)
+    lab.apply(SetMotors((JointMotor(row, 2.0, 100.0),)))
+    lab.seconds(1.0)
+    position, rate = lab.joint(model)
+    assert rate == pytest.approx(2.0, abs=1e-6)
+    assert position == pytest.approx(2.0, rel=0.03)
+
+
+def test_a_motor_spends_no_more_than_its_effort(lab: Lab):
+    model, row = wheel(lab)
+    lab.apply(SetMotors((JointMotor(row, 100.0, 3.0),)))
+    lab.seconds(1.0)
+    assert lab.joint(model)[1] == pytest.approx(3.0, rel=2e-3)  # w = T t / I
+
+
+def test_an_axis_without_effort_has_its_friction_again(lab: Lab):
+    model, row = wheel(lab, friction=0.5)
+    lab.apply(SetMotors((JointMotor(row, 1.0, 100.0),)))
+    lab.seconds(0.5)
+    lab.apply(SetMotors((JointMotor(row, 0.0, 0.0),)))
+    lab.seconds(1.0)
+    assert lab.joint(model)[1] == pytest.approx(0.5, rel=0.01)
+
+
+def test_a_motor_goes_on_when_the_step_size_changes(lab: Lab):
+    model, row = wheel(lab)
+    lab.apply(SetMotors((JointMotor(row, 2.0, 100.0),)))
+    lab.settings = PhysicsSettings(step_size=0.002)
+    lab.backend.configure(lab.settings)
+    lab.seconds(1.0)
+    assert lab.joint(model)[1] == pytest.approx(2.0, abs=1e-6)
+
+
+def test_a_motor_of_a_joint_that_is_not_there_is_refused(lab: Lab):
+    with pytest.raises(CommandRefusedError):
+        lab.apply(SetMotors((JointMotor(7, 1.0, 1.0),)))
+
+
+def test_a_model_drives_a_circle_as_it_is_told(lab: Lab):
+    lab.load(ground(mu=0.0))
+    model = lab.load(box(size=0.2), (0, 0, 0.1))
+    lab.apply(SetPlanarVelocities((PlanarVelocity(model, 0.5, 0.0, math.pi / 2),)))
+    lab.seconds(1.0)
+    x, y, _ = lab.pose(model).position
+    radius = 0.5 / (math.pi / 2)
+    assert (x, y) == pytest.approx((radius, radius), abs=1e-3)
+    lab.apply(SetPlanarVelocities(()))
+    lab.seconds(0.1)  # without friction it goes straight on
+    assert lab.pose(model).position[:2] == pytest.approx((radius, radius + 0.05), abs=2e-3)
+
+
+def test_a_model_that_is_driven_level_does_not_fall(lab: Lab):
+    model = lab.load(box(), (0, 0, 5))
+    lab.apply(SetPlanarVelocities((PlanarVelocity(model, 0.0, 0.3, 0.0),)))
+    lab.seconds(1.0)
+    # Gravity acts within each step, and is taken back before the next: g dt^2 a step.
+    assert lab.pose(model).position == pytest.approx((0.0, 0.3, 5.0), abs=0.011)

@@ -1,0 +1,102 @@
+"""The lab robot driven by its plugin: odometry against the truth of the physics."""
+from __future__ import annotations
+
+import math
+import pathlib
+import time
+
+import pytest
+from conftest import ground
+from plugin_graph import Graph
+
+from my_simulations.description.world import World
+from my_simulations.engine.bullet.backend import BulletBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.formats.reading import read_file
+from my_simulations.geometry import rpy_from_quat
+from my_simulations.plugins.host import PluginHost
+from my_simulations.plugins.registry import PluginRegistry
+from my_simulations.plugins.testing import Message
+from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.simulator import Simulator
+
+ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf"
+
+
+class Drive:
+    def __init__(self):
+        engine = InlineEngine(BulletBackend)
+        robot, _ = read_file(str(ROBOT), Resolver())
+        self.sim = Simulator(World(models=[ground(mu=1.0), robot]), engine_factory=lambda: engine,
+                             paused=True, log=lambda issue: None)
+        self.sim.start()
+        self.graph = Graph()
+        self.host = PluginHost(self.sim, self.graph, PluginRegistry(), lambda issue: None)
+        self.host.start()
+        self.sim.clock.advance(200)
+
+    def go(self, forward, turn, seconds):
+        """Command, and settle: the command is heard by the host before time goes on."""
+        self.graph.heard["cmd_vel"](Message(linear={"x": forward}, angular={"z": turn}))
+        deadline = time.monotonic() + 10.0
+        while any(one.context.inbox for one in self.host._all()):
+            assert time.monotonic() < deadline
+            time.sleep(0.001)
+        self.sim.clock.advance(round(seconds * 1000))
+
+    def odometry(self):
+        wanted = (self.sim.clock.step // 20) * 20 * 10 ** 6
+        deadline = time.monotonic() + 10.0
+        while self.graph.on("odom")[-1].header.stamp < wanted:
+            assert time.monotonic() < deadline
+            time.sleep(0.001)
+        pose = self.graph.on("odom")[-1].pose.pose
+        return pose.position.x, pose.position.y, 2.0 * math.atan2(pose.orientation.z,
+                                                                  pose.orientation.w)
+
+    def truth(self):
+        pose, _ = self.sim.states.model_state("robo")
+        return pose.position[0], pose.position[1], rpy_from_quat(pose.orientation)[2]
+
+    def close(self):
+        self.host.stop()
+        self.sim.close()
+
+
+@pytest.fixture
+def drive():
+    made = Drive()
+    yield made
+    made.close()
+
+
+def apart(one, other):
+    return math.hypot(one[0] - other[0], one[1] - other[1])
+
+
+def test_a_straight_way(drive):
+    drive.go(0.25, 0.0, 4.0)
+    drive.go(0.0, 0.0, 1.0)
+    assert drive.truth()[0] == pytest.approx(drive.odometry()[0], rel=0.01)
+    assert abs(drive.truth()[1]) < 0.01
+
+
+def test_a_circle_closes(drive):
+    drive.go(0.2, 0.4, 2.0 * math.pi / 0.4)
+    drive.go(0.0, 0.0, 1.0)
+    way = 2.0 * math.pi * 0.5
+    assert apart(drive.truth(), drive.odometry()) < 0.05 * way
+
+
+def test_the_same_run_gives_the_same_messages():
+    def run():
+        drive = Drive()
+        try:
+            drive.go(0.2, 0.3, 1.0)
+            drive.odometry()
+            return [(one.header.stamp, one.pose.pose.position.x, one.pose.pose.position.y)
+                    for one in drive.graph.on("odom")]
+        finally:
+            drive.close()
+
+    assert run() == run()

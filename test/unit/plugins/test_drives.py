@@ -1,0 +1,156 @@
+"""Drives in a world without physics: what they order, what they publish."""
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from my_simulations.geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
+from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.drive.diff_drive import DiffDrive
+from my_simulations.plugins.drive.planar_move import PlanarMove
+from my_simulations.plugins.drive.skid_steer_drive import SkidSteerDrive
+from my_simulations.plugins.testing import FakeContext
+
+WHEELS = ("left_joint", "right_joint")
+
+
+def diff_drive(inside="", **options):
+    context = FakeContext(f"<plugin>{inside}</plugin>", joints=WHEELS, **options)
+    plugin = DiffDrive(context)
+    plugin.load()
+    return context, plugin
+
+
+def test_a_command_becomes_wheel_speeds_with_the_defaults_of_the_original():
+    context, _ = diff_drive()
+    context.hear("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 1.0})
+    context.advance(0.01)
+    left, right = (context.joints[name].motor for name in WHEELS)
+    assert left == pytest.approx(((0.3 - 0.17) / 0.075, 5.0))
+    assert right == pytest.approx(((0.3 + 0.17) / 0.075, 5.0))
+
+
+def test_it_publishes_at_its_rate_under_the_models_name():
+    context, _ = diff_drive("<updateRate>20</updateRate>")
+    context.advance(1.0)
+    assert len(context.published["robot/odom"]) == 20
+    assert [one.header.stamp for one in context.published["robot/odom"]][:2] == [50e6, 100e6]
+    assert {pair[:2] for pair in context.transforms} == {("odom", "base_footprint")}
+
+
+def test_encoder_odometry_of_a_circle_is_the_circle():
+    context, _ = diff_drive("<odometrySource>encoder</odometrySource>")
+    context.hear("robot/cmd_vel", linear={"x": 0.5}, angular={"z": math.pi / 2})
+    context.advance(1.01)  # the first command acts from the first appointment on
+    odom = context.published["robot/odom"][-1]
+    radius = 0.5 / (math.pi / 2)
+    assert odom.pose.pose.position.x == pytest.approx(radius, abs=1e-4)
+    assert odom.pose.pose.position.y == pytest.approx(radius, abs=1e-4)
+    assert (odom.twist.twist.linear.x, odom.twist.twist.angular.z) == pytest.approx(
+        (0.5, math.pi / 2))
+    assert odom.pose.covariance[::7] == [1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3]
+
+
+def test_backwards_is_negative():
+    context, _ = diff_drive("<odometrySource>encoder</odometrySource>")
+    context.hear("robot/cmd_vel", linear={"x": -0.2}, angular={"z": 0.0})
+    context.advance(0.5)
+    assert context.published["robot/odom"][-1].twist.twist.linear.x == pytest.approx(-0.2)
+
+
+def test_odometry_of_the_world_turns_velocities_into_the_base():
+    context, _ = diff_drive()
+    context.pose = Pose((1.0, 2.0, 0.1), quat_from_rpy(0, 0, math.pi / 2))
+    context.twist = Twist((0.0, 0.4, 0.0), (0.0, 0.0, 0.3))
+    context.advance(0.01)
+    odom = context.published["robot/odom"][-1]
+    assert odom.pose.pose.position.y == 2.0
+    assert (odom.twist.twist.linear.x, odom.twist.twist.linear.y,
+            odom.twist.twist.angular.z) == pytest.approx((0.4, 0.0, 0.3))
+
+
+def test_wheels_accelerate_no_faster_than_they_may():
+    context, _ = diff_drive("<wheelAcceleration>0.5</wheelAcceleration>")
+    context.hear("robot/cmd_vel", linear={"x": 1.0}, angular={"z": 0.0})
+    context.advance(0.1)
+    assert context.joints["left_joint"].motor[0] * 0.075 == pytest.approx(0.05)
+
+
+def test_without_publish_tf_there_is_neither_odometry_nor_tf():
+    context, _ = diff_drive("<publishTf>false</publishTf>")
+    context.advance(0.1)
+    assert not context.published and not context.transforms
+
+
+def test_flags_add_wheel_frames_and_joint_states():
+    context, _ = diff_drive("<publishWheelTF>1</publishWheelTF><publishWheelJointState>true"
+                            "</publishWheelJointState><publishOdomTF>false</publishOdomTF>")
+    context.advance(0.01)
+    assert [pair[:2] for pair in context.transforms] == [
+        ("base", "left_joint"), ("base", "right_joint")]
+    assert context.published["robot/joint_states"][0].name == list(WHEELS)
+
+
+def test_namespace_prefix_and_topics_are_those_of_the_file():
+    context = FakeContext("<plugin><robotNamespace>/r1</robotNamespace>"
+                          "<commandTopic>/go</commandTopic></plugin>", joints=WHEELS)
+    context.ros_parameters["tf_prefix"] = "/r1"
+    DiffDrive(context).load()
+    context.hear("/go", linear={"x": 0.1}, angular={"z": 0.0})
+    context.advance(0.01)
+    assert context.published["r1/odom"][0].child_frame_id == "r1/base_footprint"
+
+
+def test_a_reset_stands_still_and_counts_from_there():
+    context, plugin = diff_drive("<odometrySource>encoder</odometrySource>")
+    context.hear("robot/cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
+    context.advance(0.5)
+    plugin.reset()
+    assert context.joints["left_joint"].motor[0] == 0.0
+    context.advance(0.1)
+    assert context.published["robot/odom"][-1].pose.pose.position.x == 0.0
+
+
+def test_a_joint_that_is_not_there_is_named():
+    with pytest.raises(PluginError, match="right_joint"):
+        DiffDrive(FakeContext(joints=("left_joint",))).load()
+
+
+def test_a_value_that_is_no_number_is_told_and_the_default_used():
+    context, plugin = diff_drive("<wheelDiameter>big</wheelDiameter>")
+    assert "wheelDiameter" in context.said[0] and plugin._radius == 0.075
+
+
+def test_skid_steering_drives_both_wheels_of_a_side_alike():
+    corners = ("left_front_joint", "right_front_joint", "left_rear_joint", "right_rear_joint")
+    context = FakeContext(joints=corners)
+    SkidSteerDrive(context).load()
+    context.hear("cmd_vel", linear={"x": 0.2}, angular={"z": 1.0})
+    context.advance(0.01)
+    speeds = [context.joints[name].motor[0] * 0.075 for name in corners]
+    assert speeds == pytest.approx([0.0, 0.4, 0.0, 0.4])
+    assert not context.transforms  # broadcastTF is false by default
+    assert context.published["odom"][0].pose.covariance[::7] == [1e-4, 1e-4, 1e12, 1e12, 1e12,
+                                                                 1e-2]
+
+
+def test_planar_move_passes_the_command_on_and_forgets_an_old_one():
+    context = FakeContext("<plugin><cmdTimeout>0.1</cmdTimeout></plugin>")
+    PlanarMove(context).load()
+    context.hear("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
+    context.advance(0.05)
+    assert context.level == (0.2, 0.1, 0.5)
+    context.advance(0.1)
+    assert context.level == (0.0, 0.0, 0.0)
+
+
+def test_planar_move_tells_the_velocity_since_the_last_message():
+    context = FakeContext("<plugin><odometryRate>10</odometryRate></plugin>")
+    PlanarMove(context).load()
+    context.advance(0.099)
+    context.pose = Pose((0.02, 0.0, 0.3), quat_from_rpy(0, 0, 0.0))
+    context.advance(0.001)
+    odom = context.published["odom"][-1]
+    assert odom.twist.twist.linear.x == pytest.approx(0.2)
+    assert rpy_from_quat(context.transforms[-1][2].orientation)[2] == 0.0

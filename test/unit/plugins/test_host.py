@@ -1,0 +1,207 @@
+"""Plugins in a simulator without physics: starting, failing, resetting, ending."""
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+from plugin_graph import Graph
+
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.plugin import PluginSpec
+from my_simulations.description.world import World
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.errors import Severity
+from my_simulations.plugins.base import Plugin
+from my_simulations.plugins.host import PluginHost
+from my_simulations.plugins.registry import PluginRegistry, exports, library_name
+from my_simulations.plugins.testing import Message
+from my_simulations.simulator.simulator import Simulator
+
+DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+<leftJoint>left</leftJoint><rightJoint>right</rightJoint><wheelDiameter>0.2</wheelDiameter>
+<odometrySource>encoder</odometrySource></plugin>"""
+
+
+class Failing(Plugin):
+    def load(self):
+        self.context.every(100.0, self.update)
+
+    def update(self):
+        raise ZeroDivisionError("nothing to divide")
+
+
+class Counting(Plugin):
+    calls = []
+
+    def load(self):
+        self.context.every(100.0, lambda: self.calls.append(self.context.now_ns))
+
+    def reset(self):
+        self.calls.append("reset")
+
+    def clock_set(self):
+        self.calls.append("clock set")
+
+
+def robot(name="robot", xml=DRIVE, library="libgazebo_ros_diff_drive.so"):
+    links = [Link(one, inertial=Inertial()) for one in ("base", "wheel_l", "wheel_r")]
+    joints = [Joint("left", "revolute", "base", "wheel_l", axis=JointAxis()),
+              Joint("right", "revolute", "base", "wheel_r", axis=JointAxis())]
+    return Model(name, links=links, joints=joints,
+                 plugins=[PluginSpec("drive", library, xml, "robot.urdf", 12)])
+
+
+class Case:
+    def __init__(self, *models, extra=None):
+        self.issues, self.graph = [], Graph()
+        engine = InlineEngine(KinematicBackend)
+        self.sim = Simulator(World(models=list(models)), engine_factory=lambda: engine,
+                             paused=True, log=self.issues.append)
+        self.sim.start()
+        self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append)
+        self.host.start()
+
+    def close(self):
+        self.host.stop()
+        self.sim.close()
+
+    def command(self, **fields):
+        self.graph.heard["robot/cmd_vel"](Message(**fields))
+
+
+@pytest.fixture
+def case():
+    made = []
+
+    def make(*models, **options):
+        made.append(Case(*models, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def until(condition):
+    deadline = time.monotonic() + 10.0
+    while not condition():
+        assert time.monotonic() < deadline, "the condition never came true"
+        time.sleep(0.002)
+
+
+def test_a_robot_of_the_world_drives(case):
+    one = case(robot())
+    one.command(linear={"x": 0.5}, angular={"z": 0.0})
+    one.sim.clock.advance(1010)
+    until(lambda: len(one.graph.on("robot/odom")) == 101)
+    odom = one.graph.on("robot/odom")[-1]
+    assert odom.pose.pose.position.x == pytest.approx(0.5)
+    assert odom.header.stamp == 1_010_000_000
+    assert one.graph.transforms[-1][:3] == (1_010_000_000, "odom", "base_footprint")
+
+
+def test_the_same_run_gives_the_same_messages(case):
+    def run():
+        one = case(robot())
+        one.command(linear={"x": 0.5}, angular={"z": 0.3})
+        one.sim.clock.advance(500)
+        until(lambda: len(one.graph.on("robot/odom")) == 50)
+        return [(m.header.stamp, m.pose.pose.position.x, m.pose.pose.position.y,
+                 m.twist.twist.linear.x) for m in one.graph.on("robot/odom")]
+
+    assert run() == run()
+
+
+def test_a_spawned_robot_has_its_plugin_and_a_deleted_one_has_not(case):
+    one = case()
+    one.sim.models.spawn(robot())
+    one.host.settle()
+    assert "robot/cmd_vel" in one.graph.heard
+    one.sim.models.delete("robot")
+    one.host.settle()
+    assert "robot/cmd_vel" not in one.graph.heard
+    assert one.sim.clock.advance(50) == 50
+
+
+def test_a_plugin_that_fails_is_switched_off_and_the_others_go_on(case):
+    failing = robot("bad", "<plugin/>", "libfailing.so")
+    one = case(failing, robot(), extra={"libfailing.so": f"{__name__}:Failing"})
+    one.sim.clock.advance(100)
+    until(lambda: len(one.graph.on("robot/odom")) == 10)
+    (issue,) = [issue for issue in one.issues if issue.code == "plugin-failed"]
+    assert issue.severity is Severity.ERROR and (issue.file, issue.line) == ("robot.urdf", 12)
+    assert "nothing to divide" in issue.message and "test_host.py" in issue.message
+
+
+def test_an_unknown_library_is_one_warning_that_names_it(case):
+    one = case(robot("a", "<plugin/>", "libmystery.so"), robot("b", "<plugin/>", "libmystery.so"))
+    (issue,) = [issue for issue in one.issues if issue.code == "plugin-unknown"]
+    assert "libmystery.so" in issue.message and issue.line == 12
+
+
+def test_a_joint_that_is_missing_is_the_users_fault_and_said_without_a_traceback(case):
+    one = case(robot(xml="<plugin><leftJoint>nowhere</leftJoint></plugin>"))
+    (issue,) = [issue for issue in one.issues if issue.code == "plugin-failed"]
+    assert "no joint 'nowhere'; there are left, right" in issue.message
+    assert one.sim.clock.advance(20) == 20
+
+
+def test_resets_are_told_apart(case):
+    Counting.calls = []
+    one = case(robot("c", "<plugin/>", "libcounting.so"),
+               extra={"libcounting.so": f"{__name__}:Counting"})
+    one.sim.clock.advance(20)
+    one.sim.resets.reset_time()
+    one.sim.clock.advance(10)
+    one.sim.resets.reset_simulation()
+    one.sim.clock.advance(10)
+    one.sim.resets.reset_world()
+    until(lambda: len(Counting.calls) == 7)
+    assert Counting.calls == [10_000_000, 20_000_000, "clock set", 10_000_000, "reset",
+                              10_000_000, "reset"]
+
+
+def test_plugins_go_on_when_the_engine_is_another(case):
+    one = case(robot())
+    one.command(linear={"x": 0.5}, angular={"z": 0.0})
+    one.sim.clock.advance(100)
+    one.sim._session.supervisor.engine.kill()
+    one.sim.clock.advance(0)
+    one.sim.clock.advance(110)
+    until(lambda: len(one.graph.on("robot/odom")) == 21)
+    places = [odom.pose.pose.position.x for odom in one.graph.on("robot/odom")]
+    assert max(b - a for a, b in zip(places, places[1:])) == pytest.approx(0.005)
+
+
+def test_an_edited_robot_keeps_its_plugin(case):
+    one = case(robot())
+    one.command(linear={"x": 0.5}, angular={"z": 0.0})
+    one.sim.clock.advance(100)
+    one.sim.models.set_link_inertial("robot::base", Inertial(mass=3.0))
+    one.sim.clock.advance(110)
+    until(lambda: len(one.graph.on("robot/odom")) == 21)
+    assert one.graph.on("robot/odom")[-1].twist.twist.linear.x == pytest.approx(0.5)
+    assert one.graph.sent.count(("robot/odom", None)) == 0
+
+
+def test_ending_leaves_no_thread_and_holds_nobody_up(case):
+    one = case(robot())
+    one.host.stop()
+    assert one.sim.clock.advance(30) == 30
+    assert not any(thread.name == "plugins" for thread in threading.enumerate())
+
+
+def test_libraries_are_known_by_their_file_name(tmp_path):
+    assert library_name("/opt/ros/lib/libfoo.so") == library_name("foo") == "libfoo.so"
+    (tmp_path / "package.xml").write_text(
+        '<package><export><my_simulations plugin="a.b:C" library="libfoo.so"/></export></package>')
+    assert exports(str(tmp_path / "package.xml")) == [{"plugin": "a.b:C", "library": "libfoo.so"}]
+
+
+def test_a_package_brings_a_plugin(case, tmp_path):
+    (tmp_path / "package.xml").write_text(
+        f'<package><export><my_simulations plugin="{__name__}:Counting" library="libfoo.so"/>'
+        "</export></package>")
+    assert PluginRegistry({}, lambda: [str(tmp_path)]).find("libfoo.so") is Counting

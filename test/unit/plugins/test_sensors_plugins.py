@@ -1,0 +1,146 @@
+"""Plugins of sensors in a world without physics and rays."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from my_simulations.description.sensor import ContactSensor, Imu, Noise, Ray, ScanAngles, Sensor
+from my_simulations.engine.commands import Contact
+from my_simulations.geometry import Twist
+from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.sensors.bumper import Bumper
+from my_simulations.plugins.sensors.imu import ModelImu, SensorImu
+from my_simulations.plugins.sensors.laser import Laser
+from my_simulations.plugins.sensors.range import Range
+from my_simulations.plugins.state.force import Force
+from my_simulations.plugins.state.joint_state_publisher import JointStatePublisher
+from my_simulations.plugins.state.p3d import P3d
+from my_simulations.plugins.testing import FakeContext, Message
+from my_simulations.sensing.api import RayReturns
+
+
+def laser(noise=None, kind="ray", inside="<topicName>scan</topicName>"):
+    ray = Ray(ScanAngles(4, 1.0, -1.0, 1.0), min_range=0.1, max_range=5.0, noise=noise or Noise())
+    context = FakeContext(f"<plugin>{inside}<frameName>mast</frameName></plugin>",
+                          sensor=Sensor("s", kind, update_rate=10.0, ray=ray), sensor_link="base")
+    context.returns = RayReturns(np.array([0.05, 1.0, 2.0, math.inf]), np.zeros(4), np.zeros(4))
+    return context
+
+
+def test_a_scan_has_the_ranges_of_gazebo():
+    context = laser()
+    Laser(context).load()
+    context.advance(0.25)
+    scans = context.published["scan"]
+    assert len(scans) == 2 and scans[0].header.frame_id == "mast"
+    assert scans[0].ranges == [-math.inf, 1.0, 2.0, math.inf]
+    assert scans[0].angle_increment == pytest.approx(2.0 / 3.0)
+    assert (scans[0].header.stamp, scans[0].range_max) == (100_000_000, 5.0)
+
+
+def test_a_ray_sees_collisions_and_a_gpu_ray_visuals():
+    for kind, visuals in (("ray", False), ("gpu_ray", True)):
+        context = laser(kind=kind)
+        Laser(context).load()
+        context.advance(0.1)
+        (fan, seen), = context.fans
+        assert seen is visuals and (fan.samples, fan.near, fan.far) == (4, 0.1, 5.0)
+
+
+def test_noise_of_a_scan_repeats_and_leaves_empty_returns_alone():
+    def run():
+        context = laser(Noise("gaussian", stddev=0.01))
+        Laser(context).load()
+        context.advance(0.2)
+        return [scan.ranges for scan in context.published["scan"]]
+
+    first, second = run()
+    assert first[0] == -math.inf and first[3] == math.inf and first[1] != 1.0
+    assert first != second and run() == [first, second]
+
+
+def test_a_range_sensor_tells_the_nearest_or_the_maximum():
+    context = laser(inside="<topicName>sonar</topicName>")
+    Range(context).load()
+    context.advance(0.1)
+    context.returns = RayReturns(np.full(4, math.inf), np.zeros(4), np.zeros(4))
+    context.advance(0.1)
+    assert [one.range for one in context.published["sonar"]] == pytest.approx([0.05, 5.0])
+
+
+def test_a_laser_without_rays_is_the_users_fault():
+    with pytest.raises(PluginError, match="<ray>"):
+        Laser(FakeContext(sensor=Sensor("s", "camera"))).load()
+
+
+def test_an_imu_at_rest_feels_gravity_and_in_free_fall_nothing():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>imu</topicName>"
+                          "<updateRate>100</updateRate></plugin>")
+    ModelImu(context).load()
+    context.advance(0.01)
+    context.link("base").twist = Twist((0.0, 0.0, -0.098), (0.0, 0.0, 0.5))
+    context.advance(0.01)
+    rest, fall = context.published["imu"]
+    assert rest.linear_acceleration.z == pytest.approx(9.8)
+    assert fall.linear_acceleration.z == pytest.approx(0.0)
+    assert fall.angular_velocity.z == 0.5 and rest.header.frame_id == "base"
+
+
+def test_an_imu_sensor_has_the_noise_of_its_block():
+    block = Imu(angular_velocity_x=Noise("gaussian", mean=0.25))
+    context = FakeContext("<plugin><frameName>imu</frameName><updateRateHZ>10</updateRateHZ>"
+                          "</plugin>", sensor=Sensor("i", "imu", imu=block), sensor_link="base")
+    SensorImu(context).load()
+    context.advance(0.1)
+    (sample,) = context.published["robot/imu_data"]
+    assert (sample.angular_velocity.x, sample.angular_velocity.y) == pytest.approx((0.25, 0.0))
+
+
+def test_a_bumper_tells_of_its_link_alone_as_the_force_on_it():
+    context = FakeContext(sensor=Sensor("b", "contact", update_rate=10.0,
+                                        contact=ContactSensor(["c"])), sensor_link="base")
+    Bumper(context).load()
+    up = (0.0, 0.0, 1.0)
+    context.touching = [
+        ("ground::link", "robot::base", Contact(0, 1, (0.1, 0, 0), (0.0, 0.0, -1.0), 1e-4, 4.0)),
+        ("robot::base", "ground::link", Contact(1, 0, (-0.1, 0, 0), up, 1e-4, 6.0)),
+        ("a::b", "c::d", Contact(5, 6, (0, 0, 0), up, 0.0, 9.0))]
+    context.advance(0.1)
+    (state,) = context.published["bumper_states"][0].states
+    assert (state.collision1_name, state.collision2_name) == ("robot::base::c", "ground::link")
+    assert state.total_wrench.force.z == pytest.approx(10.0)
+    assert state.total_wrench.torque.y == pytest.approx(0.2)
+    context.touching = []
+    context.advance(0.1)
+    assert context.published["bumper_states"][1].states == []
+
+
+def test_joint_states_of_a_list_with_blanks():
+    context = FakeContext("<plugin><jointName>a, b</jointName></plugin>", joints=("a", "b"))
+    JointStatePublisher(context).load()
+    context.joints["b"].position = 0.5
+    context.advance(0.01)
+    (state,) = context.published["robot/joint_states"]
+    assert (state.name, state.position) == (["a", "b"], [0.0, 0.5])
+
+
+def test_ground_truth_with_an_offset():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>truth</topicName>"
+                          "<updateRate>50</updateRate><xyzOffset>1 2 3</xyzOffset></plugin>")
+    P3d(context).load()
+    context.link("base").twist = Twist((0.5, 0, 0))
+    context.advance(0.02)
+    (odom,) = context.published["truth"]
+    assert odom.pose.pose.position.y == 2.0 and odom.twist.twist.linear.x == 0.5
+    assert (odom.header.frame_id, odom.child_frame_id) == ("world", "base")
+
+
+def test_a_force_holds_until_the_next_one():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>force</topicName></plugin>")
+    plugin = Force(context)
+    plugin.load()
+    context.hear("force", force={"x": 1.0, "y": 0.0, "z": 2.0}, torque={"x": 0, "y": 0, "z": 3.0})
+    assert context.pushes["base"] == ((1.0, 0.0, 2.0), (0, 0, 3.0))
+    assert isinstance(context.message("any/Type").whatever, Message)

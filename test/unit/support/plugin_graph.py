@@ -1,0 +1,51 @@
+"""A ROS graph for plugins that keeps what is published; a test sends what is heard."""
+from __future__ import annotations
+
+from my_simulations.plugins.testing import Message
+
+
+class Graph:
+    """Keeps what is published; a test sends what is heard."""
+
+    def __init__(self):
+        self.sent, self.heard, self.transforms = [], {}, []
+
+    def message(self, kind):
+        return Message()
+
+    def stamp(self, ns):
+        return ns
+
+    def publish(self, name, kind, queue, latch):
+        graph = self
+
+        class Topic:
+            wanted = True
+
+            def send(self, message):
+                graph.sent.append((name, message))
+
+            def close(self):
+                graph.sent.append((name, None))
+        return Topic()
+
+    def subscribe(self, name, kind, call, queue):
+        self.heard[name] = call
+        heard = self.heard
+
+        class Closing:
+            def close(self):
+                heard.pop(name, None)
+        return Closing()
+
+    def serve(self, name, kind, call):
+        return self.subscribe(name, kind, call, 1)
+
+    def search_parameter(self, namespace, name, default):
+        return default
+
+    def send_transforms(self, transforms, ns):
+        self.transforms += [(ns, *one) for one in transforms]
+
+    def on(self, name):
+        return [message for topic, message in self.sent if topic == name and message is not None]
