@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import Any, Callable, List, Optional, Protocol
 
 from ..description.sensor import Sensor
+from ..errors import SimulationError
 from ..geometry import Pose, Twist, Vec3
 from ..sensing.api import RayFan, RayReturns
 from .parameters import Parameters
 
 
-class PluginError(Exception):
+class PluginError(SimulationError):
     """A plugin cannot work as its element says; the message is one sentence for the user."""
 
 

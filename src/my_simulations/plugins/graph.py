@@ -3,13 +3,14 @@ from __future__ import annotations
 
 from typing import Any, Callable, List, Protocol, Tuple
 
+from ..errors import SimulationError
 from ..geometry import Pose
 
 TransformOf = Tuple[str, str, Pose]
 """Parent frame, child frame, pose of the child in the parent."""
 
 
-class MissingTypeError(Exception):
+class MissingTypeError(SimulationError):
     """A message or service type whose package is not installed."""
 
 

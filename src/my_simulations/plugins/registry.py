@@ -14,6 +14,7 @@ import os
 import re
 from typing import Callable, Dict, Iterable, List, Mapping, Optional, Type
 
+from ..errors import SimulationError
 from .base import Plugin
 
 BUILT_IN: Mapping[str, str] = {
@@ -40,7 +41,7 @@ _EXPORT = re.compile(r"<my_simulations\b([^>]*)>")
 _ATTRIBUTE = re.compile(r"""(plugin|library)\s*=\s*["']([^"']*)["']""")
 
 
-class UnknownPluginError(Exception):
+class UnknownPluginError(SimulationError):
     """There is no class for a library; the message is one sentence for the user."""
 
 

@@ -16,6 +16,7 @@ from ..appearance.looks import Look
 from ..description.light import Light
 from ..description.model import Model
 from ..description.surroundings import Scene
+from ..errors import SimulationError
 from ..geometry import IDENTITY, Pose
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ whoever only wants a picture now.
 """
 
 
-class SensingError(Exception):
+class SensingError(SimulationError):
     """A request without an answer; the message is one sentence for the user."""
 
 

@@ -9,7 +9,10 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[3] / "src" / "my_simulations"
 SAME_IDEA = {
     "inter_model_joints",  # engine and simulator
     "joint", "link", "model",  # SDF, URDF, description
-    "light", "saved_state",  # SDF, description
+    "light", "saved_state", "noise", "sensor", "transmission", "plugin",  # SDF, description
+    "scene", "materials",  # simulator, editor, sensing, appearance
+    "api",  # engine, sensing: the interface of a child process
+    "context", "registry", "imu",  # plugins, beside what they stand for elsewhere
     "world",  # SDF, description
 }
 """Base names that stand for the same idea in several packages."""
