@@ -192,7 +192,7 @@ def test_a_reset_that_no_engine_survives_leaves_the_world_as_it_was(start, monke
         return answer
 
     monkeypatch.setattr(ProcessEngine, "submit", sent)
-    with pytest.raises(EngineLostError, match="as it was before"):
+    with pytest.raises(EngineLostError, match="restored to its state before"):
         sim.resets.reset_simulation()
     assert sim.clock.step == step
     assert sim.states.model_state("box")[0].position == pytest.approx(before[0].position, abs=1e-9)

@@ -142,7 +142,7 @@ class RollingContacts:
         else:
             if abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
                 return False
-            turn = pybullet.getLinkState(uid, index)[1]
+            turn = pybullet.getLinkState(uid, index, computeForwardKinematics=1)[1]
         axis = rotate(turn, roller.axis)
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
         if roller.body.rigid:

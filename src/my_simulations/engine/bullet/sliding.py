@@ -201,7 +201,8 @@ class Sliding:
 
 def _slips(uid: int, index: int, contacts: Contacts) -> List[Vec3]:
     """The velocity of a link across the floor at each contact, m/s."""
-    state = pybullet.getLinkState(uid, index, computeLinkVelocity=1)
+    # With forward kinematics: else the answer depends on whether somebody has read the link before.
+    state = pybullet.getLinkState(uid, index, computeLinkVelocity=1, computeForwardKinematics=1)
     centre, linear, angular = state[0], state[6], state[7]
     found: List[Vec3] = []
     for contact in contacts:
