@@ -25,6 +25,7 @@ def test_a_world_that_is_run_tells_what_moved_and_fell(tmp_path):
     done = subprocess.run(
         [sys.executable, str(ROOT / "test/corpus/run_worlds.py"), "--cold", f"some={tmp_path}"],
         capture_output=True, text=True, timeout=240)
+    assert "fell" in done.stdout, (done.returncode, done.stdout[-500:], done.stderr[-2000:])
     lines = done.stdout.splitlines()
     counts = dict(zip(lines[-2].split(), lines[-1].split()[1:]))
     wanted = {"worlds": "2", "runs": "1", "refused": "1", "late": "0", "crashes": "0",

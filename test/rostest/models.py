@@ -167,7 +167,7 @@ class Base:
             self.assertTrue(state.success, state.status_message)
             self.assert_near(numbers(state.link_state.pose)[:2], (1.0, 2.0), 1e-3)
         (line,) = told()
-        self.assertIn("that of 'one' is taken", line.msg)
+        self.assertIn("using that of 'one'", line.msg)
 
     def test_a_link_can_be_set(self):
         self.spawned("one")
