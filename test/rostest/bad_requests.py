@@ -78,7 +78,7 @@ class BadRequests(unittest.TestCase):
 
     def test_sdf_without_a_model(self):
         for inside in ("", "<world name='default'/>"):
-            self.spawn_refused(SDF.format(inside), "no model", kind="spawn_sdf_model")
+            self.spawn_refused(SDF.format(inside), " no ", kind="spawn_sdf_model")
 
     def test_an_include_of_an_unknown_model_lists_the_places(self):
         xml = SDF.format("<world name='default'><include><uri>model://no_such_thing</uri></include>"

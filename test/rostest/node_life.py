@@ -233,9 +233,8 @@ class NodeLife(unittest.TestCase):
         path = self.world(WORLD.format(
             "<include><uri>model://no_such_model</uri></include>"
             "<include><uri>model://ground_plane</uri></include>"))
-        told = support.heard_on_rosout("model://no_such_model", node="/second")
-        with Program([self.server, path, "__name:=second"]):
-            told()
+        with Program([self.server, path, "__name:=second"]) as server:
+            wait_for(lambda: "model://no_such_model" in server.text, "a word about the model")
             self.assertEqual(support.Gazebo("/second").names(), ["ground_plane"])
         rospy.delete_param("/second")
 
@@ -273,6 +272,8 @@ class NodeLife(unittest.TestCase):
                 [self.server, "-u", self.world(WORLD.format(""))], ROS_MASTER_URI=uri) as server:
             wait_for(lambda: self.is_there(graph, "/gazebo/set_parameters"), "the server")
             wait_for(lambda: self.has_param(graph, "/gazebo/time_step"), "its last parameter")
+            for late in ("save_world", "step_world", "spawn_object", "open_editor", "reset_time"):
+                wait_for(lambda late=late: self.is_there(graph, f"/gazebo/{late}"), late)
             before = mine()
             service = graph.lookupService("/gazebo/get_world_properties")
             first.process.kill()
