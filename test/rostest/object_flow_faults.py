@@ -66,7 +66,7 @@ class Faults(flow.ToolCase, unittest.TestCase):
 
     def test_an_unknown_name_comes_with_the_closest_known_ones(self):
         text = self.run_tool("spawn_object.py", "MY_OBJEKT", "barrel", status=1)
-        self.assertIn("unknown object 'MY_OBJEKT'", text)
+        self.assertIn("no object 'MY_OBJEKT'", text)
         self.assertIn("did you mean MY_OBJECT?", text)
         self.assertIn("barrel", self.gazebo.names())
         text = self.run_tool("remove_object.py", "barel", status=1)
@@ -122,7 +122,7 @@ class Faults(flow.ToolCase, unittest.TestCase):
             text = self.run_tool(*words, "--gazebo-namespace", "/nobody", "--timeout", "0.5",
                                  status=1)
             self.assertIn("/nobody", text)
-            self.assertIn("within 0.5 s", text)
+            self.assertIn("timed out after 0.5 s", text)
 
 
 if __name__ == "__main__":

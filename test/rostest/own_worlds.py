@@ -91,7 +91,7 @@ class OwnWorlds(unittest.TestCase):
             saved = launched.ask("save_world", SaveWorld, path="test.world", inline=True)
             self.assertTrue(saved.success, saved.status_message)
             self.assertEqual(saved.path, os.path.join(self.worlds, "test.world"))
-            self.assertIn("without robo", saved.status_message)
+            self.assertIn("without models spawned by the launch file: robo", saved.status_message)
         with self.my_world("world:=test.world") as launched:
             launched.says(f"the world file is {saved.path}")
             launched.says("robot_description: Successfully spawned")
