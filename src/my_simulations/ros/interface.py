@@ -153,7 +153,7 @@ TABLE: Tuple[Row, ...] = (
     Row("set_logger_level", "roscpp/SetLoggerLevel", SERVES, BY_ROSPY, always=True),
 
     _empty("reset_time", "world.reset_time", "ResetTime", "resets sim time only", True),
-    _ours("spawn_object", "SpawnObject", "models.spawn_object", "SpawnObject",
+    _ours("spawn_object", "SpawnObject", "models.spawn_object", "SpawnModel",
           "models and lights of SDF or URDF; can replace a model of that name in one step"),
     _ours("step_world", "StepWorld", "stepping.step", "StepWorld",
           "executes `steps` steps as fast as possible, also while paused; replies when done"),
