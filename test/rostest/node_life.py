@@ -265,7 +265,7 @@ class NodeLife(unittest.TestCase):
                 "/use_sim_time")
 
         def is_whole():
-            with contextlib.suppress(OSError, rosgraph.MasterException):
+            with contextlib.suppress(OSError, KeyError, rosgraph.MasterException):
                 return mine() == before
 
         with Program(start) as first, Program(
@@ -291,12 +291,12 @@ class NodeLife(unittest.TestCase):
 
     @staticmethod
     def is_there(graph, service):
-        with contextlib.suppress(OSError, rosgraph.MasterException):
+        with contextlib.suppress(OSError, KeyError, rosgraph.MasterException):
             return bool(graph.lookupService(service))
 
     @staticmethod
     def has_param(graph, name):
-        with contextlib.suppress(OSError, rosgraph.MasterException):
+        with contextlib.suppress(OSError, KeyError, rosgraph.MasterException):
             return graph.hasParam(name)
 
     def test_unknown_options_are_refused_with_the_usage(self):
