@@ -54,7 +54,7 @@ _PATIENCE_S = 0.0015     # how long it waits for the next of a row of commands
 _PATIENT_SHARE = 0.5     # of the wall time at most
 
 
-class Channel(Protocol):
+class CommandChannel(Protocol):
     """How commands arrive and replies leave."""
 
     def receive(self, timeout: float) -> List[Tuple[int, Command]]:
@@ -73,7 +73,7 @@ class Channel(Protocol):
 class Runner:
     """The engine's loop."""
 
-    def __init__(self, backend: Backend, writer: RingWriter, channel: Channel) -> None:
+    def __init__(self, backend: Backend, writer: RingWriter, channel: CommandChannel) -> None:
         self._backend = backend
         self._writer = writer
         self._words = writer.words

@@ -82,7 +82,7 @@ class RemoveModel:
         pose = entity.pose
         back = AddModel(entity.model, entity.initial_pose, entity.meshes, state,
                         world.models.delete(self.name))
-        return back if state is not None else Group((back, Place({self.name: pose})))
+        return back if state is not None else Group((back, SetPoses({self.name: pose})))
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class EditJoint:
 
 
 @dataclass(frozen=True)
-class Place:
+class SetPoses:
     """Models, lights and links (`model::link`) go to world poses, at rest.
 
     `before`: where they were, when that is not where they are (a drag moved them already).
@@ -137,7 +137,8 @@ class Place:
             for name, pose in done.items():
                 place(world, name, pose)
             raise
-        return Place({**done, **{name: pose for name, pose in self.before.items() if name in done}})
+        before = {name: pose for name, pose in self.before.items() if name in done}
+        return SetPoses({**done, **before})
 
 
 def pose_of(world: Simulator, name: str) -> Pose:
@@ -227,7 +228,7 @@ SETTERS: Dict[str, Callable[[SceneSettings, Any], None]] = {
 
 
 @dataclass(frozen=True)
-class SetSurrounding:
+class SetWorldField:
     """Another value of one of `SETTERS`."""
 
     name: str
@@ -235,20 +236,20 @@ class SetSurrounding:
 
     def apply(self, world: Simulator) -> Operation:
         """Set it."""
-        back = SetSurrounding(self.name, getattr(world.world, self.name))
+        back = SetWorldField(self.name, getattr(world.world, self.name))
         SETTERS[self.name](world.scene, self.value)
         return back
 
 
 @dataclass(frozen=True)
-class PutBack:
+class RestoreState:
     """States as they were at a moment."""
 
     moment: WorldState
 
     def apply(self, world: Simulator) -> Operation:
         """Put them back."""
-        back = PutBack(world.states.capture())
+        back = RestoreState(world.states.capture())
         world.states.restore(self.moment)
         return back
 
@@ -261,14 +262,14 @@ class Reset:
 
     def apply(self, world: Simulator) -> Operation:
         """Reset it."""
-        back = PutBack(world.states.capture())
+        back = RestoreState(world.states.capture())
         {"time": world.resets.reset_time, "poses": world.resets.reset_world,
          "world": world.resets.reset_simulation}[self.what]()
         return back
 
 
 @dataclass(frozen=True)
-class Push:
+class ApplyWrench:
     """A wrench on a link for some steps.
 
     `point`: of attack in the link frame, m; None for the centre of mass. Force (N) and torque (N m)
@@ -283,7 +284,7 @@ class Push:
     steps: int
 
     def apply(self, world: Simulator) -> Operation:
-        """Push; undone, the model is where it was, as fast as it was."""
+        """Push the link; undone, the model is where it was, as fast as it was."""
         name, plain = split_scoped(self.link, world.models.has)
         model = world.models.get(name)
         com = next((link.inertial.pose.position for link in model.links if link.name == plain),
@@ -300,25 +301,25 @@ class Push:
                                         point=at, duration_ns=duration)
         else:
             world.wrenches.apply_wrench(self.link, self.force, self.torque, duration_ns=duration,
-                       point=rotate(pose.orientation, lever))
-        return _PutModelBack(WorldState(back.step, back.sim_ns, {name: back.models[name]}), self)
+                                        point=rotate(pose.orientation, lever))
+        return _RestoreModel(WorldState(back.step, back.sim_ns, {name: back.models[name]}), self)
 
 
 @dataclass(frozen=True)
-class _PutModelBack:
+class _RestoreModel:
     """Undoes a push: states go back, the clock does not; its own inverse is the push again."""
 
     moment: WorldState
-    push: Push
+    wrench: ApplyWrench
 
     def apply(self, world: Simulator) -> Operation:
         """Put the model back."""
         world.states.restore(self.moment, clock=False)
-        return self.push
+        return self.wrench
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriveJoint:
     """What drives a joint axis until something else does; nothing lets go of it."""
 
     joint: str
@@ -330,4 +331,4 @@ class Drive:
         world.wrenches.clear_efforts(self.joint)
         for effort in self.efforts:
             world.wrenches.apply_effort(self.joint, effort)
-        return Drive(self.joint, before)
+        return DriveJoint(self.joint, before)

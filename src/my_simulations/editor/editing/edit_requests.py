@@ -17,16 +17,16 @@ from ...simulator.history import History
 from ...simulator.operations import (
     AddLight,
     AddModel,
-    Drive,
+    ApplyWrench,
+    DriveJoint,
     EditLight,
     EditModel,
     Group,
     Operation,
-    Place,
-    Push,
     RemoveLight,
     RemoveModel,
     Reset,
+    SetPoses,
     pose_of,
 )
 from ...simulator.simulator import Simulator
@@ -207,7 +207,7 @@ class Edits:
         for name in poses:
             pose_of(self._world, name)
         label = str(op.get("label") or "move")[:40]
-        operation = Place(poses, self._dragged(list(poses)))
+        operation = SetPoses(poses, self._dragged(list(poses)))
         return f"{label.capitalize()} {listed(list(poses))}", operation, {}
 
     def _scale(self, op: Dict[str, Any]) -> Planned:
@@ -251,7 +251,7 @@ class Edits:
             link = f"{link}::{model.canonical_link or model.links[0].name}"
         point = op.get("point")
         force, torque = _vector(op["force"]), _vector(op["torque"])
-        operation = Push(link, force, torque,
+        operation = ApplyWrench(link, force, torque,
                          None if point is None else _vector(point),
                          bool(op.get("in_link_axes")), steps)
         return history_labels.apply_wrench(link, force, torque), operation, {}
@@ -268,9 +268,9 @@ class Edits:
         mode = op["mode"]
         label = history_labels.set_joint(scoped, joint.type, mode, value)
         if mode == "force":
-            return label, Drive(scoped, (value,) if value else ()), {}
+            return label, DriveJoint(scoped, (value,) if value else ()), {}
         servo = JointPid(value, mode == "velocity", **_gains(op.get("gains") or {}))
-        return label, Drive(scoped, (servo,)), {}
+        return label, DriveJoint(scoped, (servo,)), {}
 
     # -- several ---------------------------------------------------------------------------------
 

@@ -19,9 +19,9 @@ from ...simulator.operations import (
     EditLight,
     EditModel,
     Operation,
-    Place,
     SetPhysics,
-    SetSurrounding,
+    SetPoses,
+    SetWorldField,
 )
 from ...simulator.simulator import Simulator
 from .inserts import checked
@@ -82,13 +82,13 @@ def _of_world(world: Simulator, path: str, value: Any) -> Operation:
     holder = world.world
     if rest and getattr(holder, name) is None and name in _NEW:
         holder = replace(holder, **{name: _NEW[name]()})
-    return SetSurrounding(name, getattr(with_value(holder, path, value), name))
+    return SetWorldField(name, getattr(with_value(holder, path, value), name))
 
 
 def _of_model(model: Model, path: str, value: Any) -> Operation:
     _refuse_name(path)
     if path == "pose":
-        return Place({model.name: with_value(model, "pose", value).pose})
+        return SetPoses({model.name: with_value(model, "pose", value).pose})
     return _edited(model, with_value(model, path, value))
 
 
