@@ -6,17 +6,28 @@ thread, with the world standing still at the step they belong to.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, List, Optional, Protocol
+from dataclasses import dataclass
+from typing import Any, Callable, List, Optional, Protocol, Sequence, Tuple
 
 from ..description.sensor import Sensor
 from ..errors import SimulationError
 from ..geometry import Pose, Twist, Vec3
-from ..sensing.api import RayFan, RayReturns
+from ..sensing.api import CameraSpec, Pictures, RayFan, RayReturns
 from .parameters import Parameters
 
 
 class PluginError(SimulationError):
     """A plugin cannot work as its element says; the message is one sentence for the user."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What a camera at `pose` in the frame of a link is to give: `outputs` of `sensing.api`."""
+
+    link: str
+    pose: Pose
+    camera: CameraSpec
+    outputs: Tuple[str, ...]
 
 
 class Link(Protocol):
@@ -61,6 +72,13 @@ class Publication(Protocol):
 
     def publish(self, message: Any) -> None:
         """Publish a message once the world goes on; it must not be changed any more."""
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what `make` returns; another thread calls it, in order.
+
+        For messages that take more than a millisecond to make: neither the world nor other plugins
+        wait for them. `make` must use nothing but what was handed to it.
+        """
 
 
 class Context(Protocol):
@@ -143,6 +161,22 @@ class Context(Protocol):
         later; the world does not run further ahead. `visuals`: rays see what is drawn, else what
         collides.
         """
+
+    def photograph(self, views: Sequence[View],
+                   call: Callable[[List[Pictures], int], None]) -> bool:
+        """Take pictures of the world as of now.
+
+        `call` gets them in the order of the views, and the sim time (ns) they show. One call is on
+        its way at a time: while the one before is not published, pictures are late. The world then
+        goes on, these are left out (False), and the user is told; a world that is stepped manually
+        waits instead.
+        """
+
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """The sensors of the model's links: (name of the link, sensor)."""
+
+    def link_names(self) -> "dict[int, str]":
+        """Scoped names of all links of the world, by the numbers that `Pictures.labels` has."""
 
     # -- topics, services, parameters ------------------------------------------------------------
 

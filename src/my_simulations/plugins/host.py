@@ -23,6 +23,7 @@ from .base import Plugin
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Graph
+from .message_maker import Later, MessageMaker
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .simulated_context import SimulatedContext
 
@@ -78,6 +79,7 @@ class PluginHost:
                  log: Callable[[Issue], None]) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._eyes = Eyes(simulator, log)
+        self._messages = MessageMaker()
         self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
         self._told: Dict[str, bool] = {}
         self._revision = self._followed = -1
@@ -132,6 +134,7 @@ class PluginHost:
             for name in list(self._models):
                 self._end_model(name)
             self._eyes.close()
+            self._messages.stop()
             if self._consumer is not None:
                 self._consumer.leave()
                 self._consumer = None
@@ -228,11 +231,24 @@ class PluginHost:
                 context = running.context
                 outbox, context.outbox = context.outbox, []
                 for topic, message in outbox:
-                    self._guarded(running, topic.send, message)
+                    if isinstance(message, Later):
+                        self._messages.put(topic, message, self._failing(running))
+                    else:
+                        self._guarded(running, topic.send, message)
                 transforms += context.transforms
                 context.transforms = []
         if transforms:
             self._graph.send_transforms(transforms, moment.sim_ns)
+
+    def _failing(self, running: Running) -> Callable[[Exception], None]:
+        """What tells the plugins' thread of a fault in another one."""
+        def fail(fault: Exception) -> None:
+            def again() -> None:
+                raise fault
+
+            running.context.inbox.append(again)
+            self.wake()
+        return fail
 
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
@@ -246,6 +262,8 @@ class PluginHost:
         calls: List[str] = []
         if before is not None and moment.clock_sets != before.clock_sets:
             self._make_anew(moment)
+            for running in self._all():
+                running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:
                 calls.append("reset")
             elif moment.sim_ns < before.sim_ns:

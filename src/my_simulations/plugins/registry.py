@@ -30,6 +30,12 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_imu.so": "sensors.imu:ModelImu",
     "libgazebo_ros_imu_sensor.so": "sensors.imu:SensorImu",
     "libgazebo_ros_bumper.so": "sensors.bumper:Bumper",
+    "libgazebo_ros_camera.so": "sensors.camera:Camera",
+    "libgazebo_ros_triggered_camera.so": "sensors.camera:TriggeredCamera",
+    "libgazebo_ros_multicamera.so": "sensors.camera:MultiCamera",
+    "libgazebo_ros_prosilica.so": "sensors.camera:Camera",
+    "libgazebo_ros_depth_camera.so": "sensors.depth_camera:DepthCamera",
+    "libgazebo_ros_openni_kinect.so": "sensors.depth_camera:OpenniKinect",
 }
 """Classes in this package, by library."""
 

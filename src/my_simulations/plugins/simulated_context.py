@@ -3,9 +3,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from concurrent.futures import Future
-from concurrent.futures import TimeoutError as FutureTimeoutError
-from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
@@ -13,18 +11,18 @@ from ..description.sensor import Sensor
 from ..engine.commands import FOREVER, JointMotor, PlanarVelocity, TimedWrench
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, Twist, Vec3, compose
-from ..sensing.api import RayFan, RayReturns, SensingError
+from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
-from .context import PluginError
+from .context import PluginError, View
 from .eyes import Eyes
 from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .message_maker import Later
 from .parameters import Parameters
+from .sensing_requests import SensingRequests
 
 Report = Callable[[Issue], None]
-
-_SCAN_S = 10.0  # of wall time, for rays
 
 
 class Appointment:
@@ -96,6 +94,10 @@ class Offer:
         """Publish."""
         self._context.outbox.append((self._topic, message))
 
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what another thread makes."""
+        self._context.outbox.append((self._topic, Later(make, self._context.sensing.unsent)))
+
 
 class SimulatedContext:
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
@@ -105,6 +107,7 @@ class SimulatedContext:
         motors, planar: what it has ordered since they were last taken.
         outbox, transforms: what it has published since they were last taken.
         inbox: what has come for it: functions to be called.
+        sensing: what it has asked of the sensing process.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
@@ -127,11 +130,8 @@ class SimulatedContext:
         self.inbox: Deque[Callable[[], None]] = deque()
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
-        self._scan_fault = ""
         self._pushes: Dict[str, List[int]] = {}
-        self._eyes = eyes
-        self._scan: "Optional[Tuple[Future[RayReturns], Callable[[RayReturns, int], None], int]]" \
-            = None
+        self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
         self._namespace = ""
         self._open: List[Closing] = []
 
@@ -264,29 +264,23 @@ class SimulatedContext:
 
     def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
         """Cast rays from the plugin's sensor."""
-        self._end_scan()
         assert self.sensor is not None
-        future = self._eyes.cast(self._link_row(self.sensor_link), self.sensor.pose, fan, visuals)
-        self._scan = (future, call, self.now_ns)
-        future.add_done_callback(self._scanned)
+        self.sensing.scan(Mount(self._link_row(self.sensor_link), self.sensor.pose), fan, visuals,
+                          call, self.now_ns)
 
-    def _scanned(self, future: "Future[RayReturns]") -> None:
-        self.inbox.append(lambda: self._end_scan(future))
-        self._wake()
+    def photograph(self, views: Sequence[View],
+                   call: Callable[[List[Pictures], int], None]) -> bool:
+        """Take pictures."""
+        mounted = [(Mount(self._link_row(view.link), view.pose), view) for view in views]
+        return self.sensing.photograph(mounted, call, self.now_ns, self.simulator.clock.by_hand)
 
-    def _end_scan(self, only: "Optional[Future[RayReturns]]" = None) -> None:
-        """Wait for the scan on its way, if there is one, and hand it over."""
-        if self._scan is None or only not in (None, self._scan[0]):
-            return
-        (future, call, ns), self._scan = self._scan, None
-        try:
-            found = future.result(_SCAN_S)
-        except (SensingError, FutureTimeoutError) as fault:
-            if str(fault) != self._scan_fault:
-                self._scan_fault = str(fault)
-                self.warn(f"a scan is left out: {fault or 'it took too long'}")
-            return
-        call(found, ns)
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """The sensors of the model's links."""
+        return [(link.name, sensor) for link in self.entity.model.links for sensor in link.sensors]
+
+    def link_names(self) -> Dict[int, str]:
+        """Scoped names by row."""
+        return self.simulator.states.link_names()
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""

@@ -9,7 +9,7 @@ assert context.published["odom"][-1].pose.pose.position.x == 0.5
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 from ..description.sensor import Sensor
 from ..engine.ring import Clock
@@ -59,11 +59,18 @@ class FakeJoint:
 
 
 class _Topic:
-    def __init__(self, messages: List[Any]) -> None:
-        self._messages, self.wanted = messages, True
+    def __init__(self, messages: List[Any], wanted: Callable[[], bool]) -> None:
+        self._messages, self._wanted = messages, wanted
+
+    @property
+    def wanted(self) -> bool:
+        return self._wanted()
 
     def publish(self, message: Any) -> None:
         self._messages.append(message)
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        self._messages.append(make())
 
 
 class FakeContext:
@@ -78,6 +85,9 @@ class FakeContext:
         pushes: the last wrench of each link.
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
+        pictures: what each view sees; `views`: the views of each moment. `late`: nothing is ready.
+        unwanted: topics that nobody listens to.
+        model_sensors, labels: what `sensors` and `link_names` give.
         touching: the contacts.
         ros_parameters: what `search_parameter` finds.
     """
@@ -105,6 +115,12 @@ class FakeContext:
         self.ros_parameters: Dict[str, Any] = {}
         self.returns: Any = None
         self.fans: List[Any] = []
+        self.pictures: List[Any] = []
+        self.views: List[Any] = []
+        self.late = False
+        self.unwanted: Set[str] = set()
+        self.model_sensors: List[Tuple[str, Sensor]] = []
+        self.labels: Dict[int, str] = {}
         self._namespace = ""
         self._heard: Dict[str, Callable[[Any], None]] = {}
         self.services: Dict[str, Callable[[Any, Any], None]] = {}
@@ -170,6 +186,22 @@ class FakeContext:
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
 
+    def photograph(self, views: Any, call: Callable[[Any, int], None]) -> bool:
+        """Cameras see what a test says (`pictures`)."""
+        if self.late:
+            return False
+        self.views.append(list(views))
+        call(self.pictures[:len(views)], self.now_ns)
+        return True
+
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """What a test says."""
+        return self.model_sensors
+
+    def link_names(self) -> Dict[int, str]:
+        """What a test says."""
+        return self.labels
+
     def contacts(self) -> List[Any]:
         """What a test says."""
         return self.touching
@@ -191,7 +223,8 @@ class FakeContext:
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
         """Offer a topic."""
-        return _Topic(self.published.setdefault(self._name(name), []))
+        name = self._name(name)
+        return _Topic(self.published.setdefault(name, []), lambda: name not in self.unwanted)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
         """Hear a topic."""

@@ -13,7 +13,7 @@ from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures
 from ..poses import matrices, matrix
 from . import distortion, shaders
 from .batches import Batch
-from .context import finisher, new_context
+from .context import draws_with_a_card, finisher, new_context
 from .lamps import SHADOW_SIZE, ShadowView, light_uniforms, shadow_lights, shadow_view
 from .pictures import draw_pattern, read_picture
 from .sky import linear, sky_uniforms
@@ -36,6 +36,7 @@ class Renderer:
         self._trouble = trouble
         self._context = new_context()
         self._finish = finisher()
+        self._smooth = 4 if draws_with_a_card(self._context) else 1
         program = self._context.program
         self._programs = {
             "lit": program(shaders.LIT_VERTEX, shaders.LIT_FRAGMENT),
@@ -141,7 +142,8 @@ class Renderer:
     def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, clip: np.ndarray,
                   shadows: List[Tuple[int, ShadowView]]) -> np.ndarray:
         context = self._context
-        target = self._target("rgb", spec.width, spec.height, spec.samples)
+        samples = spec.samples or self._smooth
+        target = self._target("rgb", spec.width, spec.height, samples)
         target.use()
         background = self._scene.background[:3]
         target.clear(*background, 1.0, depth=1.0)
@@ -158,7 +160,7 @@ class Renderer:
             self._draw_sky(spec, view)
         if clear:
             self._draw_clear(clear, target)
-        if spec.samples > 1:
+        if samples > 1:
             whole = self._target("rgb", spec.width, spec.height, 1)
             context.copy_framebuffer(whole, target)
             target = whole
