@@ -162,14 +162,15 @@ class Context(Protocol):
         collides.
         """
 
-    def photograph(self, views: Sequence[View],
-                   call: Callable[[List[Pictures], int], None]) -> bool:
+    def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
+                   stream: str = "") -> bool:
         """Take pictures of the world as of now.
 
-        `call` gets them in the order of the views, and the sim time (ns) they show. One call is on
-        its way at a time: while the one before is not published, pictures are late. The world then
-        goes on, these are left out (False), and the user is told; a world that is stepped manually
-        waits instead.
+        `call` gets them in the order of the views, and the sim time (ns) they show. One call of a
+        stream is on its way at a time: while the one before is not published, pictures are late.
+        The world then goes on, these are left out (False), and the user is told; a world that is
+        stepped manually waits instead. `stream` names cameras of a plugin that take turns of their
+        own.
         """
 
     def sensors(self) -> List[Tuple[str, Sensor]]:

@@ -35,6 +35,8 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_multicamera.so": "sensors.camera:MultiCamera",
     "libgazebo_ros_prosilica.so": "sensors.camera:Camera",
     "libgazebo_ros_depth_camera.so": "sensors.depth_camera:DepthCamera",
+    "librealsense_gazebo_plugin.so": "sensors.realsense:RealSense",
+    "libgazebo_ros_realsense.so": "sensors.realsense:RealSense",
     "libgazebo_ros_openni_kinect.so": "sensors.depth_camera:OpenniKinect",
 }
 """Classes in this package, by library."""

@@ -5,7 +5,7 @@ import time
 from collections import deque
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
-from typing import Callable, Deque, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns, SensingError
 from .context import View
@@ -27,6 +27,7 @@ class _Shot(NamedTuple):
     futures: "List[Future[Pictures]]"
     call: Callable[[List[Pictures], int], None]
     ns: int
+    stream: str
 
     @property
     def done(self) -> bool:
@@ -36,29 +37,35 @@ class _Shot(NamedTuple):
 class SensingRequests:
     """Keeps order between a plugin's requests and their answers.
 
+    Pictures come in streams, one for each camera that a plugin looks through by itself.
+
     Args:
         eyes: who looks.
         inbox: of the plugin; functions that hand answers over are put there.
         wake: have somebody look into the inbox.
         warn: tells the user.
-
-    Attributes:
-        unsent: a mark for each message that is being made of pictures.
     """
 
     def __init__(self, eyes: Eyes, inbox: Deque[Callable[[], None]], wake: Callable[[], None],
                  warn: Callable[[str], None]) -> None:
         self._eyes, self._inbox, self._wake, self._warn = eyes, inbox, wake, warn
-        self.unsent: Deque[None] = deque()
         self._scan: Optional[_Scan] = None
-        self._shot: Optional[_Shot] = None
+        self._shots: Dict[str, _Shot] = {}
+        self._unsent: Dict[str, Deque[None]] = {}
+        self._stream = ""
         self._fault = ""
         self._left_out = 0
         self._told = -_AGAIN_S
 
     def forget(self) -> None:
         """What is on its way belongs to a time that has been set back."""
-        self._scan = self._shot = None
+        self._scan = None
+        self._shots.clear()
+
+    @property
+    def unsent(self) -> "Deque[None]":
+        """A mark for each message that is being made of the stream that is handed over now."""
+        return self._unsent.setdefault(self._stream, deque())
 
     # -- rays ------------------------------------------------------------------------------------
 
@@ -87,41 +94,37 @@ class SensingRequests:
     # -- pictures --------------------------------------------------------------------------------
 
     def photograph(self, views: Sequence[Tuple[Mount, View]],
-                   call: Callable[[List[Pictures], int], None], ns: int, wait: bool) -> bool:
-        """Ask for pictures, unless those before are late.
+                   call: Callable[[List[Pictures], int], None], ns: int, wait: bool,
+                   stream: str = "") -> bool:
+        """Ask for pictures, unless those before of the same stream are late.
 
         Args:
             views: where each camera is, and what it is to give.
             call: gets the pictures, and `ns`.
             ns: sim time, now.
             wait: for those before, however late they are.
+            stream: its name.
 
         Returns:
             Whether pictures were asked for.
         """
+        before, unsent = self._shots.get(stream), self._unsent.setdefault(stream, deque())
+        if before is not None and (wait or before.done):
+            self._end_shot(before, _PICTURES_S if wait else 0.0)
         if wait:
-            self._wait()
-        elif self._shot is not None and self._shot.done:
-            self._end_shot(self._shot)
-        if self._shot is not None or self.unsent:
+            _wait_for(unsent)
+        if stream in self._shots or unsent:
             self._leave_out()
             return False
-        shot = self._shot = _Shot(self._eyes.render(views), call, ns)
+        shot = self._shots[stream] = _Shot(self._eyes.render(views), call, ns, stream)
         for future in shot.futures:
             future.add_done_callback(lambda _: self._hear(lambda: self._end_shot(shot)))
         return True
 
-    def _wait(self) -> None:
-        if self._shot is not None:
-            self._end_shot(self._shot, _PICTURES_S)
-        deadline = time.monotonic() + _PICTURES_S
-        while self.unsent and time.monotonic() < deadline:
-            time.sleep(_UNSENT_S)
-
     def _end_shot(self, shot: _Shot, timeout: float = 0.0) -> None:
-        if shot is not self._shot or not (timeout or shot.done):
+        if shot is not self._shots.get(shot.stream) or not (timeout or shot.done):
             return
-        self._shot = None
+        del self._shots[shot.stream]
         deadline = time.monotonic() + timeout
         try:
             found = [future.result(max(0.0, deadline - time.monotonic()))
@@ -129,6 +132,7 @@ class SensingRequests:
         except (SensingError, FutureTimeoutError) as fault:
             self._tell_fault("a picture is", fault)
             return
+        self._stream = shot.stream
         shot.call(found, shot.ns)
 
     def _leave_out(self) -> None:
@@ -144,3 +148,9 @@ class SensingRequests:
         if text != self._fault:
             self._fault = text
             self._warn(text)
+
+
+def _wait_for(unsent: "Deque[None]") -> None:
+    deadline = time.monotonic() + _PICTURES_S
+    while unsent and time.monotonic() < deadline:
+        time.sleep(_UNSENT_S)

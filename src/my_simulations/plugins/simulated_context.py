@@ -268,11 +268,12 @@ class SimulatedContext:
         self.sensing.scan(Mount(self._link_row(self.sensor_link), self.sensor.pose), fan, visuals,
                           call, self.now_ns)
 
-    def photograph(self, views: Sequence[View],
-                   call: Callable[[List[Pictures], int], None]) -> bool:
+    def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
+                   stream: str = "") -> bool:
         """Take pictures."""
         mounted = [(Mount(self._link_row(view.link), view.pose), view) for view in views]
-        return self.sensing.photograph(mounted, call, self.now_ns, self.simulator.clock.by_hand)
+        return self.sensing.photograph(mounted, call, self.now_ns, self.simulator.clock.by_hand,
+                                       stream)
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
         """The sensors of the model's links."""

@@ -15,6 +15,7 @@ from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.sensors.camera import Camera, MultiCamera, TriggeredCamera
 from my_simulations.plugins.sensors.depth_camera import DepthCamera, OpenniKinect
 from my_simulations.plugins.sensors.image_messages import encoded
+from my_simulations.plugins.sensors.realsense import RealSense
 from my_simulations.plugins.testing import FakeContext, Message
 from my_simulations.sensing.api import DEPTH, RGB, Distortion, Pictures
 
@@ -269,3 +270,38 @@ def test_only_what_is_wanted_is_drawn():
     context.advance(0.1)
     assert [view.outputs for (view,) in context.views] == [(DEPTH,), (RGB,)]
     assert len(context.published["cam/depth/camera_info"]) == 3
+
+
+def realsense(inside="", names=("color", "depth", "ired1", "ired2")):
+    context = FakeContext(f"<plugin><prefix>d_</prefix>{inside}</plugin>")
+    context.model_sensors = [(f"{name}_link", Sensor(
+        f"d_{name}", "depth" if name == "depth" else "camera", update_rate=10.0,
+        cameras=[CameraBlock(width=8, height=6, format="L8" if "ired" in name else "R8G8B8")]))
+        for name in names]
+    context.pictures = [Pictures(np.zeros((6, 8, 3), np.uint8), np.full((6, 8), 1.5, np.float32))]
+    RealSense(context).load()
+    return context
+
+
+def test_a_realsense_looks_through_the_sensors_of_its_model():
+    context = realsense("<pointCloud>true</pointCloud><colorUpdateRate>5</colorUpdateRate>"
+                        "<depthTopicName>camera/aligned/image_raw</depthTopicName>"
+                        "<depthOpticalframeName>d_optical</depthOpticalframeName>")
+    context.advance(0.2)
+    assert len(context.published["camera/color/image_raw"]) == 1
+    infrared = context.published["camera/infrared1/image_raw"]
+    assert len(infrared) == 2 and infrared[0].encoding == "mono8"
+    depth = context.published["camera/aligned/image_raw"][0]
+    assert (depth.encoding, depth.header.frame_id) == ("16UC1", "d_optical")
+    assert np.frombuffer(depth.data, np.uint16)[0] == 1500
+    assert len(context.published["camera/depth/points"]) == 2
+    assert {view.link for (view,) in context.views} == {
+        "color_link", "depth_link", "ired1_link", "ired2_link"}
+
+
+def test_a_realsense_does_without_a_camera_that_the_model_lacks():
+    context = realsense(names=("depth",))
+    context.advance(0.1)
+    assert len(context.published["camera/depth/image_raw"]) == 1 and len(context.said) == 3
+    with pytest.raises(PluginError, match="d_color"):
+        realsense(names=())

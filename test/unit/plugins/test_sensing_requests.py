@@ -128,3 +128,9 @@ def test_a_message_that_cannot_be_made_is_told_and_the_next_is_sent():
     maker.stop()
     assert [type(fault) for fault in faults] == [ZeroDivisionError]
     assert topic.sent[0][0] == "next" and not unsent
+
+
+def test_streams_do_not_wait_for_each_other():
+    case = Case()
+    assert case.shoot(1) and case.requests.photograph([VIEW], lambda *_: None, 1, False, "depth")
+    assert not case.said
