@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, List, Optional, Protocol, Sequence, Tuple
 
 from ..description.sensor import Sensor
+from ..description.surroundings import SphericalCoordinates
 from ..errors import SimulationError
 from ..geometry import Pose, Twist, Vec3
 from ..sensing.api import CameraSpec, Pictures, RayFan, RayReturns
@@ -130,8 +131,19 @@ class Context(Protocol):
     def seed(self) -> int:
         """Of what is drawn at random."""
 
+    @property
+    def magnetic_field(self) -> Vec3:
+        """Of the world, T, world axes."""
+
+    @property
+    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+        """Where the world's origin is; None where the world does not say."""
+
     def link(self, name: str) -> Link:
-        """A link of the model. Raises PluginError with the names that there are."""
+        """A link of the model; "" for the canonical one.
+
+        Raises PluginError with the names that there are.
+        """
 
     def joint(self, name: str) -> Joint:
         """A joint of the model that moves. Raises PluginError with the names that there are."""

@@ -32,6 +32,11 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_range.so": "sensors.range:Range",
     "libgazebo_ros_imu.so": "sensors.imu:ModelImu",
     "libgazebo_ros_imu_sensor.so": "sensors.imu:SensorImu",
+    "libhector_gazebo_ros_imu.so": "sensors.hector_imu:HectorImu",
+    "libhector_gazebo_ros_gps.so": "sensors.hector:Gps",
+    "libhector_gazebo_ros_magnetic.so": "sensors.hector:Magnetic",
+    "libhector_gazebo_ros_baro.so": "sensors.hector:Baro",
+    "libhector_gazebo_ros_sonar.so": "sensors.hector:Sonar",
     "libgazebo_ros_bumper.so": "sensors.bumper:Bumper",
     "libgazebo_ros_camera.so": "sensors.camera:Camera",
     "libgazebo_ros_triggered_camera.so": "sensors.camera:TriggeredCamera",
@@ -41,8 +46,12 @@ BUILT_IN: Mapping[str, str] = {
     "librealsense_gazebo_plugin.so": "sensors.realsense:RealSense",
     "libgazebo_ros_realsense.so": "sensors.realsense:RealSense",
     "libgazebo_ros_openni_kinect.so": "sensors.depth_camera:OpenniKinect",
+    "libmy_simulations_segmentation_camera.so": "sensors.segmentation:SegmentationCamera",
+    "libmy_simulations_gps.so": "sensors.environment:GpsSensor",
+    "libmy_simulations_magnetometer.so": "sensors.environment:MagnetometerSensor",
+    "libmy_simulations_altimeter.so": "sensors.environment:AltimeterSensor",
 }
-"""Classes in this package, by library."""
+"""Classes in this package, by library. Those called libmy_simulations are not in Gazebo."""
 
 PROVIDED = ("libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so",
             "libgazebo_ros_init.so", "libgazebo_ros_factory.so")

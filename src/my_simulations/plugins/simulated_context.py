@@ -8,6 +8,7 @@ from typing import Any, Callable, Deque, Dict, List, Optional, Sequence, Tuple
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
+from ..description.surroundings import SphericalCoordinates
 from ..engine.commands import FOREVER, JointMotor, PlanarVelocity, TimedWrench
 from ..errors import Issue, Severity
 from ..geometry import IDENTITY, Pose, Twist, Vec3, compose
@@ -209,8 +210,20 @@ class SimulatedContext:
         """Of what is drawn at random."""
         return self.simulator.world.seed
 
+    @property
+    def magnetic_field(self) -> Vec3:
+        """T, world axes."""
+        return self.simulator.world.magnetic_field
+
+    @property
+    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+        """Where the world's origin is."""
+        return self.simulator.world.spherical_coordinates
+
     def link(self, name: str) -> SimulatedLink:
         """A link of the model."""
+        if not name and self.entity.link_names:
+            name = self.entity.link_names[self.entity.canonical_row - self.entity.first_link_row]
         if name not in self._links:
             link = SimulatedLink(self, name)
             link.row = self._link_row(name)

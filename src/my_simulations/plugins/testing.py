@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 from ..description.sensor import Sensor
+from ..description.surroundings import SphericalCoordinates
 from ..engine.ring import Clock
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
 from ..simulator.appointments import Rate
@@ -105,6 +106,8 @@ class FakeContext:
         self.pose: Pose = IDENTITY
         self.twist: Twist = STILL
         self.gravity: Vec3 = (0.0, 0.0, -9.8)
+        self.magnetic_field: Vec3 = (0.0, 0.0, 0.0)
+        self.place_on_earth: Optional[SphericalCoordinates] = None
         self.seed = 0
         self.step_size, self.step = step_size, 0
         self.published: Dict[str, List[Any]] = {}
@@ -158,6 +161,7 @@ class FakeContext:
 
     def link(self, name: str) -> FakeLink:
         """A link."""
+        name = name or "base"
         if self._closed_links and name not in self.links:
             raise PluginError(f"model '{self.model}' has no link '{name}'")
         return self.links.setdefault(name, FakeLink(name))

@@ -5,7 +5,7 @@ from typing import Any, List, Optional
 
 from ...description.sensor import Camera as CameraBlock
 from ...description.sensor import Sensor
-from ...geometry import compose
+from ...geometry import Pose, compose
 from ...sensing.api import RGB
 from ...sensing.noise import NoiseSpec, noisy_picture
 from ..context import Context, PluginError, View
@@ -20,6 +20,11 @@ def blocks_of(context: Context, kinds: str) -> List[CameraBlock]:
     if context.sensor is None or not context.sensor.cameras:
         raise PluginError(f"it belongs into a <sensor> of type {kinds} with a <camera>")
     return context.sensor.cameras
+
+
+def place_of(sensor: Sensor, block: CameraBlock) -> Pose:
+    """Where a camera of a sensor is on its link."""
+    return compose(sensor.pose, block.pose)
 
 
 class PictureStream:
@@ -41,7 +46,7 @@ class PictureStream:
         self._context, self.topics = context, topics
         self.spec = spec_of(block, crop)
         self.calibration = Calibration(context, block, self.spec, baseline)
-        self._link, self._pose = link, compose(sensor.pose, block.pose)
+        self._link, self._pose = link, place_of(sensor, block)
         self._who = "::".join((context.model, link, sensor.name, block.name))
         self._noise = NoiseSpec(block.noise.type, block.noise.mean, block.noise.stddev)
         self._encoding = ENCODINGS.get(block.format, "")
