@@ -91,6 +91,12 @@ class PluginRegistry:
         """Whether the simulator does by itself what the library does."""
         return library_name(filename) in PROVIDED
 
+    def knows(self, filename: str) -> bool:
+        """Whether somebody does what the library does; nothing is imported."""
+        name = library_name(filename)
+        return (name in PROVIDED or name in self._extra or name in BUILT_IN
+                or name in self._of_packages())
+
     def find(self, filename: str) -> Type[Plugin]:
         """The class for a library.
 

@@ -211,7 +211,7 @@ class Renderer:
         if not batch.count:
             return
         program, surface = self._programs["lit"], batch.surface
-        program["diffuse"] = (*linear(surface.diffuse), surface.opacity)
+        program["diffuse"] = (*linear(surface.diffuse) * surface.brightness, surface.opacity)
         program["specular"] = tuple(linear(surface.specular))
         program["emissive"] = tuple(linear(surface.emissive))
         program["lit"] = surface.lit

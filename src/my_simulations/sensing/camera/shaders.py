@@ -6,6 +6,8 @@ camera, so that a world far from its origin keeps its accuracy.
 """
 from __future__ import annotations
 
+from ...appearance.palette import SHININESS
+
 MOST_LIGHTS = 8
 MOST_SHADOWS = 2
 
@@ -35,6 +37,8 @@ vec3 encoded(vec3 c) {
 LIT_FRAGMENT = f"""#version 330
 #define LIGHTS {MOST_LIGHTS}
 #define SHADOWS {MOST_SHADOWS}
+#define SHININESS {SHININESS}
+#define SHINE {(SHININESS / 2 + 1) / 4}
 """ + """in vec3 place; in vec3 out_normal; in vec2 out_uv;
 out vec4 seen;
 uniform vec4 diffuse;
@@ -91,8 +95,9 @@ void main() {
       if (light_shadow[k] >= 0) strength *= lightened(light_shadow[k], n);
       vec3 falling = light_color[k] * (strength * facing);
       fallen += falling;
-      if (specular.r + specular.g + specular.b > 0.06)
-        shine += falling * specular * 4.0 * pow(max(dot(n, normalize(way + eye)), 0.0), 30.0);
+      if (specular.r + specular.g + specular.b > 0.0)
+        shine += falling * specular * SHINE
+          * pow(max(dot(n, normalize(way + eye)), 0.0), SHININESS);
     }
     color = albedo * fallen + shine + emissive;
   }
