@@ -1,8 +1,8 @@
 """What plugins and sensors of a robot call by name, after its fixed links became part of others.
 
-Source: Gazebo's converter: contact sensors name collisions; plugins name a `bodyName` or
-`frameName`, with an offset that grows by the way between the links; grippers, projectors and joints
-name links.
+Source: Gazebo's converter: contact sensors name collisions; plugins of the model name a `bodyName`
+or `frameName`, with an offset that grows by the way between the links; grippers, projectors and
+joints name links.
 """
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _in_element(element: Any, names: Renamed) -> bool:
     inside = parent.tag if parent is not None else ""
     if element.tag == "collision" and inside == "contact":
         return _put(element, names.collisions, text)
-    if element.tag in _PLACED and text.lstrip("/") in names.links:
+    if element.tag in _PLACED and text.lstrip("/") in names.links and not _of_sensor(parent):
         body = names.links[text.lstrip("/")]
         element.text = _standing(body)
         if parent is not None:
@@ -72,6 +72,12 @@ def _in_element(element: Any, names: Renamed) -> bool:
         element.text = f"{_standing(names.links[link])}/{rest}"
         return True
     return False
+
+
+def _of_sensor(plugin: Any) -> bool:
+    """A sensor's plugin keeps the frame it names: the links are still in tf (Gazebo behaviour)."""
+    return plugin is not None and plugin.getparent() is not None \
+        and plugin.getparent().tag == "sensor"
 
 
 def _put(element: Any, names: Mapping[str, str], text: str) -> bool:
