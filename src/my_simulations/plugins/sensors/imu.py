@@ -27,6 +27,7 @@ class Imu(Plugin):
     _offset: Quat = IDENTITY_QUAT
     _reference: Quat = IDENTITY_QUAT
     _before: Vec3
+    _idle = False
 
     def _begin(self, topic: str, frame: str, who: str) -> None:
         context, p = self.context, self.context.parameters
@@ -38,6 +39,7 @@ class Imu(Plugin):
 
     def begin_motion(self) -> None:
         """Accelerations are of what comes."""
+        self._idle = False
         self._last_ns = self.context.now_ns
         self._before = self._velocity()
 
@@ -60,10 +62,14 @@ class Imu(Plugin):
                        self._mount, self._reference)
 
     def update(self) -> None:
-        """Measure always, publish while somebody listens."""
-        sample = self._noisy(self.measured())
+        """Measure and publish while somebody listens."""
         if not self._topic.wanted:
+            self._idle = True
             return
+        if self._idle:  # the velocity before is too old for an acceleration
+            self.begin_motion()
+            return
+        sample = self._noisy(self.measured())
         context, noise = self.context, self._white.draw(6)
         message = context.message("sensor_msgs/Imu")
         message.header.stamp, message.header.frame_id = context.stamp(), self._frame
