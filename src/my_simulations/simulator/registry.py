@@ -57,7 +57,8 @@ class Entity:
         meshes: its collision meshes, kept for a restart of the engine.
         pose: world pose of a model without links; that of others is in the ring.
         articulated: built as an articulated body, for a prismatic joint to another model.
-        launched: spawned by the launch file that started the simulator, as at its next start.
+        launched: spawned by the launch file that started the simulator, and spawned again by it at
+            the next start.
     """
 
     model_id: int
@@ -296,7 +297,7 @@ class Registry:
                         yield entity, joint, number
 
     def frame(self, name: str) -> Optional[ReferenceFrame]:
-        """What a reference frame name means; None for the world frame.
+        """Resolve the name of a reference frame; None for the world frame.
 
         Entities are searched first (models, links, collisions, lights), then the literals.
         Raises UnknownFrameError.
@@ -335,7 +336,7 @@ class Registry:
         return found[0]
 
     def _joint_taken(self, name: str, taken: Entity) -> None:
-        """A joint of `taken` was found for a name, which others may have as well."""
+        """Log once if the plain name of a joint exists in several models."""
         if ("joint", name) in self._told or name.startswith(taken.model.name + "::"):
             return
         self._tell("joint", name, [
@@ -368,7 +369,7 @@ class Registry:
         return _meant(name, self._entities)
 
     def _nearest_link(self, name: str) -> str:
-        """The links of a model of that name, else the scoped names most like it."""
+        """Suggestions for an unknown link: those of a model of that name, else similar names."""
         of_model = self._entities.get(name)
         if of_model is not None:
             named = [f"{name}::{link}" for link in of_model.link_names]
@@ -390,7 +391,7 @@ def _meant(name: str, known: Iterable[str]) -> str:
 
 
 def _scoped_meant(name: str, owned: Mapping[str, Sequence[str]]) -> str:
-    """The names `model::part` that a wrong one may have meant, with or without its model's."""
+    """Scoped names (`model::part`) similar to an unknown one."""
     model, _, part = name.partition("::")
     if part and model not in owned:
         return _meant(name, [f"{owner}::{one}" for owner, names in owned.items() for one in names])
