@@ -51,7 +51,7 @@ def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
 
 
 def _told(*names: str, since: str = "") -> Dict[str, Entry]:
-    """Kept, and it is said: whoever wrote them expects something to happen."""
+    """Elements that are kept with a note, because their authors expect an effect."""
     return {name: Kept(since, told=True) for name in names}
 
 

@@ -1,4 +1,4 @@
-"""SDF's sensors as tables. Source: SDF specification 1.7, sensor."""
+"""Tables of SDF sensors. Source: SDF specification 1.7, sensor."""
 from __future__ import annotations
 
 from typing import Dict, Mapping
@@ -33,12 +33,12 @@ def _noise(part: str) -> Group:
     numbers: Dict[str, Entry] = {name: Value(name, FLOAT) for name in (
         "mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
         "dynamic_bias_correlation_time", "precision")}
-    # SDF 1.4 and robots of its time have the type as an element.
+    # SDF up to 1.4 has the type as an element.
     return Group({**numbers, "type": Value("type", TEXT)}, {"type": Value("type", TEXT)}, part=part)
 
 
 def _noisy(part: str) -> Group:
-    """A quantity that says nothing but its noise."""
+    """The entry of a measured quantity with a `<noise>` only."""
     return Group({"noise": _noise(part)})
 
 
@@ -147,10 +147,10 @@ BLOCKS: Mapping[str, Table] = {
     "magnetometer": MAGNETOMETER, "air_pressure": AIR_PRESSURE,
     "logical_camera": LOGICAL_CAMERA, "transceiver": TRANSCEIVER,
 }
-"""Tables of the blocks by tag; cameras, of which there may be several, apart."""
+"""Tables of the sensor blocks by tag; cameras, which may be repeated, are separate."""
 
 FIELDS: Mapping[str, str] = {"lidar": "ray", "navsat": "gps"}
-"""Fields of the blocks that are not called as their tag is."""
+"""Fields of the blocks whose name differs from the tag."""
 
 SENSOR = _table("sensor", Sensor, {
     "pose": Value("pose", POSE),

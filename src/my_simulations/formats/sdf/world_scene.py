@@ -1,4 +1,4 @@
-"""Surroundings and actors of a world: scene, GUI, wind, atmosphere, place, roads, actors."""
+"""Reads surroundings and actors of a world: scene, GUI, wind, atmosphere, place, roads, actors."""
 from __future__ import annotations
 
 from typing import Any, List
@@ -28,7 +28,7 @@ from .world_tables import (
 
 
 def read_surroundings(found: Found, world: World, source: Source) -> None:
-    """Fill the world's fields from `scene` to `roads`. Source: SDF spec 1.7, world."""
+    """Set the world's fields from `scene` to `roads`. Source: SDF spec 1.7, world."""
     for element in found.get("scene", ()):
         _read_scene(element, world.scene, source)
     for element in found.get("gui", ()):
@@ -66,7 +66,7 @@ def _read_road(element: Any, source: Source) -> Road:
 
 
 def read_actor(element: Any, source: Source) -> Actor:
-    """An actor with its path; none of it is simulated. Source: SDF spec 1.7, actor."""
+    """An actor with its trajectories; drawn, not simulated. Source: SDF spec 1.7, actor."""
     actor = Actor(element.get("name", ""), base_dir=source.base_dir)
     found = fill(actor, element, ACTOR, source, actor.extra)
     actor.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]

@@ -1,4 +1,4 @@
-"""The elements of an SDF world besides models, as tables. Source: SDF specification, 1.2 to 1.7."""
+"""Tables of the elements of an SDF world besides models. Source: SDF specification, 1.2 to 1.7."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -110,7 +110,7 @@ ACTOR = Table("actor", Actor, {
 
 @dataclass
 class Population:
-    """`<population>`: how often a model stands where."""
+    """`<population>`: number and distribution of copies of a model."""
 
     name: str = ""
     pose: Pose = IDENTITY

@@ -40,7 +40,7 @@ def unpack(kind: str, archive: str, folder: str, name: str, limits: Limits, unti
         The path of `folder/name`, which holds a model's config.
 
     Raises:
-        ArchiveFault: nothing of it is to be used.
+        ArchiveError: nothing of it is to be used.
     """
     os.makedirs(folder)
     left = max(0.01, until - time.monotonic())

@@ -1,7 +1,6 @@
-"""Scene, GUI, wind, atmosphere, place, roads and actors of a world. Source: SDF spec 1.7.
+"""Writes scene, GUI, wind, atmosphere, place, roads and actors of a world. Source: SDF spec 1.7.
 
-Each function writes its element below the `<world>` that it gets, or nothing where the description
-holds the defaults.
+Each function writes its element below the given `<world>`, or nothing if all values are defaults.
 """
 from __future__ import annotations
 
@@ -89,7 +88,7 @@ def write_road(parent: Any, road: Road) -> None:
 
 
 def write_actor(parent: Any, actor: Actor) -> None:
-    """`<actor>`, or the `<include>` that brings it."""
+    """`<actor>`, or the `<include>` that it was read from."""
     from lxml import etree
 
     if actor.include:
@@ -106,7 +105,7 @@ def write_actor(parent: Any, actor: Actor) -> None:
 
 
 def write_plugins(parent: Any, plugins: List[PluginSpec], table: Table) -> None:
-    """The `<plugin>` elements, as they were read."""
+    """The `<plugin>` elements, as read."""
     for plugin in plugins:
         append_fragment(parent, plugin.xml, table)
 
