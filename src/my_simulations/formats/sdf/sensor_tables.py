@@ -42,8 +42,8 @@ def _noisy(part: str) -> Group:
     return Group({"noise": _noise(part)})
 
 
-def _axes(prefix: str) -> Group:
-    return Group({axis: _noisy(f"{prefix}_{axis}") for axis in "xyz"})
+_AXES: Mapping[str, Entry] = {axis: _noisy(axis) for axis in "xyz"}
+"""A vector quantity, with a `<noise>` for each axis."""
 
 
 def _table(name: str, of: type, children: Mapping[str, Entry], **more: object) -> Table:
@@ -93,8 +93,8 @@ CONTACT = _table("contact", ContactSensor, {
 })
 
 IMU = _table("imu", Imu, {
-    "angular_velocity": _axes("angular_velocity"),
-    "linear_acceleration": _axes("linear_acceleration"),
+    "angular_velocity": Group(_AXES, part="angular_velocity"),
+    "linear_acceleration": Group(_AXES, part="linear_acceleration"),
     "orientation_reference_frame": Group({
         "localization": Value("localization", TEXT),
         "custom_rpy": Value("custom_rpy", VECTOR3), "grav_dir_x": Value("grav_dir_x", VECTOR3),
@@ -112,7 +112,7 @@ GPS = _table("gps", Gps, {
 
 FORCE_TORQUE = _table("force_torque", ForceTorque, {
     "frame": Value("frame", TEXT), "measure_direction": Value("measure_direction", TEXT),
-    "force": _axes("force"), "torque": _axes("torque"),
+    "force": Group(_AXES, part="force"), "torque": Group(_AXES, part="torque"),
 })
 
 SONAR = _table("sonar", Sonar, {
@@ -125,7 +125,7 @@ ALTIMETER = _table("altimeter", Altimeter, {
     "vertical_velocity": _noisy("vertical_velocity"),
 })
 
-MAGNETOMETER = _table("magnetometer", Magnetometer, {axis: _noisy(axis) for axis in "xyz"})
+MAGNETOMETER = _table("magnetometer", Magnetometer, _AXES)
 
 AIR_PRESSURE = _table("air_pressure", AirPressure, {
     "reference_altitude": Value("reference_altitude", FLOAT), "pressure": _noisy("pressure"),
