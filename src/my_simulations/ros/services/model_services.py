@@ -161,7 +161,7 @@ class ModelServices:
         return "Successfully spawned entity" + (f" ({counted}, see log)" if warned else "")
 
     def _is_the_worlds(self, name: str) -> bool:
-        """Whether the world file contains a model of that name, which still exists."""
+        """Whether the world file contains a model of that name that still exists."""
         return self._simulator.models.has(name) and any(
             model.name == name for model in self._simulator.world.models)
 
