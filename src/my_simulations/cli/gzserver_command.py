@@ -26,11 +26,11 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
 
     options = parse(words[1:], program)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # rospy writes its log lines there: behind a pipe they must not wait for a full buffer.
+        # rospy logs to stdout: with a pipe, lines must not wait for a full buffer.
         sys.stdout.reconfigure(line_buffering=True)
     profile = StartProfile()
     profile.mark("command line read")
-    # The engine comes before every other import: its own imports take as long as all of ours.
+    # The engine starts before all other imports: its own imports take as long as all of ours.
     from ..engine.process_engine import ProcessEngine
     from ..ros.lifecycle.engine_supply import EngineSupply
 
