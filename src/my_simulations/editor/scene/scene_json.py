@@ -28,10 +28,10 @@ from ...engine.ring import Snapshot
 from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.registry import Entity
-from ..transport.served_files import MESHES, ServedFiles
 from .generated_meshes import Solids
 from .materials import Materials
 from .plain_json import plain, plain_fields
+from .served_files import MESHES, ServedFiles
 
 NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule", Cone: "cone",
          Ellipsoid: "ellipsoid", Plane: "plane", Mesh: "mesh", Heightmap: "heightmap",
