@@ -158,6 +158,26 @@ def test_modules_named_on_the_pages_exist():
             assert name in modules, f"{page.name}: {name}"
 
 
+def quoted_messages():
+    """The fixed parts of our messages in the first column of the troubleshooting page."""
+    others = ("/usr/bin/env", "Could not find a package", "RLException")
+    page = text_of(REPOSITORY / "doc" / "troubleshooting.md")
+    rows = [row for row in re.findall(r"^\| `([^|`]*)` \|", page, re.MULTILINE)
+            if not row.startswith(others)]
+    parts = [part.strip(" ,;") for row in rows for part in row.split("…")]
+    return [part for part in parts if part]
+
+
+def test_messages_of_the_troubleshooting_page_are_those_of_the_programs():
+    files = [path for folder in ("src", "tools", "web/js") for path in
+             (REPOSITORY / folder).rglob("*") if path.suffix in (".py", ".sh", ".js")]
+    # String literals over several lines are joined.
+    text = re.sub(r"""["']\s*\n\s*f?["']|\\\n""", "", "\n".join(map(text_of, files)))
+    found = quoted_messages()
+    assert len(found) > 10
+    assert [part for part in found if part not in text] == []
+
+
 def test_every_parameter_of_the_node_is_documented():
     page = text_of(REPOSITORY / "doc" / "ros_api.md")
     names = set()
