@@ -5,7 +5,7 @@ from typing import Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from .sdf import model_tables, sensor_tables, world_tables
 from .urdf import transmission, urdf_tables
-from .xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from .xml.binding import Entry, Group, Kept, Nested, Part, Table, Use, Value
 
 
 class Supported(NamedTuple):
@@ -73,7 +73,7 @@ def _rows(children: Mapping[str, Entry], usual: Use, path: str, since: str) -> I
 def _use(entry: Entry, usual: Use) -> Use:
     if isinstance(entry, Kept):
         return entry.use
-    assert isinstance(entry, (Value, Part))
+    assert isinstance(entry, (Value, Part, Nested))
     return entry.use or usual
 
 

@@ -78,6 +78,28 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Nested:
+    """A child element that fills a dataclass of its own, by its own table.
+
+    The dataclass has a list `extra` for the XML of unknown children.
+
+    Attributes:
+        field: field with the object, with None for no element, or with a list of objects.
+        table: the table of the element.
+        required: paths in the element that are written even with their default value.
+        since, use: see `Value`.
+        told: note once per kind that the element is not simulated.
+    """
+
+    field: str
+    table: "Table"
+    required: Tuple[str, ...] = ()
+    since: str = ""
+    use: Optional[Use] = None
+    told: bool = False
+
+
+@dataclass(frozen=True)
 class Kept:
     """A child element that is known and kept as XML, not simulated.
 
@@ -91,7 +113,7 @@ class Kept:
     told: bool = False
 
 
-Entry = Union[Value, Group, Part, Kept]
+Entry = Union[Value, Group, Part, Nested, Kept]
 
 
 @dataclass(frozen=True)
@@ -273,12 +295,7 @@ class _Filler:
     def fill(self, target: Any, element: Any, children: Mapping[str, Entry],
              attributes: Mapping[str, Value], more: Tuple[str, ...],
              wrap: Tuple[str, ...]) -> None:
-        for name, text in element.items():
-            known = attributes.get(name)
-            if known is not None:
-                self._set(target, known, text, element, f"@{name}")
-            elif name not in more and ":" not in name and name[0] != "{":
-                self._unknown(f"attribute {name}", name, element, [*attributes, *more])
+        self._attributes(target, element, attributes, more)
         seen: Set[str] = set()
         for child in element:
             tag = child.tag
@@ -296,10 +313,36 @@ class _Filler:
                 seen.add(tag)
                 inner = getattr(target, entry.part) if entry.part else target
                 self.fill(inner, child, entry.children, entry.attributes, (), (*wrap, tag))
+            elif isinstance(entry, Nested):
+                self._nested(target, child, entry, seen)
             elif entry is not None:
                 self._aside(child, entry, wrap)  # type: ignore[arg-type]
             elif isinstance(tag, str):
                 self._stranger(child, children, wrap)
+
+    def _attributes(self, target: Any, element: Any, attributes: Mapping[str, Value],
+                    more: Tuple[str, ...]) -> None:
+        for name, text in element.items():
+            known = attributes.get(name)
+            if known is not None:
+                self._set(target, known, text, element, f"@{name}")
+            elif name not in more and ":" not in name and name[0] != "{":
+                self._unknown(f"attribute {name}", name, element, [*attributes, *more])
+
+    def _nested(self, target: Any, child: Any, entry: Nested, seen: Set[str]) -> None:
+        """Fill the object of a child; adds its tag to `seen` if there can be one only."""
+        inner = getattr(target, entry.field)
+        repeated = isinstance(inner, list)
+        if inner is None or repeated:
+            inner = entry.table.of()
+        fill(inner, child, entry.table, self._source, inner.extra)
+        if repeated:
+            getattr(target, entry.field).append(inner)
+        else:
+            setattr(target, entry.field, inner)
+            seen.add(child.tag)
+        if entry.told:
+            self._source.tell_unused(child)
 
     def _stranger(self, child: Any, known: Mapping[str, Entry], wrap: Tuple[str, ...]) -> None:
         tag = child.tag

@@ -36,13 +36,9 @@ from .material_element import write_material
 from .state_element import write_state
 from .surroundings_elements import (
     write_actor,
-    write_atmosphere,
     write_gui,
     write_plugins,
     write_road,
-    write_scene,
-    write_spherical_coordinates,
-    write_wind,
 )
 from .xml_text import document, write_value
 
@@ -114,13 +110,8 @@ class _Writer:
             "plugin": lambda at: write_plugins(at, world.plugins, WORLD),
             "joint": lambda at: write_each(self.joint, at, world.joints),
             "gui": lambda at: write_gui(at, world.gui, world.gui_camera),
-            "scene": lambda at: write_scene(at, world.scene),
             "actor": lambda at: write_each(write_actor, at, world.actors),
             "road": lambda at: write_each(write_road, at, world.roads),
-            "wind": lambda at: write_wind(at, world.wind),
-            "atmosphere": lambda at: write_atmosphere(at, world.atmosphere),
-            "spherical_coordinates":
-                lambda at: write_spherical_coordinates(at, world.spherical_coordinates),
         }, world.extra, required=("gravity",))
         state = state or world.state
         if state is not None:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Set, Tuple
 
-from ...xml.binding import Entry, Group, Kept, Part, Table, Value, default_of
+from ...xml.binding import Entry, Group, Kept, Nested, Part, Table, Value, default_of
 from .xml_text import append_fragment, write_value
 
 WriteParts = Mapping[str, Callable[[Any], object]]
@@ -36,6 +36,18 @@ def write_each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[A
         write(parent, item)
 
 
+def _write_nested(parent: Any, source: Any, of: Any, tag: str, entry: Nested) -> None:
+    """Write the objects of a nested element, unless they are the default."""
+    from lxml import etree
+
+    value = getattr(source, entry.field)
+    if value == default_of(of, entry.field):
+        return
+    for item in value if isinstance(value, list) else [value]:
+        fill_element(etree.SubElement(parent, tag), item, entry.table, {}, item.extra,
+                     entry.required)
+
+
 class _Filler:
     def __init__(self, parts: WriteParts, required: Tuple[str, ...],
                  leave_out: Tuple[str, ...]) -> None:
@@ -57,6 +69,8 @@ class _Filler:
                 self._value(element, source, of, name, entry, here)
             elif isinstance(entry, Group):
                 self._group(element, source, of, name, entry, here)
+            elif isinstance(entry, Nested):
+                _write_nested(element, source, of, name, entry)
             elif isinstance(entry, Part) and here in self._parts:
                 self._parts[here](element)
             else:
