@@ -9,6 +9,7 @@ from typing import List, Tuple
 
 import pytest
 import yaml
+from architecture_walks import walks
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
@@ -269,23 +270,6 @@ def test_changelog_is_catkins():
 
 
 # -- the walks of the architecture page ----------------------------------------------------------
-
-ARCHITECTURE = REPOSITORY / "doc" / "architecture.md"
-NUMBERS = re.compile(r"(\d+) modules, (\d+) revisits")
-
-
-def walks():
-    """Title, counts that are stated, and rows (module, functions) of each walk."""
-    text = text_of(ARCHITECTURE).split("## Four walks")[1].split("\n## ")[0]
-    found = []
-    for part in text.split("\n### ")[1:]:
-        rows = re.search(r"```text walk\n(.*?)```", part, re.DOTALL).group(1).splitlines()
-        # The remarks begin after two blanks or more, or where no comma goes before.
-        split = [re.match(r"(\S+)\s+(\w+(?:, \w+)*)", row).groups() for row in rows]
-        found.append((part.splitlines()[0], tuple(map(int, NUMBERS.search(part).groups())),
-                      [(module, names.split(", ")) for module, names in split]))
-    return found
-
 
 @pytest.mark.parametrize("title, stated, rows", walks(), ids=lambda value: str(value)[:20])
 def test_walk_counts_its_modules_right(title, stated, rows):
