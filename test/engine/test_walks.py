@@ -97,6 +97,7 @@ def test_a_timed_joint_effort_passes_the_stops_of_its_walk():
         calls.clear()
         simulator.wrenches.apply_effort("hinge", 1.0, start_ns=0, duration_ns=10 ** 7)
         before = simulator.clock.step
+        simulator.feed.request("test", states_hz=1000.0, poses_hz=0.0, notify=True)
         simulator.clock.unpause()
         while simulator.clock.step < before + 20:
             assert simulator.clock.wait_step(simulator.clock.step, 20.0)
