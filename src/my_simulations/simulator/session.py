@@ -15,7 +15,8 @@ from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
 from ..geometry import Pose
-from .registry import Entity, Registry, RowAllocator
+from .registry import Entity, Registry
+from .row_allocator import RowAllocator
 from .supervisor import Supervisor
 
 
