@@ -87,6 +87,20 @@ class Entity:
         """Row of the link that carries the model frame."""
         return self.first_link_row + self.canonical
 
+    @property
+    def link_ids(self) -> range:
+        """Ids of its links in feeds of poses and states, in the order of `link_names`."""
+        return range(self.first_link_row, self.first_link_row + len(self.link_names))
+
+    def link_state(self, snapshot: Snapshot, link: str) -> Tuple[Pose, Twist]:
+        """World pose and twist of a link by its name in the model. Raises ValueError."""
+        return snapshot.link(self.first_link_row + self.link_names.index(link))
+
+    def axis_states(self, snapshot: Snapshot) -> Iterator[Tuple[str, int, float, float]]:
+        """Joint, axis number, position (rad or m) and rate (rad/s or m/s) of all joint axes."""
+        for n, axis in enumerate(axis_rows(self.model)):
+            yield (axis.joint.name, axis.number, *snapshot.joint(self.first_joint_row + n))
+
     def has_link_row(self, row: int) -> bool:
         """Whether a row of the link table is one of its links."""
         return 0 <= row - self.first_link_row < len(self.link_names)
