@@ -6,7 +6,7 @@ from typing import Any, List, NamedTuple, Optional
 MOST_VERTICES = 64
 """Most corners of a convex part: each takes time in contacts."""
 
-_SAME_VOLUME = 0.02  # share of its hull that a convex mesh fills: V-HACD's own error
+_SAME_VOLUME = 0.02  # missing share of its hull: V-HACD's own error
 _SAME_AREA = 0.02    # share of the hull's area that may be open
 _ON_HULL = 1e-4      # tolerance to lie on a face of the hull, per metre of extent
 _MOST_PAIRS = 4e6    # of faces and hull planes that are compared

@@ -1,11 +1,12 @@
 """XML of written SDF: values, kept fragments at their original place, and the document."""
 from __future__ import annotations
 
+import functools
 import math
 import re
 from typing import Any, Callable, Dict, List, Mapping, Optional
 
-from ....geometry import Pose, Vec3, quat_from_rpy, rpy_from_quat
+from ....geometry import Pose, Quat, Vec3, quat_from_rpy, rpy_from_quat
 from ...xml.binding import Entry, Group, Kept, Part, Table
 from ...xml.values import Kind, PoseKind
 
@@ -32,7 +33,14 @@ def stable_pose_text(pose: Pose) -> str:
     The conversion of angles to a quaternion and back changes their last digits, so angles are
     rounded to 1e-14 rad: 0.4 stays 0.4, and saving a loaded world gives the same text.
     """
-    angles = _rounded(rpy_from_quat(pose.orientation))
+    x, y, z, w = (value + 0.0 for value in pose.orientation)  # -0.0 becomes 0.0
+    return " ".join(_plain(value) for value in (*pose.position, *_stable_rpy((x, y, z, w))))
+
+
+@functools.lru_cache(maxsize=1024)
+def _stable_rpy(orientation: Quat) -> Vec3:
+    """Roll, pitch and yaw (rad) that stay the same when they are read and written again."""
+    angles = _rounded(rpy_from_quat(orientation))
     if _read_again(angles) != angles:
         angles = _rounded(_locked(angles))
     seen: List[Vec3] = []
@@ -42,7 +50,7 @@ def stable_pose_text(pose: Pose) -> str:
         angles = _read_again(angles)
     if angles in seen:
         angles = min(seen[seen.index(angles):])
-    return " ".join(_plain(value) for value in (*pose.position, *angles))
+    return angles
 
 
 def _read_again(angles: Vec3) -> Vec3:
