@@ -214,9 +214,22 @@ prepare_python() {
     logged venv "Remove $VENV and run $COMMAND again." \
       "$PYTHON" -m venv --system-site-packages "$VENV"
   fi
-  logged "pip-$name" "Is there a network? Then run $COMMAND again." \
-    "$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check -r "$1"
+  pip_install "$name" "$1"
   printf '%s' "$stamp" >"$stamped"
+}
+
+# pip_install NAME REQUIREMENTS: into the environment; compiles PyBullet where no wheel of it exists.
+pip_install() {
+  local status=0 advice="Is there a network? Then run $COMMAND again." wheels
+  local command=("$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check
+    --only-binary pybullet -r "$2")
+  wheels=$(pybullet_wheels)
+  [ ! -d "$wheels" ] || command+=(--find-links "$wheels")
+  recorded "pip-$1" "${command[@]}" || status=$?
+  [ "$status" -ne 0 ] || return 0
+  pybullet_lacks_wheel "pip-$1" || failed "pip-$1" "$status" "$advice"
+  build_pybullet
+  logged "pip-$1" "$advice" "${command[@]}" --find-links "$wheels"
 }
 
 # prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor
