@@ -64,13 +64,18 @@ that, and there is neither root nor sudo." \
 compile_pybullet() {
   # No debug information: half of the time and nine tenths of the size. GCC 14 refuses the pointers
   # that pybullet.c hands to NumPy without the other option.
-  local flags="-g0 -Wno-incompatible-pointer-types"
+  local flags="-g0 -Wno-incompatible-pointer-types" line count=0
   (
     cd -- "$1/source"
-    CFLAGS="$flags" CXXFLAGS="-g0" PYTHONPATH="$1/tools" \
+    CFLAGS="$flags" CXXFLAGS=-g0 PYTHONPATH="$1/tools" PYTHONUNBUFFERED=1 \
       "$VENV/bin/python3" setup.py bdist_wheel -d "$1/wheel" 2>&1
-  ) | awk -v total="$2" '
-    / -c / { n++; match($0, /-c [^ ]+/); printf "compiled %d of about %d: %s\n", n, total,
-             substr($0, RSTART + 3, RLENGTH - 3); fflush(); next }
-    { print; fflush() }'
+  ) | while IFS= read -r line; do
+    case $line in
+      *' -c '*)
+        count=$((count + 1))
+        line=${line#* -c }
+        line="compiling $count of about $2: ${line%% *}" ;;
+    esac
+    printf '%s\n' "$line"
+  done
 }
