@@ -68,7 +68,7 @@ compile_pybullet() {
   (
     cd -- "$1/source"
     CFLAGS="$flags" CXXFLAGS=-g0 PYTHONPATH="$1/tools" PYTHONUNBUFFERED=1 \
-      "$VENV/bin/python3" setup.py bdist_wheel -d "$1/wheel" 2>&1
+      "$VENV/bin/python3" setup.py -v bdist_wheel -d "$1/wheel" 2>&1
   ) | while IFS= read -r line; do
     case $line in
       *' -c '*)

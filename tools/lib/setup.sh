@@ -139,7 +139,10 @@ sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
       "${missing[@]}"
     SYSTEM_REMARK="${#missing[@]} installed"
   fi
-  install_common_packages
+  if [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; then
+    install_optional common "other packages"
+  fi
+  [ "$WITH_TEST_TOOLS" = 0 ] || install_optional sdformat "some tests"
   finish "$SYSTEM_REMARK"
   hint_at_python
   local name
@@ -149,24 +152,24 @@ sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
   done
 }
 
-# install_common_packages: what other packages of the workspace may ask for. Nothing of ours needs
-# it: what cannot be installed is said, stops nothing, and is not tried again while it is the same.
-install_common_packages() {
-  local wanted missing tried="$OWN/common-packages"
-  { [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; } || return 0
-  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-common.txt")
+# install_optional NAME WHO: the packages in the list apt-packages-NAME.txt, which WHO may want. Nothing
+# of ours needs them: what cannot be installed is said, stops nothing, and is not tried again while
+# it is the same.
+install_optional() {
+  local wanted missing tried="$OWN/$1-packages"
+  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-$1.txt")
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   [ "${#missing[@]}" -gt 0 ] || return 0
   [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
   if may_install; then
-    say "installing ${#missing[@]} that other packages commonly ask for"
-    if (apt_install -common "Nothing of ours needs them." "${missing[@]}"); then
-      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for other packages installed"
+    say "installing ${#missing[@]} that $2 commonly ask for"
+    if (apt_install "-$1" "Nothing of ours needs them." "${missing[@]}"); then
+      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for $2 installed"
       return 0
     fi
   fi
   printf '%s' "${missing[*]}" >"$tried"
-  say "not installed, other packages of the workspace may want them: \
+  say "not installed, $2 may want them: \
 apt-get install --no-install-recommends ${missing[*]}"
 }
 
