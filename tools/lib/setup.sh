@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# From a bare Debian 12 to a built workspace. Every part looks first whether there is anything to
+# From a bare Debian to a built workspace. Every part looks first whether there is anything to
 # do, so a second run neither installs nor builds nor asks the network.
 
 ROS_PREFIX=/opt/ros/noetic
@@ -104,13 +104,20 @@ as_root() {
 # may_install: whether this user can install system packages at all.
 may_install() { [ "$(id -u)" = 0 ] || command -v sudo >/dev/null; }
 
-# apt_install NAME ADVICE...: the packages from ADVICE on; the output goes to logs of that NAME.
+# apt_get NAME WORD...: apt-get without questions; its output goes to the log of that NAME.
+apt_get() {
+  local name="$1"
+  shift
+  recorded "$name" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q "$@"
+}
+
+# apt_install NAME ADVICE PACKAGE...: install the packages or stop; the logs have that NAME in theirs.
 apt_install() {
   local name="$1" advice="$2"
   shift 2
-  logged "apt-update$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
-  logged "apt-install$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive \
-    apt-get -q -y --no-install-recommends install "$@"
+  apt_get "apt-update$name" update || failed "apt-update$name" "$?" "$advice"
+  apt_get "apt-install$name" -y --no-install-recommends install "$@" ||
+    failed "apt-install$name" "$?" "$advice"
 }
 
 install_system_packages() {
@@ -163,14 +170,23 @@ install_optional() {
   [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
   if may_install; then
     say "installing ${#missing[@]} that $2 commonly ask for"
-    if (apt_install "-$1" "Nothing of ours needs them." "${missing[@]}"); then
+    if apt_get "apt-update-$1" update &&
+       apt_get "apt-install-$1" -y --no-install-recommends install "${missing[@]}"; then
       SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for $2 installed"
       return 0
     fi
   fi
   printf '%s' "${missing[*]}" >"$tried"
   say "not installed, $2 may want them: \
-apt-get install --no-install-recommends ${missing[*]}"
+apt-get install --no-install-recommends ${missing[*]}$(optional_reason "$1")"
+}
+
+# optional_reason NAME: why the optional packages NAME were not installed, for the end of a sentence.
+optional_reason() {
+  local reason
+  reason=$(sed -n 's/^E: //p' "$LOGS/apt-update-$1.log" "$LOGS/apt-install-$1.log" 2>/dev/null |
+    head -n 1)
+  printf '%s' "${reason:+ ($reason)}"
 }
 
 # hint_at_python: say how scripts that begin with "#!/usr/bin/env python" start, where there are
