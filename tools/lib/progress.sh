@@ -49,12 +49,14 @@ recorded() {
   "$@" </dev/null 2>&1 | follow "$log"
 }
 
-# failed NAME STATUS ADVICE: stop after a recorded part that did not work.
+# failed NAME STATUS ADVICE: stop after a recorded part that did not work, with the cause that its log
+# tells, else with the advice.
 failed() {
-  local log="$LOGS/$1.log"
+  local log="$LOGS/$1.log" cause
+  cause=$(cause_in "$log")
   printf '\n\n--- the last lines of %s ---\n' "$log" >&2
   tail -n 25 "$log" >&2
-  stop "step $STEP, $STEP_TEXT: '$1' ended with status $2." "$3" "The whole log is $log."
+  stop "step $STEP, $STEP_TEXT: '$1' ended with status $2." "${cause:-$3}" "The whole log is $log."
 }
 
 # logged NAME ADVICE COMMAND...: run and record a part of a step; stop where it fails.
