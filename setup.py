@@ -1,6 +1,7 @@
-"""Where the Python package is: for catkin, which calls this, and for `pip install .` without ROS."""
+"""Where the Python package is: for catkin, which calls this, and for pip where there is no ROS."""
 import os
 import re
+from typing import Any, Collection, Dict, List, Tuple
 
 from setuptools import find_packages, setup
 
@@ -10,13 +11,13 @@ SYSTEM = ["numpy", "scipy", "lxml", "PyYAML", "Pillow"]  # what tools/run takes 
 EXTRAS = {"editor": ("aiohttp", "shapely"), "sensors": ("embreex", "glcontext", "moderngl")}
 
 
-def text_of(name):
+def text_of(name: str) -> str:
     """The content of a file of this folder."""
     with open(os.path.join(HERE, name), encoding="utf-8") as stream:
         return stream.read()
 
 
-def data_files():
+def data_files() -> List[Tuple[str, List[str]]]:
     """The models, worlds and other data, below share/my_simulations of the prefix."""
     found = []
     for folder in DATA:
@@ -27,29 +28,37 @@ def data_files():
     return found
 
 
-def requirements():
+def name_of(requirement: str) -> str:
+    """The name of what a line of requirements.txt asks for."""
+    return re.split(r"[^\w-]", requirement, maxsplit=1)[0]
+
+
+def requirements() -> Tuple[List[str], Dict[str, List[str]]]:
     """What pip installs, and the extras: requirements.txt, whose pins become lower bounds."""
     lines = [line.replace("==", ">=", 1) for line in text_of("requirements.txt").splitlines()
              if line.strip() and not line.startswith("#")]
 
-    def named(names):
-        return [line for line in lines if re.match(r"[\w-]+", line).group() in names]
+    def named(names: Collection[str]) -> List[str]:
+        return [line for line in lines if name_of(line) in names]
 
     extras = {extra: named(names) for extra, names in EXTRAS.items()}
     others = {name for names in EXTRAS.values() for name in names}
-    return SYSTEM + [line for line in lines
-                     if re.match(r"[\w-]+", line).group() not in others], extras
+    return SYSTEM + [line for line in lines if name_of(line) not in others], extras
 
 
-def for_pip():
+def between(manifest: str, tag: str) -> str:
+    """The content of an element of package.xml."""
+    return manifest.split(f"<{tag}>", 1)[1].split(f"</{tag}>", 1)[0]
+
+
+def for_pip() -> Dict[str, Any]:
     """The arguments of `setup` where catkin is not installed."""
     manifest = text_of("package.xml")
     required, extras = requirements()
     return {
         "name": "my_simulations",
-        "version": re.search(r"<version>(.*?)</version>", manifest).group(1),
-        "description": " ".join(re.search(r"<description>(.*?)</description>", manifest,
-                                          re.S).group(1).split()),
+        "version": between(manifest, "version"),
+        "description": " ".join(between(manifest, "description").split()),
         "license": "Apache-2.0",
         "python_requires": ">=3.8",
         "install_requires": required,

@@ -61,7 +61,7 @@ def _place(simulator: Simulator, resolver: Resolver, placed: PlacedObject,
     document = documents.of(placed)
     entity, issues = read_entity(document.xml, resolver, document.origin)
     if not isinstance(entity, Model):
-        return [*issues, error("entity-missing", f"{placed.name} is a light, not a model",
+        return [*issues, error("object-not-a-model", f"{placed.name} is a light, not a model",
                                file=document.path)]
     meshes, faults = collision_meshes(entity)
     model = replace(entity, name=placed.name)
@@ -74,7 +74,7 @@ def _list_of(world: str) -> str:
     name = os.path.splitext(os.path.basename(world))[0]
     file = os.path.join(own_directory(), "config", name, "object_locations.yaml")
     if not os.path.isfile(file):
-        raise InputError([error("no-object-list", f"world '{name}' has no object list", file=file,
+        raise InputError([error("object-list-missing", f"world '{name}' has no object list", file=file,
                                 hint="name one with object_list")])
     return file
 
