@@ -74,8 +74,8 @@ def _list_of(world: str) -> str:
     name = os.path.splitext(os.path.basename(world))[0]
     file = os.path.join(own_directory(), "config", name, "object_locations.yaml")
     if not os.path.isfile(file):
-        raise InputError([error("object-list-missing", f"world '{name}' has no object list", file=file,
-                                hint="name one with object_list")])
+        raise InputError([error("object-list-missing", f"world '{name}' has no object list",
+                                file=file, hint="name one with object_list")])
     return file
 
 

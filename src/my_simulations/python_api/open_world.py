@@ -197,7 +197,8 @@ class OpenWorld:
         """
         entity, issues = self._read(document)
         if not isinstance(entity, Model):
-            raise InputError([error("object-not-a-model", f"{entity.name} is a light, not a model")])
+            raise InputError([error("object-not-a-model",
+                                    f"{entity.name} is a light, not a model")])
         model = entity if name is None else replace(entity, name=name)
         meshes, faults = collision_meshes(model)
         self._judge([*issues, *faults])
