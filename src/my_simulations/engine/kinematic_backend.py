@@ -15,12 +15,14 @@ from .commands import (
     Command,
     ConnectModels,
     JointMotor,
+    JointWrench,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
     PlanarVelocity,
     ReadContacts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -48,6 +50,7 @@ class KinematicBackend:
         self.held: Tuple[int, ...] = ()
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
@@ -64,6 +67,8 @@ class KinematicBackend:
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
             SetPlanarVelocities: self._set_planar,
             ReadContacts: lambda _: (),
+            ReadJointWrenches: lambda command: tuple(
+                self.joint_wrenches.get(key) for key in command.joints),
             ConnectModels: lambda _: None,
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
