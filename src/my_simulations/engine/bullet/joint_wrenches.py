@@ -160,6 +160,8 @@ class JointWrenches:
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
             seen.after = states(seen.body)
+            for index, force, at in self._forces.slip.forces_on(seen.body.uid):
+                note(seen.outside, index, force, at)
             for part in seen.body.parts:
                 force, torque = self._forces.acting_on(part.row)
                 note(seen.outside, part.index, force, seen.before[part.index].position, torque)
