@@ -71,7 +71,7 @@ def test_a_lying_can_stays_where_it_is(lab: Lab, laws: Laws, floor: str, asleep:
     for can, start in zip(cans, starts):
         laws.at_most(f"a lying can on a {floor}: way in 30 s, m",
                      math.dist(lab.pose(can).position[:2], start[:2]),
-                     0.2 if floor == "mesh" else 1e-3)   # on the seams of triangles
+                     1e-3)
 
 
 LONG_30 = [10, pytest.param(30, marks=pytest.mark.long)]   # s
