@@ -18,7 +18,9 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 
 import pybullet
 
+from ...description.link_surface import counting_collision
 from ...description.model import Link
+from ...description.shapes import Surface
 from ...geometry import (
     ZERO3,
     Vec3,
@@ -99,10 +101,10 @@ class ForceDependentSlip:
         return not self._slides
 
     def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know a link of a body; of its surfaces the one that counts (see `of_link`)."""
-        surface = of_link(link)
+        """Know a link of a body; of its surfaces the one that counts."""
+        collision = counting_collision(link)
+        surface = Surface() if collision is None else collision.surface
         slips, first = (surface.slip1, surface.slip2), None
-        collision = next((one for one in link.collisions if one.surface is surface), None)
         if collision is not None and any(surface.fdir1):
             first = rotate(conjugate(part.link_from_com.orientation),
                            rotate(collision.pose.orientation, surface.fdir1))
