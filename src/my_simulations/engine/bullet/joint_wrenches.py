@@ -39,7 +39,7 @@ from ..commands import JointWrench, ReadJointWrenches
 from .acting_forces import Acting, note, note_constraints, note_contacts
 from .bodies import Body, Part
 from .forces import Forces
-from .link_motion import Chain, Motion, State, accelerations, inertial_wrench, states
+from .link_motion import Chain, Motion, State, accelerations, inertial_wrench, look, states
 from .sliding import Sliding
 from .state_restore import Entry
 
@@ -75,25 +75,30 @@ class _Seen:
     """A body around a step.
 
     Attributes:
-        before, after: its links, by PyBullet's index.
+        before, after: how its links moved; Bullet tells the rest until it steps again.
         outside: what acts on it besides gravity and what Bullet tells of.
     """
 
     def __init__(self, body: Body, chain: Chain, outside: Acting) -> None:
         self.body = body
-        self.before = states(body)
-        self.after: Dict[int, State] = {}
+        self.before = look(body)
+        self.after = self.before
         self.outside = outside
         self._chain = chain
-        self._answer: Optional[Tuple[Dict[int, Motion], Acting]] = None
+        self._answer: Optional[_WorkedOut] = None
 
-    def worked_out(self, dt: float) -> Tuple[Dict[int, Motion], Acting]:
-        """How its links were accelerated, and what acted on them; Bullet tells until it steps."""
+    def worked_out(self, dt: float) -> "_WorkedOut":
+        """How its links were, how they were accelerated, and what acted on them."""
         if self._answer is None:
+            before = states(self.body, self.before)
             note_contacts(self.outside, self.body)
-            note_constraints(self.outside, self.body, self.before)
-            self._answer = (accelerations(self._chain, self.before, self.after, dt), self.outside)
+            note_constraints(self.outside, self.body, before)
+            after = states(self.body, self.after)
+            self._answer = (before, accelerations(self._chain, before, after, dt), self.outside)
         return self._answer
+
+
+_WorkedOut = Tuple[Dict[int, State], Dict[int, Motion], Acting]
 
 
 class JointWrenches:
@@ -159,12 +164,13 @@ class JointWrenches:
         """After that step, all that corrects it included."""
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
-            seen.after = states(seen.body)
+            seen.after = look(seen.body)
             for index, force, at in self._forces.slip.forces_on(seen.body.uid):
                 note(seen.outside, index, force, at)
-            for part in seen.body.parts:
+            for part in seen.body.parts if self._forces.wrenched_links else ():
                 force, torque = self._forces.acting_on(part.row)
-                note(seen.outside, part.index, force, seen.before[part.index].position, torque)
+                at = states(seen.body, seen.before)[part.index].position
+                note(seen.outside, part.index, force, at, torque)
 
     def _sliding_friction(self, body: Body) -> Acting:
         """The friction that acts on a body in the next step besides Bullet's."""
@@ -177,13 +183,13 @@ class JointWrenches:
 
     def _wrench(self, cut: _Cut, seen: _Seen) -> Optional[JointWrench]:
         """None where a state is not finite."""
-        motions, acting = seen.worked_out(self._dt)
-        child, parent = _link_pose(cut.child, seen.before), _link_pose(cut.parent, seen.before)
+        before, motions, acting = seen.worked_out(self._dt)
+        child, parent = _link_pose(cut.child, before), _link_pose(cut.parent, before)
         anchor = (transform(child, cut.joint.pose.position) if cut.child is not None
                   else transform(parent, cut.parent_from_joint.position))
         force, torque = ZERO3, ZERO3
         for part in cut.hung:
-            state = seen.before[part.index]
+            state = before[part.index]
             pull, turn = inertial_wrench(part, state, motions[part.index],
                                          self._gravity if part.gravity else ZERO3)
             force = add(force, pull)
