@@ -31,12 +31,13 @@ from ...geometry import (
     inverse,
     multiply,
     rotate,
+    scale,
     subtract,
     transform,
 )
 from ..body_plan import NO_LINK, TreeLink
 from ..commands import JointWrench, ReadJointWrenches
-from .acting_forces import Acting, note, note_constraints, note_contacts
+from .acting_forces import Acting, constraint_forces, note, note_constraints, note_contacts
 from .bodies import Body, Part
 from .forces import Forces
 from .link_motion import Chain, Motion, State, accelerations, inertial_wrench, look, states
@@ -127,6 +128,8 @@ class JointWrenches:
             cut = self._cuts.get(key)
             if key not in self._found and cut is not None and cut.body.uid in self._seen:
                 self._found[key] = self._wrench(cut, self._seen[cut.body.uid])
+            elif key[0] in self._models and cut is None:
+                self._found[key] = _without_a_cut(self._models[key[0]], key[1])
         return tuple(self._found.get(key) for key in command.joints)
 
     def forget(self, body: Body) -> None:
@@ -234,6 +237,38 @@ def _cut_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _Cut
     return _Cut(body, Chain.of(parts, links), joint, names.get(joint.child),
                 names.get(joint.parent), hung,
                 compose(inverse(poses.get(joint.parent, IDENTITY)), joint.pose))
+
+
+def _without_a_cut(entry: Entry, name: str) -> Optional[JointWrench]:
+    """Of a joint on which nothing hangs: one that closes a loop, or of a static model."""
+    joint = next((one for one in entry.model.joints if one.name == name), None)
+    constraints = entry.constraints.closing.get(name, [])
+    if joint is not None and entry.model.static:
+        return JointWrench()   # nothing holds its links (Gazebo behaviour)
+    return _closing_wrench(entry, joint, constraints) if joint and constraints else None
+
+
+def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> JointWrench:
+    """From the constraints that stand for a joint, as they are now."""
+    ends = [entry.constraints.end(joint.child), entry.constraints.end(joint.parent)]
+    poses = [IDENTITY if end is None else _link_pose(end[1], states(end[0], look(end[0])))
+             for end in ends]
+    held, sign = (ends[0], 1.0) if ends[0] is not None else (ends[1], -1.0)
+    assert held is not None
+    links = {link.name: link.pose for link in entry.model.links}
+    anchor = (transform(poses[0], joint.pose.position) if ends[0] is not None
+              else transform(compose(poses[1], inverse(links[joint.parent])),
+                             joint.pose.position))
+    force, torque = ZERO3, ZERO3
+    for number in constraints:
+        one, at, moment = constraint_forces(number, held[0], held[1].index,
+                                            states(held[0], look(held[0]))[held[1].index])
+        force = add(force, one)
+        torque = add(torque, add(moment, cross(subtract(at, anchor), one)))
+    back = conjugate(poses[0].orientation)
+    return JointWrench(rotate(back, scale(force, sign)), rotate(back, scale(torque, sign)),
+                       IDENTITY_QUAT if ends[1] is None
+                       else multiply(conjugate(poses[1].orientation), poses[0].orientation))
 
 
 def _link_pose(part: Optional[Part], found: Dict[int, State]) -> Pose:
