@@ -21,6 +21,7 @@ from ..commands import (
     PhysicsSettings,
     PinModels,
     ReadContacts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -29,6 +30,7 @@ from ..commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetWheelSlips,
 )
 from ..ring import JOINTS, LINKS
 from . import bodies, collision_groups, extra_surfaces, joint_axes
@@ -38,12 +40,14 @@ from .collision_shapes import ShapeError, ShapeFactory
 from .contact_readout import read_contacts
 from .contact_settling import EVERY as EVERY_SETTLE
 from .contact_settling import ContactSettling
+from .force_dependent_slip import slips
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
 from .initial_state_cache import InitialStateCache, Start
 from .inter_model_joints import InterModelJoints
 from .joint_constraints import Constraints
 from .joint_motors import JointMotors
+from .joint_wrenches import JointWrenches
 from .pair_friction import EVERY, FrictionBalance
 from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
@@ -87,10 +91,12 @@ class BulletBackend:
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)
         self._planar = PlanarMotion(self._models, self._mover.model_pose, self._waker.around)
+        self._wrenches = JointWrenches(self._models, self._forces, self._sliding)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
                          self._decay, self._residual, self._rolling, self._sliding,
-                         self._settling, self._motors, self._planar, self._readout)
+                         self._settling, self._motors, self._planar, self._wrenches,
+                         self._readout)
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -104,8 +110,10 @@ class BulletBackend:
             ConnectModels: self._connect,
             SetMotors: lambda command: self._motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
-            ReadContacts: lambda command: read_contacts(self._bodies, command.limit,
-                                                        self._sliding.friction),
+            ReadContacts: lambda command: read_contacts(
+                self._bodies, command.limit, self._sliding.friction, self._forces.slip.friction),
+            SetWheelSlips: self._set_wheel_slips,
+            ReadJointWrenches: self._wrenches.read,
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
         }
@@ -138,6 +146,16 @@ class BulletBackend:
         """Make `count` steps."""
         self._settle()
         self._readout.stepped()
+        if self._wrenches.idle:
+            self._make_steps(first, count)
+            return
+        if count > 1:
+            self._make_steps(first, count - 1)
+        self._wrenches.before(count)
+        self._make_steps(first + count - 1, 1)
+        self._wrenches.after(self._settings.step_size, self._settings.gravity)
+
+    def _make_steps(self, first: int, count: int) -> None:
         one = pybullet.stepSimulation
         dt, gravity = self._settings.step_size, self._settings.gravity
         if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
@@ -264,8 +282,10 @@ class BulletBackend:
                 link = model.links[part.row - first_row]
                 self._decay.add(body, part, link)
                 self._rolling.add(body, part, link)
-                self._sliding.add(body, part, link)
+                if not slips(link):
+                    self._sliding.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
+                self._forces.slip.add(body, part, link)
             self._set_up_axes(body, model)
         return entry
 
@@ -360,7 +380,7 @@ class BulletBackend:
         self._forces.clear_all()
         for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
                        self._residual, self._rolling, self._sliding, self._settling,
-                       self._motors, self._planar):
+                       self._motors, self._planar, self._wrenches):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
@@ -387,6 +407,13 @@ class BulletBackend:
     def _set_up_axes(self, body: Body, model: Model) -> None:
         joint_axes.set_up(body, model, self._forces, self._settings.step_size)
         self._motors.set_up(body, model)
+
+    def _set_wheel_slips(self, command: SetWheelSlips) -> None:
+        for wheel in command.wheels:
+            if wheel.row not in self._rows or wheel.joint_row not in self._axes:
+                raise CommandRefusedError("the link or joint of the wheel does not exist")
+            self._sliding.leave(*self._rows[wheel.row])
+        self._forces.slip.set_wheels(command.wheels)
 
     def _hold(self, command: PinModels) -> None:
         self._holds.set(body for number in command.model_ids

@@ -12,6 +12,7 @@ from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
 from ..body_plan import BASE
 from ..commands import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part
+from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
 
@@ -19,7 +20,11 @@ _NOTHING = (0.0, 0.0, 0.0)
 
 
 class Forces:
-    """All that `apply` must do before the next step."""
+    """All that `apply` must do before the next step.
+
+    Attributes:
+        slip: links whose surfaces slip.
+    """
 
     def __init__(self, wake: Callable[[List[Body]], None]) -> None:
         self._wake = wake
@@ -32,6 +37,7 @@ class Forces:
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
+        self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:
         """Know the rows of a new body."""
@@ -64,6 +70,7 @@ class Forces:
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
+        self.slip.forget(body)
         self._implicit.pop(body.uid, None)
         for part in body.parts:
             self._parts.pop(part.row, None)
@@ -95,16 +102,30 @@ class Forces:
         """Drop every timed force."""
         for table in (self._timed, self._acting, self._loops):
             table.clear()
+        self.slip.clear()
 
     @property
     def idle(self) -> bool:
         """True when a step needs nothing from here, now or later."""
-        return not (self._timed or self._weightless or self._implicit)
+        return self.slip.idle and not (self._timed or self._weightless or self._implicit)
 
     @property
     def wrenched_links(self) -> Set[int]:
         """Rows of the links that a timed wrench acts on in this step."""
         return {force.row for force in self._acting.values() if isinstance(force, TimedWrench)}
+
+    def acting_on(self, row: int) -> Tuple[Vec3, Vec3]:
+        """The timed wrenches of the last step on a link: force and torque about its centre of mass.
+
+        N and N m, world axes.
+        """
+        force, torque = _NOTHING, _NOTHING
+        for wrench in self._acting.values():
+            if isinstance(wrench, TimedWrench) and wrench.row == row:
+                body, part = self._parts[row]
+                one, other = _in_world(wrench, part, self._com(body, part)[1])
+                force, torque = add(force, one), add(torque, other)
+        return force, torque
 
     def apply(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
@@ -126,6 +147,8 @@ class Forces:
             at = self._com(body, part)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
+        if not self.slip.idle:
+            self.slip.apply(dt)
         self._placed.clear()
 
     def stepped(self) -> None:
@@ -175,14 +198,7 @@ class Forces:
         if not body.moves:
             return
         at, turn = self._com(body, part)
-        force, torque, point = wrench.force, wrench.torque, wrench.point
-        if wrench.in_link_axes:
-            # The link's axes, not the principal ones that PyBullet's frame follows.
-            x, y, z, w = part.link_from_com.orientation
-            inverse_turn = (-x, -y, -z, w)
-            force, torque, point = (rotate(turn, rotate(inverse_turn, v))
-                                    for v in (force, torque, point))
-        torque = add(torque, cross(point, force))
+        force, torque = _in_world(wrench, part, turn)
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != _NOTHING and body.rigid and body.uid in self._placed:
@@ -195,6 +211,16 @@ class Forces:
         if part.index == BASE:
             return pybullet.getBasePositionAndOrientation(body.uid)
         return pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)[:2]
+
+
+def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:
+    """Force, and torque about the centre of mass, in world axes; `turn` is that of PyBullet."""
+    force, torque, point = wrench.force, wrench.torque, wrench.point
+    if wrench.in_link_axes:
+        # The link's axes, not the principal ones that PyBullet's frame follows.
+        back = conjugate(part.link_from_com.orientation)
+        force, torque, point = (rotate(turn, rotate(back, v)) for v in (force, torque, point))
+    return force, add(torque, cross(point, force))
 
 
 def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:
