@@ -27,7 +27,7 @@ from typing import Any, Dict, Optional, Sequence
 
 import pybullet
 
-from ...geometry import Pose
+from ...geometry import Pose, Vec3
 from .bodies import Body
 
 JointStates = Sequence[Any]  # as PyBullet tells them
@@ -101,8 +101,16 @@ class ContactSettling:
         """True when no body can need it."""
         return not (self._trees or self._rigid or self._new or self._until is not None)
 
-    def look(self, step: int) -> None:
-        """Before the step that begins at count `step`: whether something stands."""
+    def ahead(self, step: int) -> int:
+        """Up to the next look."""
+        every = EVERY if self._trees or self._until is not None else _RIGID_EVERY
+        return every - step % every
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """See now and then whether something stands."""
         if self._new:
             self._new, self._until = False, step + self._parting_steps
             self._split(True)

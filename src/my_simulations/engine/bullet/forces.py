@@ -14,12 +14,13 @@ from ..commands import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
+from .step_helper import FAR
 
 _NOTHING = (0.0, 0.0, 0.0)
 
 
 class Forces:
-    """All that `apply` must do before the next step."""
+    """All that must be done before the next step."""
 
     def __init__(self, wake: Callable[[List[Body]], None]) -> None:
         self._wake = wake
@@ -73,7 +74,7 @@ class Forces:
             self._limits.pop(axis.row, None)
         rows = {part.row for part in body.parts}
         axes = {axis.row for axis in body.axes}
-        self.clear([force.force_id for force in self._timed.values()
+        self.drop([force.force_id for force in self._timed.values()
                     if force.row in (rows if isinstance(force, TimedWrench) else axes)])
 
     def add(self, forces: Sequence[TimedForce]) -> str:
@@ -84,29 +85,39 @@ class Forces:
         self._timed.update({force.force_id: force for force in forces})
         return ""
 
-    def clear(self, force_ids: Sequence[int]) -> None:
+    def drop(self, force_ids: Sequence[int]) -> None:
         """Drop timed forces by id."""
         for force_id in force_ids:
             self._timed.pop(force_id, None)
             self._acting.pop(force_id, None)
             self._loops.pop(force_id, None)
 
-    def clear_all(self) -> None:
-        """Drop every timed force."""
-        for table in (self._timed, self._acting, self._loops):
+    def clear(self) -> None:
+        """All bodies are gone, and every timed force with them."""
+        for table in (self._timed, self._acting, self._loops, self._parts, self._axes,
+                      self._weightless, self._implicit, self._limits):
             table.clear()
+        self._placed.clear()
 
     @property
     def idle(self) -> bool:
         """True when a step needs nothing from here, now or later."""
-        return not (self._timed or self._weightless or self._implicit)
+        return not (self._timed or self._weightless or self._implicit or self._placed)
 
     @property
     def wrenched_links(self) -> Set[int]:
         """Rows of the links that a timed wrench acts on in this step."""
         return {force.row for force in self._acting.values() if isinstance(force, TimedWrench)}
 
-    def apply(self, step: int, dt: float, gravity: Vec3) -> None:
+    def ahead(self, step: int) -> int:
+        """One step while something acts anew in each."""
+        return 1 if self._timed or self._weightless or self._implicit else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Forget who was put somewhere before the step."""
+        self._placed.clear()
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
         efforts: Dict[int, float] = {}
         if self._timed:
@@ -126,11 +137,6 @@ class Forces:
             at = self._com(body, part)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
-        self._placed.clear()
-
-    def stepped(self) -> None:
-        """A step was made without `apply`."""
-        self._placed.clear()
 
     def _limited(self, force: TimedEffort, dt: float) -> float:
         """An effort within the limits of its axis, each by itself as in Gazebo.
@@ -156,7 +162,7 @@ class Forces:
         beginning = []
         for force_id, force in list(self._timed.items()):
             if step >= force.stop:
-                self.clear([force_id])
+                self.drop([force_id])
             elif step >= force.start and force_id not in self._acting:
                 self._acting[force_id] = force
                 if isinstance(force, TimedEffort) and force.pid is not None:

@@ -66,6 +66,11 @@ class GyroscopicArticulated:
         """True when no body can need it."""
         return not self._bodies
 
+    @property
+    def busy(self) -> bool:
+        """True while some body is watched in every step."""
+        return bool(self._then)
+
     def mend(self, dt: float) -> None:
         """Correct those that met nothing since the last time, and see who turns fast now."""
         for uid, then in self._then.items():

@@ -5,7 +5,7 @@ from typing import Callable, Dict, Iterable, List
 
 import pybullet
 
-from ...geometry import Pose
+from ...geometry import Pose, Vec3
 from .bodies import Body
 
 _STILL = (0.0, 0.0, 0.0)
@@ -49,7 +49,14 @@ class PinnedBodies:
         self._bodies.clear()
         self._poses.clear()
 
-    def apply(self) -> None:
+    def ahead(self, step: int) -> int:
+        """It acts in every step."""
+        return 1
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing before a step."""
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Undo what the last step did to them."""
         for uid, pose in self._poses.items():
             pybullet.resetBasePositionAndOrientation(uid, pose.position, pose.orientation)

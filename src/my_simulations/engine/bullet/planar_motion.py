@@ -6,7 +6,7 @@ from typing import Callable, Dict, Iterable, List, Mapping
 
 import pybullet
 
-from ...geometry import Pose, cross, rpy_from_quat, subtract
+from ...geometry import Pose, Vec3, cross, rpy_from_quat, subtract
 from ..commands import PlanarVelocity
 from .bodies import Body
 from .state_restore import Entry
@@ -44,7 +44,14 @@ class PlanarMotion:
         """All bodies are gone."""
         self._velocities.clear()
 
-    def apply(self) -> None:
+    def ahead(self, step: int) -> int:
+        """It acts in every step."""
+        return 1
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act before the next step."""
         for number, wanted in self._velocities.items():
             entry = self._models[number]

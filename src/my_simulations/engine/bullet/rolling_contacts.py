@@ -32,11 +32,13 @@ EVERY = 8
 """Steps between two looks at who lies."""
 
 _LYING = 0.1      # of the contact normal along the axis: less is a cylinder on its side
+_UPRIGHT = 0.9    # more is one on its end
 _TURNS = 0.01     # rad/s: joints slower than that need nothing
 _CREEP = 5e-3     # m/s: what rolls slower stands
 _TURN = 0.2       # rad/s: the same for its turning
 _LEVEL = 1e-3     # of gravity along the floor: less is a level one
 _ASLEEP = 3       # looks without velocity: it sleeps, and Bullet leaves it alone
+_PATIENCE = 8     # looks until one that sleeps, or stands on its end, is looked at again
 _SHIFT = 1e-5     # m between two looks: less is not its own
 _NONE = (0.0, 0.0, 0.0)
 
@@ -49,13 +51,18 @@ _CHANGE = 0.1       # smaller changes of the share are not worth a call
 
 @dataclass
 class _Roller:
-    """A round link: its axis in the frame of its principal axes; looks without velocity."""
+    """A round link: its axis in the frame of its principal axes; looks without velocity.
+
+    Attributes:
+        wait: looks at which it need not be looked at.
+    """
 
     body: Body
     part: Part
     axis: Vec3
     meets: collision_groups.Filter
     still: int = 0
+    wait: int = 0
     share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
 
 
@@ -98,24 +105,21 @@ class RollingContacts:
         """True when no link can need it."""
         return not self._rollers
 
-    @property
-    def busy(self) -> bool:
-        """True when something must be done before every step."""
-        return bool(self._rolling or self._standing)
-
     def touched(self, body: Body) -> None:
         """A rigid body was put somewhere or given another velocity: it may roll at once."""
         self._standing.pop(body.uid, None)
         roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
         if roller is not None:
-            roller.still = 0
+            roller.still = roller.wait = 0
             self._rolling[body.uid, BASE] = roller.meets
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Act before the step of `dt` s that begins at count `step`."""
+        """Find out now and then who rolls, and let it roll in the next step."""
         if step % EVERY == 0:
             for key, roller in self._rollers.items():
-                if self._rolls(roller, dt, gravity):
+                if roller.wait:
+                    roller.wait -= 1
+                elif self._rolls(roller, dt, gravity):
                     self._rolling[key] = roller.meets
                 else:
                     self._rolling.pop(key, None)
@@ -126,6 +130,13 @@ class RollingContacts:
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 
+    def ahead(self, step: int) -> int:
+        """One step while something rolls, or stands, else up to the next look."""
+        return 1 if self._rolling or self._standing else EVERY - step % EVERY
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
     def _rolls(self, roller: _Roller, dt: float, gravity: Vec3) -> bool:
         """Whether a link lies on its side and does not stand; finds out whether it does."""
         uid, index = roller.body.uid, roller.part.index
@@ -135,6 +146,7 @@ class RollingContacts:
             if roller.still:
                 if roller.still >= _ASLEEP:
                     self._standing.pop(uid, None)
+                    roller.wait = _PATIENCE
                 return False
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
         elif index == BASE:
@@ -150,6 +162,8 @@ class RollingContacts:
         if not contacts:
             return (uid, index) in self._rolling
         if any(abs(dot(contact[7], axis)) > _LYING for contact in contacts):
+            roller.wait = _PATIENCE if all(
+                abs(dot(contact[7], axis)) > _UPRIGHT for contact in contacts) else 0
             return False
         if roller.body.rigid:
             before = self._standing.pop(uid, None)

@@ -104,11 +104,6 @@ class Sliding:
         """True when no link can need it."""
         return not (self._wanted and self._parts)
 
-    @property
-    def busy(self) -> bool:
-        """True when something must be done before and after every step."""
-        return bool(self._slides)
-
     def touched(self, body: Body) -> None:
         """A body was put somewhere or given another velocity."""
         for key in [key for key in self._slides if key[0] == body.uid]:
@@ -119,11 +114,15 @@ class Sliding:
         slide = self._slides.get((uid, index))
         return _NONE if slide is None else slide.forces.get(at, _NONE)
 
-    def before(self) -> None:
-        """Act before a step."""
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Let friction act in the next step."""
         for (uid, index), slide in self._slides.items():
             for at, force in slide.forces.items():
                 pybullet.applyExternalForce(uid, index, force, at, pybullet.WORLD_FRAME)
+
+    def ahead(self, step: int) -> int:
+        """One step while a link slides, else up to the next look, which comes after a step."""
+        return 1 if self._slides else -step % EVERY + 1
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """See how links slide after the step that began at count `step`; now and then, which."""

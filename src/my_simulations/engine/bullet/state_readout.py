@@ -78,6 +78,12 @@ class StateReadout:
         for part in body.parts:
             self._offsets.pop(part.row, None)
 
+    def clear(self) -> None:
+        """All bodies are gone; their rows stay as they are."""
+        for table in (self._awake, self._trees, self._resting, self._guards, self._touched,
+                      self._offsets):
+            table.clear()
+
     def touch(self, body: Body) -> None:
         """The body may have moved: read it until it rests again."""
         body.still = 0

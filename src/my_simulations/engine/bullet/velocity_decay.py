@@ -41,7 +41,14 @@ class VelocityDecay:
         """True when no link is slowed down."""
         return not self._links
 
-    def apply(self, dt: float) -> None:
+    def ahead(self, step: int) -> int:
+        """It acts in every step."""
+        return 1
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act in the next step, of `dt` s."""
         for body, part, linear_share, angular_share in self._links.values():
             at, turn, linear, angular = _motion(body, part)
