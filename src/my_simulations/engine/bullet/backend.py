@@ -79,7 +79,7 @@ class BulletBackend:
         self._holds = PinnedBodies(self._waker.around)
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
-        self._settling = ContactSettling()
+        self._settling = ContactSettling(lambda: self._forces.loaded_bodies)
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)
@@ -349,6 +349,7 @@ class BulletBackend:
         """A command reached a body."""
         self._readout.touch(body)
         self._friction.touched(body)
+        self._settling.touched(body)
         self._residual.touched(body)
         self._rolling.touched(body)
         self._sliding.touched(body)

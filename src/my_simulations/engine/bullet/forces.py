@@ -109,6 +109,11 @@ class Forces:
         """Rows of the links that a timed wrench acts on in this step."""
         return {force.row for force in self._acting.values() if isinstance(force, TimedWrench)}
 
+    @property
+    def loaded_bodies(self) -> Set[int]:
+        """PyBullet's numbers of the bodies that timed forces act on in this step."""
+        return {self._target(force).uid for force in self._acting.values()}
+
     def ahead(self, step: int) -> int:
         """One step while something acts anew in each."""
         return 1 if self._timed or self._weightless or self._implicit else FAR
