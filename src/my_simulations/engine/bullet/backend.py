@@ -52,7 +52,7 @@ from .sliding import Sliding
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
-from .step_helper import make_steps
+from .step_helper import StepLoop
 from .velocity_decay import VelocityDecay
 from .wake_up import WakeUp
 
@@ -85,10 +85,15 @@ class BulletBackend:
         self._motors = JointMotors(self._axes, self._waker.around)
         self._planar = PlanarMotion(self._models, self._mover.model_pose, self._waker.around)
         # What acts around the steps, in the order in which it does.
-        self._helpers = (self._friction, self._settling, self._forces, self._decay, self._planar,
-                         self._rolling, self._spin, self._residual, self._sliding, self._holds)
+        helpers = (self._friction, self._settling, self._forces, self._decay, self._planar,
+                   self._rolling, self._spin, self._residual, self._sliding, self._holds)
+        self._loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
-        self._keepers = (*self._helpers, self._ties, self._motors, self._readout)
+        self._keepers = (*helpers, self._ties, self._motors, self._readout)
+        # Whom it concerns that a command, or a force that begins, reaches a body.
+        self._hearers = (self._readout.touch, *(part.touched for part in (
+            self._loop, self._friction, self._settling, self._residual, self._rolling,
+            self._sliding)))
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -136,8 +141,7 @@ class BulletBackend:
         """Make `count` steps."""
         self._settle()
         self._readout.stepped()
-        make_steps(self._helpers, first, count, self._settings.step_size, self._settings.gravity,
-                   pybullet.stepSimulation)
+        self._loop.run(first, count, self._settings.step_size, self._settings.gravity)
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -347,12 +351,8 @@ class BulletBackend:
 
     def _touched(self, body: Body) -> None:
         """A command reached a body."""
-        self._readout.touch(body)
-        self._friction.touched(body)
-        self._settling.touched(body)
-        self._residual.touched(body)
-        self._rolling.touched(body)
-        self._sliding.touched(body)
+        for hear in self._hearers:
+            hear(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

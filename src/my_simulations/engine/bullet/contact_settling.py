@@ -31,6 +31,7 @@ import pybullet
 
 from ...geometry import Pose, Vec3
 from .bodies import Body
+from .step_helper import FAR, next_multiple
 
 JointStates = Sequence[Any]  # as PyBullet tells them
 
@@ -131,15 +132,13 @@ class ContactSettling:
         if tree is not None:
             tree.looks, tree.held = 0, None
 
-    @property
-    def idle(self) -> bool:
-        """True when no body can need it."""
-        return not (self._trees or self._rigid or self._new or self._until is not None)
-
-    def ahead(self, step: int) -> int:
-        """Up to the next look."""
-        every = EVERY if self._trees or self._until is not None else _RIGID_EVERY
-        return every - step % every
+    def due(self, step: int) -> int:
+        """At once when something was put in, else the next look."""
+        if self._new:
+            return step
+        if self._trees or self._until is not None:
+            return next_multiple(step, EVERY)
+        return next_multiple(step, _RIGID_EVERY) if self._rigid else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""

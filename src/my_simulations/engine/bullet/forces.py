@@ -100,11 +100,6 @@ class Forces:
         self._placed.clear()
 
     @property
-    def idle(self) -> bool:
-        """True when a step needs nothing from here, now or later."""
-        return not (self._timed or self._weightless or self._implicit or self._placed)
-
-    @property
     def wrenched_links(self) -> Set[int]:
         """Rows of the links that a timed wrench acts on in this step."""
         return {force.row for force in self._acting.values() if isinstance(force, TimedWrench)}
@@ -114,9 +109,10 @@ class Forces:
         """PyBullet's numbers of the bodies that timed forces act on in this step."""
         return {self._target(force).uid for force in self._acting.values()}
 
-    def ahead(self, step: int) -> int:
-        """One step while something acts anew in each."""
-        return 1 if self._timed or self._weightless or self._implicit else FAR
+    def due(self, step: int) -> int:
+        """Each step while something acts anew in it, or was put somewhere before it."""
+        return step if (self._timed or self._weightless or self._implicit
+                        or self._placed) else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Forget who was put somewhere before the step."""

@@ -16,6 +16,7 @@ import pybullet
 from ...geometry import Quat, Vec3, conjugate, multiply, normalised, rotate
 from .bodies import Body
 from .gyroscopic_articulated import GyroscopicArticulated
+from .step_helper import FAR, next_multiple
 
 _EVERY = 16        # steps between two looks for fast bodies
 _FAST = 1.0        # rad/s
@@ -61,18 +62,15 @@ class GyroscopicRigid:
         self._free.clear()
         self._trees.clear()
 
-    @property
-    def idle(self) -> bool:
-        """True when no body can need it."""
-        return not self._moments and self._trees.idle
-
     def moved(self, body: Body) -> None:
         """A body was put somewhere, or given another velocity."""
         self._trees.moved(body)
 
-    def ahead(self, step: int) -> int:
-        """One step while something turns fast, else up to the next look."""
-        return 1 if self._fast or self._trees.busy else _EVERY - step % _EVERY
+    def due(self, step: int) -> int:
+        """Each step while something turns fast, else the next look."""
+        if self._fast or self._trees.busy:
+            return step
+        return FAR if not self._moments and self._trees.idle else next_multiple(step, _EVERY)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """See now and then who turns fast, and note their momentum."""

@@ -20,6 +20,7 @@ import pybullet
 
 from ...geometry import Vec3
 from .bodies import Body
+from .step_helper import FAR
 
 Node = Tuple[int, int]  # body uid, link index
 Pair = FrozenSet[Node]
@@ -104,11 +105,6 @@ class FrictionBalance:
             if (body.uid, part.index) in self._free:
                 self._soon[body.uid, part.index] = None
 
-    @property
-    def idle(self) -> bool:
-        """True when every pair there can be is exact as stored."""
-        return not self._free
-
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Look at contacts; where they are others than before, store new values.
 
@@ -127,13 +123,15 @@ class FrictionBalance:
         if nodes:
             self._solve(nodes, sorted(self._pairs, key=sorted))
 
-    def ahead(self, step: int) -> int:
-        """Up to the next look at which somebody is asked."""
-        look = step // EVERY + 1
+    def due(self, step: int) -> int:
+        """The next look at which somebody is asked."""
+        if not self._free:
+            return FAR
+        look = -(-step // EVERY)
         if not (self._soon or self._ring):
             look = next((each for each in range(look, look + _SLOTS)
-                         if self._slots[each % _SLOTS]), look)
-        return look * EVERY - step
+                         if self._slots[each % _SLOTS]), FAR)
+        return look * EVERY
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""

@@ -10,6 +10,7 @@ from ...geometry import Pose, Vec3, cross, rpy_from_quat, subtract
 from ..commands import PlanarVelocity
 from .bodies import Body
 from .state_restore import Entry
+from .step_helper import FAR
 
 
 class PlanarMotion:
@@ -21,11 +22,6 @@ class PlanarMotion:
         self._model_pose = model_pose
         self._wake = wake
         self._velocities: Dict[int, PlanarVelocity] = {}
-
-    @property
-    def idle(self) -> bool:
-        """True when no model is told how to move."""
-        return not self._velocities
 
     def set(self, velocities: Iterable[PlanarVelocity]) -> None:
         """Move these models, and no others; those that have gone are ignored."""
@@ -44,9 +40,9 @@ class PlanarMotion:
         """All bodies are gone."""
         self._velocities.clear()
 
-    def ahead(self, step: int) -> int:
-        """It acts in every step."""
-        return 1
+    def due(self, step: int) -> int:
+        """Each step, when a model is told how to move."""
+        return step if self._velocities else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""

@@ -17,7 +17,7 @@ import pybullet
 
 from ...geometry import Vec3, conjugate, cross, dot, norm, rotate
 from .bodies import Body
-from .step_helper import looks_until_turn, turn_of
+from .step_helper import FAR, looks_until_turn, turn_of
 
 EVERY = 8
 """Steps between two looks at the fast bodies."""
@@ -94,24 +94,20 @@ class ResidualFriction:
                 self._asleep.discard(body.uid)
                 self._rounds = None
 
-    @property
-    def idle(self) -> bool:
-        """True when no body can need it."""
-        return not self._watched
-
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing before a step."""
 
-    def ahead(self, step: int) -> int:
-        """One step while bodies are mended, else up to the next look, which comes after a step."""
+    def due(self, step: int) -> int:
+        """Each step while bodies are mended, else the next look, which comes after a step."""
+        if not self._watched:
+            return FAR
         if self._mended:
-            return 1
+            return step
         look = -(-step // EVERY)
         awake, asleep = self._lists()
-        looks = min(looks_until_turn(len(awake), look, _ROUNDS),
-                    looks_until_turn(len(asleep), look, _SLOW_ROUNDS),
-                    looks_until_turn(len(self._fast), look, _FAST_ROUNDS))
-        return (look + looks) * EVERY - step + 1
+        return EVERY * (look + min(looks_until_turn(len(awake), look, _ROUNDS),
+                                   looks_until_turn(len(asleep), look, _SLOW_ROUNDS),
+                                   looks_until_turn(len(self._fast), look, _FAST_ROUNDS)))
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Mend what the step that began at count `step` left, and look around now and then."""

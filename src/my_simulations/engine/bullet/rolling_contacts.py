@@ -27,6 +27,7 @@ from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
+from .step_helper import FAR, next_multiple
 
 EVERY = 8
 """Steps between two looks at who lies."""
@@ -38,6 +39,7 @@ _CREEP = 5e-3     # m/s: what rolls slower stands
 _TURN = 0.2       # rad/s: the same for its turning
 _LEVEL = 1e-3     # of gravity along the floor: less is a level one
 _ASLEEP = 3       # looks without velocity: it sleeps, and Bullet leaves it alone
+_HINGED = 3       # looks until a wheel that rolls is looked at again
 _PATIENCE = 8     # looks until one that sleeps, or stands on its end, is looked at again
 _SHIFT = 1e-5     # m between two looks: less is not its own
 _NONE = (0.0, 0.0, 0.0)
@@ -100,11 +102,6 @@ class RollingContacts:
         self._standing.clear()
         self._moving.clear()
 
-    @property
-    def idle(self) -> bool:
-        """True when no link can need it."""
-        return not self._rollers
-
     def touched(self, body: Body) -> None:
         """A rigid body was put somewhere or given another velocity: it may roll at once."""
         self._standing.pop(body.uid, None)
@@ -130,9 +127,11 @@ class RollingContacts:
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 
-    def ahead(self, step: int) -> int:
-        """One step while something rolls, or stands, else up to the next look."""
-        return 1 if self._rolling or self._standing else EVERY - step % EVERY
+    def due(self, step: int) -> int:
+        """Each step while something rolls, or stands, else the next look."""
+        if self._rolling or self._standing:
+            return step
+        return next_multiple(step, EVERY) if self._rollers else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""
@@ -170,6 +169,8 @@ class RollingContacts:
             if _slow(linear, angular) and self._on_level(contacts, gravity):
                 self._stand(uid, before)
                 return False
+        else:
+            roller.wait = _HINGED
         return True
 
     def _part(self, roller: _Roller, contacts: Tuple[Any, ...], dt: float, weight: float) -> None:

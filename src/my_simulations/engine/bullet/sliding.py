@@ -21,6 +21,7 @@ import pybullet
 from ...description.model import Link
 from ...geometry import Vec3, add, cross, dot, norm, scale
 from .bodies import Body, Part
+from .step_helper import FAR, next_multiple
 from .surface_coefficients import directed
 
 EVERY = 16
@@ -99,11 +100,6 @@ class Sliding:
         for table in (self._static, self._parts, self._mass, self._slides):
             table.clear()
 
-    @property
-    def idle(self) -> bool:
-        """True when no link can need it."""
-        return not (self._wanted and self._parts)
-
     def touched(self, body: Body) -> None:
         """A body was put somewhere or given another velocity."""
         for key in [key for key in self._slides if key[0] == body.uid]:
@@ -120,9 +116,11 @@ class Sliding:
             for at, force in slide.forces.items():
                 pybullet.applyExternalForce(uid, index, force, at, pybullet.WORLD_FRAME)
 
-    def ahead(self, step: int) -> int:
-        """One step while a link slides, else up to the next look, which comes after a step."""
-        return 1 if self._slides else -step % EVERY + 1
+    def due(self, step: int) -> int:
+        """Each step while a link slides, else the next look, which comes after a step."""
+        if self._slides:
+            return step
+        return next_multiple(step, EVERY) if self._wanted and self._parts else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """See how links slide after the step that began at count `step`; now and then, which."""

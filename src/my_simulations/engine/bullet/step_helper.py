@@ -29,41 +29,60 @@ class StepHelper(BodyKeeper, Protocol):
     many steps are made in one go: so runs repeat bit for bit.
     """
 
-    @property
-    def idle(self) -> bool:
-        """True when it has nothing to do before the next command."""
-
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act before the step of `dt` s that begins at count `step`."""
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act after the step that began at count `step`."""
 
-    def ahead(self, step: int) -> int:
-        """How many steps may be made in one go after `before` was called for `step`.
+    def due(self, step: int) -> int:
+        """The first step from count `step` on around which it acts, as far as is known now.
 
-        `after` is then called for the last of them. At least 1; for a step in between both would
-        have done nothing.
+        `FAR` for none. It stays right until the helper has acted or a command reached a body.
         """
 
 
-def make_steps(helpers: Sequence[StepHelper], first: int, count: int, dt: float, gravity: Vec3,
-               one: Callable[[], object]) -> None:
-    """Make `count` steps from count `first` on with `one`; between two acts of helpers no calls."""
-    active = [helper for helper in helpers if not helper.idle]
-    step, end = first, first + count
-    while step < end:
-        ahead = end - step
-        for helper in active:
-            helper.before(step, dt, gravity)
-        for helper in active:
-            if ahead > 1:
-                ahead = min(ahead, helper.ahead(step))
-        for _ in range(ahead):
+class StepLoop:
+    """Makes steps and calls helpers around those where they are due, in their order."""
+
+    def __init__(self, helpers: Sequence[StepHelper], one: Callable[[], object]) -> None:
+        """`one` makes a step."""
+        self._helpers = helpers
+        self._one = one
+        self._touched = False
+
+    def touched(self, body: Body) -> None:
+        """A command, or a force that begins, reached a body: others may be due."""
+        self._touched = True
+
+    def run(self, first: int, count: int, dt: float, gravity: Vec3) -> None:
+        """Make `count` steps of `dt` s from count `first` on."""
+        helpers, one = self._helpers, self._one
+        step, end = first, first + count
+        dues = [helper.due(step) for helper in helpers]
+        while step < end:
+            free = min(min(dues), end) - step
+            if free > 0:
+                for _ in range(free):
+                    one()
+                step += free
+                continue
+            self._touched = False
+            for helper, due in zip(helpers, dues):
+                if due <= step or self._touched and helper.due(step) <= step:
+                    helper.before(step, dt, gravity)
             one()
-        step += ahead
-        for helper in active:
-            helper.after(step - 1, dt, gravity)
+            for helper, due in zip(helpers, dues):
+                if due <= step or self._touched and helper.due(step) <= step:
+                    helper.after(step, dt, gravity)
+            step += 1
+            dues = [helper.due(step) if due < step or self._touched else due
+                    for helper, due in zip(helpers, dues)]
+
+
+def next_multiple(step: int, every: int) -> int:
+    """The first multiple of `every` from `step` on."""
+    return step + -step % every
 
 
 _FEWEST = 8  # items a turn: a look costs about as much as asking two of them

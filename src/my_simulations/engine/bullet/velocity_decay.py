@@ -13,6 +13,7 @@ from ...description.model import Link
 from ...geometry import Vec3, conjugate, rotate, scale
 from ..body_plan import BASE
 from .bodies import Body, Part
+from .step_helper import FAR
 
 
 class VelocityDecay:
@@ -36,14 +37,9 @@ class VelocityDecay:
         """All bodies are gone."""
         self._links.clear()
 
-    @property
-    def idle(self) -> bool:
-        """True when no link is slowed down."""
-        return not self._links
-
-    def ahead(self, step: int) -> int:
-        """It acts in every step."""
-        return 1
+    def due(self, step: int) -> int:
+        """Each step, when a link is slowed down."""
+        return step if self._links else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""
