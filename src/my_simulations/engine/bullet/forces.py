@@ -9,11 +9,11 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
-from ..body_plan import BASE
 from ..commands import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
+from .link_states import place
 from .step_helper import FAR
 
 _NOTHING = (0.0, 0.0, 0.0)
@@ -135,7 +135,7 @@ class Forces:
             pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.TORQUE_CONTROL,
                                            force=effort)
         for body, part in self._weightless.values():
-            at = self._com(body, part)[0]
+            at = place(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
 
@@ -181,7 +181,7 @@ class Forces:
         body, part = self._parts[wrench.row]
         if not body.moves:
             return
-        at, turn = self._com(body, part)
+        at, turn = place(body.uid, part.index)
         force, torque, point = wrench.force, wrench.torque, wrench.point
         if wrench.in_link_axes:
             # The link's axes, not the principal ones that PyBullet's frame follows.
@@ -196,12 +196,6 @@ class Forces:
             _spin_up(body.uid, turn, part.moments, scale(torque, dt))
         elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
-
-    @staticmethod
-    def _com(body: Body, part: Part) -> "tuple":
-        if part.index == BASE:
-            return pybullet.getBasePositionAndOrientation(body.uid)
-        return pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)[:2]
 
 
 def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:

@@ -27,6 +27,7 @@ from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
+from .link_states import place
 from .step_helper import FAR, next_multiple
 
 EVERY = 8
@@ -148,12 +149,10 @@ class RollingContacts:
                     roller.wait = _PATIENCE
                 return False
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
-        elif index == BASE:
-            turn = pybullet.getBasePositionAndOrientation(uid)[1]
+        elif index != BASE and abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
+            return False
         else:
-            if abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
-                return False
-            turn = pybullet.getLinkState(uid, index, computeForwardKinematics=1)[1]
+            turn = place(uid, index)[1]
         axis = rotate(turn, roller.axis)
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
         if roller.body.rigid:

@@ -21,6 +21,7 @@ import pybullet
 from ...description.model import Link
 from ...geometry import Vec3, add, cross, dot, norm, scale
 from .bodies import Body, Part
+from .link_states import motion
 from .step_helper import FAR, next_multiple
 from .surface_coefficients import directed
 
@@ -198,9 +199,7 @@ class Sliding:
 
 def _slips(uid: int, index: int, contacts: Contacts) -> List[Vec3]:
     """The velocity of a link across the floor at each contact, m/s."""
-    # With forward kinematics: else the answer depends on whether somebody has read the link before.
-    state = pybullet.getLinkState(uid, index, computeLinkVelocity=1, computeForwardKinematics=1)
-    centre, linear, angular = state[0], state[6], state[7]
+    centre, _, linear, angular = motion(uid, index)
     found: List[Vec3] = []
     for contact in contacts:
         at, normal = contact[5], contact[7]

@@ -17,6 +17,7 @@ from ...geometry import IDENTITY, Pose, inverse
 from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
 from .bodies import Body
+from .link_states import motions
 
 _ROW = struct.Struct("=13d")
 _PLACE = struct.Struct("=7d")
@@ -254,11 +255,10 @@ class StateReadout:
                            *angular)
             total += sum(position) + sum(turn) + sum(linear) + sum(angular)
             hung = body.parts[1:]
-        states = pybullet.getLinkStates(uid, [part.index for part in hung],
-                                        computeLinkVelocity=1, computeForwardKinematics=1)
-        for part, state in zip(hung, states):
-            _ROW.pack_into(links, part.row * _ROW.size, *state[0], *state[1], *state[6], *state[7])
-            total += sum(state[0]) + sum(state[6])
+        for part, state in zip(hung, motions(uid, [part.index for part in hung])):
+            _ROW.pack_into(links, part.row * _ROW.size, *state.position, *state.orientation,
+                           *state.linear, *state.angular)
+            total += sum(state.position) + sum(state.linear)
         if body.axes:
             states = pybullet.getJointStates(uid, [axis.index for axis in body.axes])
             for axis, state in zip(body.axes, states):
