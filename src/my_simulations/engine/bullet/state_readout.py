@@ -261,9 +261,9 @@ class StateReadout:
             total += sum(state.position) + sum(state.linear)
         if body.axes:
             states = pybullet.getJointStates(uid, [axis.index for axis in body.axes])
-            for axis, state in zip(body.axes, states):
-                _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, *state[:2])
-                total += state[0] + state[1]
+            for axis, (at, rate, *_) in zip(body.axes, states):
+                _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, at, rate)
+                total += at + rate
         if total - total != 0.0:
             self._diverged(body)
             return
