@@ -40,6 +40,7 @@ _RIGID_EVERY = 256    # and at rigid ones, of which there may be hundreds
 _SLOW = 0.02          # m/s and rad/s: of the base, and of all joints
 _STILL = 2e-5         # m/s and rad/s, of the base: more is a motion of its own
 _STILL_JOINT = 1e-4   # rad/s or m/s
+_CLEAR = 3            # looks
 _STANDS = 32          # looks: to be held, an acceleration must be below 4e-5 m/s^2
 _PUSHED = 2e-3        # m/s and rad/s, of the base: one that is held has less between two looks
 _PUSHED_JOINT = 0.05  # rad/s or m/s
@@ -60,12 +61,14 @@ class _Tree:
     Attributes:
         indices: of its axes.
         looks: in a row at which it stood still.
+        clear: looks for which an arm that touched nothing need not be asked what it touches.
         held: where its base, if it has a free one, and its axes are put back to; None: it is not.
     """
 
     body: Body
     indices: List[int]
     looks: int = 0
+    clear: int = 0
     held: Optional[Tuple[Optional[Pose], List[float]]] = None
 
 
@@ -130,7 +133,7 @@ class ContactSettling:
         """A command reached a body: it may move from now on."""
         tree = self._trees.get(body.uid)
         if tree is not None:
-            tree.looks, tree.held = 0, None
+            tree.looks, tree.clear, tree.held = 0, 0, None
 
     def due(self, step: int) -> int:
         """At once when something was put in, else the next look."""
@@ -172,9 +175,12 @@ class ContactSettling:
         if speed > _SLOW or fastest > _SLOW and held is None:
             tree.looks = 0
             return False
+        if tree.clear:
+            tree.clear -= 1
+            return False
         contacts = pybullet.getContactPoints(bodyA=body.uid)
         if not contacts:
-            tree.looks = 0
+            tree.looks, tree.clear = 0, _CLEAR if body.base is None else 0
             return False
         alone = not (body.ties or body.balls or body.uid in self._loaded()
                      or any(contact[2] in self._moving for contact in contacts))

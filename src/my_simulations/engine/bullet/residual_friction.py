@@ -29,7 +29,8 @@ _FAST = 0.05       # m/s, or rad/s: slower ones lose nothing that one sees
 _TUMBLES = 1.5     # rad/s across gravity: nobody knows how far a body that turns over slides
 _CLEAR = 24        # looks for which what flies clear of everything is not asked
 _REACH = 0.02      # m: contacts exist a little before surfaces meet
-_KEPT = 16         # looks for which a body is asked in every step, once it slides or after a find
+_FIRST = 3         # looks for which a body is asked in every step, once it slides
+_KEPT = 16         # the same after a find
 _MOST_CONTACTS = 8 # a body with more, or that touches two that move, lies in a pile: as tumbling
 _SOON = -1         # instead of a look: it is not known yet which comes next
 _NONE = (0.0, 0.0, 0.0)
@@ -125,8 +126,10 @@ class ResidualFriction:
     def _keep_on(self, uid: int, found: int, look: int) -> bool:
         """Go on mending a body in every step, or not. Returns False when it flies."""
         until = self._mended[uid]
-        if found == _MENDED or (found == _SLIDES and until == _SOON):
+        if found == _MENDED:
             self._mended[uid] = look + _KEPT
+        elif found == _SLIDES and until == _SOON:
+            self._mended[uid] = look + _FIRST
         elif found != _SLIDES or look > until:
             del self._mended[uid]
             if found == _PILED:
@@ -175,7 +178,7 @@ class ResidualFriction:
             return False
         elif uid not in self._fast:
             self._fast[uid] = None
-            self._mended[uid] = look + _KEPT
+            self._mended[uid] = look + _FIRST
         return True
 
     def _look_ahead(self, uid: int, look: int, dt: float, gravity: Vec3) -> None:

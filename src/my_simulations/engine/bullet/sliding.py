@@ -14,7 +14,7 @@ friction back every 64 steps, for as long as that slows it down, and keeps it wh
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Set, Tuple
 
 import pybullet
 
@@ -28,6 +28,7 @@ from .surface_coefficients import directed
 EVERY = 16
 """Steps between two looks at who slides."""
 
+_SELDOM = 4        # looks until one that hangs on the world is looked at again
 _SLIDES = 2e-3     # m/s of slip: a link at rest never has it
 _HELD = 5e-4       # m/s: what slips less than that is held
 _SOFT = 4.0        # steps of braking by friction: a slip that ends sooner meets less of it
@@ -67,6 +68,7 @@ class Sliding:
     def __init__(self) -> None:
         self._parts: Dict[int, Dict[int, Part]] = {}
         self._mass: Dict[int, float] = {}
+        self._fixed: Set[int] = set()
         self._static: Dict[int, float] = {}
         self._slides: Dict[Key, _Slide] = {}
         self._wanted = True
@@ -87,9 +89,12 @@ class Sliding:
         elif part.mu > 0.0 and any(axis.index == part.index for axis in body.axes):
             self._parts.setdefault(body.uid, {})[part.index] = part
             self._mass[body.uid] = sum(each.mass for each in body.parts)
+            if body.base is None:
+                self._fixed.add(body.uid)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
+        self._fixed.discard(body.uid)
         for uid in body.uids:
             for table in (self._static, self._parts, self._mass):
                 table.pop(uid, None)
@@ -100,6 +105,7 @@ class Sliding:
         """All bodies are gone."""
         for table in (self._static, self._parts, self._mass, self._slides):
             table.clear()
+        self._fixed.clear()
 
     def touched(self, body: Body) -> None:
         """A body was put somewhere or given another velocity."""
@@ -126,8 +132,10 @@ class Sliding:
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """See how links slide after the step that began at count `step`; now and then, which."""
         if step % EVERY == 0 and self._wanted:
+            seldom = step % (_SELDOM * EVERY) == 0
             for uid, parts in self._parts.items():
-                self._look(uid, parts)
+                if seldom or uid not in self._fixed:
+                    self._look(uid, parts)
         if self._slides:
             least = norm(gravity)
             for key, slide in list(self._slides.items()):
