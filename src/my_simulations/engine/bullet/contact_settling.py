@@ -49,7 +49,10 @@ _NONE = (0.0, 0.0, 0.0)
 _SMALL = 0.06         # m, radius: such a body creeps on the level too
 _RESIDUALS = (1e-7, 1e-11, 1e-15)  # PyBullet's own; for leaning bodies; for standing robots
 _MORE_ITERATIONS = 4
-_PARTING = 1.0        # s
+_PARTING = 1.0        # s, at most
+_LEAST = 0.1          # s, at least: what is put down a little higher has landed
+_SHALLOW = 1e-4       # m: overlaps that may part with velocity
+_OVERLAPS_EVERY = 64  # steps between two looks at them
 _PAST_STOP = 1e-6     # rad or m past a stop that do not matter
 _PUT_BACK = 0.5       # share of the way back to the stop at each look
 
@@ -87,7 +90,7 @@ class ContactSettling:
         self._level = 0
         self._leaning = False
         self._iterations = 50
-        self._parting_steps = 1000
+        self._parting_steps, self._least_steps = 1000, 100
         self._new = False                     # something was put in since the last look
         self._until: Optional[int] = None     # the step at which split impulses end
 
@@ -97,7 +100,7 @@ class ContactSettling:
         `dt`: the step size, s.
         """
         self._iterations = iterations
-        self._parting_steps = round(_PARTING / dt)
+        self._parting_steps, self._least_steps = round(_PARTING / dt), round(_LEAST / dt)
         pybullet.setPhysicsEngineParameter(splitImpulsePenetrationThreshold=0.0)
         self._split(self._new or self._until is not None)
         self._use(self._level)
@@ -153,7 +156,8 @@ class ContactSettling:
             self._split(True)
         if step % EVERY:
             return
-        if self._until is not None and step >= self._until:
+        if self._until is not None and (step >= self._until or (
+                step % _OVERLAPS_EVERY == 0 and self._is_parted(step))):
             self._until = None
             self._split(False)
         if step % _RIGID_EVERY == 0:
@@ -165,6 +169,13 @@ class ContactSettling:
                 _put_back(tree.body, states)
             standing = self._stands(tree, states) or standing
         self._change(2 if standing else int(self._leaning))
+
+    def _is_parted(self, step: int) -> bool:
+        """Whether nothing lies deep in anything else any more."""
+        assert self._until is not None
+        if step < self._until - self._parting_steps + self._least_steps:
+            return False
+        return all(contact[8] > -_SHALLOW for contact in pybullet.getContactPoints())
 
     def _stands(self, tree: _Tree, states: JointStates) -> bool:
         """Whether an articulated body is slow, touches something, and is not held."""
