@@ -1,8 +1,7 @@
 """What keeps standing things where they stand.
 
-In the first second after something was put into the world overlaps are parted without giving
-velocity: with split impulses Bullet moves rigid bodies apart and
-leaves their momentum alone, so that a body that starts in a shelf does not jump out of it, and one
+After something was put into the world overlaps are parted without giving velocity, for a second at
+most: with split impulses Bullet moves rigid bodies apart and leaves their momentum alone, so that a body that starts in a shelf does not jump out of it, and one
 with a large moment of inertia does not turn on for ever. Their price is that Bullet forgets to put
 joints back that went past their stops, so that is done here, without velocity too.
 
