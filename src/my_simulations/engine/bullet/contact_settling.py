@@ -6,9 +6,9 @@ body that starts in a shelf does not jump out of it, and one with a large moment
 turn on for ever. Their price is that Bullet forgets to put joints back that went past their stops,
 so that is done here, without velocity too.
 
-With that, contacts may begin with 0.99 of the impulse that they had in the step before. The
-split impulses end once nothing is deep: with them a stack of ten boxes leans by 1 mm a second, and a
-wall of 200 bricks moves 1.7 mm in one (measured).
+With that, contacts may begin with 0.99 of the impulse that they had in the step before. The split
+impulses end once nothing is deep: with them a stack of ten boxes leans by 1 mm a second, and a wall
+of 200 bricks moves 1.7 mm in one (measured).
 
 Bullet ends its iterations once no row changes a velocity by more than sqrt(1e-7) m/s, at which a
 thing that stands may drift. Contacts of articulated bodies start from nothing in each step (there
