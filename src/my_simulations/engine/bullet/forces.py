@@ -9,18 +9,19 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
-from ..body_plan import BASE
 from ..commands import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part
 from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
+from .link_states import place
+from .step_helper import FAR
 
 _NOTHING = (0.0, 0.0, 0.0)
 
 
 class Forces:
-    """All that `apply` must do before the next step.
+    """All that must be done before the next step.
 
     Attributes:
         slip: links whose surfaces slip.
@@ -80,8 +81,8 @@ class Forces:
             self._limits.pop(axis.row, None)
         rows = {part.row for part in body.parts}
         axes = {axis.row for axis in body.axes}
-        self.clear([force.force_id for force in self._timed.values()
-                    if force.row in (rows if isinstance(force, TimedWrench) else axes)])
+        self.drop([force.force_id for force in self._timed.values()
+                   if force.row in (rows if isinstance(force, TimedWrench) else axes)])
 
     def add(self, forces: Sequence[TimedForce]) -> str:
         """Queue timed forces; returns why not, or ""."""
@@ -91,23 +92,20 @@ class Forces:
         self._timed.update({force.force_id: force for force in forces})
         return ""
 
-    def clear(self, force_ids: Sequence[int]) -> None:
+    def drop(self, force_ids: Sequence[int]) -> None:
         """Drop timed forces by id."""
         for force_id in force_ids:
             self._timed.pop(force_id, None)
             self._acting.pop(force_id, None)
             self._loops.pop(force_id, None)
 
-    def clear_all(self) -> None:
-        """Drop every timed force."""
-        for table in (self._timed, self._acting, self._loops):
+    def clear(self) -> None:
+        """All bodies are gone, and every timed force with them."""
+        for table in (self._timed, self._acting, self._loops, self._parts, self._axes,
+                      self._weightless, self._implicit, self._limits):
             table.clear()
         self.slip.clear()
-
-    @property
-    def idle(self) -> bool:
-        """True when a step needs nothing from here, now or later."""
-        return self.slip.idle and not (self._timed or self._weightless or self._implicit)
+        self._placed.clear()
 
     @property
     def wrenched_links(self) -> Set[int]:
@@ -123,11 +121,25 @@ class Forces:
         for wrench in self._acting.values():
             if isinstance(wrench, TimedWrench) and wrench.row == row:
                 body, part = self._parts[row]
-                one, other = _in_world(wrench, part, self._com(body, part)[1])
+                one, other = _in_world(wrench, part, place(body.uid, part.index)[1])
                 force, torque = add(force, one), add(torque, other)
         return force, torque
 
-    def apply(self, step: int, dt: float, gravity: Vec3) -> None:
+    @property
+    def loaded_bodies(self) -> Set[int]:
+        """PyBullet's numbers of the bodies that timed forces act on in this step."""
+        return {self._target(force).uid for force in self._acting.values()}
+
+    def due(self, step: int) -> int:
+        """Each step while something acts anew in it, or was put somewhere before it."""
+        return step if (self._timed or self._weightless or self._implicit
+                        or self._placed or not self.slip.idle) else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Forget who was put somewhere before the step."""
+        self._placed.clear()
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
         efforts: Dict[int, float] = {}
         if self._timed:
@@ -144,16 +156,11 @@ class Forces:
             pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.TORQUE_CONTROL,
                                            force=effort)
         for body, part in self._weightless.values():
-            at = self._com(body, part)[0]
+            at = place(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
         if not self.slip.idle:
             self.slip.apply(dt)
-        self._placed.clear()
-
-    def stepped(self) -> None:
-        """A step was made without `apply`."""
-        self._placed.clear()
 
     def _limited(self, force: TimedEffort, dt: float) -> float:
         """An effort within the limits of its axis, each by itself as in Gazebo.
@@ -179,7 +186,7 @@ class Forces:
         beginning = []
         for force_id, force in list(self._timed.items()):
             if step >= force.stop:
-                self.clear([force_id])
+                self.drop([force_id])
             elif step >= force.start and force_id not in self._acting:
                 self._acting[force_id] = force
                 if isinstance(force, TimedEffort) and force.pid is not None:
@@ -197,7 +204,7 @@ class Forces:
         body, part = self._parts[wrench.row]
         if not body.moves:
             return
-        at, turn = self._com(body, part)
+        at, turn = place(body.uid, part.index)
         force, torque = _in_world(wrench, part, turn)
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
@@ -205,12 +212,6 @@ class Forces:
             _spin_up(body.uid, turn, part.moments, scale(torque, dt))
         elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
-
-    @staticmethod
-    def _com(body: Body, part: Part) -> "tuple":
-        if part.index == BASE:
-            return pybullet.getBasePositionAndOrientation(body.uid)
-        return pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)[:2]
 
 
 def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:

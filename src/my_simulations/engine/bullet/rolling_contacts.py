@@ -28,16 +28,21 @@ from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
 from .extra_surfaces import SOFT
+from .link_states import place
+from .step_helper import FAR, next_multiple
 
 EVERY = 8
 """Steps between two looks at who lies."""
 
 _LYING = 0.1      # of the contact normal along the axis: less is a cylinder on its side
+_UPRIGHT = 0.9    # more is one on its end
 _TURNS = 0.01     # rad/s: joints slower than that need nothing
 _CREEP = 5e-3     # m/s: what rolls slower stands
 _TURN = 0.2       # rad/s: the same for its turning
 _LEVEL = 1e-3     # of gravity along the floor: less is a level one
 _ASLEEP = 3       # looks without velocity: it sleeps, and Bullet leaves it alone
+_HINGED = 3       # looks until a wheel that rolls is looked at again
+_PATIENCE = 8     # looks until one that sleeps, or stands on its end, is looked at again
 _SHIFT = 1e-5     # m between two looks: less is not its own
 _NONE = (0.0, 0.0, 0.0)
 
@@ -52,7 +57,9 @@ _CHANGE = 0.1       # smaller changes of the share are not worth a call
 class _Roller:
     """A round link: its axis in the frame of its principal axes; looks without velocity.
 
-    `hard`: its contacts are no springs, so how they part is ours to say.
+    Attributes:
+        hard: its contacts are no springs, so how they part is ours to say.
+        wait: looks at which it need not be looked at.
     """
 
     body: Body
@@ -61,6 +68,7 @@ class _Roller:
     meets: collision_groups.Filter
     hard: bool
     still: int = 0
+    wait: int = 0
     share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
 
 
@@ -104,29 +112,21 @@ class RollingContacts:
         self._moving.clear()
         self._seams.clear()
 
-    @property
-    def idle(self) -> bool:
-        """True when no link can need it."""
-        return not self._rollers
-
-    @property
-    def busy(self) -> bool:
-        """True when something must be done before every step."""
-        return bool(self._rolling or self._standing)
-
     def touched(self, body: Body) -> None:
         """A rigid body was put somewhere or given another velocity: it may roll at once."""
         self._standing.pop(body.uid, None)
         roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
         if roller is not None:
-            roller.still = 0
+            roller.still = roller.wait = 0
             self._rolling[body.uid, BASE] = roller.meets
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Act before the step of `dt` s that begins at count `step`."""
+        """Find out now and then who rolls, and let it roll in the next step."""
         if step % EVERY == 0:
             for key, roller in self._rollers.items():
-                if self._rolls(roller, dt, gravity):
+                if roller.wait:
+                    roller.wait -= 1
+                elif self._rolls(roller, dt, gravity):
                     self._rolling[key] = roller.meets
                 else:
                     self._rolling.pop(key, None)
@@ -137,6 +137,15 @@ class RollingContacts:
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 
+    def due(self, step: int) -> int:
+        """Each step while something rolls, or stands, else the next look."""
+        if self._rolling or self._standing:
+            return step
+        return next_multiple(step, EVERY) if self._rollers else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
     def _rolls(self, roller: _Roller, dt: float, gravity: Vec3) -> bool:
         """Whether a link lies on its side and does not stand; finds out whether it does."""
         uid, index = roller.body.uid, roller.part.index
@@ -146,14 +155,13 @@ class RollingContacts:
             if roller.still:
                 if roller.still >= _ASLEEP:
                     self._standing.pop(uid, None)
+                    roller.wait = _PATIENCE
                 return False
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
-        elif index == BASE:
-            turn = pybullet.getBasePositionAndOrientation(uid)[1]
+        elif index != BASE and abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
+            return False
         else:
-            if abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
-                return False
-            turn = pybullet.getLinkState(uid, index, computeForwardKinematics=1)[1]
+            turn = place(uid, index)[1]
         axis = rotate(turn, roller.axis)
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
         if roller.hard:
@@ -161,12 +169,16 @@ class RollingContacts:
         if not contacts:
             return (uid, index) in self._rolling
         if any(abs(dot(contact[7], axis)) > _LYING for contact in contacts):
+            roller.wait = _PATIENCE if all(
+                abs(dot(contact[7], axis)) > _UPRIGHT for contact in contacts) else 0
             return False
         if roller.body.rigid:
             before = self._standing.pop(uid, None)
             if _slow(linear, angular) and self._on_level(contacts, gravity):
                 self._stand(uid, before)
                 return False
+        else:
+            roller.wait = _HINGED
         return True
 
     def _part(self, roller: _Roller, contacts: Tuple[Any, ...], dt: float, weight: float) -> None:
