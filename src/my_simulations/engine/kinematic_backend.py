@@ -15,12 +15,14 @@ from .commands import (
     Command,
     ConnectModels,
     JointMotor,
+    JointWrench,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
     PlanarVelocity,
     ReadContacts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -29,6 +31,8 @@ from .commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetWheelSlips,
+    WheelSlip,
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
@@ -48,6 +52,8 @@ class KinematicBackend:
         self.held: Tuple[int, ...] = ()
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.wheel_slips: Dict[int, WheelSlip] = {}
+        self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
@@ -63,7 +69,11 @@ class KinematicBackend:
             PinModels: self._hold,
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
             SetPlanarVelocities: self._set_planar,
+            SetWheelSlips: lambda c: self.wheel_slips.update(
+                {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
+            ReadJointWrenches: lambda command: tuple(
+                self.joint_wrenches.get(key) for key in command.joints),
             ConnectModels: lambda _: None,
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
