@@ -54,6 +54,13 @@ class Joint(Protocol):
         """Turn the motor: to `rate` with `effort` at most; 0 effort turns it off."""
 
 
+class Ending(Protocol):
+    """Something that goes on until it is ended."""
+
+    def end(self) -> None:
+        """End it; nothing happens when it has ended already."""
+
+
 class Publication(Protocol):
     """A topic that the plugin publishes."""
 
@@ -90,10 +97,17 @@ class Context(Protocol):
     def step_size(self) -> float:
         """Of the simulation, s."""
 
-    def every(self, hertz: float, call: Callable[[], None]) -> None:
+    def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
-        0 or less is every step. The appointments are exact to the step and never drift.
+        0 or less is every step. The appointments are exact to the step and never drift. `end` of
+        what is returned ends them.
+        """
+
+    def once(self, ns: int, call: Callable[[], None]) -> "Ending":
+        """Be called in the first step that does not begin before a sim time (ns); not in this one.
+
+        When time is set, nothing is left of it.
         """
 
     # -- the model -------------------------------------------------------------------------------

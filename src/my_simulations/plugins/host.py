@@ -171,10 +171,12 @@ class PluginHost:
     def _serve(self, moment: Moment) -> None:
         """Call whose appointment it is."""
         for running in self._all():
-            for appointment in running.context.appointments:
-                if moment.step >= appointment.next:
+            for appointment in list(running.context.appointments):
+                if moment.step >= appointment.next and running.plugin is not None:
+                    if appointment.single:
+                        appointment.end()
+                    appointment.set_next(moment)
                     self._guarded(running, appointment.call)
-                    appointment.next = appointment.rate.after(moment.step, moment.clock)
 
     def _give_orders(self) -> None:
         """What plugins have ordered, in one command, for the models that there are now."""
@@ -233,8 +235,13 @@ class PluginHost:
 
     def _make_anew(self, moment: Moment) -> None:
         for running in self._all():
-            for appointment in running.context.appointments:
-                appointment.next = appointment.rate.after(moment.step, moment.clock)
+            for appointment in list(running.context.appointments):
+                if appointment.single and self._clock_was_set(moment):
+                    appointment.end()
+                appointment.set_next(moment)
+
+    def _clock_was_set(self, moment: Moment) -> bool:
+        return self._moment is not None and moment.clock_sets != self._moment.clock_sets
 
     def _publish(self, moment: Moment) -> None:
         transforms = []
@@ -338,7 +345,7 @@ class PluginHost:
         moment = context.moment = self._simulator.appointments.now()
         if self._guarded(running, running.plugin.load, patience=self._patience.longer()):
             for appointment in context.appointments:
-                appointment.next = appointment.rate.after(moment.step, moment.clock)
+                appointment.set_next(moment)
 
     def _tell_unknown(self, found: Found, entity: Entity, text: str) -> None:
         name = library_name(found.spec.filename)

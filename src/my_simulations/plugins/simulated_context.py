@@ -19,6 +19,7 @@ from ..sensing.api import RayFan, RayReturns, SensingError
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
+from ..simulator.wrenches import first_step
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
@@ -31,12 +32,32 @@ _LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
 
 
 class Appointment:
-    """Something that is called at a rate."""
+    """Something that is called at a rate, or once.
 
-    def __init__(self, hertz: float, call: Callable[[], None]) -> None:
-        self.rate = Rate(hertz)
+    Attributes:
+        call: what is called.
+        next: the step at which that is due.
+        single: whether it is over then.
+    """
+
+    def __init__(self, owner: "List[Appointment]", rate: Optional[Rate],
+                 call: Callable[[], None], ns: int = 0) -> None:
+        self._owner, self._rate, self._ns = owner, rate, ns
         self.call = call
         self.next = 0
+        self.single = rate is None
+
+    def set_next(self, moment: Moment) -> None:
+        """The first time after a moment."""
+        if self._rate is not None:
+            self.next = self._rate.after(moment.step, moment.clock)
+        else:
+            self.next = max(moment.step + 1, first_step(moment.clock, self._ns))
+
+    def end(self) -> None:
+        """Never again."""
+        if self in self._owner:
+            self._owner.remove(self)
 
 
 class SimulatedLink:
@@ -199,9 +220,19 @@ class SimulatedContext:
         """Of the simulation, s."""
         return self.simulator.physics.settings.max_step_size
 
-    def every(self, hertz: float, call: Callable[[], None]) -> None:
+    def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
         """Be called at a rate."""
-        self.appointments.append(Appointment(hertz, call))
+        return self._appointed(Appointment(self.appointments, Rate(hertz), call))
+
+    def once(self, ns: int, call: Callable[[], None]) -> Appointment:
+        """Be called once."""
+        return self._appointed(Appointment(self.appointments, None, call, ns))
+
+    def _appointed(self, made: Appointment) -> Appointment:
+        if self.moment is not None:
+            made.set_next(self.moment)
+        self.appointments.append(made)
+        return made
 
     # -- the model -------------------------------------------------------------------------------
 

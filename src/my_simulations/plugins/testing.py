@@ -68,6 +68,25 @@ class _Topic:
         self._messages.append(message)
 
 
+class _Call:
+    def __init__(self, owner: "List[_Call]", call: Callable[[], None], rate: Optional[Rate],
+                 ns: int = 0) -> None:
+        self._owner, self._rate, self._ns = owner, rate, ns
+        self.call = call
+
+    def is_due(self, step: int, now_ns: int, clock: Clock) -> bool:
+        if self._rate is not None:
+            return self._rate.is_at(step, clock)
+        if now_ns < self._ns:
+            return False
+        self.end()
+        return True
+
+    def end(self) -> None:
+        if self in self._owner:
+            self._owner.remove(self)
+
+
 class FakeContext:
     """A `Context` for tests.
 
@@ -120,7 +139,7 @@ class FakeContext:
         self._namespace = ""
         self._heard: Dict[str, Callable[[Any], None]] = {}
         self.services: Dict[str, Callable[[Any, Any], None]] = {}
-        self._calls: List[Tuple[Rate, Callable[[], None]]] = []
+        self._calls: List[_Call] = []
 
     # -- what a test does --------------------------------------------------------------------------
 
@@ -133,9 +152,9 @@ class FakeContext:
                     joint.velocity = joint.motor[0]
                     joint.position += joint.velocity * self.step_size
             self.step += 1
-            for rate, call in self._calls:
-                if rate.is_at(self.step, clock):
-                    call()
+            for one in list(self._calls):
+                if one in self._calls and one.is_due(self.step, self.now_ns, clock):
+                    one.call()
 
     def hear(self, topic: str, **fields: Any) -> None:
         """Have a message arrive; dictionaries are messages in it."""
@@ -148,9 +167,15 @@ class FakeContext:
         """Sim time."""
         return round(self.step * self.step_size * 1e9)
 
-    def every(self, hertz: float, call: Callable[[], None]) -> None:
+    def every(self, hertz: float, call: Callable[[], None]) -> Any:
         """Be called at a rate."""
-        self._calls.append((Rate(hertz), call))
+        self._calls.append(_Call(self._calls, call, Rate(hertz)))
+        return self._calls[-1]
+
+    def once(self, ns: int, call: Callable[[], None]) -> Any:
+        """Be called once."""
+        self._calls.append(_Call(self._calls, call, None, ns))
+        return self._calls[-1]
 
     def link(self, name: str) -> FakeLink:
         """A link."""
