@@ -12,8 +12,10 @@ from my_simulations.plugins.testing import FakeContext
 from my_simulations.plugins.world.buoyancy import Buoyancy
 from my_simulations.plugins.world.lift_drag import LiftDrag
 
-WING = """<plugin><link_name>wing</link_name><cla>4.75</cla><cda>0.6</cda><alpha_stall>0.34</alpha_stall>
-<cla_stall>-3.85</cla_stall><cda_stall>-0.9</cda_stall><area>0.5</area><air_density>1.2</air_density>
+WING = """<plugin><link_name>wing</link_name><cla>4.75</cla><cda>0.6</cda>
+<alpha_stall>0.34</alpha_stall>
+<cla_stall>-3.85</cla_stall><cda_stall>-0.9</cda_stall><area>0.5</area>
+<air_density>1.2</air_density>
 <cp>-0.05 0 0</cp></plugin>"""
 
 
