@@ -193,7 +193,7 @@ class Transceiver:
 
 @dataclass
 class Sensor:
-    """A sensor; `pose` in its link's frame (of a joint: in the child link's).
+    """A sensor; `pose` in its link's frame, of a joint in the joint's.
 
     `update_rate` 0 is every step. Of the blocks, those that the file has are set; `cameras` holds
     one of a camera or depth sensor, several of a multicamera. The link or joint keeps the XML of

@@ -16,12 +16,14 @@ from .commands import (
     ConnectModels,
     DisconnectModels,
     JointMotor,
+    JointWrench,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
     PlanarVelocity,
     ReadContacts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -50,6 +52,7 @@ class KinematicBackend:
         self.connected: Dict[str, ConnectModels] = {}
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
@@ -68,6 +71,8 @@ class KinematicBackend:
             ReadContacts: lambda _: (),
             ConnectModels: lambda c: self.connected.update({c.joint.name: c}),
             DisconnectModels: lambda c: [self.connected.pop(name, None) for name in c.names],
+            ReadJointWrenches: lambda command: tuple(
+                self.joint_wrenches.get(key) for key in command.joints),
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
             ),

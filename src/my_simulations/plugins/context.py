@@ -10,6 +10,7 @@ from typing import Any, Callable, Dict, List, Optional, Protocol
 
 from ..description.model import Inertial, Model
 from ..description.sensor import Sensor
+from ..engine.commands import JointWrench
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
 from ..sensing.api import RayFan, RayReturns
@@ -80,12 +81,14 @@ class Context(Protocol):
         parameters: what the `<plugin>` element says.
         sensor: the sensor that the plugin belongs to; None for a plugin of the model.
         sensor_link: the name of that sensor's link; "" without one.
+        sensor_joint: the name of that sensor's joint; "" without one.
     """
 
     model: str
     parameters: Parameters
     sensor: Optional[Sensor]
     sensor_link: str
+    sensor_joint: str
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -176,6 +179,13 @@ class Context(Protocol):
 
     def set_joint_positions(self, positions: "dict[str, float]") -> None:
         """Move joints (rad or m) at once, at rest."""
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a joint of the model, a fixed one too, transmitted in the last step.
+
+        The first answer is None, and so is the one after a reset; so ask once in `load`. Raises
+        PluginError with the names of the joints that there are.
+        """
 
     def contacts(self) -> "List[Any]":
         """The contacts of the last step: (link, other link, `engine.commands.Contact`).

@@ -332,7 +332,8 @@ class PluginHost:
 
     def _load(self, entity: Entity, into: List[Running], found: Found) -> None:
         context = SimulatedContext(self._simulator, self._graph, entity, found.spec, found.scope,
-                                   self._log, self.wake, self._eyes, found.sensor, found.link)
+                                   self._log, self.wake, self._eyes, found.sensor, found.link,
+                                   found.joint)
         running = Running(found, context, None)
         into.append(running)
         if self._registry.is_provided(found.spec.filename):

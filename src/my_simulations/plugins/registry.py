@@ -29,6 +29,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_force.so": "state.force:Force",
     "libgazebo_ros_joint_pose_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
     "libgazebo_ros_joint_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
+    "libgazebo_ros_ft_sensor.so": "state.ft_sensor:FtSensor",
     "libgazebo_ros_hand_of_god.so": "state.hand_of_god:HandOfGod",
     "libroboticsgroup_gazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
     "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",

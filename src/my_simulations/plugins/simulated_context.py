@@ -12,7 +12,7 @@ from ..description.model import Inertial, Mimic, Model
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
-from ..engine.commands import JointMotor, PlanarVelocity
+from ..engine.commands import JointMotor, JointWrench, PlanarVelocity
 from ..errors import CommandError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import RayFan, RayReturns, SensingError
@@ -135,10 +135,11 @@ class SimulatedContext:
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
                  scope: str, report: Report, wake: Callable[[], None],
-                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "") -> None:
+                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 sensor_joint: str = "") -> None:
         self.simulator = simulator
         self.model = entity.model.name
-        self.sensor, self.sensor_link = sensor, sensor_link
+        self.sensor, self.sensor_link, self.sensor_joint = sensor, sensor_link, sensor_joint
         self.spec = spec
         self._graph, self._scope, self._report, self._wake = graph, scope, report, wake
         self.parameters = Parameters(spec.xml, self.warn)
@@ -275,14 +276,23 @@ class SimulatedContext:
     def joint(self, name: str) -> SimulatedJoint:
         """A joint of the model that moves."""
         if name not in self._joints:
-            known = {joint.name: joint for joint in self.entity.model.joints}
-            spec = known.get(self._scope + name) or known.get(name)
-            if spec is None:
-                raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+            spec = self._joint_spec(name)
             joint = SimulatedJoint(self, spec, name)
             joint.row = self._axis_row(spec.name)
             self._joints[name] = joint
         return self._joints[name]
+
+    def _joint_spec(self, name: str) -> JointSpec:
+        known = {joint.name: joint for joint in self.entity.model.joints}
+        spec = known.get(self._scope + name) or known.get(name)
+        if spec is None:
+            raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+        return spec
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a joint transmitted in the last step."""
+        spec = self._joint_spec(name)
+        return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
 
     def _link_row(self, name: str) -> int:
         names = self.entity.link_names

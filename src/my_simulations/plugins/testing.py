@@ -13,6 +13,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Inertial, Model
 from ..description.sensor import Sensor
+from ..engine.commands import JointWrench
 from ..engine.ring import Clock
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
 from ..simulator.appointments import Rate
@@ -100,6 +101,7 @@ class FakeContext:
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
         touching: the contacts.
+        wrenches: what joints transmit.
         held: whether the model is held.
         followers: (leader, multiplier, offset) of joints that mimic others.
         others: descriptions of the models in the world.
@@ -110,9 +112,11 @@ class FakeContext:
 
     def __init__(self, xml: str = "<plugin/>", *, model: str = "robot",
                  joints: Sequence[str] = (), links: Optional[Sequence[str]] = None,
-                 sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 sensor: Optional[Sensor] = None, sensor_link: str = "", sensor_joint: str = "",
                  step_size: float = 0.001) -> None:
-        self.model, self.sensor, self.sensor_link = model, sensor, sensor_link
+        self.model, self.sensor = model, sensor
+        self.sensor_link, self.sensor_joint = sensor_link, sensor_joint
+        self.wrenches: Dict[str, JointWrench] = {}
         self.said: List[str] = []
         self.parameters = Parameters(xml, self.said.append)
         self.joints = {name: FakeJoint(name) for name in joints}
@@ -235,6 +239,10 @@ class FakeContext:
         """Rays meet what a test says (`returns`)."""
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a test says."""
+        return self.wrenches.get(name)
 
     def contacts(self) -> List[Any]:
         """What a test says."""

@@ -22,6 +22,7 @@ from ..commands import (
     PhysicsSettings,
     PinModels,
     ReadContacts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -45,6 +46,7 @@ from .initial_state_cache import InitialStateCache, Start
 from .inter_model_joints import InterModelJoints
 from .joint_constraints import Constraints
 from .joint_motors import JointMotors
+from .joint_wrenches import JointWrenches
 from .pair_friction import EVERY, FrictionBalance
 from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
@@ -88,10 +90,12 @@ class BulletBackend:
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)
         self._planar = PlanarMotion(self._models, self._mover.model_pose, self._waker.around)
+        self._wrenches = JointWrenches(self._models, self._forces, self._sliding)
         # Everything that remembers bodies one by one.
         self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
                          self._decay, self._residual, self._rolling, self._sliding,
-                         self._settling, self._motors, self._planar, self._readout)
+                         self._settling, self._motors, self._planar, self._wrenches,
+                         self._readout)
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -108,6 +112,7 @@ class BulletBackend:
             SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit,
                                                         self._sliding.friction),
+            ReadJointWrenches: self._wrenches.read,
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
         }
@@ -140,6 +145,16 @@ class BulletBackend:
         """Make `count` steps."""
         self._settle()
         self._readout.stepped()
+        if self._wrenches.idle:
+            self._make_steps(first, count)
+            return
+        if count > 1:
+            self._make_steps(first, count - 1)
+        self._wrenches.before(count)
+        self._make_steps(first + count - 1, 1)
+        self._wrenches.after(self._settings.step_size, self._settings.gravity)
+
+    def _make_steps(self, first: int, count: int) -> None:
         one = pybullet.stepSimulation
         dt, gravity = self._settings.step_size, self._settings.gravity
         if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
@@ -365,7 +380,7 @@ class BulletBackend:
         self._forces.clear_all()
         for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
                        self._residual, self._rolling, self._sliding, self._settling,
-                       self._motors, self._planar):
+                       self._motors, self._planar, self._wrenches):
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()

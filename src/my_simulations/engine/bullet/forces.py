@@ -106,6 +106,19 @@ class Forces:
         """Rows of the links that a timed wrench acts on in this step."""
         return {force.row for force in self._acting.values() if isinstance(force, TimedWrench)}
 
+    def acting_on(self, row: int) -> Tuple[Vec3, Vec3]:
+        """The timed wrenches of the last step on a link: force and torque about its centre of mass.
+
+        N and N m, world axes.
+        """
+        force, torque = _NOTHING, _NOTHING
+        for wrench in self._acting.values():
+            if isinstance(wrench, TimedWrench) and wrench.row == row:
+                body, part = self._parts[row]
+                one, other = _in_world(wrench, part, self._com(body, part)[1])
+                force, torque = add(force, one), add(torque, other)
+        return force, torque
+
     def apply(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
         efforts: Dict[int, float] = {}
@@ -175,14 +188,7 @@ class Forces:
         if not body.moves:
             return
         at, turn = self._com(body, part)
-        force, torque, point = wrench.force, wrench.torque, wrench.point
-        if wrench.in_link_axes:
-            # The link's axes, not the principal ones that PyBullet's frame follows.
-            x, y, z, w = part.link_from_com.orientation
-            inverse_turn = (-x, -y, -z, w)
-            force, torque, point = (rotate(turn, rotate(inverse_turn, v))
-                                    for v in (force, torque, point))
-        torque = add(torque, cross(point, force))
+        force, torque = _in_world(wrench, part, turn)
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != _NOTHING and body.rigid and body.uid in self._placed:
@@ -195,6 +201,16 @@ class Forces:
         if part.index == BASE:
             return pybullet.getBasePositionAndOrientation(body.uid)
         return pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)[:2]
+
+
+def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:
+    """Force, and torque about the centre of mass, in world axes; `turn` is that of PyBullet."""
+    force, torque, point = wrench.force, wrench.torque, wrench.point
+    if wrench.in_link_axes:
+        # The link's axes, not the principal ones that PyBullet's frame follows.
+        back = conjugate(part.link_from_com.orientation)
+        force, torque, point = (rotate(turn, rotate(back, v)) for v in (force, torque, point))
+    return force, add(torque, cross(point, force))
 
 
 def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:

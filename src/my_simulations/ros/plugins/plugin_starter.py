@@ -81,5 +81,8 @@ def _plugins(model: Model) -> Iterator[Any]:
     for link in model.links:
         for sensor in link.sensors:
             yield from sensor.plugins
+    for joint in model.joints:
+        for sensor in joint.sensors:
+            yield from sensor.plugins
     for nested in (model.guide.models if model.guide is not None else model.models):
         yield from _plugins(nested)
