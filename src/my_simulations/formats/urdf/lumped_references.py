@@ -1,8 +1,9 @@
 """What plugins and sensors of a robot call by name, after its fixed links became part of others.
 
-Source: Gazebo's converter: contact sensors name collisions; plugins name a `bodyName` or
-`frameName`, with an offset that grows by the way between the links; grippers, projectors and joints
-name links.
+Source: Gazebo's converter: contact sensors name collisions; plugins of the model name a `bodyName`
+or `frameName`, with an offset that grows by the way between the links; grippers, projectors and
+joints name links. Plugins of sensors keep their `frameName`: it is a tf frame, which the link has
+for robot_state_publisher still, and the sensor is where that link was.
 """
 from __future__ import annotations
 
@@ -59,11 +60,11 @@ def _in_element(element: Any, names: Renamed) -> bool:
     inside = parent.tag if parent is not None else ""
     if element.tag == "collision" and inside == "contact":
         return _put(element, names.collisions, text)
-    if element.tag in _PLACED and text.lstrip("/") in names.links:
+    own = inside == "plugin" and parent.getparent() is None
+    if own and element.tag in _PLACED and text.lstrip("/") in names.links:
         body = names.links[text.lstrip("/")]
         element.text = _standing(body)
-        if parent is not None:
-            _move_offset(parent, body.offset)
+        _move_offset(parent, body.offset)
         return True
     if element.tag in _LINKS or (element.tag in ("parent", "child") and inside == "joint"):
         return _put(element, {name: _standing(body) for name, body in names.links.items()}, text)
