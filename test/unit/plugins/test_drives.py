@@ -231,3 +231,14 @@ def test_forces_move_a_base_as_it_is_told():
     assert force == pytest.approx((0.0, 2000.0, 0.0)) and torque == pytest.approx((0, 0, 3.0))
     context.advance(0.6)  # the watchdog has stopped it
     assert context.pushes["base_footprint"][0] == pytest.approx((0.0, -1000.0, 0.0))
+
+
+def test_a_tricycle_whose_wheels_have_the_names_of_the_other_side_counts_a_left_turn_as_one():
+    context = FakeContext("<plugin><odometrySource>encoder</odometrySource></plugin>",
+                          joints=TRICYCLE)
+    context.link("right_wheel_joint").pose = Pose((0.0, 0.25, 0.0))
+    TricycleDrive(context).load()
+    context.joints["left_wheel_joint"].motor = (1.0, 1.0)
+    context.advance(1.0)
+    odom = context.published["robot/odom"][-1]
+    assert odom.twist.twist.angular.z == pytest.approx(0.15)

@@ -1,15 +1,19 @@
 """libgazebo_ros_tricycle_drive.so: one driven and steered wheel, two wheels that are counted.
 
 Parameters, defaults, topics and laws are those of gazebo_plugins. Where it differs: wheel frames
-are those of the links; a turn to the left counts as one (the original subtracts the wheels the
-other way round); the acceleration acts where the wheel gets faster, the deceleration where it gets
-slower; a steering speed steers to the angle, and not to the speed of the wheel.
+are those of the links; which encoder wheel is on the left is seen from where it is (the original
+subtracts the right one from the left one, and its own robot has the names the other way round);
+the acceleration acts where the wheel gets faster, the deceleration where it gets slower; a steering
+speed steers to the angle, and not to the speed of the wheel.
 """
 from __future__ import annotations
 
 import math
+from typing import Tuple
 
+from ...geometry import inverse, transform
 from ..base import Plugin
+from ..context import Joint
 from ..parameters import namespace_or
 from .odometry import Odometer, WheelCounter, in_base
 from .wheels import VelocityCommand, WheelFrames, WheelStates
@@ -36,7 +40,8 @@ class TricycleDrive(Plugin):
         self._wheel = context.joint(p.text("actuatedWheelJoint", "front_wheel_joint"))
         left = context.joint(p.text("encoderWheelLeftJoint", "left_wheel_joint"))
         right = context.joint(p.text("encoderWheelRightJoint", "right_wheel_joint"))
-        self._counter = WheelCounter(left, right, p.number("encoderWheelDiameter", 0.15) / 2.0,
+        self._counter = WheelCounter(*self._by_side(left, right),
+                                     p.number("encoderWheelDiameter", 0.15) / 2.0,
                                      p.number("encoderWheelSeparation", 0.5))
         self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
                                   p.text("odometryFrame", "odom"),
@@ -48,6 +53,13 @@ class TricycleDrive(Plugin):
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
         self.reset()
         context.every(p.number("updateRate", 100.0), self.update)
+
+    def _by_side(self, left: Joint, right: Joint) -> Tuple[Joint, Joint]:
+        """The wheel further to the left first."""
+        back = inverse(self.context.pose)
+        one, other = (transform(back, self.context.link(joint.child).pose.position)[1]
+                      for joint in (left, right))
+        return (left, right) if one >= other else (right, left)
 
     def reset(self) -> None:
         """Stand, and count from here."""
