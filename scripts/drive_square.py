@@ -26,4 +26,4 @@ for corner in range(4):
         robot.drive(0.0, min(0.8, 0.05 - robot.turned_from(heading)))
     robot.come_to_rest()
 
-print(f"back at the start, {100 * robot.way_from(start):.1f} cm beside it by odometry")
+robot.say(f"back at the start, {100 * robot.way_from(start):.1f} cm beside it by odometry")

@@ -33,4 +33,4 @@ while robot.running() and driven < way:
     askew = math.remainder(robot.direction_of_nearest(RIGHT, 1.6) - RIGHT, 2 * math.pi)
     robot.drive(speed, max(-0.8, min(0.8, 1.5 * askew + 1.5 * (distance - beside))))
 robot.come_to_rest()
-print(f"followed the wall for {driven:.1f} m")
+robot.say(f"followed the wall for {driven:.1f} m")

@@ -15,4 +15,4 @@ while robot.running():
         break
     robot.drive(min(speed, 0.02 + ahead))    # the nearer, the slower
 robot.come_to_rest()
-print(f"stopped {robot.nearest():.2f} m before the wall")
+robot.say(f"stopped {robot.nearest():.2f} m before the wall")

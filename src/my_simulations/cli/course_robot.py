@@ -90,6 +90,10 @@ class Robot:
         """A number that was given as `_name:=value` on the command line."""
         return float(self._rospy.get_param(f"~{name}", default))
 
+    def say(self, text: str) -> None:
+        """Print a line."""
+        print(text, flush=True)
+
     # -- knowing -----------------------------------------------------------------------------------
 
     @property

@@ -19,7 +19,7 @@ from ..geometry import IDENTITY
 from ..simulator.appointments import Consumer, Moment
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
-from .call_watch import PATIENCE, CallWatch, OverdueError, Patience
+from .call_watch import PATIENCE, CallWatch, CallOverdue, Patience
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Graph
@@ -110,7 +110,7 @@ class PluginHost:
             for name in list(self._models):
                 self._end_model(name)
             self._end_leaving()
-        except OverdueError:
+        except CallOverdue:
             return  # this thread was left behind; another one goes on
         finally:
             if threading.current_thread() is self._thread:
@@ -377,7 +377,7 @@ class PluginHost:
         try:
             self._watch.run(running, patience or self._patience, call, *arguments)
             return True
-        except OverdueError as overdue:
+        except CallOverdue as overdue:
             if threading.current_thread() is not self._thread:
                 raise
             self._switch_off(running, str(overdue))
