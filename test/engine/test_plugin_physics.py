@@ -11,7 +11,7 @@ from plugin_graph import Graph
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec
-from my_simulations.description.sensor import ContactBlock, Sensor
+from my_simulations.description.sensor import ContactSensor, Sensor
 from my_simulations.description.shapes import Box, Collision, Cylinder, Sphere, Surface
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
@@ -26,14 +26,12 @@ from my_simulations.simulator.simulator import Simulator
 class Case:
     """A world with plugins; `hear` returns when the plugin has heard it."""
 
-    def __init__(self, *models, gravity=None):
+    def __init__(self, *models, gravity=(0.0, 0.0, -9.8)):
         engine = InlineEngine(BulletBackend)
         self.issues = []
-        self.sim = Simulator(World(models=list(models)), engine_factory=lambda: engine,
-                             paused=True, log=self.issues.append)
+        self.sim = Simulator(World(models=list(models), gravity=gravity),
+                             engine_factory=lambda: engine, paused=True, log=self.issues.append)
         self.sim.start()
-        if gravity is not None:
-            self.sim.physics.set_gravity(gravity)
         self.graph = Graph()
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(), self.issues.append)
         self.host.start()
@@ -214,7 +212,7 @@ def test_the_contact_force_of_a_resting_box_is_its_weight(case):
     model = box("crate", 1.0, 10.0)
     model.pose = Pose((0.0, 0.0, 0.5))
     model.links[0].sensors = [Sensor("touch", "contact", update_rate=100.0,
-                                     contact=ContactBlock(["c"]), plugins=[
+                                     contact=ContactSensor(["c"]), plugins=[
                                          plugin("libgazebo_ros_bumper.so", "")])]
     one = case(ground(), model)
     one.sim.clock.advance(3000)
