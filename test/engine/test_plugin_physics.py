@@ -95,8 +95,9 @@ def axle(name, child, parent="base"):
     return Joint(name, "revolute", parent, child, axis=JointAxis((0.0, 1.0, 0.0)))
 
 
-def base(mass=10.0, z=0.1):
-    return Link("base", Pose((0.0, 0.0, z)), Inertial(mass, ixx=0.1, iyy=0.2, izz=0.25))
+def base(mass=10.0, z=0.1, com=0.0):
+    return Link("base", Pose((0.0, 0.0, z)),
+                Inertial(mass, Pose((com, 0.0, 0.0)), ixx=0.1, iyy=0.2, izz=0.25))
 
 
 def skid(mu=1.0):
@@ -114,7 +115,7 @@ def tricycle(extra=""):
     fork = Link("fork", Pose((0.8, 0.0, 0.1)), Inertial(0.5, ixx=0.01, iyy=0.01, izz=0.01))
     steering = Joint("front_steering_joint", "revolute", "base", "fork",
                      axis=JointAxis((0.0, 0.0, 1.0)))
-    return Model("tricycle", links=[base(), fork, wheel("front", 0.8, 0.0),
+    return Model("tricycle", links=[base(com=0.5), fork, wheel("front", 0.8, 0.0),
                                     wheel("left", 0.0, 0.25), wheel("right", 0.0, -0.25)],
                  joints=[steering, axle("front_wheel_joint", "front", "fork"),
                          axle("left_wheel_joint", "left"), axle("right_wheel_joint", "right")],
@@ -151,22 +152,27 @@ def test_skid_steering_turns_on_the_spot_slower_than_its_wheels(case):
     assert math.hypot(x, y) < 0.05
 
 
-@pytest.mark.parametrize("steering", ["", "<steeringSpeed>1.0</steeringSpeed>"])
-def test_a_tricycle_drives_the_circle_of_its_steering_angle(case, steering):
-    """Ackermann: the rear axle turns about a point at wheelbase / tan(angle)."""
+@pytest.mark.parametrize("steering, exact", [("", 0.012),
+                                             ("<steeringSpeed>1.0</steeringSpeed>", 0.03)])
+def test_a_tricycle_drives_the_circle_of_its_steering_angle(case, steering, exact):
+    """The middle of the rear axle goes about a point at wheelbase / tan(angle).
+
+    Wheels of a width rub as they turn: 1 %. With a steering speed the angle stops within 0.01 rad.
+    """
     one = case(ground(), tricycle(steering))
     one.sim.clock.advance(200)
     angle, speed, base_length = 0.5, 0.4, 0.8
     one.hear("tricycle/cmd_vel", linear={"x": 0.0}, angular={"z": angle})
     one.sim.clock.advance(1000)
-    before = one.truth("tricycle")
     one.hear("tricycle/cmd_vel", linear={"x": speed}, angular={"z": angle})
+    one.sim.clock.advance(1000)
+    before = one.truth("tricycle")
     one.sim.clock.advance(3000)
     x, y, yaw = one.truth("tricycle")
     turned = yaw - before[2]
     radius = math.hypot(x - before[0], y - before[1]) / (2.0 * math.sin(turned / 2.0))
-    assert radius == pytest.approx(base_length / math.tan(angle), rel=0.03)
-    assert turned == pytest.approx(3.0 * speed * math.sin(angle) / base_length, rel=0.03)
+    assert radius == pytest.approx(base_length / math.tan(angle), rel=exact)
+    assert turned == pytest.approx(3.0 * speed * math.sin(angle) / base_length, rel=exact)
 
 
 def test_a_tricycle_counts_the_circle_that_it_drives(case):
@@ -175,8 +181,9 @@ def test_a_tricycle_counts_the_circle_that_it_drives(case):
     one.hear("tricycle/cmd_vel", linear={"x": 0.4}, angular={"z": 0.5})
     one.sim.clock.advance(5000)
     told, true = odometry(one.last("tricycle/odom", one.now())), one.truth("tricycle")
-    assert math.hypot(told[0] - true[0], told[1] - true[1]) < 0.03
-    assert math.remainder(told[2] - true[2], 2 * math.pi) == pytest.approx(0.0, abs=0.03)
+    way = 5.0 * 0.4 * math.cos(0.5)
+    assert math.hypot(told[0] - true[0], told[1] - true[1]) < 0.05 * way  # wheels that rub
+    assert told[2] == pytest.approx(true[2], rel=0.06)
 
 
 def test_a_force_accelerates_by_its_mass(case):

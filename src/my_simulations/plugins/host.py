@@ -19,7 +19,7 @@ from ..geometry import IDENTITY
 from ..simulator.appointments import Consumer, Moment
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
-from .call_watch import PATIENCE, CallWatch, CallOverdue, Patience
+from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Graph
