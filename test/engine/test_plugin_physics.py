@@ -83,10 +83,10 @@ def plugin(library, inside):
 
 
 def wheel(name, x, y, radius=0.1, mass=0.5, mu=1.0):
-    spin, across = mass * radius ** 2 / 2, mass * (3 * radius ** 2 + 0.04 ** 2) / 12
+    spin, across = mass * radius ** 2 / 2, mass * (3 * radius ** 2 + 0.01 ** 2) / 12
     return Link(name, Pose((x, y, radius)),
                 Inertial(mass, ixx=across, iyy=spin, izz=across),
-                [Collision("c", Cylinder(radius, 0.04),
+                [Collision("c", Cylinder(radius, 0.01),
                            Pose(orientation=quat_from_rpy(math.pi / 2, 0, 0)),
                            surface=Surface(mu=mu, mu2=mu))])
 
