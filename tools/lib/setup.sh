@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# From a bare Debian 12 to a built workspace. Every part looks first whether there is anything to
+# From a bare Debian to a built workspace. Every part looks first whether there is anything to
 # do, so a second run neither installs nor builds nor asks the network.
 
 ROS_PREFIX=/opt/ros/noetic
@@ -104,13 +104,20 @@ as_root() {
 # may_install: whether this user can install system packages at all.
 may_install() { [ "$(id -u)" = 0 ] || command -v sudo >/dev/null; }
 
-# apt_install NAME ADVICE...: the packages from ADVICE on; the output goes to logs of that NAME.
+# apt_get NAME WORD...: apt-get without questions; its output goes to the log of that NAME.
+apt_get() {
+  local name="$1"
+  shift
+  recorded "$name" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q "$@"
+}
+
+# apt_install NAME ADVICE PACKAGE...: install the packages or stop; the logs have that NAME in theirs.
 apt_install() {
   local name="$1" advice="$2"
   shift 2
-  logged "apt-update$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
-  logged "apt-install$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive \
-    apt-get -q -y --no-install-recommends install "$@"
+  apt_get "apt-update$name" update || failed "apt-update$name" "$?" "$advice"
+  apt_get "apt-install$name" -y --no-install-recommends install "$@" ||
+    failed "apt-install$name" "$?" "$advice"
 }
 
 install_system_packages() {
@@ -139,7 +146,10 @@ sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
       "${missing[@]}"
     SYSTEM_REMARK="${#missing[@]} installed"
   fi
-  install_common_packages
+  if [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; then
+    install_optional common "other packages"
+  fi
+  [ "$WITH_TEST_TOOLS" = 0 ] || install_optional sdformat "some tests"
   finish "$SYSTEM_REMARK"
   hint_at_python
   local name
@@ -149,25 +159,34 @@ sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
   done
 }
 
-# install_common_packages: what other packages of the workspace may ask for. Nothing of ours needs
-# it: what cannot be installed is said, stops nothing, and is not tried again while it is the same.
-install_common_packages() {
-  local wanted missing tried="$OWN/common-packages"
-  { [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; } || return 0
-  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-common.txt")
+# install_optional NAME WHO: the packages in the list apt-packages-NAME.txt, which WHO may want. Nothing
+# of ours needs them: what cannot be installed is said, stops nothing, and is not tried again while
+# it is the same.
+install_optional() {
+  local wanted missing tried="$OWN/$1-packages"
+  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-$1.txt")
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   [ "${#missing[@]}" -gt 0 ] || return 0
   [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
   if may_install; then
-    say "installing ${#missing[@]} that other packages commonly ask for"
-    if (apt_install -common "Nothing of ours needs them." "${missing[@]}"); then
-      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for other packages installed"
+    say "installing ${#missing[@]} that $2 commonly ask for"
+    if apt_get "apt-update-$1" update &&
+       apt_get "apt-install-$1" -y --no-install-recommends install "${missing[@]}"; then
+      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for $2 installed"
       return 0
     fi
   fi
   printf '%s' "${missing[*]}" >"$tried"
-  say "not installed, other packages of the workspace may want them: \
-apt-get install --no-install-recommends ${missing[*]}"
+  say "not installed, $2 may want them: \
+apt-get install --no-install-recommends ${missing[*]}$(optional_reason "$1")"
+}
+
+# optional_reason NAME: why the optional packages NAME were not installed, for the end of a sentence.
+optional_reason() {
+  local reason
+  reason=$(sed -n 's/^E: //p' "$LOGS/apt-update-$1.log" "$LOGS/apt-install-$1.log" 2>/dev/null |
+    head -n 1)
+  printf '%s' "${reason:+ ($reason)}"
 }
 
 # hint_at_python: say how scripts that begin with "#!/usr/bin/env python" start, where there are
@@ -214,9 +233,22 @@ prepare_python() {
     logged venv "Remove $VENV and run $COMMAND again." \
       "$PYTHON" -m venv --system-site-packages "$VENV"
   fi
-  logged "pip-$name" "Is there a network? Then run $COMMAND again." \
-    "$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check -r "$1"
+  pip_install "$name" "$1"
   printf '%s' "$stamp" >"$stamped"
+}
+
+# pip_install NAME REQUIREMENTS: into the environment; compiles PyBullet where no wheel of it exists.
+pip_install() {
+  local status=0 advice="Is there a network? Then run $COMMAND again." wheels
+  local command=("$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check
+    --only-binary pybullet -r "$2")
+  wheels=$(pybullet_wheels)
+  [ ! -d "$wheels" ] || command+=(--find-links "$wheels")
+  recorded "pip-$1" "${command[@]}" || status=$?
+  [ "$status" -ne 0 ] || return 0
+  pybullet_lacks_wheel "pip-$1" || failed "pip-$1" "$status" "$advice"
+  build_pybullet
+  logged "pip-$1" "$advice" "${command[@]}" --find-links "$wheels"
 }
 
 # prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor

@@ -151,7 +151,7 @@ def test_options_of_tools_in_the_pages_are_understood():
 
 def test_modules_named_on_the_pages_exist():
     modules = {path.name for path in (REPOSITORY / "src").rglob("*.py")}
-    modules |= {path.name for folder in ("test", "tools", "scripts")
+    modules |= {path.name for folder in ("test", "tools", "scripts", "examples")
                 for path in (REPOSITORY / folder).rglob("*.py")}
     for page in PAGES:
         for name in re.findall(r"`[\w/]*?(\w+\.py)`", text_of(page)):
