@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Optional, Sequence
 
 import numpy as np
@@ -222,6 +223,24 @@ def test_a_robot_that_is_held_carries_its_arm(lab: Lab, laws) -> None:
               (0, -0.3 * G, 0))
 
 
+@pytest.mark.parametrize("reverse", [False, True])
+def test_two_hinges_share_a_beam(lab: Lab, laws, reverse: bool) -> None:
+    """One of them closes a loop, and is made of constraints."""
+    beam = Link("beam", inertial=inertial_of_box(4, 1.0, 0.1, 0.1))
+    ends = ("beam", "world") if reverse else ("world", "beam")
+    number = lab.load(Model("m", links=[beam], joints=[
+        Joint("near", "revolute", "world", "beam", Pose((-0.5, 0, 0)), axis=JointAxis((0, 1, 0))),
+        Joint("far", "revolute", *ends, Pose((0.5, 0, 0)), axis=JointAxis((0, 1, 0)))]),
+        (0, 0, 2))
+    _read(lab, number, "near", "far")
+    lab.seconds(2.0)
+    law, up = "two hinges that share a beam: force, torque, by its weight", (0, 0, 2 * G)
+    _near(laws, law, _one(lab, number, "near").force[2:], up[2:])
+    far = _one(lab, number, "far")
+    _near(laws, law, far.force[2:], (-2 * G if reverse else 2 * G,))
+    _near(laws, law, (far.torque[1],), (0,), 2 * G)
+
+
 def test_a_body_in_free_fall_transmits_nothing(lab: Lab) -> None:
     model = _chain()
     model.joints[0].parent = "l0"
@@ -254,6 +273,12 @@ def test_who_reads_changes_nothing(lab: Lab) -> None:
     assert _read(lab, number, "j0") == [None]
     lab.steps(1)
     assert _read(lab, number, "j0") != [None]
+
+
+def test_joints_of_static_models_carry_nothing(lab: Lab) -> None:
+    number = lab.load(replace(_hanging("fixed"), static=True))
+    assert _read(lab, number, "hinge") == [JointWrench()]
+    assert _read(lab, number, "nowhere") == [None]
 
 
 def test_joints_that_are_gone_are_not_measured(lab: Lab) -> None:

@@ -272,6 +272,37 @@ class SetMotors(Command):
 
 
 @dataclass(frozen=True)
+class WheelSlip:
+    """A wheel that slips in proportion to its speed (Gazebo's WheelSlipPlugin).
+
+    Its slips (see `Surface.slip1`) are `radius` times the rate of its joint, by the normal force,
+    times a compliance: worked out anew in every step.
+
+    Attributes:
+        row: link row of the wheel.
+        joint_row: row of the joint axis that it turns about.
+        radius: m.
+        normal_force: N, about what the wheel carries.
+        lateral, longitudinal: compliances along the first direction of friction (the axle, by the
+            plugin's convention) and across it, no unit.
+    """
+
+    row: int
+    joint_row: int
+    radius: float
+    normal_force: float
+    lateral: float = 0.0
+    longitudinal: float = 0.0
+
+
+@dataclass(frozen=True)
+class SetWheelSlips(Command):
+    """Let wheels slip from now on, until their models are removed; those of others stay."""
+
+    wheels: Tuple[WheelSlip, ...]
+
+
+@dataclass(frozen=True)
 class PlanarVelocity:
     """A velocity that a model is given anew before every step, in its own frame's heading.
 

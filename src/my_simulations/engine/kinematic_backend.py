@@ -32,6 +32,8 @@ from .commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetWheelSlips,
+    WheelSlip,
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
@@ -52,6 +54,7 @@ class KinematicBackend:
         self.connected: Dict[str, ConnectModels] = {}
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.wheel_slips: Dict[int, WheelSlip] = {}
         self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
@@ -68,6 +71,8 @@ class KinematicBackend:
             PinModels: self._hold,
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
             SetPlanarVelocities: self._set_planar,
+            SetWheelSlips: lambda c: self.wheel_slips.update(
+                {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
             ConnectModels: lambda c: self.connected.update({c.joint.name: c}),
             DisconnectModels: lambda c: [self.connected.pop(name, None) for name in c.names],

@@ -42,7 +42,7 @@ class Joints:
 
         A joint is measured from the step after its first reading on: the first answer is None, and
         so is the one after a reset, a change of its model, or a crash of the engine. None for ever
-        for joints that carry nothing: those of static models, and for joints between models.
+        for joints between models.
 
         Raises UnknownEntityError, CommandError.
         """

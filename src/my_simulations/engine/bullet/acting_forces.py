@@ -55,6 +55,16 @@ def note_constraints(found: Acting, body: Body, links: Mapping[int, State]) -> N
                 note(found, index, scale(force, sign), transform(at, pivot), scale(torque, sign))
 
 
+def constraint_forces(number: int, body: Body, index: int, link: State
+                      ) -> Tuple[Vec3, Vec3, Vec3]:
+    """Force, where it acts, and torque of a constraint on a link that it holds; world axes."""
+    info = pybullet.getConstraintInfo(number)
+    force, torque = _on_the_second(info, pybullet.getConstraintState(number))
+    sign, pivot = (1.0, info[7]) if (info[2], info[3]) == (body.uid, index) else (-1.0, info[6])
+    return (scale(force, sign), transform(Pose(link.position, link.turn), pivot),
+            scale(torque, sign))
+
+
 def _on_the_second(info: Sequence[Any], state: Sequence[float]) -> Tuple[Vec3, Vec3]:
     """Force and torque that a constraint exerts on its second body, N and N m, world axes.
 

@@ -31,6 +31,7 @@ from ..commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetWheelSlips,
 )
 from ..ring import JOINTS, LINKS
 from . import bodies, collision_groups, extra_surfaces, joint_axes
@@ -40,6 +41,7 @@ from .collision_shapes import ShapeError, ShapeFactory
 from .contact_readout import read_contacts
 from .contact_settling import EVERY as EVERY_SETTLE
 from .contact_settling import ContactSettling
+from .force_dependent_slip import slips
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
 from .initial_state_cache import InitialStateCache, Start
@@ -110,8 +112,9 @@ class BulletBackend:
             DisconnectModels: self._disconnect,
             SetMotors: lambda command: self._motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
-            ReadContacts: lambda command: read_contacts(self._bodies, command.limit,
-                                                        self._sliding.friction),
+            ReadContacts: lambda command: read_contacts(
+                self._bodies, command.limit, self._sliding.friction, self._forces.slip.friction),
+            SetWheelSlips: self._set_wheel_slips,
             ReadJointWrenches: self._wrenches.read,
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
@@ -281,8 +284,10 @@ class BulletBackend:
                 link = model.links[part.row - first_row]
                 self._decay.add(body, part, link)
                 self._rolling.add(body, part, link)
-                self._sliding.add(body, part, link)
+                if not slips(link):
+                    self._sliding.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
+                self._forces.slip.add(body, part, link)
             self._set_up_axes(body, model)
         return entry
 
@@ -407,6 +412,13 @@ class BulletBackend:
     def _set_up_axes(self, body: Body, model: Model) -> None:
         joint_axes.set_up(body, model, self._forces, self._settings.step_size)
         self._motors.set_up(body, model)
+
+    def _set_wheel_slips(self, command: SetWheelSlips) -> None:
+        for wheel in command.wheels:
+            if wheel.row not in self._rows or wheel.joint_row not in self._axes:
+                raise CommandRefusedError("the link or joint of the wheel does not exist")
+            self._sliding.leave(*self._rows[wheel.row])
+        self._forces.slip.set_wheels(command.wheels)
 
     def _hold(self, command: PinModels) -> None:
         self._holds.set(body for number in command.model_ids

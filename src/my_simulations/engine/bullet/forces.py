@@ -12,6 +12,7 @@ from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
 from ..body_plan import BASE
 from ..commands import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part
+from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
 
@@ -19,7 +20,11 @@ _NOTHING = (0.0, 0.0, 0.0)
 
 
 class Forces:
-    """All that `apply` must do before the next step."""
+    """All that `apply` must do before the next step.
+
+    Attributes:
+        slip: links whose surfaces slip.
+    """
 
     def __init__(self, wake: Callable[[List[Body]], None]) -> None:
         self._wake = wake
@@ -32,6 +37,7 @@ class Forces:
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
+        self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:
         """Know the rows of a new body."""
@@ -64,6 +70,7 @@ class Forces:
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
+        self.slip.forget(body)
         self._implicit.pop(body.uid, None)
         for part in body.parts:
             self._parts.pop(part.row, None)
@@ -95,11 +102,12 @@ class Forces:
         """Drop every timed force."""
         for table in (self._timed, self._acting, self._loops):
             table.clear()
+        self.slip.clear()
 
     @property
     def idle(self) -> bool:
         """True when a step needs nothing from here, now or later."""
-        return not (self._timed or self._weightless or self._implicit)
+        return self.slip.idle and not (self._timed or self._weightless or self._implicit)
 
     @property
     def wrenched_links(self) -> Set[int]:
@@ -139,6 +147,8 @@ class Forces:
             at = self._com(body, part)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
+        if not self.slip.idle:
+            self.slip.apply(dt)
         self._placed.clear()
 
     def stepped(self) -> None:

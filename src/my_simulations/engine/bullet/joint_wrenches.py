@@ -31,15 +31,16 @@ from ...geometry import (
     inverse,
     multiply,
     rotate,
+    scale,
     subtract,
     transform,
 )
 from ..body_plan import NO_LINK, TreeLink
 from ..commands import JointWrench, ReadJointWrenches
-from .acting_forces import Acting, note, note_constraints, note_contacts
+from .acting_forces import Acting, constraint_forces, note, note_constraints, note_contacts
 from .bodies import Body, Part
 from .forces import Forces
-from .link_motion import Chain, Motion, State, accelerations, inertial_wrench, states
+from .link_motion import Chain, Motion, State, accelerations, inertial_wrench, look, states
 from .sliding import Sliding
 from .state_restore import Entry
 
@@ -75,25 +76,30 @@ class _Seen:
     """A body around a step.
 
     Attributes:
-        before, after: its links, by PyBullet's index.
+        before, after: how its links moved; Bullet tells the rest until it steps again.
         outside: what acts on it besides gravity and what Bullet tells of.
     """
 
     def __init__(self, body: Body, chain: Chain, outside: Acting) -> None:
         self.body = body
-        self.before = states(body)
-        self.after: Dict[int, State] = {}
+        self.before = look(body)
+        self.after = self.before
         self.outside = outside
         self._chain = chain
-        self._answer: Optional[Tuple[Dict[int, Motion], Acting]] = None
+        self._answer: Optional[_WorkedOut] = None
 
-    def worked_out(self, dt: float) -> Tuple[Dict[int, Motion], Acting]:
-        """How its links were accelerated, and what acted on them; Bullet tells until it steps."""
+    def worked_out(self, dt: float) -> "_WorkedOut":
+        """How its links were, how they were accelerated, and what acted on them."""
         if self._answer is None:
+            before = states(self.body, self.before)
             note_contacts(self.outside, self.body)
-            note_constraints(self.outside, self.body, self.before)
-            self._answer = (accelerations(self._chain, self.before, self.after, dt), self.outside)
+            note_constraints(self.outside, self.body, before)
+            after = states(self.body, self.after)
+            self._answer = (before, accelerations(self._chain, before, after, dt), self.outside)
         return self._answer
+
+
+_WorkedOut = Tuple[Dict[int, State], Dict[int, Motion], Acting]
 
 
 class JointWrenches:
@@ -122,6 +128,8 @@ class JointWrenches:
             cut = self._cuts.get(key)
             if key not in self._found and cut is not None and cut.body.uid in self._seen:
                 self._found[key] = self._wrench(cut, self._seen[cut.body.uid])
+            elif key[0] in self._models and cut is None:
+                self._found[key] = _without_a_cut(self._models[key[0]], key[1])
         return tuple(self._found.get(key) for key in command.joints)
 
     def forget(self, body: Body) -> None:
@@ -159,10 +167,13 @@ class JointWrenches:
         """After that step, all that corrects it included."""
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
-            seen.after = states(seen.body)
-            for part in seen.body.parts:
+            seen.after = look(seen.body)
+            for index, force, at in self._forces.slip.forces_on(seen.body.uid):
+                note(seen.outside, index, force, at)
+            for part in seen.body.parts if self._forces.wrenched_links else ():
                 force, torque = self._forces.acting_on(part.row)
-                note(seen.outside, part.index, force, seen.before[part.index].position, torque)
+                at = states(seen.body, seen.before)[part.index].position
+                note(seen.outside, part.index, force, at, torque)
 
     def _sliding_friction(self, body: Body) -> Acting:
         """The friction that acts on a body in the next step besides Bullet's."""
@@ -175,13 +186,13 @@ class JointWrenches:
 
     def _wrench(self, cut: _Cut, seen: _Seen) -> Optional[JointWrench]:
         """None where a state is not finite."""
-        motions, acting = seen.worked_out(self._dt)
-        child, parent = _link_pose(cut.child, seen.before), _link_pose(cut.parent, seen.before)
+        before, motions, acting = seen.worked_out(self._dt)
+        child, parent = _link_pose(cut.child, before), _link_pose(cut.parent, before)
         anchor = (transform(child, cut.joint.pose.position) if cut.child is not None
                   else transform(parent, cut.parent_from_joint.position))
         force, torque = ZERO3, ZERO3
         for part in cut.hung:
-            state = seen.before[part.index]
+            state = before[part.index]
             pull, turn = inertial_wrench(part, state, motions[part.index],
                                          self._gravity if part.gravity else ZERO3)
             force = add(force, pull)
@@ -226,6 +237,38 @@ def _cut_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _Cut
     return _Cut(body, Chain.of(parts, links), joint, names.get(joint.child),
                 names.get(joint.parent), hung,
                 compose(inverse(poses.get(joint.parent, IDENTITY)), joint.pose))
+
+
+def _without_a_cut(entry: Entry, name: str) -> Optional[JointWrench]:
+    """Of a joint on which nothing hangs: one that closes a loop, or of a static model."""
+    joint = next((one for one in entry.model.joints if one.name == name), None)
+    constraints = entry.constraints.closing.get(name, [])
+    if joint is not None and entry.model.static:
+        return JointWrench()   # nothing holds its links (Gazebo behaviour)
+    return _closing_wrench(entry, joint, constraints) if joint and constraints else None
+
+
+def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> JointWrench:
+    """From the constraints that stand for a joint, as they are now."""
+    ends = [entry.constraints.end(joint.child), entry.constraints.end(joint.parent)]
+    poses = [IDENTITY if end is None else _link_pose(end[1], states(end[0], look(end[0])))
+             for end in ends]
+    held, sign = (ends[0], 1.0) if ends[0] is not None else (ends[1], -1.0)
+    assert held is not None
+    links = {link.name: link.pose for link in entry.model.links}
+    anchor = (transform(poses[0], joint.pose.position) if ends[0] is not None
+              else transform(compose(poses[1], inverse(links[joint.parent])),
+                             joint.pose.position))
+    force, torque = ZERO3, ZERO3
+    for number in constraints:
+        one, at, moment = constraint_forces(number, held[0], held[1].index,
+                                            states(held[0], look(held[0]))[held[1].index])
+        force = add(force, one)
+        torque = add(torque, add(moment, cross(subtract(at, anchor), one)))
+    back = conjugate(poses[0].orientation)
+    return JointWrench(rotate(back, scale(force, sign)), rotate(back, scale(torque, sign)),
+                       IDENTITY_QUAT if ends[1] is None
+                       else multiply(conjugate(poses[1].orientation), poses[0].orientation))
 
 
 def _link_pose(part: Optional[Part], found: Dict[int, State]) -> Pose:

@@ -9,7 +9,7 @@ of a link against its parent, in the parent's axes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -72,16 +72,24 @@ class Chain:
         return cls(tuple(found))
 
 
-def states(body: Body) -> Dict[int, State]:
-    """How all links of a body move, by PyBullet's index."""
-    found: Dict[int, State] = {}
+Look = Tuple[Any, Any, Sequence[Any]]
+"""The links of a body as PyBullet tells them: pose and velocity of the base, the other links."""
+
+
+def look(body: Body) -> Look:
+    """How all links of a body move; `states` makes it readable."""
     indices = [part.index for part in body.parts if part.index != BASE]
-    if len(indices) < len(body.parts):
-        found[BASE] = State(*pybullet.getBasePositionAndOrientation(body.uid),
-                            *pybullet.getBaseVelocity(body.uid))
-    for index, state in zip(indices, pybullet.getLinkStates(
-            body.uid, indices, computeLinkVelocity=1, computeForwardKinematics=1)
-            if indices else ()):
+    return (pybullet.getBasePositionAndOrientation(body.uid), pybullet.getBaseVelocity(body.uid),
+            pybullet.getLinkStates(body.uid, indices, computeLinkVelocity=1,
+                                   computeForwardKinematics=1) if indices else ())
+
+
+def states(body: Body, seen: Look) -> Dict[int, State]:
+    """The same by PyBullet's index."""
+    found: Dict[int, State] = {}
+    if body.base is not None:
+        found[BASE] = State(*seen[0], *seen[1])
+    for index, state in zip((part.index for part in body.parts if part.index != BASE), seen[2]):
         found[index] = State(state[0], state[1], state[6], state[7])
     return found
 

@@ -7,7 +7,7 @@ points of lying cylinders are dropped before each step; the step finds new ones.
 
 A step finds one new point, at one end or the other, so only one end is pushed out of the floor at a
 time: at the rate of other contacts a cylinder of 3 cm rolls 1.9 mm deep, where Bullet is so inexact
-on boxes that it loses 2 % of 0.05 m/s in 20 s (measured). Where a rigid cylinder rolls on what does
+on boxes that it loses 2 % of 0.05 m/s in 20 s (measured). Where a cylinder rolls on what does
 not move, its overlaps are therefore parted as fast as that gives it no velocity to jump with.
 
 A cylinder at rest would rock on such points. So one that hardly moves, where the floor is level and
@@ -22,11 +22,12 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 import pybullet
 
 from ...description.model import Link
-from ...description.shapes import Capsule, Cylinder, Empty
+from ...description.shapes import Capsule, Cylinder, Empty, Heightmap, Mesh
 from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
+from .extra_surfaces import SOFT
 
 EVERY = 8
 """Steps between two looks at who lies."""
@@ -49,12 +50,16 @@ _CHANGE = 0.1       # smaller changes of the share are not worth a call
 
 @dataclass
 class _Roller:
-    """A round link: its axis in the frame of its principal axes; looks without velocity."""
+    """A round link: its axis in the frame of its principal axes; looks without velocity.
+
+    `hard`: its contacts are no springs, so how they part is ours to say.
+    """
 
     body: Body
     part: Part
     axis: Vec3
     meets: collision_groups.Filter
+    hard: bool
     still: int = 0
     share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
 
@@ -67,21 +72,26 @@ class RollingContacts:
         self._rolling: Dict[Tuple[int, int], collision_groups.Filter] = {}
         self._standing: Dict[int, Pose] = {}
         self._moving: Set[int] = set()
+        self._seams: Set[int] = set()   # floors of triangles
 
     def add(self, body: Body, part: Part, link: Link) -> None:
         """Know a link of a body; only moving ones that are cylinders about one axis matter."""
         if body.moves:
             self._moving.add(body.uid)
+        elif any(isinstance(each.geometry, (Heightmap, Mesh)) for each in link.collisions):
+            self._seams.update(body.uids)
         axis = _axis_of(link)
         if axis is not None and body.moves:
             own = rotate(conjugate(part.link_from_com.orientation), axis)
             self._rollers[body.uid, part.index] = _Roller(body, part, own,
-                                                          collision_groups.moving(link))
+                                                          collision_groups.moving(link),
+                                                          link.collisions[0].surface.kp >= SOFT)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._standing.pop(body.uid, None)
         self._moving.discard(body.uid)
+        self._seams.difference_update(body.uids)
         for part in body.parts:
             for table in (self._rollers, self._rolling):
                 table.pop((body.uid, part.index), None)
@@ -92,6 +102,7 @@ class RollingContacts:
         self._rolling.clear()
         self._standing.clear()
         self._moving.clear()
+        self._seams.clear()
 
     @property
     def idle(self) -> bool:
@@ -145,7 +156,7 @@ class RollingContacts:
             turn = pybullet.getLinkState(uid, index, computeForwardKinematics=1)[1]
         axis = rotate(turn, roller.axis)
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
-        if roller.body.rigid:
+        if roller.hard:
             self._part(roller, contacts, dt, norm(gravity))
         if not contacts:
             return (uid, index) in self._rolling
@@ -159,12 +170,16 @@ class RollingContacts:
         return True
 
     def _part(self, roller: _Roller, contacts: Tuple[Any, ...], dt: float, weight: float) -> None:
-        """Set how fast the overlaps of a rigid link are parted. `weight`: gravity, m/s^2."""
+        """Set how fast the overlaps of a link are parted. `weight`: gravity, m/s^2.
+
+        Wheels keep the usual rate on triangles, whose edges would drive them on.
+        """
         share = least = min(_MOST, _PARTING * dt)
         key = roller.body.uid, roller.part.index
         depth = max((-contact[8] for contact in contacts), default=0.0)
         if depth > 0.0 and key in self._rolling and not any(
-                contact[2] in self._moving for contact in contacts):
+                contact[2] in self._moving or (contact[2] in self._seams and not roller.body.rigid)
+                for contact in contacts):
             share = min(_MOST, max(least, _PUSH * weight * dt * dt / depth))
         if abs(share - (roller.share or least)) > _CHANGE * share:
             roller.share = share
@@ -181,9 +196,13 @@ class RollingContacts:
         self._standing[uid] = at
 
     def _on_level(self, contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
-        """Whether a body only touches level floors that do not move."""
+        """Whether a body only stands on level floors that do not move.
+
+        Edges of triangles beside it, which carry nothing, may be inclined.
+        """
         limit = _LEVEL * norm(gravity)
-        return all(contact[2] not in self._moving and norm(cross(contact[7], gravity)) <= limit
+        return all(contact[2] not in self._moving and (
+            contact[8] > 0.0 or norm(cross(contact[7], gravity)) <= limit)
                    for contact in contacts)
 
 

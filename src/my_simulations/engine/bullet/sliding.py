@@ -86,6 +86,12 @@ class Sliding:
             self._parts.setdefault(body.uid, {})[part.index] = part
             self._mass[body.uid] = sum(each.mass for each in body.parts)
 
+    def leave(self, body: Body, part: Part) -> None:
+        """The friction of a link is another's business."""
+        if (body.uid, part.index) in self._slides:
+            self._give_back((body.uid, part.index))
+        self._parts.get(body.uid, {}).pop(part.index, None)
+
     def forget(self, body: Body) -> None:
         """A body is gone."""
         for uid in body.uids:
