@@ -157,6 +157,13 @@ class Context(Protocol):
     def hold(self, held: bool) -> None:
         """Keep the model at rest where it is put, whatever acts on it; or no more."""
 
+    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+             longitudinal: float) -> None:
+        """Let a wheel slip in proportion to its speed, until a reset (`engine.WheelSlip`).
+
+        `joint` is the axis it turns about; m, N, and compliances without a unit.
+        """
+
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
         """Have a joint follow another one from now on: q = multiplier q_leader + offset."""
 

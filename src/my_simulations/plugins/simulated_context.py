@@ -12,7 +12,7 @@ from ..description.model import Inertial, Mimic, Model
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
-from ..engine.commands import JointMotor, JointWrench, PlanarVelocity
+from ..engine.commands import JointMotor, JointWrench, PlanarVelocity, WheelSlip
 from ..errors import CommandError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import RayFan, RayReturns, SensingError
@@ -334,6 +334,13 @@ class SimulatedContext:
         """Keep the model where it is put."""
         self._held = held
         self.simulator.models.hold(self.model, held)
+
+    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+             longitudinal: float) -> None:
+        """Let a wheel slip."""
+        self.simulator.drives.set_wheel_slips([WheelSlip(
+            self._link_row(link), self._axis_row(self._joint_spec(joint).name), radius,
+            normal_force, lateral, longitudinal)])
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
         """Have a joint follow another one."""

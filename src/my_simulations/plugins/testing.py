@@ -103,6 +103,7 @@ class FakeContext:
         touching: the contacts.
         wrenches: what joints transmit.
         held: whether the model is held.
+        slips: (joint, radius, normal force, lateral, longitudinal) of wheels.
         followers: (leader, multiplier, offset) of joints that mimic others.
         others: descriptions of the models in the world.
         attached: (parent, child) by the name of the joint.
@@ -133,6 +134,7 @@ class FakeContext:
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
         self.held = False
+        self.slips: Dict[str, Tuple[Any, ...]] = {}
         self.followers: Dict[str, Tuple[str, float, float]] = {}
         self.others: Dict[str, Model] = {}
         self.attached: Dict[str, Tuple[str, str]] = {}
@@ -208,6 +210,10 @@ class FakeContext:
     def hold(self, held: bool) -> None:
         """Noted."""
         self.held = held
+
+    def slip(self, link: str, joint: str, *values: float) -> None:
+        """Noted."""
+        self.slips[link] = (joint, *values)
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
         """Noted."""

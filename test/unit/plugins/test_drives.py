@@ -5,7 +5,8 @@ import math
 
 import pytest
 
-from my_simulations.description.model import Link
+from my_simulations.description.model import Joint, Link
+from my_simulations.description.shapes import Collision, Cylinder
 from my_simulations.geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.drive.diff_drive import DiffDrive
@@ -13,6 +14,7 @@ from my_simulations.plugins.drive.force_based_move import ForceBasedMove
 from my_simulations.plugins.drive.planar_move import PlanarMove
 from my_simulations.plugins.drive.skid_steer_drive import SkidSteerDrive
 from my_simulations.plugins.drive.tricycle_drive import TricycleDrive
+from my_simulations.plugins.drive.wheel_slip import WheelSlip
 from my_simulations.plugins.testing import FakeContext
 
 WHEELS = ("left_joint", "right_joint")
@@ -242,3 +244,22 @@ def test_a_tricycle_whose_wheels_have_the_names_of_the_other_side_counts_a_left_
     context.advance(1.0)
     odom = context.published["robot/odom"][-1]
     assert odom.twist.twist.angular.z == pytest.approx(0.15)
+
+
+def slipping(inside):
+    context = FakeContext(f"<plugin>{inside}</plugin>")
+    context.description.links.append(Link("rear", collisions=[Collision("c", Cylinder(0.3, 0.1))]))
+    context.description.joints.append(Joint("axle", "revolute", "base", "rear"))
+    WheelSlip(context).load()
+    return context.slips
+
+
+def test_a_wheel_slips_by_its_compliances_and_the_radius_of_its_collision():
+    force = "<wheel_normal_force>77</wheel_normal_force>"
+    assert slipping(f'<wheel link_name="rear"><slip_compliance_lateral>1</slip_compliance_lateral>'
+                    f"<slip_compliance_longitudinal>2</slip_compliance_longitudinal>{force}"
+                    "</wheel>") == {"rear": ("axle", 0.3, 77.0, 1.0, 2.0)}
+    assert slipping(f'<wheel link_name="rear">{force}<wheel_radius>0.25</wheel_radius>'
+                    "</wheel>") == {"rear": ("axle", 0.25, 77.0, 0.0, 0.0)}
+    with pytest.raises(PluginError, match="wheel_normal_force"):
+        slipping('<wheel link_name="rear"/>')
