@@ -319,11 +319,12 @@ class PluginHost:
 
     def _world_entity(self) -> Entity:
         """What stands for the world as owner of its plugins."""
-        plugins = self._simulator.world.plugins
+        world = self._simulator.world  # plugins of actors are unknown here, and told so
+        plugins = [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
         before = self._models.get(WORLD_SCOPE)
         if before is not None and before[0].model.plugins == plugins:
             return before[0]
-        return Entity(0, Model(WORLD, plugins=list(plugins)), IDENTITY, 0, 0)
+        return Entity(0, Model(WORLD, plugins=plugins), IDENTITY, 0, 0)
 
     def _rebind(self, entity: Entity, all_running: List[Running]) -> None:
         for running in all_running:
