@@ -5,7 +5,8 @@ usage: robots.py [ROW …]   rows: drive ten closed_loop (default: all)
 
 The robots are lab robots with a laser of 360 rays at 10 Hz, a differential drive and joint states
 at 50 Hz; all their topics have a subscriber in this process. Shares are of one core. Nothing here
-fails on a slow machine; on a loaded one the real-time factor falls and shares stay.
+fails on a slow machine. Shares are by sim time: on a loaded machine the real-time factor falls, and
+they stay.
 """
 from __future__ import annotations
 
@@ -41,12 +42,16 @@ class Shares:
         return [processor([self._node]), processor([self._engine]), processor(self._others)]
 
     def end(self) -> Tuple[float, float, float, float]:
-        """Of the node, the engine and the sensing process; sim time by wall time."""
+        """Of the node, the engine and the sensing process, by sim time; sim time by wall time.
+
+        Processor time by sim time is what a share would be at a real-time factor of 1.
+        """
         import rospy
 
         wall = time.perf_counter() - self._begun
-        node, engine, others = ((b - a) / wall for a, b in zip(self._before, self._read()))
-        return node, engine, others, (rospy.get_rostime().to_sec() - self._sim) / wall
+        sim = max(1e-3, rospy.get_rostime().to_sec() - self._sim)
+        node, engine, others = ((b - a) / sim for a, b in zip(self._before, self._read()))
+        return node, engine, others, sim / wall
 
 
 def spawn(count: int, laser: bool = True, drives: bool = True) -> None:
@@ -56,7 +61,8 @@ def spawn(count: int, laser: bool = True, drives: bool = True) -> None:
     from geometry_msgs.msg import Point, Pose, Quaternion
 
     text = subprocess.run(["xacro", str(ROBOT)], stdout=subprocess.PIPE, text=True,
-                          check=True).stdout.replace("/scan", "scan")
+                          check=True).stdout.replace("/scan", "scan").replace(
+                              "<robotNamespace>/</robotNamespace>", "")
     if not laser:
         text = text.replace("libgazebo_ros_laser.so", "libgazebo_ros_template.so")
     if not drives:
