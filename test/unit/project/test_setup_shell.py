@@ -98,7 +98,7 @@ def test_variable_overrides_the_workspace(tmp_path):
 def test_workspace_that_catkin_cannot_build_in_is_refused_at_once(clone, tmp_path, name):
     done = shell(clone, "find_workspace", tmp_path / "home", MY_SIMULATIONS_WS=str(tmp_path / name))
     assert done.returncode == 1
-    assert "which catkin cannot build in" in done.stderr
+    assert "which catkin does not support" in done.stderr
     assert not (tmp_path / name).exists()
 
 
@@ -309,7 +309,7 @@ def test_failed_part_of_a_step_says_which_why_and_what_to_do(clone, tmp_path):
     done = shell(clone, script, tmp_path / "home")
     assert done.returncode == 1
     assert "[1/1] Fetching things" in done.stdout
-    for text in ("Fetching things", "'fetch' ended with status 7", "the disk is full",
+    for text in ("Fetching things", "'fetch' failed with status 7", "the disk is full",
                  "Try it by daylight.", "logs/fetch.log"):
         assert text in done.stderr
     assert "the disk is full" in (tmp_path / "home" / "logs" / "fetch.log").read_text()
