@@ -97,16 +97,11 @@ class Models:
 
     @property
     def inter_model_joints(self) -> List[Joint]:
-<<<<<<< HEAD
-        """Joints between models that hold now; their ends are scoped link names, or `world`.
+        """The joints between models in effect; their ends are scoped link names or `world`.
 
-        Without those of `attach`, which belong to who has asked for them.
+        Without those of `attach`, which belong to the caller that made them.
         """
         return [joint for joint in self._between.joints if joint.name not in self._attached]
-=======
-        """The joints between models in effect; their ends are scoped link names or `world`."""
-        return self._between.joints
->>>>>>> main
 
     def launched(self) -> List[str]:
         """The models that the launch file of this simulator spawned (see `Entity`)."""

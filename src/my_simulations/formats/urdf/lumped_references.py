@@ -1,15 +1,9 @@
 """Updates names in plugins and sensors of a robot after fixed joint lumping.
 
-<<<<<<< HEAD
-Source: Gazebo's converter: contact sensors name collisions; plugins of the model name a `bodyName`
-or `frameName`, with an offset that grows by the way between the links; grippers, projectors and
-joints name links. Plugins of sensors keep their `frameName`: it is a tf frame, which the link has
-for robot_state_publisher still, and the sensor is where that link was.
-=======
-Source: Gazebo's converter. Contact sensors refer to collisions; plugins to a `bodyName` or
-`frameName`, with an offset to which the transform between the links is added; grippers, projectors
-and joints to links.
->>>>>>> main
+Source: Gazebo's converter. Contact sensors refer to collisions; plugins of the model to a
+`bodyName` or `frameName`, with an offset to which the transform between the links is added;
+grippers, projectors and joints to links. Plugins of sensors keep their `frameName`: it is a tf
+frame, which robot_state_publisher still publishes, and the sensor stays where that link was.
 """
 from __future__ import annotations
 
