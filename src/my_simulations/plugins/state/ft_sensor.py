@@ -18,8 +18,6 @@ from ..noise import WhiteNoise
 from ..parameters import namespace_or
 from ..sensors.rays import SampledNoise
 
-_AXES = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")
-
 
 class FtSensor(Plugin):
     """Publishes while somebody listens."""
@@ -37,7 +35,9 @@ class FtSensor(Plugin):
         self._joint = self._described()
         self._white = WhiteNoise(context.seed, f"{context.model}::{self._name}::ft",
                                  p.number("gaussianNoise", 0.0))
-        self._noise = [SampledNoise(context, getattr(self._block, axis), axis) for axis in _AXES
+        self._noise = [SampledNoise(context, getattr(getattr(self._block, kind), axis),
+                                    f"{kind}/{axis}")
+                       for kind in ("force", "torque") for axis in "xyz"
                        ] if self._block is not None else []
         prefix = str(context.search_parameter("tf_prefix", "") or "")
         self._frame = resolve(prefix, self._frame_name())
