@@ -2,7 +2,8 @@
 
 Source: Gazebo's converter. Contact sensors refer to collisions; plugins of the model to a
 `bodyName` or `frameName`, with an offset to which the transform between the links is added;
-grippers, projectors and joints to links.
+grippers, projectors and joints to links. Plugins of sensors keep their `frameName`: it is a tf
+frame, which robot_state_publisher still publishes, and the sensor stays where that link was.
 """
 from __future__ import annotations
 
@@ -59,11 +60,11 @@ def _in_element(element: Any, names: Renamed) -> bool:
     inside = parent.tag if parent is not None else ""
     if element.tag == "collision" and inside == "contact":
         return _put(element, names.collisions, text)
-    if element.tag in _PLACED and text.lstrip("/") in names.links and not _of_sensor(parent):
+    own = inside == "plugin" and parent.getparent() is None
+    if own and element.tag in _PLACED and text.lstrip("/") in names.links:
         body = names.links[text.lstrip("/")]
         element.text = _standing(body)
-        if parent is not None:
-            _move_offset(parent, body.offset)
+        _move_offset(parent, body.offset)
         return True
     if element.tag in _LINKS or (element.tag in ("parent", "child") and inside == "joint"):
         return _put(element, {name: _standing(body) for name, body in names.links.items()}, text)
@@ -72,12 +73,6 @@ def _in_element(element: Any, names: Renamed) -> bool:
         element.text = f"{_standing(names.links[link])}/{rest}"
         return True
     return False
-
-
-def _of_sensor(plugin: Any) -> bool:
-    """A sensor's plugin keeps the frame it names: the links are still in tf (Gazebo behaviour)."""
-    return plugin is not None and plugin.getparent() is not None \
-        and plugin.getparent().tag == "sensor"
 
 
 def _put(element: Any, names: Mapping[str, str], text: str) -> bool:
