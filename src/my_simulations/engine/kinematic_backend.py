@@ -15,12 +15,14 @@ from .commands import (
     Command,
     ConnectModels,
     JointMotor,
+    JointServo,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
     PlanarVelocity,
     ReadContacts,
+    ReadEfforts,
     RemoveModel,
     Restart,
     SetAxes,
@@ -29,6 +31,7 @@ from .commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
@@ -48,6 +51,7 @@ class KinematicBackend:
         self.held: Tuple[int, ...] = ()
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.servos: Dict[int, JointServo] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
@@ -63,6 +67,8 @@ class KinematicBackend:
             PinModels: self._hold,
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
             SetPlanarVelocities: self._set_planar,
+            SetServos: lambda c: self.servos.update({servo.row: servo for servo in c.servos}),
+            ReadEfforts: lambda c: (0.0,) * len(c.rows),
             ReadContacts: lambda _: (),
             ConnectModels: lambda _: None,
             AddTimedForces: lambda c: self.timed_forces.update(
@@ -130,6 +136,7 @@ class KinematicBackend:
         self.timed_forces.clear()
         self.motors.clear()
         self.planar.clear()
+        self.servos.clear()
 
     def _restart(self, command: Restart) -> None:
         before = {number: self.models[number] for number, _ in command.models}

@@ -8,9 +8,12 @@ from ..engine.commands import (
     Batch,
     Command,
     JointMotor,
+    JointServo,
     PlanarVelocity,
+    ReadEfforts,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
 )
 from .registry import Entity
 from .session import Session
@@ -23,15 +26,18 @@ class Drives:
         self._session = session
         self._motors: Dict[int, JointMotor] = {}
         self._planar: Dict[int, PlanarVelocity] = {}
+        self._servos: Dict[int, JointServo] = {}
 
     def set(self, motors: Sequence[JointMotor] = (),
-            planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None) -> bool:
-        """Set motors by joint row and planar velocities by model number; others stay.
+            planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None,
+            servos: Sequence[JointServo] = ()) -> bool:
+        """Set motors and servos by joint row, planar velocities by model number; others stay.
 
         Args:
             motors: of any models.
             planar: of any models.
             revision: of the models when the rows were looked up (`Models.revision`).
+            servos: of any models; those without a drive end.
 
         Returns:
             False when the models have changed since; then nothing is set.
@@ -48,12 +54,23 @@ class Drives:
             moved = {one.model_id: one for one in planar}
             if any(self._planar.get(number) != one for number, one in moved.items()):
                 commands.append(SetPlanarVelocities(tuple({**self._planar, **moved}.values())))
+            steered = [servo for servo in servos if self._servos.get(servo.row) != servo]
+            if steered:
+                commands.append(SetServos(tuple(steered)))
             if not commands:
                 return True
             self._session.call(Batch(tuple(commands)) if len(commands) > 1 else commands[0])
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
+            self._keep(steered)
             return True
+
+    def efforts(self, rows: Sequence[int]) -> List[float]:
+        """What servos and motors spent on joint axes in the last step, N m or N.
+
+        Raises CommandError.
+        """
+        return list(self._session.call(ReadEfforts(tuple(rows))).value)
 
     def stop(self, entity: Entity) -> None:
         """Nothing drives a model any more: motors off, no planar velocity."""
@@ -65,6 +82,9 @@ class Drives:
             if entity.model_id in self._planar:
                 commands.append(SetPlanarVelocities(tuple(
                     one for number, one in self._planar.items() if number != entity.model_id)))
+            steered = [servo for row, servo in self._servos.items() if entity.has_joint_row(row)]
+            if steered:
+                commands.append(SetServos(tuple(replace(servo, drive="") for servo in steered)))
             self.forget_entity(entity)
             if commands:
                 self._session.call(Batch(tuple(commands)))
@@ -78,6 +98,8 @@ class Drives:
             commands.append(SetMotors(tuple(self._motors.values())))
         if self._planar:
             commands.append(SetPlanarVelocities(tuple(self._planar.values())))
+        if self._servos:
+            commands.append(SetServos(tuple(self._servos.values())))
         return commands
 
     def forget_entity(self, entity: Entity) -> None:
@@ -85,19 +107,26 @@ class Drives:
         self._motors = {row: motor for row, motor in self._motors.items()
                         if not entity.has_joint_row(row)}
         self._planar.pop(entity.model_id, None)
+        self._servos = {row: servo for row, servo in self._servos.items()
+                        if not entity.has_joint_row(row)}
 
     def forget_all(self) -> None:
         """The engine has begun anew without them."""
         self._motors.clear()
         self._planar.clear()
+        self._servos.clear()
 
     def transferred(self, old: Entity, new: Entity) -> List[Command]:
         """What drives a model, for the entity that replaces it; they are kept from now on."""
         names = {old.first_joint_row + n: name for n, name in enumerate(old.joint_names)}
         motors = [replace(motor, row=new.first_joint_row + new.joint_names.index(names[row]))
                   for row, motor in self._motors.items() if names.get(row) in new.joint_names]
+        servos = [replace(servo, row=new.first_joint_row + new.joint_names.index(names[row]))
+                  for row, servo in self._servos.items() if names.get(row) in new.joint_names]
         planar = self._planar.get(old.model_id)
         commands: List[Command] = [SetMotors(tuple(motors))] if motors else []
+        if servos:
+            commands.append(SetServos(tuple(servos)))
         if planar is not None:
             moved = replace(planar, model_id=new.model_id)
             others = [one for one in self._planar.values() if one is not planar]
@@ -111,3 +140,12 @@ class Drives:
                 self._motors.update({motor.row: motor for motor in command.motors})
             elif isinstance(command, SetPlanarVelocities):
                 self._planar = {one.model_id: one for one in command.velocities}
+            elif isinstance(command, SetServos):
+                self._keep(command.servos)
+
+    def _keep(self, servos: Sequence[JointServo]) -> None:
+        for servo in servos:
+            if servo.drive:
+                self._servos[servo.row] = servo
+            else:
+                self._servos.pop(servo.row, None)

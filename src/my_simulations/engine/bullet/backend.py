@@ -21,6 +21,7 @@ from ..commands import (
     PhysicsSettings,
     PinModels,
     ReadContacts,
+    ReadEfforts,
     RemoveModel,
     Restart,
     SetAxes,
@@ -29,6 +30,7 @@ from ..commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
 )
 from ..ring import JOINTS, LINKS
 from . import bodies, collision_groups, extra_surfaces, joint_axes
@@ -104,6 +106,9 @@ class BulletBackend:
             ConnectModels: self._connect,
             SetMotors: lambda command: self._motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
+            SetServos: lambda command: self._forces.servos.set(
+                command.servos, self._settings.step_size),
+            ReadEfforts: lambda command: self._forces.servos.efforts(command.rows),
             ReadContacts: lambda command: read_contacts(self._bodies, command.limit,
                                                         self._sliding.friction),
             AddTimedForces: self._add_timed_forces,
@@ -387,6 +392,7 @@ class BulletBackend:
     def _set_up_axes(self, body: Body, model: Model) -> None:
         joint_axes.set_up(body, model, self._forces, self._settings.step_size)
         self._motors.set_up(body, model)
+        self._forces.servos.set_up(body, model, self._settings.step_size)
 
     def _hold(self, command: PinModels) -> None:
         self._holds.set(body for number in command.model_ids

@@ -14,6 +14,7 @@ from ..commands import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
+from .joint_servos import JointServos
 
 _NOTHING = (0.0, 0.0, 0.0)
 
@@ -32,6 +33,7 @@ class Forces:
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
+        self.servos = JointServos(self._axes, wake)
 
     def add_body(self, body: Body) -> None:
         """Know the rows of a new body."""
@@ -60,11 +62,13 @@ class Forces:
         self._placed.add(body.uid)
         if body.uid in self._implicit:
             self._implicit[body.uid].disturbed()
+        self.servos.disturbed(body)
 
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
         self._implicit.pop(body.uid, None)
+        self.servos.forget(body)
         for part in body.parts:
             self._parts.pop(part.row, None)
             self._weightless.pop(part.row, None)
@@ -95,11 +99,12 @@ class Forces:
         """Drop every timed force."""
         for table in (self._timed, self._acting, self._loops):
             table.clear()
+        self.servos.clear()
 
     @property
     def idle(self) -> bool:
         """True when a step needs nothing from here, now or later."""
-        return not (self._timed or self._weightless or self._implicit)
+        return not (self._timed or self._weightless or self._implicit) and self.servos.idle
 
     @property
     def wrenched_links(self) -> Set[int]:
@@ -116,6 +121,8 @@ class Forces:
                     self._apply_wrench(force, dt)
                 else:
                     efforts[force.row] = efforts.get(force.row, 0.0) + self._limited(force, dt)
+        if not self.servos.idle:
+            self.servos.add_to(efforts, step)
         for implicit in self._implicit.values():
             implicit.add_to(efforts)
         for row, effort in efforts.items():
