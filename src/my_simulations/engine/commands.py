@@ -191,6 +191,13 @@ class ConnectModels(Command):
 
 
 @dataclass(frozen=True)
+class DisconnectModels(Command):
+    """Take away the joints of these names that `ConnectModels` made; others are ignored."""
+
+    names: Tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class RemoveModel(Command):
     """Take a model out; bodies that rested on it wake up."""
 

@@ -14,6 +14,7 @@ from .commands import (
     ClearTimedForces,
     Command,
     ConnectModels,
+    DisconnectModels,
     JointMotor,
     JointServo,
     LinkState,
@@ -49,6 +50,7 @@ class KinematicBackend:
         self.models: Dict[int, Tuple[Model, int, int, bool]] = {}
         self.timed_forces: Dict[int, object] = {}
         self.held: Tuple[int, ...] = ()
+        self.connected: Dict[str, ConnectModels] = {}
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
         self.servos: Dict[int, JointServo] = {}
@@ -70,7 +72,8 @@ class KinematicBackend:
             SetServos: lambda c: self.servos.update({servo.row: servo for servo in c.servos}),
             ReadEfforts: lambda c: (0.0,) * len(c.rows),
             ReadContacts: lambda _: (),
-            ConnectModels: lambda _: None,
+            ConnectModels: lambda c: self.connected.update({c.joint.name: c}),
+            DisconnectModels: lambda c: [self.connected.pop(name, None) for name in c.names],
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
             ),
@@ -191,6 +194,10 @@ class KinematicBackend:
             del self.links[first_link + n]
         for n in range(len(axis_rows(model))):
             del self.joints[first_joint + n]
+        for name, joint in list(self.connected.items()):
+            if {joint.parent_row, joint.child_row} & set(range(first_link,
+                                                               first_link + len(model.links))):
+                del self.connected[name]
 
     def _set_model(self, command: SetModelState) -> None:
         if command.model_id not in self.models:

@@ -6,11 +6,12 @@ thread, with the world standing still at the step they belong to.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, List, Optional, Protocol
+from typing import Any, Callable, Dict, List, Optional, Protocol
 
+from ..description.model import Inertial, Model
 from ..description.sensor import Sensor
 from ..errors import SimulationError
-from ..geometry import Pose, Twist, Vec3
+from ..geometry import STILL, Pose, Twist, Vec3
 from ..sensing.api import RayFan, RayReturns
 from .parameters import Parameters
 
@@ -20,9 +21,10 @@ class PluginError(SimulationError):
 
 
 class Link(Protocol):
-    """A link of the plugin's model."""
+    """A link; `inertial` is what its description says."""
 
     name: str
+    inertial: Inertial
 
     @property
     def pose(self) -> Pose:
@@ -67,7 +69,7 @@ class Context(Protocol):
     """The world, as one plugin of one model sees it.
 
     Attributes:
-        model: the model's name.
+        model: the model's name; `world` for a plugin of the world.
         parameters: what the `<plugin>` element says.
         sensor: the sensor that the plugin belongs to; None for a plugin of the model.
         sensor_link: the name of that sensor's link; "" without one.
@@ -121,11 +123,42 @@ class Context(Protocol):
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Have the model move level from now on: m/s along its own x and y axis, and rad/s."""
 
+    @property
+    def description(self) -> Model:
+        """The flattened description of the model."""
+
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench on a link from now on, instead of the one given before.
 
-        N and N m, world axes, at the centre of mass.
+        N and N m, world axes, at the centre of mass. The link is one of the model, or of another
+        model by its scoped name.
         """
+
+    def move(self, pose: Pose, twist: Twist = STILL) -> None:
+        """Put the model somewhere at once; all its links move as one body."""
+
+    def hold(self, held: bool) -> None:
+        """Keep the model at rest where it is put, whatever acts on it; or no more."""
+
+    def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
+        """Have a joint follow another one from now on: q = multiplier q_leader + offset."""
+
+    # -- other models ----------------------------------------------------------------------------
+
+    def model_link(self, scoped: str) -> Link:
+        """A link of any model by its scoped name; for this moment. Raises PluginError."""
+
+    def models(self) -> "Dict[str, Model]":
+        """The flattened descriptions of all models by name, the plugin's own among them."""
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Fix a link (scoped name) to one of another model, or to `world`, as they are now.
+
+        The joint ends with either model, with a reset, and with `detach`. Raises PluginError.
+        """
+
+    def detach(self, name: str) -> bool:
+        """Let go of what `attach` has joined; returns whether it held."""
 
     def set_joint_positions(self, positions: "dict[str, float]") -> None:
         """Move joints (rad or m) at once, at rest."""

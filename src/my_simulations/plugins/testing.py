@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
+from ..description.model import Inertial, Model
 from ..description.sensor import Sensor
 from ..engine.ring import Clock
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
@@ -39,6 +40,7 @@ class FakeLink:
 
     def __init__(self, name: str) -> None:
         self.name, self.pose, self.twist = name, IDENTITY, STILL
+        self.inertial = Inertial()
 
 
 class FakeJoint:
@@ -79,6 +81,11 @@ class FakeContext:
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
         touching: the contacts.
+        held: whether the model is held.
+        followers: (leader, multiplier, offset) of joints that mimic others.
+        others: descriptions of the models in the world.
+        attached: (parent, child) by the name of the joint.
+        description: of the model.
         ros_parameters: what `search_parameter` finds.
     """
 
@@ -102,6 +109,11 @@ class FakeContext:
         self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
+        self.held = False
+        self.followers: Dict[str, Tuple[str, float, float]] = {}
+        self.others: Dict[str, Model] = {}
+        self.attached: Dict[str, Tuple[str, str]] = {}
+        self.description = Model(model)
         self.ros_parameters: Dict[str, Any] = {}
         self.returns: Any = None
         self.fans: List[Any] = []
@@ -159,6 +171,35 @@ class FakeContext:
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """Noted."""
         self.pushes[link] = (force, torque)
+
+    def move(self, pose: Pose, twist: Twist = STILL) -> None:
+        """The model jumps."""
+        self.pose, self.twist = pose, twist
+
+    def hold(self, held: bool) -> None:
+        """Noted."""
+        self.held = held
+
+    def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
+        """Noted."""
+        self.joint(follower), self.joint(leader)
+        self.followers[follower] = (leader, multiplier, offset)
+
+    def model_link(self, scoped: str) -> FakeLink:
+        """A link by its scoped name."""
+        return self.links.setdefault(scoped, FakeLink(scoped))
+
+    def models(self) -> Dict[str, Model]:
+        """What a test says."""
+        return self.others
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Noted."""
+        self.attached[name] = (parent, child)
+
+    def detach(self, name: str) -> bool:
+        """Noted."""
+        return self.attached.pop(name, None) is not None
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Joints jump."""

@@ -42,7 +42,8 @@ class PluginStarter:
                 return
             self._seen = revision
             if self._host is None:
-                if not any(_has_plugin(entity.model) for entity in entities):
+                if not self._simulator.world.plugins and not any(
+                        _has_plugin(entity.model) for entity in entities):
                     return
                 self._host = self._made()
                 self._host.start()
