@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Dict, Optional, Tuple, TypeVar, Union
 
-from ..description.model import Joint, Model
+from ..description.model import Joint, Model, SoftLimits
 from ..description.shapes import MeshData
 from ..geometry import STILL, Pose, Twist, Vec3
 from .spline import Spline
@@ -289,27 +289,6 @@ class PidGains:
     i_min: float = 0.0
     i_max: float = 0.0
     antiwindup: bool = False
-
-
-@dataclass(frozen=True)
-class SoftLimits:
-    """Within these the rate gets smaller towards the limits (URDF, safety_controller).
-
-    Attributes:
-        lower, upper: rad or m.
-        k_position: rate by distance to the limit, 1/s.
-        k_velocity: effort by what the rate is too high, N m s/rad or N s/m.
-    """
-
-    lower: float
-    upper: float
-    k_position: float
-    k_velocity: float
-
-    def rates(self, position: float, most: float) -> Tuple[float, float]:
-        """The least and the greatest rate that may be commanded at a position."""
-        return (max(-most, min(most, -self.k_position * (position - self.lower))),
-                max(-most, min(most, -self.k_position * (position - self.upper))))
 
 
 @dataclass(frozen=True)

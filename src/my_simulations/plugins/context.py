@@ -6,10 +6,12 @@ thread, with the world standing still at the step they belong to.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Protocol
+from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
 from ..description.model import Inertial, Model
+from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
+from ..engine.commands import JointServo
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
 from ..sensing.api import RayFan, RayReturns
@@ -53,6 +55,13 @@ class Joint(Protocol):
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor: to `rate` with `effort` at most; 0 effort turns it off."""
 
+    @property
+    def spec(self) -> JointSpec:
+        """Its description."""
+
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo of the engine, from the next step on; its `row` is filled in."""
+
 
 class Publication(Protocol):
     """A topic that the plugin publishes."""
@@ -63,6 +72,16 @@ class Publication(Protocol):
 
     def publish(self, message: Any) -> None:
         """Publish a message once the world goes on; it must not be changed any more."""
+
+    def close(self) -> None:
+        """Take the topic off the graph."""
+
+
+class Handle(Protocol):
+    """Something that was begun, and goes on until it is closed, or the plugin ends."""
+
+    def close(self) -> None:
+        """End it."""
 
 
 class Context(Protocol):
@@ -90,7 +109,11 @@ class Context(Protocol):
     def step_size(self) -> float:
         """Of the simulation, s."""
 
-    def every(self, hertz: float, call: Callable[[], None]) -> None:
+    @property
+    def step(self) -> int:
+        """The step count: how many steps were made before this moment."""
+
+    def every(self, hertz: float, call: Callable[[], None]) -> Handle:
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
         0 or less is every step. The appointments are exact to the step and never drift.
@@ -160,6 +183,9 @@ class Context(Protocol):
     def detach(self, name: str) -> bool:
         """Let go of what `attach` has joined; returns whether it held."""
 
+    def efforts(self, joints: Sequence[str]) -> List[float]:
+        """What motors and servos spent on joints in the last step, N m or N; asks the engine."""
+
     def set_joint_positions(self, positions: "dict[str, float]") -> None:
         """Move joints (rad or m) at once, at rest."""
 
@@ -192,14 +218,17 @@ class Context(Protocol):
         """Offer a topic. Raises PluginError where the type's package is not installed."""
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> None:
+                  queue: int = 1) -> Handle:
         """Hear a topic. Of more messages than `queue` between two steps the oldest are lost.
 
         Raises PluginError where the type's package is not installed.
         """
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Handle:
         """Offer a service; `call` gets the request and a response to fill."""
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace, a dictionary where it has parts."""
 
     def search_parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace, or of the next one above that has it (`tf_prefix`)."""

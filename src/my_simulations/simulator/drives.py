@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence
 
 from ..engine.commands import (
     Batch,
@@ -70,7 +70,8 @@ class Drives:
 
         Raises CommandError.
         """
-        return list(self._session.call(ReadEfforts(tuple(rows))).value)
+        found: Any = self._session.call(ReadEfforts(tuple(rows))).value
+        return list(found)
 
     def stop(self, entity: Entity) -> None:
         """Nothing drives a model any more: motors off, no planar velocity."""
