@@ -11,6 +11,7 @@ from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 from ..description.model import Inertial, Model
 from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
+from ..description.transmission import Transmission
 from ..engine.commands import JointServo
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
@@ -149,6 +150,12 @@ class Context(Protocol):
     @property
     def description(self) -> Model:
         """The flattened description of the model."""
+
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """The transmissions of the model's description, else of the URDF in a parameter.
+
+        The parameter is looked for in the namespace and those above. Raises PluginError.
+        """
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench on a link from now on, instead of the one given before.

@@ -22,6 +22,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_skid_steer_drive.so": "drive.skid_steer_drive:SkidSteerDrive",
     "libgazebo_ros_planar_move.so": "drive.planar_move:PlanarMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
+    "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
     "libgazebo_ros_force.so": "state.force:Force",
     "libgazebo_ros_laser.so": "sensors.laser:Laser",

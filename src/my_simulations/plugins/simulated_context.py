@@ -12,8 +12,9 @@ from ..description.model import Inertial, Mimic, Model
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
+from ..description.transmission import Transmission
 from ..engine.commands import JointMotor, JointServo, PlanarVelocity
-from ..errors import CommandError, Issue, Severity
+from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import RayFan, RayReturns, SensingError
 from ..simulator.appointments import Moment, Rate
@@ -327,6 +328,19 @@ class SimulatedContext:
     def description(self) -> Model:
         """The flattened description."""
         return self.entity.model
+
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """Those of the description, else of a parameter."""
+        own = self.entity.model.transmissions
+        text = "" if own else self.search_parameter(parameter, "")
+        if not isinstance(text, str) or not text.strip():
+            return own
+        from ..formats.urdf.transmission import transmissions_of
+
+        try:
+            return transmissions_of(text, f"parameter {parameter}")
+        except InputError as fault:
+            raise PluginError(str(fault)) from fault
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""

@@ -14,6 +14,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 from ..description.model import Inertial, JointAxis, Model
 from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
+from ..description.transmission import Transmission
 from ..engine.commands import JointServo
 from ..engine.ring import Clock
 from ..engine.servo_law import FOLLOW, ServoLaw
@@ -54,6 +55,7 @@ class FakeJoint:
         servo: what it was steered with; None before.
         spec: its description.
         effort: what the servo spent in the last step.
+        stuck: something holds it.
     """
 
     def __init__(self, name: str) -> None:
@@ -63,6 +65,7 @@ class FakeJoint:
         self.servo: Optional[JointServo] = None
         self.spec = JointSpec(name, "revolute", "base", name, axis=JointAxis())
         self.effort = 0.0
+        self.stuck = False
         self._law: Optional[ServoLaw] = None
 
     def drive(self, rate: float, effort: float) -> None:
@@ -81,6 +84,9 @@ class FakeJoint:
 
     def step(self, step: int, dt: float) -> None:
         """Turn for one step."""
+        if self.stuck:
+            self.velocity = 0.0
+            return
         if self.motor is not None and self.motor[1] > 0.0:
             self.velocity = self.motor[0]
         elif self.servo is not None and self.servo.drive:
@@ -216,6 +222,10 @@ class FakeContext:
         if name not in self.joints:
             raise PluginError(f"model '{self.model}' has no joint '{name}'")
         return self.joints[name]
+
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """Those of the description."""
+        return self.description.transmissions
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Noted."""

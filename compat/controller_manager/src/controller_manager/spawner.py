@@ -1,4 +1,4 @@
-"""`rosrun controller_manager spawner NAME...`: loads and starts controllers; unloads them at its end.
+"""`rosrun controller_manager spawner NAME...`: loads and starts controllers, and unloads them.
 
 All waiting is in wall time: the world may be paused, and /clock need not be there yet.
 """

@@ -1,4 +1,4 @@
-"""Limits of joints: from the robot's description, and from `joint_limits` on the parameter server."""
+"""Limits of joints: from the description, and from `joint_limits` on the parameter server."""
 from __future__ import annotations
 
 import math
