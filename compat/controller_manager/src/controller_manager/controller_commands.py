@@ -41,12 +41,12 @@ def main() -> int:
     if command not in EACH and command not in ("list", "list-types", "reload-libraries"):
         print(USAGE, file=sys.stdout if command in ("", "-h", "--help") else sys.stderr)
         return 0 if command in ("", "-h", "--help") else 1
-    rospy.init_node("controller_manager", anonymous=True)
     try:
+        rospy.init_node("controller_manager", anonymous=True)
         return 0 if _done(command, arguments[1:]) else 1
     except rospy.ROSInterruptException:
         return 1
-    except rospy.ServiceException as fault:
+    except (rospy.ServiceException, rospy.ROSException) as fault:
         print(fault, file=sys.stderr)
         return 1
 
