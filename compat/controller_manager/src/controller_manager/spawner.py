@@ -23,6 +23,8 @@ from controller_manager_msgs.srv import (
 from std_msgs.msg import Bool
 
 LOOK_S = 0.05   # between two looks while waiting
+TELL_S = 30.0   # between two messages while waiting
+HINT = "does the robot have the plugin libgazebo_ros_control.so, and is it in the world?"
 
 
 def parse_args(args: Optional[List[str]] = None) -> argparse.Namespace:
@@ -34,9 +36,9 @@ def parse_args(args: Optional[List[str]] = None) -> argparse.Namespace:
                         help="begin when this topic (std_msgs/Bool) says true")
     parser.add_argument("--namespace", metavar="NS", default="",
                         help="where the controller_manager is")
-    parser.add_argument("--timeout", metavar="T", type=float, default=30.0,
-                        help="how long to wait for the controller_manager, in s (30); 0 or less"
-                        " for ever")
+    parser.add_argument("--timeout", metavar="T", type=float, default=0.0,
+                        help="how long to wait for the controller_manager, in s; 0 or less for"
+                        " ever, which is the default")
     parser.add_argument("--no-timeout", action="store_true", help="wait for ever")
     parser.add_argument("--shutdown-timeout", help="has no effect")
     parser.add_argument("controllers", metavar="CONTROLLER", nargs="+",
@@ -58,8 +60,11 @@ class Spawner:
         return rospy.ServiceProxy(f"{self._prefix}controller_manager/{name}", kind)
 
     def wait(self, timeout: Optional[float]) -> bool:
-        """Wait for the manager; False after `timeout` s in which the world was there without it."""
-        begin = time.monotonic()
+        """Wait for the manager, which comes with its robot; False after `timeout` s of it.
+
+        Time before the first /clock does not count.
+        """
+        begin = told = time.monotonic()
         for proxy in (self._load, self._switch, self._unload):
             rospy.loginfo("spawner waits for %s", proxy.resolved_name)
             while not rospy.is_shutdown():
@@ -67,9 +72,14 @@ class Spawner:
                     proxy.wait_for_service(timeout=1.0)
                     break
                 except rospy.ROSException:
-                    if timeout is not None and time.monotonic() - begin > timeout:
-                        if not _before_clock():
-                            return False
+                    now = time.monotonic()
+                    if _before_clock():
+                        begin = now
+                    elif timeout is not None and now - begin > timeout:
+                        return False
+                    if now - told > TELL_S:
+                        told = now
+                        rospy.logwarn("spawner still waits for %s: %s", proxy.resolved_name, HINT)
         return not rospy.is_shutdown()
 
     def load(self, names: List[str], start: bool) -> bool:
@@ -137,10 +147,9 @@ def main() -> int:
     if not spawner.wait(None if endless else options.timeout):
         if rospy.is_shutdown():
             return 0
-        rospy.logerr("spawner found no controller_manager in namespace %s: does the robot have"
-                     " the plugin libgazebo_ros_control.so, and is it in the world?",
+        rospy.logerr("spawner found no controller_manager in namespace %s: %s",
                      rospy.resolve_name(options.namespace) if options.namespace
-                     else rospy.get_namespace())
+                     else rospy.get_namespace(), HINT)
         return 1
     if options.wait_for and not _heard(options.wait_for):
         return 0
