@@ -177,7 +177,7 @@ Geometry = Union[Box, Sphere, Cylinder, Plane, Mesh, Capsule, Ellipsoid, Cone, H
                  Polyline, ImageMap, Empty]
 
 Solid = Union[Mesh, Heightmap, Polyline, ImageMap]
-"""Geometry that collides as a mesh made ready beforehand, found by `mesh_key`."""
+"""Geometry that collides as a loaded mesh, found by `mesh_key`."""
 
 SOLIDS = (Mesh, Heightmap, Polyline, ImageMap)
 
@@ -189,7 +189,7 @@ class MeshData:
     Attributes:
         vertices: float64 array (n, 3), scale already applied.
         triangles: int32 array (m, 3) of vertex indices.
-        parts: convex pieces that together are the solid, for a body that moves; None: its hull.
+        parts: convex parts of the solid, for a dynamic body; None for its convex hull.
     """
 
     vertices: Any
@@ -314,7 +314,7 @@ MeshTable = Dict[str, MeshData]
 
 
 def mesh_key(solid: Solid) -> str:
-    """What identifies a loaded mesh: file, scale and part, or the numbers that make it."""
+    """Key of a loaded mesh: file, scale and submesh, or the numbers that define it."""
     if not isinstance(solid, Mesh):
         return repr(solid)
     part = f"#{solid.submesh}{'@' if solid.center else ''}" if solid.submesh else ""

@@ -1,4 +1,4 @@
-"""A backend that moves nothing by itself but what has a velocity: for tests without PyBullet."""
+"""A backend without dynamics, for tests without PyBullet."""
 from __future__ import annotations
 
 import struct
@@ -41,7 +41,7 @@ _LINK = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class KinematicBackend:
-    """Links fly straight on with their twists; no gravity or contacts. Timed forces are kept."""
+    """Links move with constant twists, without gravity and contacts; timed forces are stored."""
 
     def __init__(self) -> None:
         self.settings = PhysicsSettings()
@@ -83,7 +83,7 @@ class KinematicBackend:
         }
 
     def apply(self, command: Command) -> object:
-        """Carry out a command; raises `CommandRefusedError`."""
+        """Apply a command. Raises `CommandRefusedError`."""
         self._dirty = True
         handler = self._appliers.get(type(command))
         if handler is None:
@@ -91,7 +91,7 @@ class KinematicBackend:
         return handler(command)
 
     def configure(self, settings: PhysicsSettings) -> None:
-        """Only the step size matters."""
+        """Set the step size; other settings are ignored."""
         self.settings = settings
 
     def step(self, first: int, count: int) -> None:
@@ -112,7 +112,7 @@ class KinematicBackend:
         return dirty
 
     def read_poses(self) -> bool:
-        """Whether something may have changed; the next `read` says it again."""
+        """Whether something may have changed; the next `read` reports it again."""
         return self._dirty
 
     def tables(self) -> Tuple[memoryview, memoryview]:
@@ -127,11 +127,11 @@ class KinematicBackend:
         return memoryview(links), memoryview(joints)
 
     def events(self) -> List[Event]:
-        """Nothing ever happens by itself."""
+        """No events."""
         return []
 
     def close(self) -> None:
-        """Nothing to give back."""
+        """Does nothing."""
 
     def _clear(self, _: Clear) -> None:
         for model_id in list(self.models):
@@ -152,7 +152,7 @@ class KinematicBackend:
         self.planar = {one.model_id: one for one in command.velocities}
 
     def _turn_motors(self, span: float) -> None:
-        """Axes with a motor turn as fast as they are told at once."""
+        """Move axes with a motor at its rate, without acceleration."""
         for row, motor in self.motors.items():
             if motor.effort > 0.0 and row in self.joints:
                 self.joints[row] = (self.joints[row][0] + motor.rate * span, motor.rate)

@@ -1,4 +1,4 @@
-"""Motors of joints and planar velocities of models, which the engine keeps up by itself."""
+"""Joint motors and planar velocities of models, which the engine applies in every step."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -20,7 +20,7 @@ from .session import Session
 
 
 class Drives:
-    """Owns what drives models from within. Changes take the structure lock."""
+    """Owns joint motors and planar velocities. Changes take the structure lock."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -31,18 +31,18 @@ class Drives:
     def set(self, motors: Sequence[JointMotor] = (),
             planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None,
             servos: Sequence[JointServo] = ()) -> bool:
-        """Set motors and servos by joint row, planar velocities by model number; others stay.
+        """Set motors and servos by joint row, planar velocities by model id; others stay.
 
         Args:
-            motors: of any models.
-            planar: of any models.
-            revision: of the models when the rows were looked up (`Models.revision`).
-            servos: of any models; those without a drive end.
+            motors: joint motors by row; rate in rad/s or m/s, maximum effort in N m or N.
+            planar: planar velocities by model id, m/s and rad/s.
+            revision: `Models.revision` when the rows were looked up.
+            servos: joint servos by row; one with an empty `drive` ends the servo.
 
         Returns:
-            False when the models have changed since; then nothing is set.
+            False if the models have changed since then; nothing is set.
 
-        Raises CommandError when a joint is not there.
+        Raises CommandError if a joint does not exist.
         """
         with self._session.structure_lock:
             if revision is not None and revision != self._session.registry.revision:
@@ -74,7 +74,7 @@ class Drives:
         return list(found)
 
     def stop(self, entity: Entity) -> None:
-        """Nothing drives a model any more: motors off, no planar velocity."""
+        """Switch off the motors and the planar velocity of a model."""
         with self._session.structure_lock:
             mine = [motor for row, motor in self._motors.items() if entity.has_joint_row(row)]
             commands: List[Command] = []
@@ -93,7 +93,7 @@ class Drives:
     # -- for the other parts, which hold the structure lock ----------------------------------------
 
     def restore_commands(self) -> List[Command]:
-        """What a new engine must be told."""
+        """Commands that set the drives in a new engine."""
         commands: List[Command] = []
         if self._motors:
             commands.append(SetMotors(tuple(self._motors.values())))
@@ -104,7 +104,7 @@ class Drives:
         return commands
 
     def forget_entity(self, entity: Entity) -> None:
-        """Drop what drives a model that has left the engine."""
+        """Remove the drives of a model that was deleted from the engine."""
         self._motors = {row: motor for row, motor in self._motors.items()
                         if not entity.has_joint_row(row)}
         self._planar.pop(entity.model_id, None)
@@ -112,13 +112,13 @@ class Drives:
                         if not entity.has_joint_row(row)}
 
     def forget_all(self) -> None:
-        """The engine has begun anew without them."""
+        """Remove all drives, after the engine was cleared."""
         self._motors.clear()
         self._planar.clear()
         self._servos.clear()
 
     def transferred(self, old: Entity, new: Entity) -> List[Command]:
-        """What drives a model, for the entity that replaces it; they are kept from now on."""
+        """Commands that move the drives of a replaced model to its successor `new`."""
         names = {old.first_joint_row + n: name for n, name in enumerate(old.joint_names)}
         motors = [replace(motor, row=new.first_joint_row + new.joint_names.index(names[row]))
                   for row, motor in self._motors.items() if names.get(row) in new.joint_names]
@@ -135,7 +135,7 @@ class Drives:
         return commands
 
     def adopt(self, commands: Sequence[Command]) -> None:
-        """The engine has carried out what `transferred` gave."""
+        """Keep the drives of `transferred` commands, which the engine has applied."""
         for command in commands:
             if isinstance(command, SetMotors):
                 self._motors.update({motor.row: motor for motor in command.motors})

@@ -50,9 +50,9 @@ class Joints:
         self._session.call(SetJoints(rows))
 
     def edit(self, name: str, joint: Joint) -> None:
-        """Give a joint other axes (limits, friction, damping, spring, motor) or another type.
+        """Change the axes (limits, friction, damping, spring, motor) or the type of a joint.
 
-        Raises CommandError; then nothing has changed.
+        Raises CommandError if the engine rejects it; then nothing has changed.
         """
         session = self._session
         with session.structure_lock:
@@ -71,7 +71,7 @@ class Joints:
 
 
 def _fixed_properties(joint: Joint) -> Tuple[object, ...]:
-    """What of a joint the engine cannot change in place."""
+    """The properties of a joint that the engine cannot change without building the model again."""
     return (joint.name, joint.type, joint.parent, joint.child, joint.pose, joint.thread_pitch,
             joint.gearbox_ratio, joint.gearbox_reference,
             *((axis.xyz, axis.mimic) if axis is not None else None

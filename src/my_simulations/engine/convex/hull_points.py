@@ -1,4 +1,4 @@
-"""Convex shapes as points whose hull they are."""
+"""Points whose convex hull is a given shape."""
 from __future__ import annotations
 
 import itertools
@@ -15,7 +15,8 @@ _SPHERE = 256   # points on a sphere
 def hull_points(geometry: Geometry) -> np.ndarray[Any, Any]:
     """Points (n, 3) in metres, in the shape's frame, whose hull is the shape.
 
-    Curved surfaces are touched from inside: a sphere of 256 points loses 1 % of its radius.
+    Points are on the surface, so hulls of curved shapes are slightly smaller: a sphere of 256
+    points by 1 % of its radius.
 
     Raises:
         ValueError: a shape without a hull, such as a plane.
@@ -39,7 +40,7 @@ def hull_points(geometry: Geometry) -> np.ndarray[Any, Any]:
 
 
 def naming_triangles(count: int) -> np.ndarray[Any, Any]:
-    """Triangles (count, 3) that name every point: a reader of meshes skips points without one."""
+    """Triangles (count, 3) that use every point, because mesh readers skip unused points."""
     ring = np.arange(count)
     return np.stack([ring, (ring + 1) % count, (ring + 2) % count], axis=1)
 
