@@ -41,7 +41,7 @@ from my_simulations.plugins.testing import Message
 from my_simulations.simulator.simulator import Simulator
 
 Row = Tuple[str, str, str, bool]
-AXES, STEPS, ROUNDS = 6, 4000, 7
+AXES, STEPS, ROUNDS = 6, 1500, 5
 ROBOTS, SECONDS = 10, 10.0
 PLUGIN = PluginSpec("control", "libgazebo_ros_control.so", "<plugin/>")
 

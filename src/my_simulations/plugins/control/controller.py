@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List
 
-from ..context import Context, Handle, PluginError, Publication
+from ..context import Context, Handle, Publication
 from .hardware import Hardware, HardwareJoint
 from .settings import Settings
 
@@ -106,7 +106,3 @@ class Controller:
         for handle in self._handles:
             handle.close()
         self._handles = []
-
-
-class ControllerError(PluginError):
-    """A controller cannot do what is asked for; the message is one sentence for the user."""

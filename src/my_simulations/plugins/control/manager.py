@@ -31,7 +31,7 @@ TYPES: Mapping[str, str] = {
     "effort_controllers/JointGroupPositionController": "joint_loops:EffortPositionGroup",
     "effort_controllers/JointTrajectoryController": "joint_trajectory:EffortTrajectory",
     "effort_controllers/GripperActionController": "gripper_action:EffortGripper",
-    "diff_drive_controller/DiffDriveController": "diff_drive:DiffDriveController",
+    "diff_drive_controller/DiffDriveController": "diff_drive_controller:DiffDriveController",
 }
 """Classes in this package by type of controller."""
 
