@@ -6,9 +6,10 @@ gazebo_ros_control's DefaultRobotHWSim. No physics engine is needed here.
 from __future__ import annotations
 
 import math
-from typing import Optional
+from typing import Optional, Tuple
 
 from .commands import JointServo, PidGains
+from .spline import Coefficients, Spline
 
 _TWO_PI = 2.0 * math.pi
 FOLLOW = 0.2
@@ -76,6 +77,9 @@ class ServoLaw:
     def change(self, servo: JointServo) -> None:
         """Another target for the same loops."""
         self.servo = servo
+        self._seen_step, self._seen = -1, (0.0, 0.0)
+        self._begin, self._end = math.inf, -math.inf
+        self._coefficients: Coefficients = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.gives_effort = servo.drive == "effort" or self._inner is not None
         self.steady = (servo.spline is None and servo.gains is None and self._inner is None
                        and (servo.drive != "effort" or servo.target == 0.0)
@@ -94,7 +98,7 @@ class ServoLaw:
         if servo.spline is None:
             wanted, wanted_rate = servo.target, servo.target_rate
         else:
-            wanted, wanted_rate, _ = servo.spline.at_step(step, dt)
+            wanted, wanted_rate = self._on_spline(servo.spline, step)
         if self._outer is None:
             command = wanted
         else:
@@ -107,12 +111,38 @@ class ServoLaw:
             command = servo.feedforward * wanted_rate + self._outer.command(
                 error, dt, wanted_rate - rate if servo.by_rates else None)
         if servo.drive == "effort":
-            self.last = self._effort(command, position, rate)
+            most = servo.most_effort
+            if servo.soft is None and servo.lower <= position <= servo.upper and (
+                    -servo.most_rate <= rate <= servo.most_rate):
+                self.last = -most if command < -most else most if command > most else command
+            else:
+                self.last = self._effort(command, position, rate)
         elif servo.drive == "velocity":
             self.last = self._velocity(command, position, rate)
         else:
             self.last = self._position(command, position, step)
         return self.last
+
+    def _on_spline(self, spline: Spline, step: int) -> Tuple[float, float]:
+        """Position and rate at a step count, without a search within one segment."""
+        if step == self._seen_step:
+            return self._seen
+        time = (step - spline.origin) * self._dt
+        if not self._begin <= time < self._end:
+            index = spline.index(time)
+            segment = spline.segments[index]
+            following = spline.segments[index + 1:index + 2]
+            self._begin, self._end = segment.start, min(
+                [segment.end, *(one.start for one in following)])
+            self._coefficients = segment.coefficients
+            position, rate, _ = spline.at(time)
+        else:
+            c0, c1, c2, c3, c4, c5 = self._coefficients
+            t = time - self._begin
+            position = ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0
+            rate = (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t + c1
+        self._seen_step, self._seen = step, (position, rate)
+        return self._seen
 
     def _effort(self, effort: float, position: float, rate: float) -> float:
         servo = self.servo
@@ -159,7 +189,7 @@ class ServoLaw:
         ahead = command
         if servo.spline is not None:
             self._before = command
-            ahead = servo.spline.at_step(step + 1, dt)[0]
+            ahead = self._on_spline(servo.spline, step + 1)[0]
             ahead = max(servo.lower, command + slow * dt, min(servo.upper, command + fast * dt,
                                                               ahead))
         else:
