@@ -11,7 +11,7 @@ from typing import Dict, Optional, Tuple, TypeVar, Union
 
 from ..description.model import Joint, Model, SoftLimits
 from ..description.shapes import MeshData
-from ..geometry import STILL, Pose, Twist, Vec3
+from ..geometry import IDENTITY_QUAT, STILL, ZERO3, Pose, Quat, Twist, Vec3
 from .spline import Spline
 
 FOREVER = 1 << 62
@@ -353,6 +353,37 @@ class ReadEfforts(Command):
 
 
 @dataclass(frozen=True)
+class WheelSlip:
+    """A wheel that slips in proportion to its speed (Gazebo's WheelSlipPlugin).
+
+    Its slips (see `Surface.slip1`) are `radius` times the rate of its joint, by the normal force,
+    times a compliance: worked out anew in every step.
+
+    Attributes:
+        row: link row of the wheel.
+        joint_row: row of the joint axis that it turns about.
+        radius: m.
+        normal_force: N, about what the wheel carries.
+        lateral, longitudinal: compliances along the first direction of friction (the axle, by the
+            plugin's convention) and across it, no unit.
+    """
+
+    row: int
+    joint_row: int
+    radius: float
+    normal_force: float
+    lateral: float = 0.0
+    longitudinal: float = 0.0
+
+
+@dataclass(frozen=True)
+class SetWheelSlips(Command):
+    """Let wheels slip from now on, until their models are removed; those of others stay."""
+
+    wheels: Tuple[WheelSlip, ...]
+
+
+@dataclass(frozen=True)
 class PlanarVelocity:
     """A velocity that is set before every step, in the heading of the model frame.
 
@@ -412,6 +443,42 @@ class Contact:
     depth: float
     force: float
     friction: Vec3 = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class ReadJointWrenches(Command):
+    """What joints transmitted in the last step.
+
+    A joint is measured from the step after its first reading on, until nobody has read it for
+    `joint_wrenches.FORGOTTEN` steps: whoever wants every value asks once in advance.
+
+    Reply value: a tuple with a `JointWrench` for each joint; None for one that was not measured in
+    the last step (read for the first time, or since then everything began anew) or is not there.
+
+    Attributes:
+        joints: numbers of models and names of joints, fixed ones too.
+    """
+
+    joints: Tuple[Tuple[int, str], ...]
+
+
+@dataclass(frozen=True)
+class JointWrench:
+    """What the parent link exerted on the child link through a joint, the mean over one step.
+
+    It holds all that passes through the joint: what keeps the links together, and the efforts of
+    motors, springs, dampers, friction and stops.
+
+    Attributes:
+        force: N, in the axes of the child link.
+        torque: N m, about the joint's origin, in the axes of the child link.
+        parent_from_child: how the child link is turned in the parent's axes; none for a joint to
+            the world.
+    """
+
+    force: Vec3 = ZERO3
+    torque: Vec3 = ZERO3
+    parent_from_child: Quat = IDENTITY_QUAT
 
 
 @dataclass(frozen=True)

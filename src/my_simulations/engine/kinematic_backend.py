@@ -17,6 +17,7 @@ from .commands import (
     DisconnectModels,
     JointMotor,
     JointServo,
+    JointWrench,
     LinkState,
     LoadModel,
     PhysicsSettings,
@@ -24,6 +25,7 @@ from .commands import (
     PlanarVelocity,
     ReadContacts,
     ReadEfforts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -33,6 +35,8 @@ from .commands import (
     SetMotors,
     SetPlanarVelocities,
     SetServos,
+    SetWheelSlips,
+    WheelSlip,
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
@@ -54,6 +58,8 @@ class KinematicBackend:
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
         self.servos: Dict[int, JointServo] = {}
+        self.wheel_slips: Dict[int, WheelSlip] = {}
+        self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
@@ -71,9 +77,13 @@ class KinematicBackend:
             SetPlanarVelocities: self._set_planar,
             SetServos: lambda c: self.servos.update({servo.row: servo for servo in c.servos}),
             ReadEfforts: lambda c: (0.0,) * len(c.rows),
+            SetWheelSlips: lambda c: self.wheel_slips.update(
+                {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
             ConnectModels: lambda c: self.connected.update({c.joint.name: c}),
             DisconnectModels: lambda c: [self.connected.pop(name, None) for name in c.names],
+            ReadJointWrenches: lambda command: tuple(
+                self.joint_wrenches.get(key) for key in command.joints),
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
             ),

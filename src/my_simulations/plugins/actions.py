@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, List, Optional
 
-from .context import Context, Handle
+from .context import Context, Ending, Handle
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED = range(9)
 _STATUS_HZ = 5.0
@@ -84,8 +84,8 @@ class ActionServer:
             self._status, self._results, self._feedback,
             context.subscribe(f"{name}/goal", f"{kind}ActionGoal", self._hear_goal, _QUEUE),
             context.subscribe(f"{name}/cancel", "actionlib_msgs/GoalID", self._hear_cancel,
-                              _QUEUE),
-            context.every(_STATUS_HZ, self._tell)]
+                              _QUEUE)]
+        self._timer: Ending = context.every(_STATUS_HZ, self._tell)
         self._tell()
 
     def result(self) -> Any:
@@ -94,6 +94,7 @@ class ActionServer:
 
     def close(self) -> None:
         """Take it off the graph."""
+        self._timer.end()
         for handle in self._handles:
             handle.close()
 

@@ -24,7 +24,7 @@ _GRACE_S = 1.0          # for the exception to arrive
 _OWN_PARTS = ("my_simulations.simulator", "my_simulations.engine")
 
 
-class OverdueError(BaseException):
+class CallOverdue(BaseException):
     """Raised in a thread whose call is overdue; no `except Exception` of a plugin stops it."""
 
 
@@ -78,7 +78,7 @@ class CallWatch:
 
     Args:
         abandon: hears of a call that cannot be ended: its subject, and why. The thread that is in
-            it will end with `OverdueError` if it ever comes back.
+            it will end with `CallOverdue` if it ever comes back.
     """
 
     def __init__(self, abandon: Callable[[Any, str], None]) -> None:
@@ -94,7 +94,7 @@ class CallWatch:
 
     def run(self, subject: Any, patience: Patience, call: Callable[..., Any],
             *arguments: Any) -> None:
-        """Call; raises OverdueError, with the reason, where the call had to be ended."""
+        """Call; raises CallOverdue, with the reason, where the call had to be ended."""
         if self._watcher is None:
             self._watcher = threading.Thread(target=self._watch, name="plugin-watch", daemon=True)
             self._watcher.start()
@@ -110,13 +110,13 @@ class CallWatch:
                         self._call = None
                     if mine.interrupted:
                         _raise_in(mine.thread, None)  # it has come back by itself in this moment
-        except OverdueError:
+        except CallOverdue:
             with self._lock:
                 if self._call is mine:
                     self._call = None
-            raise OverdueError(f"{mine.why}{mine.where}") from None
+            raise CallOverdue(f"{mine.why}{mine.where}") from None
         if abandoned:
-            raise OverdueError(mine.why)
+            raise CallOverdue(mine.why)
 
     def _watch(self) -> None:
         while not self._stop.wait(_LOOK_S):
@@ -141,7 +141,7 @@ class CallWatch:
             return  # it comes back from there by itself
         call.why, call.where = why, where
         call.interrupted = time.monotonic()
-        _raise_in(call.thread, OverdueError)
+        _raise_in(call.thread, CallOverdue)
 
 
 def _innermost(thread: int) -> Tuple[str, str]:

@@ -12,7 +12,7 @@ from ..description.model import Inertial, Model
 from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
 from ..description.transmission import Transmission
-from ..engine.commands import JointServo
+from ..engine.commands import JointServo, JointWrench
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
 from ..sensing.api import RayFan, RayReturns
@@ -64,6 +64,13 @@ class Joint(Protocol):
         """Hand over to a servo of the engine, from the next step on; its `row` is filled in."""
 
 
+class Ending(Protocol):
+    """Something that goes on until it is ended."""
+
+    def end(self) -> None:
+        """End it; nothing happens when it has ended already."""
+
+
 class Publication(Protocol):
     """A topic that the plugin publishes."""
 
@@ -93,12 +100,14 @@ class Context(Protocol):
         parameters: what the `<plugin>` element says.
         sensor: the sensor that the plugin belongs to; None for a plugin of the model.
         sensor_link: the name of that sensor's link; "" without one.
+        sensor_joint: the name of that sensor's joint; "" without one.
     """
 
     model: str
     parameters: Parameters
     sensor: Optional[Sensor]
     sensor_link: str
+    sensor_joint: str
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -114,10 +123,17 @@ class Context(Protocol):
     def step(self) -> int:
         """The step count: how many steps were made before this moment."""
 
-    def every(self, hertz: float, call: Callable[[], None]) -> Handle:
+    def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
-        0 or less is every step. The appointments are exact to the step and never drift.
+        0 or less is every step. The appointments are exact to the step and never drift. `end` of
+        what is returned ends them.
+        """
+
+    def once(self, ns: int, call: Callable[[], None]) -> "Ending":
+        """Be called in the first step that does not begin before a sim time (ns); not in this one.
+
+        When time is set, nothing is left of it.
         """
 
     # -- the model -------------------------------------------------------------------------------
@@ -170,6 +186,13 @@ class Context(Protocol):
     def hold(self, held: bool) -> None:
         """Keep the model at rest where it is put, whatever acts on it; or no more."""
 
+    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+             longitudinal: float) -> None:
+        """Let a wheel slip in proportion to its speed, until a reset (`engine.WheelSlip`).
+
+        `joint` is the axis it turns about; m, N, and compliances without a unit.
+        """
+
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
         """Have a joint follow another one from now on: q = multiplier q_leader + offset."""
 
@@ -195,6 +218,13 @@ class Context(Protocol):
 
     def set_joint_positions(self, positions: "dict[str, float]") -> None:
         """Move joints (rad or m) at once, at rest."""
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a joint of the model, a fixed one too, transmitted in the last step.
+
+        The first answer is None, and so is the one after a reset; so ask once in `load`. Raises
+        PluginError with the names of the joints that there are.
+        """
 
     def contacts(self) -> "List[Any]":
         """The contacts of the last step: (link, other link, `engine.commands.Contact`).

@@ -19,7 +19,7 @@ from ..geometry import IDENTITY
 from ..simulator.appointments import Consumer, Moment
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
-from .call_watch import PATIENCE, CallWatch, OverdueError, Patience
+from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Graph
@@ -110,7 +110,7 @@ class PluginHost:
             for name in list(self._models):
                 self._end_model(name)
             self._end_leaving()
-        except OverdueError:
+        except CallOverdue:
             return  # this thread was left behind; another one goes on
         finally:
             if threading.current_thread() is self._thread:
@@ -171,10 +171,12 @@ class PluginHost:
     def _serve(self, moment: Moment) -> None:
         """Call whose appointment it is."""
         for running in self._all():
-            for appointment in running.context.appointments:
-                if moment.step >= appointment.next and not appointment.closed:
+            for appointment in list(running.context.appointments):
+                if moment.step >= appointment.next and running.plugin is not None:
+                    if appointment.single:
+                        appointment.end()
+                    appointment.set_next(moment)
                     self._guarded(running, appointment.call)
-                    appointment.next = appointment.rate.after(moment.step, moment.clock)
 
     def _give_orders(self) -> None:
         """What plugins have ordered, in one command, for the models that there are now."""
@@ -234,12 +236,17 @@ class PluginHost:
 
     def _next_steps(self) -> List[int]:
         return [appointment.next for running in self._all()
-                for appointment in running.context.appointments if not appointment.closed]
+                for appointment in running.context.appointments]
 
     def _make_anew(self, moment: Moment) -> None:
         for running in self._all():
-            for appointment in running.context.appointments:
-                appointment.next = appointment.rate.after(moment.step, moment.clock)
+            for appointment in list(running.context.appointments):
+                if appointment.single and self._clock_was_set(moment):
+                    appointment.end()
+                appointment.set_next(moment)
+
+    def _clock_was_set(self, moment: Moment) -> bool:
+        return self._moment is not None and moment.clock_sets != self._moment.clock_sets
 
     def _publish(self, moment: Moment) -> None:
         transforms = []
@@ -317,11 +324,12 @@ class PluginHost:
 
     def _world_entity(self) -> Entity:
         """What stands for the world as owner of its plugins."""
-        plugins = self._simulator.world.plugins
+        world = self._simulator.world  # plugins of actors are unknown here, and told so
+        plugins = [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
         before = self._models.get(WORLD_SCOPE)
         if before is not None and before[0].model.plugins == plugins:
             return before[0]
-        return Entity(0, Model(WORLD, plugins=list(plugins)), IDENTITY, 0, 0)
+        return Entity(0, Model(WORLD, plugins=plugins), IDENTITY, 0, 0)
 
     def _rebind(self, entity: Entity, all_running: List[Running]) -> None:
         for running in all_running:
@@ -330,7 +338,8 @@ class PluginHost:
 
     def _load(self, entity: Entity, into: List[Running], found: Found) -> None:
         context = SimulatedContext(self._simulator, self._graph, entity, found.spec, found.scope,
-                                   self._log, self.wake, self._eyes, found.sensor, found.link)
+                                   self._log, self.wake, self._eyes, found.sensor, found.link,
+                                   found.joint)
         running = Running(found, context, None)
         into.append(running)
         if self._registry.is_provided(found.spec.filename):
@@ -343,7 +352,7 @@ class PluginHost:
         moment = context.moment = self._simulator.appointments.now()
         if self._guarded(running, running.plugin.load, patience=self._patience.longer()):
             for appointment in context.appointments:
-                appointment.next = appointment.rate.after(moment.step, moment.clock)
+                appointment.set_next(moment)
 
     def _tell_unknown(self, found: Found, entity: Entity, text: str) -> None:
         name = library_name(found.spec.filename)
@@ -374,7 +383,7 @@ class PluginHost:
         try:
             self._watch.run(running, patience or self._patience, call, *arguments)
             return True
-        except OverdueError as overdue:
+        except CallOverdue as overdue:
             if threading.current_thread() is not self._thread:
                 raise
             self._switch_off(running, str(overdue))

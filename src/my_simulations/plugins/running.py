@@ -18,6 +18,7 @@ class Found:
     spec: PluginSpec
     scope: str = ""
     link: str = ""
+    joint: str = ""
     sensor: Optional[Sensor] = field(default=None, compare=False)
 
 
@@ -31,7 +32,9 @@ class Running:
 
 
 def plugins_of(model: Model, scope: str = "") -> Iterator[Found]:
-    """The plugins of a flattened model: its own, those of its sensors, those of nested models."""
+    """The plugins of a flattened model: its own, those of the sensors of links and
+    joints, those of nested models.
+    """
     for spec in model.plugins:
         yield Found(spec, scope)
     if not scope:
@@ -39,6 +42,11 @@ def plugins_of(model: Model, scope: str = "") -> Iterator[Found]:
             inner = link.name.rpartition("::")[0]
             for sensor in link.sensors:
                 for spec in sensor.plugins:
-                    yield Found(spec, f"{inner}::" if inner else "", link.name, sensor)
+                    yield Found(spec, f"{inner}::" if inner else "", link.name, "", sensor)
+        for joint in model.joints:
+            inner = joint.name.rpartition("::")[0]
+            for sensor in joint.sensors:
+                for spec in sensor.plugins:
+                    yield Found(spec, f"{inner}::" if inner else "", "", joint.name, sensor)
     for nested in (model.guide.models if model.guide is not None else model.models):
         yield from plugins_of(nested, f"{scope}{nested.name}::")

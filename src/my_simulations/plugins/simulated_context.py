@@ -13,13 +13,14 @@ from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
 from ..description.transmission import Transmission
-from ..engine.commands import JointMotor, JointServo, PlanarVelocity
+from ..engine.commands import JointMotor, JointServo, JointWrench, PlanarVelocity, WheelSlip
 from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import RayFan, RayReturns, SensingError
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
+from ..simulator.wrenches import first_step
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
@@ -32,17 +33,32 @@ _LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
 
 
 class Appointment:
-    """Something that is called at a rate."""
+    """Something that is called at a rate, or once.
 
-    def __init__(self, hertz: float, call: Callable[[], None]) -> None:
-        self.rate = Rate(hertz)
+    Attributes:
+        call: what is called.
+        next: the step at which that is due.
+        single: whether it is over then.
+    """
+
+    def __init__(self, owner: "List[Appointment]", rate: Optional[Rate],
+                 call: Callable[[], None], ns: int = 0) -> None:
+        self._owner, self._rate, self._ns = owner, rate, ns
         self.call = call
         self.next = 0
-        self.closed = False
+        self.single = rate is None
 
-    def close(self) -> None:
-        """Be called no more."""
-        self.closed = True
+    def set_next(self, moment: Moment) -> None:
+        """The first time after a moment."""
+        if self._rate is not None:
+            self.next = self._rate.after(moment.step, moment.clock)
+        else:
+            self.next = max(moment.step + 1, first_step(moment.clock, self._ns))
+
+    def end(self) -> None:
+        """Never again."""
+        if self in self._owner:
+            self._owner.remove(self)
 
 
 class SimulatedLink:
@@ -148,10 +164,11 @@ class SimulatedContext:
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
                  scope: str, report: Report, wake: Callable[[], None],
-                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "") -> None:
+                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 sensor_joint: str = "") -> None:
         self.simulator = simulator
         self.model = entity.model.name
-        self.sensor, self.sensor_link = sensor, sensor_link
+        self.sensor, self.sensor_link, self.sensor_joint = sensor, sensor_link, sensor_joint
         self.spec = spec
         self._graph, self._scope, self._report, self._wake = graph, scope, report, wake
         self.parameters = Parameters(spec.xml, self.warn)
@@ -251,10 +268,16 @@ class SimulatedContext:
 
     def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
         """Be called at a rate."""
-        made = Appointment(hertz, call)
+        return self._appointed(Appointment(self.appointments, Rate(hertz), call))
+
+    def once(self, ns: int, call: Callable[[], None]) -> Appointment:
+        """Be called once."""
+        return self._appointed(Appointment(self.appointments, None, call, ns))
+
+    def _appointed(self, made: Appointment) -> Appointment:
         if self.moment is not None:
-            made.next = made.rate.after(self.moment.step, self.moment.clock)
-        self.appointments = [one for one in self.appointments if not one.closed] + [made]
+            made.set_next(self.moment)
+        self.appointments.append(made)
         return made
 
     # -- the model -------------------------------------------------------------------------------
@@ -298,14 +321,23 @@ class SimulatedContext:
     def joint(self, name: str) -> SimulatedJoint:
         """A joint of the model that moves."""
         if name not in self._joints:
-            known = {joint.name: joint for joint in self.entity.model.joints}
-            spec = known.get(self._scope + name) or known.get(name)
-            if spec is None:
-                raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+            spec = self._joint_spec(name)
             joint = SimulatedJoint(self, spec, name)
             joint.row = self._axis_row(spec.name)
             self._joints[name] = joint
         return self._joints[name]
+
+    def _joint_spec(self, name: str) -> JointSpec:
+        known = {joint.name: joint for joint in self.entity.model.joints}
+        spec = known.get(self._scope + name) or known.get(name)
+        if spec is None:
+            raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+        return spec
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a joint transmitted in the last step."""
+        spec = self._joint_spec(name)
+        return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
 
     def _link_row(self, name: str) -> int:
         names = self.entity.link_names
@@ -360,6 +392,13 @@ class SimulatedContext:
         """Keep the model where it is put."""
         self._held = held
         self.simulator.models.hold(self.model, held)
+
+    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+             longitudinal: float) -> None:
+        """Let a wheel slip."""
+        self.simulator.drives.set_wheel_slips([WheelSlip(
+            self._link_row(link), self._axis_row(self._joint_spec(joint).name), radius,
+            normal_force, lateral, longitudinal)])
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
         """Have a joint follow another one."""

@@ -15,7 +15,7 @@ from ..description.model import Inertial, JointAxis, Model
 from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
 from ..description.transmission import Transmission
-from ..engine.commands import JointServo
+from ..engine.commands import JointServo, JointWrench
 from ..engine.ring import Clock
 from ..engine.servo_law import FOLLOW, ServoLaw
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
@@ -127,6 +127,25 @@ class FakeHandle:
         self.close = close
 
 
+class _Call:
+    def __init__(self, owner: "List[_Call]", call: Callable[[], None], rate: Optional[Rate],
+                 ns: int = 0) -> None:
+        self._owner, self._rate, self._ns = owner, rate, ns
+        self.call = call
+
+    def is_due(self, step: int, now_ns: int, clock: Clock) -> bool:
+        if self._rate is not None:
+            return self._rate.is_at(step, clock)
+        if now_ns < self._ns:
+            return False
+        self.end()
+        return True
+
+    def end(self) -> None:
+        if self in self._owner:
+            self._owner.remove(self)
+
+
 class FakeContext:
     """A `Context` for tests.
 
@@ -140,7 +159,9 @@ class FakeContext:
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
         touching: the contacts.
+        wrenches: what joints transmit.
         held: whether the model is held.
+        slips: (joint, radius, normal force, lateral, longitudinal) of wheels.
         followers: (leader, multiplier, offset) of joints that mimic others.
         others: descriptions of the models in the world.
         attached: (parent, child) by the name of the joint.
@@ -150,9 +171,11 @@ class FakeContext:
 
     def __init__(self, xml: str = "<plugin/>", *, model: str = "robot",
                  joints: Sequence[str] = (), links: Optional[Sequence[str]] = None,
-                 sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 sensor: Optional[Sensor] = None, sensor_link: str = "", sensor_joint: str = "",
                  step_size: float = 0.001) -> None:
-        self.model, self.sensor, self.sensor_link = model, sensor, sensor_link
+        self.model, self.sensor = model, sensor
+        self.sensor_link, self.sensor_joint = sensor_link, sensor_joint
+        self.wrenches: Dict[str, JointWrench] = {}
         self.said: List[str] = []
         self.parameters = Parameters(xml, self.said.append)
         self.joints = {name: FakeJoint(name) for name in joints}
@@ -169,6 +192,7 @@ class FakeContext:
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
         self.held = False
+        self.slips: Dict[str, Tuple[Any, ...]] = {}
         self.followers: Dict[str, Tuple[str, float, float]] = {}
         self.others: Dict[str, Model] = {}
         self.attached: Dict[str, Tuple[str, str]] = {}
@@ -179,7 +203,7 @@ class FakeContext:
         self._namespace = ""
         self._heard: Dict[str, Callable[[Any], None]] = {}
         self.services: Dict[str, Callable[[Any, Any], None]] = {}
-        self._calls: List[Tuple[Rate, Callable[[], None]]] = []
+        self._calls: List[_Call] = []
 
     # -- what a test does --------------------------------------------------------------------------
 
@@ -190,9 +214,9 @@ class FakeContext:
             for joint in self.joints.values():
                 joint.step(self.step, self.step_size)
             self.step += 1
-            for rate, call in list(self._calls):
-                if rate.is_at(self.step, clock) and (rate, call) in self._calls:
-                    call()
+            for one in list(self._calls):
+                if one in self._calls and one.is_due(self.step, self.now_ns, clock):
+                    one.call()
 
     def hear(self, topic: str, **fields: Any) -> None:
         """Have a message arrive; dictionaries are messages in it."""
@@ -205,11 +229,15 @@ class FakeContext:
         """Sim time."""
         return round(self.step * self.step_size * 1e9)
 
-    def every(self, hertz: float, call: Callable[[], None]) -> "FakeHandle":
+    def every(self, hertz: float, call: Callable[[], None]) -> Any:
         """Be called at a rate."""
-        mine = (Rate(hertz), call)
-        self._calls.append(mine)
-        return FakeHandle(lambda: self._calls.remove(mine))
+        self._calls.append(_Call(self._calls, call, Rate(hertz)))
+        return self._calls[-1]
+
+    def once(self, ns: int, call: Callable[[], None]) -> Any:
+        """Be called once."""
+        self._calls.append(_Call(self._calls, call, None, ns))
+        return self._calls[-1]
 
     def link(self, name: str) -> FakeLink:
         """A link."""
@@ -242,6 +270,10 @@ class FakeContext:
     def hold(self, held: bool) -> None:
         """Noted."""
         self.held = held
+
+    def slip(self, link: str, joint: str, *values: float) -> None:
+        """Noted."""
+        self.slips[link] = (joint, *values)
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
         """Noted."""
@@ -277,6 +309,10 @@ class FakeContext:
         """Rays meet what a test says (`returns`)."""
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a test says."""
+        return self.wrenches.get(name)
 
     def contacts(self) -> List[Any]:
         """What a test says."""

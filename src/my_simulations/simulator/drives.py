@@ -1,4 +1,4 @@
-"""Joint motors and planar velocities of models, which the engine applies in every step."""
+"""Joint motors, planar velocities and wheel slips, which the engine applies in every step."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -14,6 +14,8 @@ from ..engine.commands import (
     SetMotors,
     SetPlanarVelocities,
     SetServos,
+    SetWheelSlips,
+    WheelSlip,
 )
 from .registry import Entity
 from .session import Session
@@ -27,6 +29,16 @@ class Drives:
         self._motors: Dict[int, JointMotor] = {}
         self._planar: Dict[int, PlanarVelocity] = {}
         self._servos: Dict[int, JointServo] = {}
+        self._slips: Dict[int, WheelSlip] = {}
+
+    def set_wheel_slips(self, wheels: Sequence[WheelSlip]) -> None:
+        """Let wheels slip in proportion to their speed, until a reset; others stay.
+
+        Raises CommandError when a link or joint is not there.
+        """
+        with self._session.structure_lock:
+            self._session.call(SetWheelSlips(tuple(wheels)))
+            self._slips.update({wheel.row: wheel for wheel in wheels})
 
     def set(self, motors: Sequence[JointMotor] = (),
             planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None,
@@ -101,6 +113,8 @@ class Drives:
             commands.append(SetPlanarVelocities(tuple(self._planar.values())))
         if self._servos:
             commands.append(SetServos(tuple(self._servos.values())))
+        if self._slips:
+            commands.append(SetWheelSlips(tuple(self._slips.values())))
         return commands
 
     def forget_entity(self, entity: Entity) -> None:
@@ -110,12 +124,15 @@ class Drives:
         self._planar.pop(entity.model_id, None)
         self._servos = {row: servo for row, servo in self._servos.items()
                         if not entity.has_joint_row(row)}
+        self._slips = {row: wheel for row, wheel in self._slips.items()
+                       if not entity.has_link_row(row)}
 
     def forget_all(self) -> None:
         """Remove all drives, after the engine was cleared."""
         self._motors.clear()
         self._planar.clear()
         self._servos.clear()
+        self._slips.clear()
 
     def transferred(self, old: Entity, new: Entity) -> List[Command]:
         """Commands that move the drives of a replaced model to its successor `new`."""
@@ -132,6 +149,14 @@ class Drives:
             moved = replace(planar, model_id=new.model_id)
             others = [one for one in self._planar.values() if one is not planar]
             commands.append(SetPlanarVelocities((*others, moved)))
+        links = {old.first_link_row + n: name for n, name in enumerate(old.link_names)}
+        wheels = [replace(wheel, row=new.first_link_row + new.link_names.index(links[row]),
+                          joint_row=new.first_joint_row
+                          + new.joint_names.index(names[wheel.joint_row]))
+                  for row, wheel in self._slips.items() if links.get(row) in new.link_names
+                  and names.get(wheel.joint_row) in new.joint_names]
+        if wheels:
+            commands.append(SetWheelSlips(tuple(wheels)))
         return commands
 
     def adopt(self, commands: Sequence[Command]) -> None:
@@ -141,6 +166,8 @@ class Drives:
                 self._motors.update({motor.row: motor for motor in command.motors})
             elif isinstance(command, SetPlanarVelocities):
                 self._planar = {one.model_id: one for one in command.velocities}
+            elif isinstance(command, SetWheelSlips):
+                self._slips.update({wheel.row: wheel for wheel in command.wheels})
             elif isinstance(command, SetServos):
                 self._keep(command.servos)
 

@@ -99,7 +99,7 @@ class Models:
     def inter_model_joints(self) -> List[Joint]:
         """The joints between models in effect; their ends are scoped link names or `world`.
 
-        Without those of `attach`, which belong to who has asked for them.
+        Without those of `attach`, which belong to the caller that made them.
         """
         return [joint for joint in self._between.joints if joint.name not in self._attached]
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List
 
-from ..context import Context, Handle, Publication
+from ..context import Context, Ending, Handle, Publication
 from .hardware import Hardware, HardwareJoint
 from .settings import Settings
 
@@ -32,7 +32,7 @@ class Controller:
         self.state = INITIALIZED
         self.claimed: Dict[str, List[str]] = {}
         self._handles: List[Handle] = []
-        self._timers: List[Handle] = []
+        self._timers: List[Ending] = []
         self._told = ""
 
     # -- for subclasses ----------------------------------------------------------------------------
@@ -93,7 +93,7 @@ class Controller:
     def switch_off(self) -> None:
         """Stop, and release its joints."""
         for timer in self._timers:
-            timer.close()
+            timer.end()
         self._timers = []
         self.stop()
         self.state = STOPPED

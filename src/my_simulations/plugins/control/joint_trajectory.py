@@ -11,7 +11,7 @@ from ...engine.commands import PidGains
 from ...engine.servo_law import shortest
 from ...engine.spline import Spline, segment_between, standing
 from ..actions import ActionServer, Goal
-from ..context import Handle
+from ..context import Ending
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, POSITION, VELOCITY, HardwareJoint
 from .trajectory import (
@@ -56,7 +56,7 @@ class JointTrajectory(Controller):
         self._late = s.number("constraints/goal_time", 0.0)
         self._splines: List[Spline] = []
         self._goal: Optional[_Following] = None
-        self._watch: Optional[Handle] = None
+        self._watch: Optional[Ending] = None
         self._begun = 0.0
         self.subscribe("command", "trajectory_msgs/JointTrajectory", self._hear)
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
@@ -183,7 +183,7 @@ class JointTrajectory(Controller):
 
     def _unwatch(self) -> None:
         if self._watch is not None:
-            self._watch.close()
+            self._watch.end()
             self._watch = None
 
     def _judge(self, following: "_Following") -> None:
