@@ -10,9 +10,11 @@ from dataclasses import dataclass
 from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence, Tuple
 
 from ..description.model import Inertial, Model
+from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
-from ..engine.commands import JointWrench
+from ..description.transmission import Transmission
+from ..engine.commands import JointServo, JointWrench
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
 from ..sensing.api import CameraSpec, Pictures, RayFan, RayReturns
@@ -66,6 +68,13 @@ class Joint(Protocol):
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor: to `rate` with `effort` at most; 0 effort turns it off."""
 
+    @property
+    def spec(self) -> JointSpec:
+        """Its description."""
+
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo of the engine, from the next step on; its `row` is filled in."""
+
 
 class Ending(Protocol):
     """Something that goes on until it is ended."""
@@ -90,6 +99,16 @@ class Publication(Protocol):
         For messages that take more than a millisecond to make: neither the world nor other plugins
         wait for them. `make` must use nothing but what was handed to it.
         """
+
+    def close(self) -> None:
+        """Take the topic off the graph."""
+
+
+class Handle(Protocol):
+    """Something that was begun, and goes on until it is closed, or the plugin ends."""
+
+    def close(self) -> None:
+        """End it."""
 
 
 class Context(Protocol):
@@ -118,6 +137,10 @@ class Context(Protocol):
     @property
     def step_size(self) -> float:
         """Of the simulation, s."""
+
+    @property
+    def step(self) -> int:
+        """The step count: how many steps were made before this moment."""
 
     def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
         """Be called at a rate in Hz of sim time, the first time one period from now.
@@ -174,6 +197,12 @@ class Context(Protocol):
     def description(self) -> Model:
         """The flattened description of the model."""
 
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """The transmissions of the model's description, else of the URDF in a parameter.
+
+        The parameter is looked for in the namespace and those above. Raises PluginError.
+        """
+
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench on a link from now on, instead of the one given before.
 
@@ -213,6 +242,9 @@ class Context(Protocol):
 
     def detach(self, name: str) -> bool:
         """Let go of what `attach` has joined; returns whether it held."""
+
+    def efforts(self, joints: Sequence[str]) -> List[float]:
+        """What motors and servos spent on joints in the last step, N m or N; asks the engine."""
 
     def set_joint_positions(self, positions: "dict[str, float]") -> None:
         """Move joints (rad or m) at once, at rest."""
@@ -270,14 +302,17 @@ class Context(Protocol):
         """Offer a topic. Raises PluginError where the type's package is not installed."""
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> None:
+                  queue: int = 1) -> Handle:
         """Hear a topic. Of more messages than `queue` between two steps the oldest are lost.
 
         Raises PluginError where the type's package is not installed.
         """
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Handle:
         """Offer a service; `call` gets the request and a response to fill."""
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace, a dictionary where it has parts."""
 
     def search_parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace, or of the next one above that has it (`tf_prefix`)."""

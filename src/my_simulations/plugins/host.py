@@ -13,7 +13,7 @@ from collections import deque
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..description.model import WORLD, Model
-from ..engine.commands import JointMotor, PlanarVelocity
+from ..engine.commands import JointMotor, JointServo, PlanarVelocity
 from ..errors import CommandError, Issue, Severity, warning
 from ..geometry import IDENTITY
 from ..simulator.appointments import Consumer, Moment
@@ -188,17 +188,20 @@ class PluginHost:
 
     def _ordered(self) -> bool:
         motors: List[JointMotor] = []
+        servos: List[JointServo] = []
         planar: List[PlanarVelocity] = []
         contexts = [running.context for _, all_running in self._models.values()
                     for running in all_running]
         for context in contexts:
             motors += context.motors.values()
+            servos += context.servos.values()
             if context.planar is not None:
                 planar.append(context.planar)
-        if (motors or planar) and not self._simulator.drives.set(motors, planar, self._followed):
+        if (motors or servos or planar) and not self._simulator.drives.set(
+                motors, planar, self._followed, servos):
             return False
         for context in contexts:
-            context.motors, context.planar = {}, None
+            context.motors, context.servos, context.planar = {}, {}, None
         return self._pushed([context for context in contexts if context.pushes])
 
     def _pushed(self, contexts: List[SimulatedContext]) -> bool:
@@ -221,20 +224,22 @@ class PluginHost:
 
     def _go_on(self, moment: Moment) -> None:
         """Let the engine run to the next appointment of anybody."""
-        steps = [appointment.next for running in self._all()
-                 for appointment in running.context.appointments]
+        steps = self._next_steps()
         if steps and self._consumer is None:
             self._consumer = self._simulator.appointments.join()
             moment = self._consumer.now()
             self._make_anew(moment)
-            steps = [appointment.next for running in self._all()
-                     for appointment in running.context.appointments]
+            steps = self._next_steps()
         if self._consumer is not None and steps:
             self._consumer.allow(moment, min(steps))
         elif self._consumer is not None:
             self._consumer.leave()
             self._consumer = None
         self._moment = moment
+
+    def _next_steps(self) -> List[int]:
+        return [appointment.next for running in self._all()
+                for appointment in running.context.appointments]
 
     def _make_anew(self, moment: Moment) -> None:
         for running in self._all():

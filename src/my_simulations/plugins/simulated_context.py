@@ -11,8 +11,9 @@ from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
-from ..engine.commands import JointMotor, JointWrench, PlanarVelocity, WheelSlip
-from ..errors import CommandError, Issue, Severity
+from ..description.transmission import Transmission
+from ..engine.commands import JointMotor, JointServo, JointWrench, PlanarVelocity, WheelSlip
+from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.appointments import Moment, Rate
@@ -89,6 +90,8 @@ class SimulatedJoint:
         self._context = context
         self.row = -1
         self.motor: Optional[JointMotor] = None
+        self.servo: Optional[JointServo] = None
+        self.spec = spec
 
     @property
     def position(self) -> float:
@@ -104,6 +107,11 @@ class SimulatedJoint:
         """Turn the motor."""
         self.motor = JointMotor(self.row, rate, effort)
         self._context.motors[self.row] = self.motor
+
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo."""
+        self.servo = replace(servo, row=self.row)
+        self._context.servos[self.row] = self.servo
 
 
 class Offer:
@@ -125,17 +133,38 @@ class Offer:
         """Publish what another thread makes."""
         self._context.outbox.append((self._topic, Later(make, self._context.sensing.unsent)))
 
+    def close(self) -> None:
+        """Take it off the graph."""
+        waiting = [one for one in self._context.outbox if one[0] is self._topic]
+        self._context.outbox = [one for one in self._context.outbox if one[0] is not self._topic]
+        for _, message in waiting:
+            self._topic.send(message.make() if isinstance(message, Later) else message)
+        self._context.close_one(self._topic)
+
+
+class OpenEnd:
+    """A subscription or service of a plugin."""
+
+    def __init__(self, context: "SimulatedContext", end: Closing) -> None:
+        self._context, self._end = context, end
+        context.opened.append(end)
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        self._context.close_one(self._end)
+
 
 class SimulatedContext:
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
 
     Attributes:
         appointments: when the plugin wants to be called.
-        motors, planar, pushes: what it has ordered since they were last taken.
+        motors, servos, planar, pushes: what it has ordered since they were last taken.
         push_ids: the wrenches that act now, by link.
         outbox, transforms: what it has published since they were last taken.
         inbox: what has come for it: functions to be called.
         sensing: what it has asked of the sensing process.
+        opened: what it has on the graph.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
@@ -152,6 +181,7 @@ class SimulatedContext:
         self.moment: Optional[Moment] = None
         self.appointments: List[Appointment] = []
         self.motors: Dict[int, JointMotor] = {}
+        self.servos: Dict[int, JointServo] = {}
         self.planar: Optional[PlanarVelocity] = None
         self.level: Optional[PlanarVelocity] = None
         self.outbox: List[Tuple[Topic, Any]] = []
@@ -166,7 +196,7 @@ class SimulatedContext:
         self._held = False
         self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
         self._namespace = ""
-        self._open: List[Closing] = []
+        self.opened: List[Closing] = []
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -175,27 +205,37 @@ class SimulatedContext:
         self.entity, self.model = entity, entity.model.name
         for link in self._links.values():
             self._find(link)
-        self.motors = {}
+        self.motors, self.servos = {}, {}
         for joint in self._joints.values():
             joint.row = self._axis_row(joint.spec_name)
             if joint.motor is not None:
                 joint.drive(joint.motor.rate, joint.motor.effort)
+            if joint.servo is not None:
+                joint.steer(joint.servo)
         if self.level is not None:
             self.drive_level(self.level.x, self.level.y, self.level.yaw_rate)
 
     def close(self) -> None:
         """Take everything off the graph, and switch off what was driven."""
-        for one in self._open:
+        for one in self.opened:
             one.close()
-        self._open.clear()
+        self.opened.clear()
         self.appointments.clear()
         self._closed.set()
+
+    def close_one(self, end: Closing) -> None:
+        """Take one thing off the graph."""
+        if end in self.opened:
+            self.opened.remove(end)
+            end.close()
 
     def stop(self) -> None:
         """Switch off what the plugin drives, in a world that still has the model."""
         for joint in self._joints.values():
             if joint.motor is not None:
                 joint.drive(0.0, 0.0)
+            if joint.servo is not None:
+                joint.steer(JointServo(joint.row, ""))
         if self.level is not None:
             self.simulator.drives.stop(self.entity)
         if self._held:
@@ -222,6 +262,11 @@ class SimulatedContext:
     def step_size(self) -> float:
         """Of the simulation, s."""
         return self.simulator.physics.settings.max_step_size
+
+    @property
+    def step(self) -> int:
+        """The step count."""
+        return self.moment.step if self.moment is not None else self.simulator.clock.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
         """Be called at a rate."""
@@ -330,6 +375,19 @@ class SimulatedContext:
         """The flattened description."""
         return self.entity.model
 
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """Those of the description, else of a parameter."""
+        own = self.entity.model.transmissions
+        text = "" if own else self.search_parameter(parameter, "")
+        if not isinstance(text, str) or not text.strip():
+            return own
+        from ..formats.urdf.transmission import transmissions_of
+
+        try:
+            return transmissions_of(text, f"parameter {parameter}")
+        except InputError as fault:
+            raise PluginError(str(fault)) from fault
+
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
         if "::" not in link or self._owns(link):
@@ -396,6 +454,10 @@ class SimulatedContext:
         self._attached = [one for one in self._attached if one != name]
         return self.simulator.models.detach(name)
 
+    def efforts(self, joints: Sequence[str]) -> List[float]:
+        """What was spent on joints in the last step."""
+        return self.simulator.drives.efforts([self.joint(name).row for name in joints])
+
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Move joints at once."""
         self.simulator.joints.set_positions(
@@ -455,10 +517,11 @@ class SimulatedContext:
             topic = self._graph.publish(self._name(name), kind, queue, latch)
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
-        self._open.append(topic)
+        self.opened.append(topic)
         return Offer(self, topic)
 
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int = 1) -> "OpenEnd":
         """Hear a topic."""
         waiting: Deque[Any] = deque(maxlen=max(1, queue))
 
@@ -472,11 +535,11 @@ class SimulatedContext:
             self._wake()
 
         try:
-            self._open.append(self._graph.subscribe(self._name(name), kind, arrived, queue))
+            return OpenEnd(self, self._graph.subscribe(self._name(name), kind, arrived, queue))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> "OpenEnd":
         """Offer a service."""
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
@@ -502,9 +565,13 @@ class SimulatedContext:
                 raise PluginError(fault[0])
 
         try:
-            self._open.append(self._graph.serve(self._name(name), kind, asked))
+            return OpenEnd(self, self._graph.serve(self._name(name), kind, asked))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace."""
+        return self._graph.parameter(self._namespace, name, default)
 
     def search_parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace or above."""
