@@ -27,7 +27,7 @@ from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .order_slot import OrderSlot
 from .registry import Entity
-from .session import Session
+from .session import Session, check_name
 from .wrenches import Wrenches
 
 
@@ -125,8 +125,7 @@ class Models:
         Raises:
             CommandError: empty or taken name, unknown frame, or the engine refused it.
         """
-        if not model.name:
-            raise CommandError("the name of a model must not be empty")
+        check_name(model.name, "model")
         model = flattened(model)
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
@@ -215,8 +214,7 @@ class Models:
         Raises:
             CommandError: unknown or taken name, or the engine refused it; nothing has changed.
         """
-        if not model.name:
-            raise CommandError("the name of a model must not be empty")
+        check_name(model.name, "model")
         model = flattened(model)
         session = self._session
         with session.structure_lock:
