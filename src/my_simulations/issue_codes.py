@@ -329,6 +329,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Restart the simulator and report the message."),
         ("editor-view", ERROR, "The editor could not read the state of the world.",
          "See the message."),
+        ("editor-address", WARNING, "The address of the editor cannot be kept for gzclient.",
+         "Make the cache folder writable, or start with editor_token:=false."),
         ("autosave", WARNING, "Unsaved changes cannot be stored.", "Free disk space and save."),
         ("exists", ERROR, "The file already exists.", "Confirm overwriting, or choose a name."),
         ("not-allowed", ERROR, "The folder is not among the allowed folders.",
