@@ -264,6 +264,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("object-empty", ERROR, "The object's file is empty.", "Give a file with content."),
         ("object-encoding", ERROR, "The object's file is not in the declared encoding.",
          "Save it as UTF-8."),
+        ("xacro-consent", ERROR, "A xacro file outside of the workspace, which may hold code.",
+         "Read the file, then use `check_model --run-xacro`."),
         ("xacro-missing", ERROR, "xacro is not installed.", "Source the workspace."),
         ("xacro-failed", ERROR, "xacro reported an error.", "See the message."),
         ("xacro-timeout", ERROR, "xacro did not finish in time.", "Increase --timeout."),
