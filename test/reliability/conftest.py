@@ -1,4 +1,4 @@
-"""Proofs that are short in CI and long by `tools/test --long`; figures go to the table."""
+"""Keeps the figures of proofs for doc/reliability.md."""
 from __future__ import annotations
 
 import json
@@ -7,15 +7,10 @@ import time
 from typing import Any, Callable, Dict
 
 import pytest
+from proofs import IS_LONG
 
-IS_LONG = os.environ.get("MY_SIMULATIONS_LONG") == "1"
 RECORDS = "MY_SIMULATIONS_RELIABILITY"
 """Environment variable: file that gets a line of JSON for each proof."""
-
-
-def scaled(short: int, long: int) -> int:
-    """How much of a proof this run does."""
-    return long if IS_LONG else short
 
 
 @pytest.fixture

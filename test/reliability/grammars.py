@@ -5,8 +5,8 @@ from typing import Any, Dict, Iterable, List, Mapping
 
 from hypothesis import strategies as st
 
-NUMBERS = ("0", "1", "-1", "0.5", "1e308", "-1e308", "1e-320", "nan", "inf", "-inf", "1e999", "0x10",
-           "1,5", "", "٣", "1e", "--1", "99999999999999999999")
+NUMBERS = ("0", "1", "-1", "0.5", "1e308", "-1e308", "1e-320", "nan", "inf", "-inf", "1e999",
+           "0x10", "1,5", "", "٣", "1e", "--1", "99999999999999999999")
 NAMES = ("a", "b", "link", "world", "a::b", "", " ", "é", "🤖", "__model__", "a" * 300, "../x")
 WORDS = ("true", "false", "1", "0", "yes", "revolute", "fixed", "ball", "box", "model://nowhere",
          "file:///dev/zero", "package://p/x.dae", "%s%n", "]]>", "&amp;")
@@ -58,8 +58,9 @@ def damaged(draw: Any, text: str) -> str:
     for _ in range(draw(st.sampled_from((0, 0, 0, 1, 2)))):
         start = draw(st.integers(0, len(text)))
         end = min(len(text), start + draw(st.integers(0, 30)))
-        put = draw(st.sampled_from(("", text[start:end] * 2, "\0", "<", ">", "\ufffe", "]]>", "<!--",
-                                    "<!DOCTYPE a [", "'", "&#0;", "\ud800", "<?xml version='1.1'?>")))
+        put = draw(st.sampled_from(("", text[start:end] * 2, "\0", "<", ">", "\ufffe", "]]>",
+                                    "<!--", "<!DOCTYPE a [", "'", "&#0;", "\ud800",
+                                    "<?xml version='1.1'?>")))
         text = text[:start] + put + text[end:]
     return text
 

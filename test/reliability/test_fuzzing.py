@@ -1,4 +1,4 @@
-"""Every reader and every door gets inputs that are nearly right: all faults are told, none raised."""
+"""Readers and doors get inputs that are nearly right: all faults are told, none is raised."""
 from __future__ import annotations
 
 import asyncio
@@ -16,11 +16,11 @@ import rospy
 import service_requests
 import yaml
 from building_plans import two_rooms
-from conftest import scaled
 from editor_case import Browser, Refused, arm, box, cases
 from grammars import changed, damaged, json_values, tree_of, words, xml
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
+from proofs import scaled
 
 from my_simulations.building.building_operations import building_sdf
 from my_simulations.building.plan_json import plan_to_json
@@ -45,8 +45,8 @@ LONGEST_S = 1.0
 """Processor time of one input, in seconds."""
 
 GROWTH = 1.05
-ATTRIBUTES = ("name", "type", "version", "xyz", "rpy", "value", "filename", "link", "radius", "size",
-              "relative_to", "degrees", "rotation_format", "lower", "upper", "ixx", "scale")
+ATTRIBUTES = ("name", "type", "version", "xyz", "rpy", "value", "filename", "link", "radius",
+              "size", "relative_to", "degrees", "rotation_format", "lower", "upper", "ixx", "scale")
 
 case = pytest.fixture(cases)
 
@@ -115,11 +115,12 @@ DAE = """<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COL
 <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <{5} count="{6}"><input semantic="VERTEX" source="#v" offset="{7}"/><vcount>{8}</vcount><p>{9}</p>
-</{5}></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node id="n">
-<matrix>{10}</matrix><instance_geometry url="#{11}"/></node></visual_scene></library_visual_scenes>
+</{5}></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s">
+<node id="n"><matrix>{10}</matrix><instance_geometry url="#{11}"/></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
 
-counts = st.sampled_from(("0", "1", "3", "4", "9", "12", "-1", "2147483647", "2147483648", "1e9", ""))
+counts = st.sampled_from(("0", "1", "3", "4", "9", "12", "-1", "2147483647", "2147483648", "1e9",
+                          ""))
 numbers = st.lists(st.sampled_from(("0", "1", "-1", "0.5", "nan", "inf", "1e30", "x")),
                    max_size=14).map(" ".join)
 indices = st.lists(st.sampled_from(("0", "1", "2", "3", "-1", "4", "2147483648", "x", "")),
@@ -315,7 +316,8 @@ def test_service_requests(record):
 def test_memory_does_not_grow(record):
     def rounds(count: int) -> None:
         for n in range(count):
-            read(f"<sdf version='1.6'><model name='m{n}'><link name='l'><a{n}/></link></model></sdf>")
+            read(f"<sdf version='1.6'><model name='m{n}'><link name='l'><a{n}/></link></model>"
+                 "</sdf>")
             read(f"<robot name='r{n}'><link name='l'/>")
 
     rounds(scaled(300, 5000))

@@ -94,6 +94,7 @@ class BulletBackend:
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
+        self._is_fresh = True   # nothing has moved since the world began
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
@@ -137,6 +138,7 @@ class BulletBackend:
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
         self._settle()
+        self._is_fresh = False
         self._readout.stepped()
         one = pybullet.stepSimulation
         dt, gravity = self._settings.step_size, self._settings.gravity
@@ -245,7 +247,10 @@ class BulletBackend:
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
             restore(entry, state)
-        self._waker.around(entry.bodies)
+        # In a fresh world all is awake. Looking for neighbours changes the order in which Bullet
+        # finds contacts, and with it what follows: a restart, which need not look, must repeat it.
+        if not self._is_fresh:
+            self._waker.around(entry.bodies)
 
     def _enter(self, builder: Builder, model: Model, pose: Pose) -> Entry:
         """Build a model and know it."""
@@ -352,6 +357,7 @@ class BulletBackend:
 
     def _clear(self, _: Clear) -> None:
         self._put_off = None
+        self._is_fresh = True
         for entry in self._models.values():
             for body in entry.bodies:
                 self._readout.forget(body)
