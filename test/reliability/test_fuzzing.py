@@ -116,7 +116,8 @@ DAE = """<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COL
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <{5} count="{6}"><input semantic="VERTEX" source="#v" offset="{7}"/><vcount>{8}</vcount><p>{9}</p>
 </{5}></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s">
-<node id="n"><matrix>{10}</matrix><instance_geometry url="#{11}"/></node></visual_scene></library_visual_scenes>
+<node id="n"><matrix>{10}</matrix>
+<instance_geometry url="#{11}"/></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
 
 counts = st.sampled_from(("0", "1", "3", "4", "9", "12", "-1", "2147483647", "2147483648", "1e9",

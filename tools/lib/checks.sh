@@ -91,6 +91,7 @@ pytest_folder() {
   shift 2
   begin "$folder"
   attempt "$name" "$limit" env PYTHONPATH="$CLONE/src${PYTHONPATH:+:$PYTHONPATH}" \
+    MY_SIMULATIONS_LONG="${LONG:-0}" MY_SIMULATIONS_RELIABILITY="$RESULTS/reliability.jsonl" \
     "$VENV/bin/python3" -m pytest -p no:cacheprovider --junitxml="$results" "${chosen[@]}" "$@" || status=$?
   head=$(grep -o '<testsuite [^>]*>' "$results" 2>/dev/null | head -n 1 || true)
   judge "$folder" $(($(attribute tests "$head") - $(attribute skipped "$head"))) \

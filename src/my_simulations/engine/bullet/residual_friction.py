@@ -11,7 +11,7 @@ are follows from the step count and their state alone, so runs repeat bit for bi
 """
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
@@ -117,8 +117,7 @@ class ResidualFriction:
     def _ask(self, uid: int, look: int) -> None:
         """Find out whether a body is fast, slow or at rest."""
         linear, angular = pybullet.getBaseVelocity(uid)
-        speed = max(linear[0] ** 2 + linear[1] ** 2 + linear[2] ** 2,
-                    angular[0] ** 2 + angular[1] ** 2 + angular[2] ** 2)
+        speed = max(_squared(linear), _squared(angular))
         if (speed == 0.0) != (uid in self._asleep):
             (self._asleep.add if speed == 0.0 else self._asleep.discard)(uid)
             self._rounds = None
@@ -185,3 +184,11 @@ class ResidualFriction:
             uid, (vx + impulse[0] / part.mass, vy + impulse[1] / part.mass,
                   vz + impulse[2] / part.mass), (wx + ax, wy + ay, wz + az))
 
+
+def _squared(vector: Sequence[float]) -> float:
+    """The square of its length; infinite for a body that is leaving the finite world.
+
+    The operator `**` would raise OverflowError.
+    """
+    x, y, z = vector
+    return x * x + y * y + z * z
