@@ -11,13 +11,13 @@ from typing import List, Optional
 
 from aiohttp import web
 
-from ...errors import CommandError, Issue, warning
-from ...resources.resolver import Resolver
-from ...simulator.simulator import Simulator
-from ..assembly import Assembly
-from ..editor_options import DEFAULT_PORT, EditorOptions
-from . import address_file
-from .access_guard import Guard
+from ..errors import CommandError, Issue, warning
+from ..resources.resolver import Resolver
+from ..simulator.simulator import Simulator
+from .assembly import Assembly
+from .editor_options import DEFAULT_PORT, EditorOptions
+from .transport import address_file
+from .transport.access_guard import Guard
 
 _START_S = 10.0
 _END_S = 3.0
