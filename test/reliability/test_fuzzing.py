@@ -228,7 +228,8 @@ def typed(protocol: Dict[str, Any], expected: str, depth: int = 0) -> Any:
     """Values of a type of the protocol, now and then others."""
     expected = expected.rstrip("?")
     some = st.sampled_from(("a", "b", "a::link", "b::hinge", "a::link::visual", "pose", "links.0"))
-    plain = {"string": some | words, "boolean": st.booleans(),
+    plain = {"string": st.integers(0, 4).flatmap(lambda n: words if n == 4 else some),
+             "boolean": st.booleans(),
              "number": st.floats(allow_nan=False, allow_infinity=False),
              "integer": st.integers(-2**40, 2**40)}
     fitting = plain.get(expected, json_values)
@@ -250,7 +251,7 @@ def typed(protocol: Dict[str, Any], expected: str, depth: int = 0) -> Any:
         found = protocol["types"][expected.rpartition(" ")[2]]
         fitting = (typed(protocol, found, depth + 1) if isinstance(found, str)
                    else fields_of(protocol, found, depth + 1))
-    return st.integers(0, 9).flatmap(lambda n: fitting if n else json_values)
+    return st.integers(0, 19).flatmap(lambda n: json_values if n == 19 else fitting)
 
 
 def fields_of(protocol: Dict[str, Any], fields: Dict[str, str], depth: int) -> Any:

@@ -11,7 +11,7 @@ SECONDS = scaled(20, 7200)
 SETTLED = 0.4
 """Share of the time after which nothing may grow."""
 
-GROWTH, SLACK_MB = 1.05, scaled(8, 0)
+GROWTH, SLACK_MB = 1.05, scaled(16, 0)
 """In a short run a heap may still find its size."""
 
 MOST_MODELS = 15
