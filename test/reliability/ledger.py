@@ -41,13 +41,14 @@ class Client(threading.Thread):
         wrong: answers that were not true.
         done: operations that were carried out.
         refused: operations that were refused.
+        removed: models that it deleted.
     """
 
     def __init__(self, simulator: Simulator, number: int, most: int) -> None:
         super().__init__(daemon=True, name=f"client {number}")
         self.ledger: Dict[str, Pose] = {}
         self.wrong: List[str] = []
-        self.done = self.refused = 0
+        self.done = self.refused = self.removed = 0
         self._sim = simulator
         self._number = number
         self._most = most
@@ -99,6 +100,7 @@ class Client(threading.Thread):
         name = self._random.choice(sorted(self.ledger))
         if self._tried(lambda: self._sim.models.delete(name) and None, name):
             del self.ledger[name]
+            self.removed += 1
         else:
             self._check(name, "after a deletion that was refused")
 
