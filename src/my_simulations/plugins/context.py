@@ -6,19 +6,31 @@ thread, with the world standing still at the step they belong to.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Protocol
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence, Tuple
 
 from ..description.model import Inertial, Model
 from ..description.sensor import Sensor
+from ..description.surroundings import SphericalCoordinates
 from ..engine.commands import JointWrench
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
-from ..sensing.api import RayFan, RayReturns
+from ..sensing.api import CameraSpec, Pictures, RayFan, RayReturns
 from .parameters import Parameters
 
 
 class PluginError(SimulationError):
     """A plugin cannot work as its element says; the message is one sentence for the user."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What a camera at `pose` in the frame of a link is to give: `outputs` of `sensing.api`."""
+
+    link: str
+    pose: Pose
+    camera: CameraSpec
+    outputs: Tuple[str, ...]
 
 
 class Link(Protocol):
@@ -71,6 +83,13 @@ class Publication(Protocol):
 
     def publish(self, message: Any) -> None:
         """Publish a message once the world goes on; it must not be changed any more."""
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what `make` returns; another thread calls it, in order.
+
+        For messages that take more than a millisecond to make: neither the world nor other plugins
+        wait for them. `make` must use nothing but what was handed to it.
+        """
 
 
 class Context(Protocol):
@@ -131,8 +150,19 @@ class Context(Protocol):
     def seed(self) -> int:
         """Of what is drawn at random."""
 
+    @property
+    def magnetic_field(self) -> Vec3:
+        """Of the world, T, world axes."""
+
+    @property
+    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+        """Where the world's origin is; None where the world does not say."""
+
     def link(self, name: str) -> Link:
-        """A link of the model. Raises PluginError with the names that there are."""
+        """A link of the model; "" for the canonical one.
+
+        Raises PluginError with the names that there are.
+        """
 
     def joint(self, name: str) -> Joint:
         """A joint of the model that moves. Raises PluginError with the names that there are."""
@@ -207,6 +237,23 @@ class Context(Protocol):
         later; the world does not run further ahead. `visuals`: rays see what is drawn, else what
         collides.
         """
+
+    def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
+                   stream: str = "") -> bool:
+        """Take pictures of the world as of now.
+
+        `call` gets them in the order of the views, and the sim time (ns) they show. One call of a
+        stream is on its way at a time: while the one before is not published, pictures are late.
+        The world then goes on, these are left out (False), and the user is told; a world that is
+        stepped manually waits instead. `stream` names cameras of a plugin that take turns of their
+        own.
+        """
+
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """The sensors of the model's links: (name of the link, sensor)."""
+
+    def link_names(self) -> "dict[int, str]":
+        """Scoped names of all links of the world, by the numbers that `Pictures.labels` has."""
 
     # -- topics, services, parameters ------------------------------------------------------------
 

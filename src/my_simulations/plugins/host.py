@@ -23,6 +23,7 @@ from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Graph
+from .message_maker import Later, MessageMaker
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import Found, Running, plugins_of
 from .simulated_context import SimulatedContext
@@ -50,6 +51,7 @@ class PluginHost:
                  log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._eyes = Eyes(simulator, log)
+        self._messages = MessageMaker()
         self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
         self._told: Dict[str, bool] = {}
         self._revision = self._followed = -1
@@ -120,6 +122,7 @@ class PluginHost:
         self._stop.set()
         self._watch.stop()
         self._eyes.close()
+        self._messages.stop()
         if self._consumer is not None:
             self._consumer.leave()
             self._consumer = None
@@ -250,11 +253,24 @@ class PluginHost:
                 context = running.context
                 outbox, context.outbox = context.outbox, []
                 for topic, message in outbox:
-                    self._guarded(running, topic.send, message)
+                    if isinstance(message, Later):
+                        self._messages.put(topic, message, self._failing(running))
+                    else:
+                        self._guarded(running, topic.send, message)
                 transforms += context.transforms
                 context.transforms = []
         if transforms:
             self._graph.send_transforms(transforms, moment.sim_ns)
+
+    def _failing(self, running: Running) -> Callable[[Exception], None]:
+        """What tells the plugins' thread of a fault in another one."""
+        def fail(fault: Exception) -> None:
+            def again() -> None:
+                raise fault
+
+            running.context.inbox.append(again)
+            self.wake()
+        return fail
 
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
@@ -268,6 +284,8 @@ class PluginHost:
         calls: List[str] = []
         if before is not None and moment.clock_sets != before.clock_sets:
             self._make_anew(moment)
+            for running in self._all():
+                running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:
                 calls.append("reset")
             elif moment.sim_ns < before.sim_ns:

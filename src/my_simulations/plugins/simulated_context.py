@@ -3,31 +3,31 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from concurrent.futures import Future
-from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import replace
-from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Inertial, Mimic, Model
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
+from ..description.surroundings import SphericalCoordinates
 from ..engine.commands import JointMotor, JointWrench, PlanarVelocity, WheelSlip
 from ..errors import CommandError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
-from ..sensing.api import RayFan, RayReturns, SensingError
+from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
 from ..simulator.wrenches import first_step
-from .context import PluginError
+from .context import PluginError, View
 from .eyes import Eyes
 from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .message_maker import Later
 from .parameters import Parameters
+from .sensing_requests import SensingRequests
 
 Report = Callable[[Issue], None]
 
-_SCAN_S = 10.0  # of wall time, for rays
 _LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
 
 
@@ -121,6 +121,10 @@ class Offer:
         """Publish."""
         self._context.outbox.append((self._topic, message))
 
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what another thread makes."""
+        self._context.outbox.append((self._topic, Later(make, self._context.sensing.unsent)))
+
 
 class SimulatedContext:
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
@@ -131,6 +135,7 @@ class SimulatedContext:
         push_ids: the wrenches that act now, by link.
         outbox, transforms: what it has published since they were last taken.
         inbox: what has come for it: functions to be called.
+        sensing: what it has asked of the sensing process.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
@@ -154,15 +159,12 @@ class SimulatedContext:
         self.inbox: Deque[Callable[[], None]] = deque()
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
-        self._scan_fault = ""
         self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
         self.push_ids: Dict[str, int] = {}
         self._closed = threading.Event()
         self._attached: List[str] = []
         self._held = False
-        self._eyes = eyes
-        self._scan: "Optional[Tuple[Future[RayReturns], Callable[[RayReturns, int], None], int]]" \
-            = None
+        self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
         self._namespace = ""
         self._open: List[Closing] = []
 
@@ -261,8 +263,20 @@ class SimulatedContext:
         """Of what is drawn at random."""
         return self.simulator.world.seed
 
+    @property
+    def magnetic_field(self) -> Vec3:
+        """T, world axes."""
+        return self.simulator.world.magnetic_field
+
+    @property
+    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+        """Where the world's origin is."""
+        return self.simulator.world.spherical_coordinates
+
     def link(self, name: str) -> SimulatedLink:
         """A link of the model."""
+        if not name and self.entity.link_names:
+            name = self.entity.link_names[self.entity.canonical_row - self.entity.first_link_row]
         if name not in self._links:
             link = SimulatedLink(self, name)
             self._find(link)
@@ -390,29 +404,24 @@ class SimulatedContext:
 
     def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
         """Cast rays from the plugin's sensor."""
-        self._end_scan()
         assert self.sensor is not None
-        future = self._eyes.cast(self._link_row(self.sensor_link), self.sensor.pose, fan, visuals)
-        self._scan = (future, call, self.now_ns)
-        future.add_done_callback(self._scanned)
+        self.sensing.scan(Mount(self._link_row(self.sensor_link), self.sensor.pose), fan, visuals,
+                          call, self.now_ns)
 
-    def _scanned(self, future: "Future[RayReturns]") -> None:
-        self.inbox.append(lambda: self._end_scan(future))
-        self._wake()
+    def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
+                   stream: str = "") -> bool:
+        """Take pictures."""
+        mounted = [(Mount(self._link_row(view.link), view.pose), view) for view in views]
+        return self.sensing.photograph(mounted, call, self.now_ns, self.simulator.clock.by_hand,
+                                       stream)
 
-    def _end_scan(self, only: "Optional[Future[RayReturns]]" = None) -> None:
-        """Wait for the scan on its way, if there is one, and hand it over."""
-        if self._scan is None or only not in (None, self._scan[0]):
-            return
-        (future, call, ns), self._scan = self._scan, None
-        try:
-            found = future.result(_SCAN_S)
-        except (SensingError, FutureTimeoutError) as fault:
-            if str(fault) != self._scan_fault:
-                self._scan_fault = str(fault)
-                self.warn(f"a scan is left out: {fault or 'it took too long'}")
-            return
-        call(found, ns)
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """The sensors of the model's links."""
+        return [(link.name, sensor) for link in self.entity.model.links for sensor in link.sensors]
+
+    def link_names(self) -> Dict[int, str]:
+        """Scoped names by row."""
+        return self.simulator.states.link_names()
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""

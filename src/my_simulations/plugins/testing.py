@@ -9,10 +9,11 @@ assert context.published["odom"][-1].pose.pose.position.x == 0.5
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 from ..description.model import Inertial, Model
 from ..description.sensor import Sensor
+from ..description.surroundings import SphericalCoordinates
 from ..engine.commands import JointWrench
 from ..engine.ring import Clock
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
@@ -62,11 +63,18 @@ class FakeJoint:
 
 
 class _Topic:
-    def __init__(self, messages: List[Any]) -> None:
-        self._messages, self.wanted = messages, True
+    def __init__(self, messages: List[Any], wanted: Callable[[], bool]) -> None:
+        self._messages, self._wanted = messages, wanted
+
+    @property
+    def wanted(self) -> bool:
+        return self._wanted()
 
     def publish(self, message: Any) -> None:
         self._messages.append(message)
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        self._messages.append(make())
 
 
 class _Call:
@@ -100,6 +108,9 @@ class FakeContext:
         pushes: the last wrench of each link.
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
+        pictures: what each view sees; `views`: the views of each moment. `late`: nothing is ready.
+        unwanted: topics that nobody listens to.
+        model_sensors, labels: what `sensors` and `link_names` give.
         touching: the contacts.
         wrenches: what joints transmit.
         held: whether the model is held.
@@ -126,6 +137,8 @@ class FakeContext:
         self.pose: Pose = IDENTITY
         self.twist: Twist = STILL
         self.gravity: Vec3 = (0.0, 0.0, -9.8)
+        self.magnetic_field: Vec3 = (0.0, 0.0, 0.0)
+        self.place_on_earth: Optional[SphericalCoordinates] = None
         self.seed = 0
         self.step_size, self.step = step_size, 0
         self.published: Dict[str, List[Any]] = {}
@@ -142,6 +155,12 @@ class FakeContext:
         self.ros_parameters: Dict[str, Any] = {}
         self.returns: Any = None
         self.fans: List[Any] = []
+        self.pictures: List[Any] = []
+        self.views: List[Any] = []
+        self.late = False
+        self.unwanted: Set[str] = set()
+        self.model_sensors: List[Tuple[str, Sensor]] = []
+        self.labels: Dict[int, str] = {}
         self._namespace = ""
         self._heard: Dict[str, Callable[[Any], None]] = {}
         self.services: Dict[str, Callable[[Any, Any], None]] = {}
@@ -185,6 +204,7 @@ class FakeContext:
 
     def link(self, name: str) -> FakeLink:
         """A link."""
+        name = name or "base"
         if self._closed_links and name not in self.links:
             raise PluginError(f"model '{self.model}' has no link '{name}'")
         return self.links.setdefault(name, FakeLink(name))
@@ -246,6 +266,22 @@ class FakeContext:
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
 
+    def photograph(self, views: Any, call: Callable[[Any, int], None], stream: str = "") -> bool:
+        """Cameras see what a test says (`pictures`)."""
+        if self.late:
+            return False
+        self.views.append(list(views))
+        call(self.pictures[:len(views)], self.now_ns)
+        return True
+
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """What a test says."""
+        return self.model_sensors
+
+    def link_names(self) -> Dict[int, str]:
+        """What a test says."""
+        return self.labels
+
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
         """What a test says."""
         return self.wrenches.get(name)
@@ -271,7 +307,8 @@ class FakeContext:
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
         """Offer a topic."""
-        return _Topic(self.published.setdefault(self._name(name), []))
+        name = self._name(name)
+        return _Topic(self.published.setdefault(name, []), lambda: name not in self.unwanted)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
         """Hear a topic."""
