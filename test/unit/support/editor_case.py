@@ -52,7 +52,8 @@ class Case:
                              log=self.issues.append)
         self.sim.start()
         self.options = editor.EditorOptions(**{
-            "port": 0, "save_roots": [str(self.worlds)], "config_dir": str(folder / "config"),
+            "port": 0, "token": "", "save_roots": [str(self.worlds)],
+            "config_dir": str(folder / "config"),
             "cache_dir": str(folder / "cache"), "data_dir": str(folder / "data" / "log"),
             "check_outgoing": True, "log": self.issues.append, **options})
         self.resolver = resolver or Resolver.from_environment()
@@ -112,7 +113,8 @@ class Browser:
 
     @classmethod
     async def open(cls, session, url, hello=True, **headers):
-        socket = await session.ws_connect(url.split("?")[0] + "ws", max_msg_size=0,
+        base, mark, query = url.partition("?")
+        socket = await session.ws_connect(base + "ws" + mark + query, max_msg_size=0,
                                           headers=headers or None)
         browser = cls(session, socket)
         if hello:

@@ -78,10 +78,15 @@ class Autosave:
                     self._write()
                 self._kept = state
                 self._complained = False
-            except CommandError as fault:
-                if not self._complained:
-                    self._tell(warning("autosave", f"unsaved changes cannot be kept: {fault}"))
-                self._complained = True
+            except (CommandError, OSError) as fault:
+                self._complain(str(fault))
+            except Exception as defect:  # edits to come must still be kept
+                self._complain(f"internal error: {type(defect).__name__}: {defect}")
+
+    def _complain(self, reason: str) -> None:
+        if not self._complained:
+            self._tell(warning("autosave", f"unsaved changes cannot be kept: {reason}"))
+        self._complained = True
 
     def restore(self) -> str:
         """Load what was found; returns the file it belongs to. Raises CommandError."""

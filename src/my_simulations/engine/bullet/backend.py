@@ -106,6 +106,7 @@ class BulletBackend:
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
+        self._is_fresh = True   # nothing has moved since the world began
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
@@ -155,6 +156,7 @@ class BulletBackend:
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
         self._settle()
+        self._is_fresh = False
         self._readout.stepped()
         run, dt, gravity = self._loop.run, self._settings.step_size, self._settings.gravity
         if self._wrenches.idle:
@@ -222,7 +224,10 @@ class BulletBackend:
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
             restore(entry, state)
-        self._waker.around(entry.bodies)
+        # In a fresh world all is awake. Looking for neighbours changes the order in which Bullet
+        # finds contacts, and with it what follows: a restart, which need not look, must repeat it.
+        if not self._is_fresh:
+            self._waker.around(entry.bodies)
 
     def _enter(self, builder: Builder, model: Model, pose: Pose) -> Entry:
         """Build a model and know it."""
@@ -334,6 +339,7 @@ class BulletBackend:
 
     def _clear(self, _: Clear) -> None:
         self._put_off = None
+        self._is_fresh = True
         self._models.clear()
         for keeper in self._keepers:
             keeper.clear()
