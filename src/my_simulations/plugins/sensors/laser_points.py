@@ -134,7 +134,7 @@ class Velodyne(_Points):
         order = self._order[((ranges > self._near) & (ranges < self._far)
                              & (retro >= self._faintest))[self._order]]
         away = self._noise.apply(ranges, ns, 0.0)[order]
-        points = np.zeros(len(order), np.dtype({
+        points: np.ndarray = np.zeros(len(order), np.dtype({
             "names": ["place", "intensity", "ring"], "formats": ["(3,)<f4", "<f4", "<u2"],
             "offsets": [0, 16, 20], "itemsize": _STEP}))
         points["place"] = away[:, None] * self._directions[order]

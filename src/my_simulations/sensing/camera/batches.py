@@ -8,7 +8,7 @@ import numpy as np
 from .sky import linear
 from .surfaces import Piece, Surface
 
-_INSTANCE = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
+_INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
 
 
 class Batch:
@@ -24,7 +24,7 @@ class Batch:
         self.surface: Surface = piece.surface
         self.uniforms = _uniforms(piece.surface)
         self.casts_shadow = shadows and piece.surface.opacity >= 1.0
-        places = piece.rows[:, :3].astype(np.float64)
+        places: np.ndarray = piece.rows[:, :3].astype(np.float64)
         low, high = places.min(axis=0), places.max(axis=0)
         self.center = (low + high) / 2
         self.radius = float(np.linalg.norm(places - self.center, axis=1).max())

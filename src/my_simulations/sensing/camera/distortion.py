@@ -60,7 +60,8 @@ def blended(picture: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndar
     height, width = picture.shape[:2]
     inside = (column >= 0) & (row >= 0) & (column <= width - 1) & (row <= height - 1)
     column, row = np.where(inside, column, 0.0), np.where(inside, row, 0.0)
-    left, top = column.astype(np.int64), row.astype(np.int64)
+    left: np.ndarray = column.astype(np.int64)
+    top: np.ndarray = row.astype(np.int64)
     right, bottom = np.minimum(left + 1, width - 1), np.minimum(top + 1, height - 1)
     u, v = (column - left)[..., None], (row - top)[..., None]
     upper = picture[top, left] * (1 - u) + picture[top, right] * u

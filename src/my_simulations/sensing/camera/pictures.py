@@ -30,8 +30,9 @@ def read_picture(picture: Any) -> Optional[np.ndarray]:
         if max(image.size) > LARGEST:
             image.draft("RGB", (LARGEST, LARGEST))
             image = image.convert("RGBA")
-            image.thumbnail((LARGEST, LARGEST), Image.BILINEAR)
-        image = image.convert("RGBA").transpose(Image.FLIP_TOP_BOTTOM)
+            image.thumbnail((LARGEST, LARGEST), Image.BILINEAR)  # type: ignore[attr-defined]
+        upwards = Image.FLIP_TOP_BOTTOM  # type: ignore[attr-defined]
+        image = image.convert("RGBA").transpose(upwards)
     except (OSError, ValueError, UnidentifiedImageError, Image.DecompressionBombError):
         return None
     return np.asarray(image)
