@@ -9,11 +9,11 @@ export const PROTOCOL_VERSION = 1;
 /** Sizes in bytes, rates in Hz. */
 export const LIMITS = Object.freeze({
   request_bytes: 33554432, upload_bytes: 67108864, frames_hz: 30, drags_hz: 30, stats_hz: 5,
-  watch_hz: 20
+  watch_hz: 20, view_hz: 15
 });
 
 /** The kinds of binary frames. */
-export const FRAME_KINDS = Object.freeze({poses: 1, log: 2});
+export const FRAME_KINDS = Object.freeze({poses: 1, log: 2, topic: 3});
 
 /** Offsets of the fields of a frame's head, in bytes; little endian. */
 export const FRAME_HEAD = Object.freeze({
@@ -286,6 +286,62 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{name: string, path: string, title: string}} Building */
 
+/** @typedef {{link: string, pose: pose}} Mount */
+
+/** @typedef {{
+ *  name: string, type: string, publishers: number, subscribers: number, model?: string|null,
+ *  mount?: Mount|null, driven?: boolean|null, hz?: number|null, bytes_per_s?: number|null
+ *}} Topic */
+
+/** @typedef {{parent: string, child: string, pose: pose}} Transform */
+
+/** @typedef {{
+ *  id: string, shape: string, frame: string, pose: pose, scale: vec3, color: color,
+ *  points: vec3[], colors: color[], text: string, lifetime: number
+ *}} Marker */
+
+/** @typedef {{
+ *  type: 'scan', angle_min: number, angle_increment: number, range_min: number,
+ *  range_max: number, count: number
+ *}} ScanView */
+
+/** @typedef {{
+ *  type: 'points', count: number, of: number, colored: boolean
+ *}} PointsView */
+
+/** @typedef {{
+ *  type: 'image', format: string, width: number, height: number, encoding: string,
+ *  near?: number|null, far?: number|null
+ *}} ImageView */
+
+/** @typedef {{
+ *  type: 'odometry', child: string, pose: pose, linear: vec3, angular: vec3
+ *}} OdometryView */
+
+/** @typedef {{type: 'path', poses: pose[], line: boolean}} PathView */
+
+/** @typedef {{
+ *  type: 'range', range?: number|null, range_min: number, range_max: number,
+ *  field_of_view: number
+ *}} RangeView */
+
+/** @typedef {{type: 'transforms', transforms: Transform[]}} TransformsView */
+
+/** @typedef {{type: 'markers', markers: Marker[]}} MarkersView */
+
+/** @typedef {{type: 'contacts', positions: vec3[], normals: vec3[]}} ContactsView */
+
+/** @typedef {{
+ *  type: 'map', width: number, height: number, resolution: number, pose: pose
+ *}} MapView */
+
+/** @typedef {{type: 'text', text: string}} TextView */
+
+/** @typedef {ScanView|PointsView|ImageView|OdometryView|PathView|RangeView|TransformsView|MarkersView|
+ *  ContactsView|MapView|TextView} View */
+
+/** @typedef {{topic: string, frame: string, stamp: number, view: View}} TopicHead */
+
 /** @typedef {{p?: number|null, i?: number|null, d?: number|null}} Gains */
 
 /** @typedef {{
@@ -429,6 +485,10 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {model?: Model|null, light?: Light|null}},
  *  watch: {fields: {topics: string[]},
  *    reply: {topics: string[]}},
+ *  topics: {fields: {},
+ *    reply: {available: boolean, topics: Topic[]}},
+ *  drive: {fields: {model: string, linear: vec3, angular: vec3},
+ *    reply: {topic: string}},
  *  log_start: {fields: {name?: string|null},
  *    reply: {name: string}},
  *  log_stop: {fields: {},
@@ -456,4 +516,5 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{
  *  drag: {names: string[], poses: pose[]},
- *  drag_end: {}}} Notices */
+ *  drag_end: {},
+ *  viewed: {topic: string}}} Notices */

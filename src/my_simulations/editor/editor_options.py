@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Callable, List, Optional, Tuple
 
 from ..errors import Issue
+from .topics.source import TopicSource
 
 DEFAULT_PORT = 11346
 """Beside Gazebo's master port, 11345."""
@@ -34,6 +35,7 @@ class EditorOptions:
         cache_dir: keeps autosaves and thumbnails.
         data_dir: keeps state logs.
         more_logs: state logs that lie elsewhere.
+        topics: the ROS topics; None in a world without ROS.
         check_outgoing: hold what is sent to the protocol too (tests).
     """
 
@@ -48,6 +50,7 @@ class EditorOptions:
     cache_dir: str = field(default_factory=lambda: _xdg("XDG_CACHE_HOME", "~/.cache"))
     data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
     more_logs: Tuple[str, ...] = ()
+    topics: Optional[TopicSource] = None
     check_outgoing: bool = False
 
 

@@ -19,7 +19,7 @@ from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
 from .context import PluginError
 from .eyes import Eyes
-from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .graph import Closing, Graph, MissingTypeError, Topic, TopicUse, TransformOf
 from .parameters import Parameters
 
 Report = Callable[[Issue], None]
@@ -134,6 +134,7 @@ class SimulatedContext:
             = None
         self._namespace = ""
         self._open: List[Closing] = []
+        self._topics: List[Tuple[str, str, bool]] = []
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -155,6 +156,7 @@ class SimulatedContext:
         for one in self._open:
             one.close()
         self._open.clear()
+        self._topics.clear()
         self.appointments.clear()
 
     def stop(self) -> None:
@@ -321,6 +323,7 @@ class SimulatedContext:
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
         self._open.append(topic)
+        self._topics.append((self._name(name), kind, False))
         return Offer(self, topic)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
@@ -340,6 +343,18 @@ class SimulatedContext:
             self._open.append(self._graph.subscribe(self._name(name), kind, arrived, queue))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
+        self._topics.append((self._name(name), kind, True))
+
+    def topic_uses(self) -> List[TopicUse]:
+        """The topics it offers and hears; from any thread."""
+        link, pose = "", IDENTITY
+        if self.sensor is not None:
+            link, pose = self._scope + self.sensor_link, self.sensor.pose
+            if link not in self.entity.link_names:
+                link = self.sensor_link
+        kind = self.sensor.type if self.sensor is not None else ""
+        return [TopicUse(name, message, heard, self.model, link, kind, pose)
+                for name, message, heard in list(self._topics)]
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
         """Offer a service."""

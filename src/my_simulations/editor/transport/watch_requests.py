@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Dict, Optional, Set, Tuple
 
 from ...errors import CommandError
+from ..topics.live_topics import PREFIX, LiveTopics
 from .browser_client import Client, encoded
 from .hub import Hub
 from .pose_messages import Poses
@@ -14,10 +15,13 @@ from .web_socket import Route
 
 
 class Watching:
-    """Reads each topic once for all clients, in a thread of its own, as often as it can."""
+    """Reads each topic once for all clients, in a thread of its own, as often as it can.
 
-    def __init__(self, hub: Hub) -> None:
-        self._hub = hub
+    Topics of ROS are handed on to `live`.
+    """
+
+    def __init__(self, hub: Hub, live: LiveTopics) -> None:
+        self._hub, self._live = hub, live
         self._watches = Watches(hub.simulator, hub.clock)
         self._thread = ThreadPoolExecutor(1, "editor watches")
         self._due = 0.0
@@ -32,11 +36,14 @@ class Watching:
 
     async def _watch(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         topics = list(dict.fromkeys(message["topics"]))
+        of_ros = {topic for topic in topics if topic.startswith(PREFIX)}
         if len(topics) > MOST_TOPICS:
             raise CommandError(f"at most {MOST_TOPICS} topics can be watched")
         for topic in topics:
-            check_topic(topic)
-        client.topics = set(topics)
+            if topic not in of_ros:
+                check_topic(topic)
+        self._live.want(client, {topic[len(PREFIX):] for topic in of_ros})
+        client.topics = set(topics) - of_ros
         self._fresh = True
         self._hub.nudge()
         return {"topics": topics}

@@ -35,7 +35,7 @@ def check_topic(topic: str) -> None:
         if rest in _WORLD or (owner and field in {**_POSE, **_TWIST, **_JOINT}):
             return
     raise CommandError(f"unknown topic {topic!r}; known: contacts, joints:MODEL,"
-                       " plot:sim_time, plot:NAME.x and the like")
+                       " plot:sim_time, plot:NAME.x and the like, ros:/NAME")
 
 
 class Watches:
