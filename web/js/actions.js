@@ -31,7 +31,7 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
  *   ShownWrench
  */
 
-/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|
+/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|
  *            'building'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
 
 /** @typedef {{name: DialogName, target?: string}} DialogRequest */
@@ -327,6 +327,15 @@ export function createActions({store, connection}) {
     logSeek: (time) => ask('log_seek', {time}),
     logPlay: (rate = 1) => ask('log_play', {rate}),
     logClose: () => ask('log_close'),
+
+    // ---- robots
+    /**
+     * Velocities for a robot, in its own axes; m/s, rad/s.
+     * @param {string} model
+     * @param {{linear: number[], angular: number[]}} velocity
+     */
+    drive: (model, {linear, angular}) => ask('drive', {model, linear, angular}),
+    topics: () => dialog('topics'),
 
     // ---- windows of the panels
     applyForce: (name = store.selection.at(-1)) => dialog('applyForce', name ? {target: name} : {}),

@@ -8,6 +8,8 @@
  * @property {Connection} connection
  * @property {RequestFunction} request
  * @property {Watches} watches
+ * @property {Topics} topics
+ * @property {{speeds: DriveSpeeds}} driving
  * @property {Notices} notices
  * @property {ReturnType<typeof mountTheme>} theme
  * @property {PageView|null} view  null until it is there
@@ -32,12 +34,16 @@ import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
 import {mountToolBar} from './toolbar.js';
+import {TopicsPanel} from './topics_panel.js';
+import {TopicWindows} from './topic_windows.js';
 import {WorldTab} from './world_tab.js';
 /** @import {Actions, DialogName, DialogRequest} from '../actions.js' */
 /** @import {AutosavePush, Requests} from '../protocol.js' */
 /** @import {Connection, RequestFunction} from '../connection.js' */
 /** @import {SceneView} from '../view/view.js' */
 /** @import {Store} from '../store.js' */
+/** @import {DriveSpeeds} from '../drive_keys.js' */
+/** @import {Topics} from '../topics/topics.js' */
 /** @import {Watches} from '../watches.js' */
 
 /**
@@ -168,7 +174,9 @@ class Windows {
   constructor(page, tabs) {
     this.page = page;
     this.tabs = tabs;
-    this.joints = new JointsPanel(byId('right'), page);
+    this.joints = new JointsPanel(byId('joints'), page);
+    this.topics = new TopicsPanel(byId('topics'), page);
+    new TopicWindows(byId('centre'), page);
     splitter(byId('right-splitter'), {
       key: 'right-width',
       initial: 300,
@@ -179,7 +187,8 @@ class Windows {
       apply: (size) =>
         byId('app').style.setProperty('--right-size', `${size}px`),
     });
-    if (remembered.get('joints-shown', false)) this.#toggleJoints();
+    if (remembered.get('joints-shown', false)) this.#toggleSide('joints');
+    if (remembered.get('topics-shown', false)) this.#toggleSide('topics');
   }
 
   /** @type {{panel: Plots, bar: HTMLElement}|null} */
@@ -201,7 +210,8 @@ class Windows {
       about: () => aboutDialog(this.page.about ?? {}),
       logs: () => logsDialog(this.page),
       plot: () => this.#togglePlots(),
-      joints: () => this.#toggleJoints(),
+      joints: () => this.#toggleSide('joints'),
+      topics: () => this.#toggleSide('topics'),
       building: () => this.#toggleBuilding(),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
@@ -262,12 +272,15 @@ class Windows {
     }
   }
 
-  #toggleJoints() {
+  /** Opens or closes a panel at the right. @param {'joints'|'topics'} name */
+  #toggleSide(name) {
+    const section = byId(name);
+    section.hidden = !section.hidden;
     const right = byId('right');
-    right.hidden = !right.hidden;
+    right.hidden = ['joints', 'topics'].every((one) => byId(one).hidden);
     byId('right-splitter').hidden = right.hidden;
-    remembered.set('joints-shown', !right.hidden);
-    this.joints.show(!right.hidden);
+    remembered.set(`${name}-shown`, !section.hidden);
+    this[name].show(!section.hidden);
   }
 
   async #toggleBuilding() {
