@@ -54,7 +54,7 @@ def test_a_selected_robot_shows_what_it_senses_and_costs_nothing_after(editor):
 
 
 def test_the_fan_ends_at_the_wall(editor):
-    editor.get("editor.topics.listen('view', ({detail: {head, buffer, start}}) => {"
+    editor.get("void editor.topics.listen('view', ({detail: {head, buffer, start}}) => {"
                " if (head.view.type === 'scan') window.ranges ="
                " [...new Float32Array(buffer, start, head.view.count)]; })")
     editor.row("rover").click()
