@@ -9,7 +9,7 @@ import aiohttp
 import pytest
 from editor_case import DEADLINE, Browser, Refused, box, cases
 from sensor_msgs.msg import LaserScan
-from topic_source import Listed, Source
+from topic_source_case import Listed, Source
 
 from my_simulations.editor.topics.driving import velocity_topic
 from my_simulations.geometry import Pose

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from ...errors import CommandError, SimulationError
 from ..transport.browser_client import Client
-from .source import ListedTopic, Publisher, TopicSource
+from .topic_source import ListedTopic, Publisher, TopicSource
 
 KIND = "geometry_msgs/Twist"
 _SILENCE_S = 0.5

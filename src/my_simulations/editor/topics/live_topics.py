@@ -16,7 +16,7 @@ from ...errors import CommandError, SimulationError
 from ..transport.browser_client import Client, encoded
 from ..transport.hub import Hub
 from .message_views import Viewer
-from .source import Subscription, TopicSource
+from .topic_source import Subscription, TopicSource
 
 TOPIC = 3
 """Kind of the frames (`frames` of the protocol)."""

@@ -12,7 +12,7 @@ from ..transport.hub import Hub
 from ..transport.web_socket import Route
 from .driving import Driving
 from .live_topics import LiveTopic, LiveTopics
-from .source import ListedTopic, TopicSource
+from .topic_source import ListedTopic, TopicSource
 
 
 class TopicRequests:
