@@ -29,6 +29,8 @@ async function everything({actions, store, connection}) {
   await actions.folders();
   await actions.folders('/w');
   await actions.autosave('restore');
+  await actions.recoverable();
+  await actions.recoverEntry('1-2');
   await actions.undo();
   await actions.redo(2);
   await actions.rename('a', 'c');

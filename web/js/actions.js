@@ -31,7 +31,7 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
  *   ShownWrench
  */
 
-/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|
+/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|
  *            'building'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
 
 /** @typedef {{name: DialogName, target?: string}} DialogRequest */
@@ -109,6 +109,12 @@ export function createActions({store, connection}) {
     folders: (path) => ask('folders', path ? {path} : {}),
     /** @param {'restore'|'discard'} action */
     autosave: (action) => ask('autosave', {action}),
+
+    /** What can be recovered. */
+    recoverable: () => ask('autosave', {action: 'list'}, {quiet: true}),
+    /** @param {string} name  of what can be recovered */
+    recoverEntry: (name) => ask('autosave', {action: 'restore', name}, {quiet: true}),
+    recover: () => dialog('recover'),
 
     // ---- editing
     /** @param {number} [to]  steps more than one */

@@ -229,6 +229,10 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{state: boolean, launched: boolean}} SaveChoices */
 
+/** @typedef {{
+ *  name: string, file: string, time: number, discarded: boolean
+ *}} Recoverable */
+
 /** @typedef {{name: string, bytes: number, modified: number}} LogFile */
 
 /** @typedef {{
@@ -427,7 +431,7 @@ export const FRAME_RECORD_BYTES = 32;
  *}} WatchPush */
 
 /** @typedef {{
- *  type: 'autosave', found: boolean, file: string, time: number
+ *  type: 'autosave', found: boolean, file: string, time: number, others: number
  *}} AutosavePush */
 
 /** @typedef {{
@@ -471,8 +475,8 @@ export const FRAME_RECORD_BYTES = 32;
  *      path: string, parent?: string|null, roots: string[], folders: Folder[], files: File[],
  *      launched: string[], chosen: SaveChoices
  *    }},
- *  autosave: {fields: {action: 'restore'|'discard'},
- *    reply: {file?: string|null}},
+ *  autosave: {fields: {action: 'restore'|'discard'|'list', name?: string|null},
+ *    reply: {file?: string|null, entries?: Recoverable[]|null}},
  *  library: {fields: {},
  *    reply: {locations: Location[]}},
  *  library_add: {fields: {path: string},

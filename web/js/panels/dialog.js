@@ -37,6 +37,9 @@ export class Dialog {
       }),
     );
     const primary = buttons.find((button) => button.primary);
+    // A key pressed by chance must lose nothing.
+    const safe = primary && !primary.danger ? primary : buttons.find((button) => !button.danger);
+    this.#safe = safe && this.#buttons[buttons.indexOf(safe)];
     const form = h(
       'form',
       {
@@ -88,6 +91,8 @@ export class Dialog {
 
   #note;
   #buttons;
+  /** The button that has the focus first. @type {HTMLButtonElement|undefined} */
+  #safe;
   /** @type {(value: unknown) => void} */
   #resolve = () => {};
   /** What had the focus before. @type {Element|null} */
@@ -102,7 +107,7 @@ export class Dialog {
     const first =
       elementsOf(this.element, '[autofocus]')[0] ??
       elementsOf(this.element, '.dialog-body input, .dialog-body select')[0] ??
-      this.#buttons[0];
+      this.#safe;
     first?.focus();
     return this.closed;
   }

@@ -78,6 +78,8 @@ export function menus(page) {
         LINE,
         item('Save World', 'save'),
         item('Save World As…', 'saveAs'),
+        LINE,
+        item('Recover…', 'recover'),
       ],
     },
     {

@@ -21,6 +21,7 @@ import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
 import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
+import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
 import {InsertTab} from './insert_tab.js';
 import {JointsPanel} from './joints_panel.js';
@@ -205,6 +206,7 @@ class Windows {
       open: () => this.#files(openDialog, 'Opened'),
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
       newWorld: () => newWorld(this.page),
+      recover: () => recoverDialog(this.page),
       applyForce: () => forceDialog(this.page, detail.target ?? this.#target()),
       hotkeys: () => hotkeyDialog(HOTKEYS),
       about: () => aboutDialog(this.page.about ?? {}),
@@ -316,12 +318,19 @@ class Windows {
  * @param {Page} page
  * @param {AutosavePush} autosavePush
  */
-async function offerRestore(page, {found, file, time}) {
-  if (!found) return;
+async function offerRestore(page, {found, file, time, others}) {
+  if (!found) {
+    if (others) {
+      page.notices.say(`Unsaved changes to ${others === 1 ? 'another world' :
+        `${others} other worlds`} can be restored: File, Recover.`);
+    }
+    return;
+  }
   const when = time ? ` of ${new Date(time * 1000).toLocaleString()}` : '';
   const choice = await ask(
     'Restore unsaved changes?',
-    `Unsaved changes${file ? ` to ${file}` : ''}${when} were found.`,
+    `Unsaved changes to ${file || 'a world without a file'}${when} were found. They replace the ` +
+      'world as it is now. Discarded changes can be recovered for a week: File, Recover.',
     [
       {title: 'Discard', value: 'discard', danger: true},
       {title: 'Later'},
