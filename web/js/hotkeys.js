@@ -97,7 +97,7 @@ export const hotkey = (event) => BY_KEYS.get(spelled(event));
 function belongsToControl(event) {
   const {target} = event;
   if (!(target instanceof Element)) return false;
-  if (target.closest('dialog, [role="dialog"]')) return true;
+  if (target.closest('dialog, [role="dialog"]') || document.querySelector('dialog:modal')) return true;
   // A check box needs the space bar alone.
   if (target.closest('input[type="checkbox"]')) return event.key === ' ';
   if (target.closest('input, textarea, select, [contenteditable="true"]')) {

@@ -16,7 +16,7 @@
  * @property {Requests['hello']['reply']} [about]  what the server said of itself
  */
 import {HOTKEYS} from '../hotkeys.js';
-import {ask} from './dialog.js';
+import {ask, closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
 import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
@@ -303,6 +303,7 @@ class Windows {
     element.addEventListener(
       'exit',
       () => {
+        closeDialogs();
         this.#building = null;
         element.hidden = true;
         document.body.classList.remove('building');
