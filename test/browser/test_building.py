@@ -279,7 +279,8 @@ def test_a_floor_plan_is_calibrated_by_two_clicks_and_typing(launch, browser, tm
     length.wait_for(state="detached")
     assert editor.page.locator(".plan-sheet").is_visible()
     drawn = editor.page.locator(".plan-sheet image")
-    width = drawn.evaluate("(image) => image.width.baseVal.value")
-    assert width == approx(800, rel=0.02)  # 400 pixels, of which 200 are 4 m; 100 units a metre
+    # 400 pixels, of which 200 are 4 m; 100 units a metre.
+    wait_for(lambda: drawn.evaluate("(image) => image.width.baseVal.value") ==
+             approx(800, rel=0.02), "the new size")
     assert editor.faults == []
     editor.close()

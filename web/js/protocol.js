@@ -353,7 +353,8 @@ export const FRAME_RECORD_BYTES = 32;
  *}} Drive */
 
 /** @typedef {{
- *  name: string, axis: number, position: number, rate: number, drive?: Drive|null
+ *  name: string, axis: number, position: number, rate: number, drive?: Drive|null,
+ *  default_gains?: Record<string, Gains>|null
  *}} JointState */
 
 /** @typedef {{

@@ -21,8 +21,11 @@ _NOTHING = (0.0, 0.0, 0.0)
 class Forces:
     """All that `apply` must do before the next step."""
 
-    def __init__(self, wake: Callable[[List[Body]], None]) -> None:
+    def __init__(self, wake: Callable[[List[Body]], None],
+                 loops_changed: Callable[[Set[int]], None] = lambda rows: None) -> None:
+        """`loops_changed` gets the axis rows that PID loops drive whenever these change."""
         self._wake = wake
+        self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
         self._acting: Dict[int, TimedForce] = {}
         self._loops: Dict[int, PidController] = {}
@@ -86,15 +89,24 @@ class Forces:
 
     def clear(self, force_ids: Sequence[int]) -> None:
         """Drop timed forces by id."""
+        ended = [self._loops.pop(force_id, None) for force_id in force_ids]
         for force_id in force_ids:
             self._timed.pop(force_id, None)
             self._acting.pop(force_id, None)
-            self._loops.pop(force_id, None)
+        if any(ended):
+            self._tell_loops()
 
     def clear_all(self) -> None:
         """Drop every timed force."""
+        ended = bool(self._loops)
         for table in (self._timed, self._acting, self._loops):
             table.clear()
+        if ended:
+            self._tell_loops()
+
+    def _tell_loops(self) -> None:
+        self._loops_changed({self._acting[number].row for number in self._loops
+                             if number in self._acting})
 
     @property
     def idle(self) -> bool:
@@ -154,6 +166,7 @@ class Forces:
 
     def _begin_and_end(self, step: int) -> None:
         beginning = []
+        loops = len(self._loops)
         for force_id, force in list(self._timed.items()):
             if step >= force.stop:
                 self.clear([force_id])
@@ -162,6 +175,8 @@ class Forces:
                 if isinstance(force, TimedEffort) and force.pid is not None:
                     self._loops[force_id] = PidController(force.pid)
                 beginning.append(force)
+        if len(self._loops) != loops:
+            self._tell_loops()
         if beginning:
             self._wake([self._target(force) for force in beginning])
 
