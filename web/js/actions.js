@@ -10,6 +10,7 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
 /** @import {AlignChoice} from './align.js' */
 /** @import {CameraChoices, CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js' */
 /** @import {Issue, RequestFunction} from './connection.js' */
+/** @import {Dropped} from './dropped_files.js' */
 /** @import {LightType, ShapeName} from './new_entities.js' */
 /** @import {Operation, Requests} from './protocol.js' */
 /** @import {Pose7, Vec3} from './pose.js' */
@@ -31,10 +32,10 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
  *   ShownWrench
  */
 
-/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|
+/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
  *            'building'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
 
-/** @typedef {{name: DialogName, target?: string}} DialogRequest */
+/** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
 
 /** @typedef {ReturnType<typeof createActions>} Actions */
 
@@ -64,7 +65,7 @@ export function createActions({store, connection}) {
    * @param {AskOptions} [options]
    */
   const edit = (op, options) => ask('edit', {op}, options);
-  /** @param {DialogName} name @param {{target?: string}} [fields] */
+  /** @param {DialogName} name @param {Omit<DialogRequest, 'name'>} [fields] */
   const dialog = (name, fields = {}) => store.emit('dialog', {name, ...fields});
   /** @param {string} message */
   const note = (message) => store.addIssue({severity: 'note', code: 'editor', message});
@@ -222,6 +223,14 @@ export function createActions({store, connection}) {
       else if (name) store.select([name]);
       return outcome;
     },
+    /**
+     * Files or folders of the desktop that were dropped on the ground; a dialog asks.
+     * @param {Dropped[]} entries
+     * @param {Vec3} place
+     */
+    dropFiles: (entries, place) => dialog('importFiles', {entries, place}),
+    /** @param {Requests['import_model']['fields']} fields */
+    importModel: (fields) => ask('import_model', fields, {quiet: true}),
     library: () => ask('library'),
     /** @param {string} path */
     libraryAdd: (path) => ask('library_add', {path}),

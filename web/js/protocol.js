@@ -216,6 +216,8 @@ export const FRAME_RECORD_BYTES = 32;
  *  uri: string, name: string, title: string, description: string, thumb: string
  *}} LibraryModel */
 
+/** @typedef {{path: string, data: string}} ImportFile */
+
 /** @typedef {{
  *  id: string, title: string, kind: 'built-in'|'home'|'environment'|'added'|'fuel'|'remote',
  *  path: string, models: LibraryModel[], problem?: string|null
@@ -484,6 +486,10 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {locations: Location[]}},
  *  library_remove: {fields: {path: string},
  *    reply: {locations: Location[]}},
+ *  import_model: {fields: {
+ *      name: string, files: ImportFile[], density?: number|null, overwrite?: boolean|null
+ *    },
+ *    reply: {uri: string, path: string}},
  *  library_get: {fields: {uri: string},
  *    reply: {model?: Model|null, light?: Light|null}},
  *  preview: {fields: {sdf: string},

@@ -21,6 +21,7 @@ import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
 import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
+import {importDialog} from './dialogs/import_dialog.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
 import {InsertTab} from './insert_tab.js';
@@ -207,6 +208,7 @@ class Windows {
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
       newWorld: () => newWorld(this.page),
       recover: () => recoverDialog(this.page),
+      importFiles: () => importDialog(this.page, detail.entries ?? [], detail.place ?? [0, 0, 0]),
       applyForce: () => forceDialog(this.page, detail.target ?? this.#target()),
       hotkeys: () => hotkeyDialog(HOTKEYS),
       about: () => aboutDialog(this.page.about ?? {}),
