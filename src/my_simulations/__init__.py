@@ -1,7 +1,24 @@
 """A Gazebo Classic substitute for ROS 1, on PyBullet.
 
-Files are read into a description; a simulator keeps the description and the clock; an engine
-in its own process moves it; ROS, the editor and the command line are faces of the simulator.
+Files are read into a description; a simulator keeps the description and the clock; an engine in its
+own process moves it; ROS, the editor, the command line and programs in Python are front ends of the
+simulator.
+
+From Python: `my_simulations.open_world(...)`, see `my_simulations.python_api`.
 """
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .python_api import OpenWorld, open_world
 
 __version__ = "0.1.0"
+__all__ = ["OpenWorld", "__version__", "open_world"]
+
+
+def __getattr__(name: str) -> Any:
+    # The node imports this package and must not pay for NumPy and the readers.
+    if name in ("OpenWorld", "open_world"):
+        from . import python_api
+
+        return getattr(python_api, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Steps that say what they do, how far they are, and, when they fail, why and what to do.
+# Prints numbered steps, their progress, and for failures the reason and what to do.
 
 STEP=0
 STEPS=0           # set by the command that sources this file
@@ -30,7 +30,7 @@ finish() {
   printf '%s(%d s)\n' "${1:+$1 }" "$((SECONDS - STEP_BEGAN))"
 }
 
-# Copies its input to a log file; on a terminal the latest line shows behind the step.
+# follow LOG: copy the input to a log file; on a terminal, show its latest line below the step.
 follow() {
   local log="$1" line width
   width=$(( ${COLUMNS:-80} - 4 ))
@@ -40,16 +40,29 @@ follow() {
   done
 }
 
-# logged NAME ADVICE COMMAND...: run a part of a step; its output goes to the log NAME.
-logged() {
-  local name="$1" log="$LOGS/$1.log" advice="$2" status=0
-  shift 2
+# recorded NAME COMMAND...: run a part of a step; its output goes to the log NAME; the same status.
+recorded() {
+  local log="$LOGS/$1.log"
+  shift
   mkdir -p "$LOGS"
   printf '+ %s\n' "$*" >"$log"
-  "$@" </dev/null 2>&1 | follow "$log" || status=$?
-  [ "$status" -eq 0 ] && return
-  printf '\n\n--- the last lines of %s ---\n' "$log" >&2
+  "$@" </dev/null 2>&1 | follow "$log"
+}
+
+# failed NAME STATUS ADVICE: stop after a recorded part that did not work, with the cause that its log
+# tells, else with the advice.
+failed() {
+  local log="$LOGS/$1.log" cause
+  cause=$(cause_in "$log")
+  printf '\n\n--- last lines of %s ---\n' "$log" >&2
   tail -n 25 "$log" >&2
-  stop "step $STEP, $STEP_TEXT: '$name' ended with status $status." "$advice" \
-    "The whole log is $log."
+  stop "step $STEP, $STEP_TEXT: '$1' failed with status $2." "${cause:-$3}" "The complete log: $log"
+}
+
+# logged NAME ADVICE COMMAND...: run and record a part of a step; stop where it fails.
+logged() {
+  local name="$1" advice="$2" status=0
+  shift 2
+  recorded "$name" "$@" || status=$?
+  [ "$status" -eq 0 ] || failed "$name" "$status" "$advice"
 }

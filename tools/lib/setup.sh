@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# From a bare Debian 12 to a built workspace. Every part looks first whether there is anything to
-# do, so a second run neither installs nor builds nor asks the network.
+# Sets up a workspace, from a bare Debian to a built one. Every part first checks whether there is
+# anything to do, so a second run neither installs nor builds nor uses the network.
 
 ROS_PREFIX=/opt/ros/noetic
 PYTHON=/usr/bin/python3
@@ -55,22 +55,22 @@ find_workspace() {
   finish "$WORKSPACE"
 }
 
-# usable_path PATH WHAT ADVICE: stop for a path that catkin or the shells' path lists cannot have.
+# usable_path PATH WHAT ADVICE: stop for a path that catkin or colon-separated path lists do not support.
 usable_path() {
   local bad='[[:space:]:;$`#&()<>|*?{}!"\\'"']"
   [[ $1 =~ $bad ]] || return 0
-  stop "$2, $1, has ${BASH_REMATCH[0]/ /a blank} in it, which catkin cannot build in. Nothing was \
-changed." "Letters of any alphabet, digits and - _ . + , are fine: $3"
+  stop "$2, $1, contains ${BASH_REMATCH[0]/ /a space}, which catkin does not support. Nothing was \
+changed." "Letters of any alphabet, digits and - _ . + , are allowed: $3"
 }
 
-# accept_foreign: stop where the workspace's own package my_simulations was not asked about, or cannot
-# come before ours.
+# accept_foreign: stop if the workspace has its own package my_simulations and --overlay was not
+# chosen or is not possible.
 accept_foreign() {
   local ours
   if [ "$OVERLAY" = 0 ] && ! underlay_chosen; then
-    stop "$FOREIGN is there already, and two packages my_simulations cannot be in one workspace. \
+    stop "$FOREIGN exists already; a workspace cannot have two packages my_simulations. \
 Nothing was changed." \
-      "To use it, its files before ours of the same name: \
+      "To use it, with its files before ours of the same name: \
 $COMMAND --overlay (that package stays untouched; the choice is remembered)." \
       "To use another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
   fi
@@ -78,14 +78,14 @@ $COMMAND --overlay (that package stays untouched; the choice is remembered)." \
   [ -z "$ours" ] || stop "$FOREIGN and this clone, $ours, are two packages my_simulations in one \
 workspace. Nothing was changed." "Move the clone out of the workspace: mv $ours ~/ and run it there."
   [ "$(package_name "$FOREIGN")" = my_simulations ] ||
-    stop "$FOREIGN is no ROS package: its package.xml is missing or has another name. Nothing was \
+    stop "$FOREIGN is not the ROS package my_simulations: its package.xml is missing or has another name. Nothing was \
 changed." "Make it one: cd $WORKSPACE/src && catkin_create_pkg my_simulations"
   [ -z "$(find -L "$FOREIGN" -path '*/my_simulations/__init__.py' -print -quit)" ] ||
-    stop "$FOREIGN has a Python module my_simulations, which is the name of ours. Nothing was \
+    stop "$FOREIGN has a Python module my_simulations, the name of our module. Nothing was \
 changed." "Give the module another name."
 }
 
-# packages_of FILE: the names in a list with comments.
+# packages_of FILE: the package names in a list with comments.
 packages_of() { sed 's/#.*//; /^[[:space:]]*$/d' "$1"; }
 
 # missing_packages NAME...: those that dpkg does not have installed.
@@ -101,16 +101,23 @@ as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-# may_install: whether this user can install system packages at all.
+# may_install: whether this user can install system packages.
 may_install() { [ "$(id -u)" = 0 ] || command -v sudo >/dev/null; }
 
-# apt_install NAME ADVICE...: the packages from ADVICE on; the output goes to logs of that NAME.
+# apt_get NAME WORD...: apt-get without questions; its output goes to the log of that NAME.
+apt_get() {
+  local name="$1"
+  shift
+  recorded "$name" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q "$@"
+}
+
+# apt_install NAME ADVICE PACKAGE...: install the packages or stop; the logs have that NAME in theirs.
 apt_install() {
   local name="$1" advice="$2"
   shift 2
-  logged "apt-update$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
-  logged "apt-install$name" "$advice" as_root env DEBIAN_FRONTEND=noninteractive \
-    apt-get -q -y --no-install-recommends install "$@"
+  apt_get "apt-update$name" update || failed "apt-update$name" "$?" "$advice"
+  apt_get "apt-install$name" -y --no-install-recommends install "$@" ||
+    failed "apt-install$name" "$?" "$advice"
 }
 
 install_system_packages() {
@@ -139,7 +146,10 @@ sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
       "${missing[@]}"
     SYSTEM_REMARK="${#missing[@]} installed"
   fi
-  install_common_packages
+  if [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; then
+    install_optional common "other packages"
+  fi
+  [ "$WITH_TEST_TOOLS" = 0 ] || install_optional sdformat "some tests"
   finish "$SYSTEM_REMARK"
   hint_at_python
   local name
@@ -149,29 +159,37 @@ sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
   done
 }
 
-# install_common_packages: what other packages of the workspace may ask for. Nothing of ours needs
-# it: what cannot be installed is said, stops nothing, and is not tried again while it is the same.
-install_common_packages() {
-  local wanted missing tried="$OWN/common-packages"
-  { [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; } || return 0
-  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-common.txt")
+# install_optional NAME WHO: install the packages in apt-packages-NAME.txt, which WHO may need, but ours
+# does not. A failure is reported, does not stop the set-up, and is not repeated for the same list.
+install_optional() {
+  local wanted missing tried="$OWN/$1-packages"
+  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-$1.txt")
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   [ "${#missing[@]}" -gt 0 ] || return 0
   [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
   if may_install; then
-    say "installing ${#missing[@]} that other packages commonly ask for"
-    if (apt_install -common "Nothing of ours needs them." "${missing[@]}"); then
-      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for other packages installed"
+    say "installing ${#missing[@]} that $2 commonly ask for"
+    if apt_get "apt-update-$1" update &&
+       apt_get "apt-install-$1" -y --no-install-recommends install "${missing[@]}"; then
+      SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for $2 installed"
       return 0
     fi
   fi
   printf '%s' "${missing[*]}" >"$tried"
-  say "not installed, other packages of the workspace may want them: \
-apt-get install --no-install-recommends ${missing[*]}"
+  say "not installed, $2 may want them: \
+apt-get install --no-install-recommends ${missing[*]}$(optional_reason "$1")"
 }
 
-# hint_at_python: say how scripts that begin with "#!/usr/bin/env python" start, where there are
-# such scripts and no such program.
+# optional_reason NAME: why the optional packages NAME were not installed, for the end of a sentence.
+optional_reason() {
+  local reason
+  reason=$(sed -n 's/^E: //p' "$LOGS/apt-update-$1.log" "$LOGS/apt-install-$1.log" 2>/dev/null |
+    head -n 1)
+  printf '%s' "${reason:+ ($reason)}"
+}
+
+# hint_at_python: tell how to run scripts that begin with "#!/usr/bin/env python", if there are such
+# scripts and no such program.
 hint_at_python() {
   local file line count=0
   ! command -v python >/dev/null || return 0
@@ -214,9 +232,22 @@ prepare_python() {
     logged venv "Remove $VENV and run $COMMAND again." \
       "$PYTHON" -m venv --system-site-packages "$VENV"
   fi
-  logged "pip-$name" "Is there a network? Then run $COMMAND again." \
-    "$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check -r "$1"
+  pip_install "$name" "$1"
   printf '%s' "$stamp" >"$stamped"
+}
+
+# pip_install NAME REQUIREMENTS: into the environment; compiles PyBullet where no wheel of it exists.
+pip_install() {
+  local status=0 advice="Is there a network? Then run $COMMAND again." wheels
+  local command=("$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check
+    --only-binary pybullet -r "$2")
+  wheels=$(pybullet_wheels)
+  [ ! -d "$wheels" ] || command+=(--find-links "$wheels")
+  recorded "pip-$1" "${command[@]}" || status=$?
+  [ "$status" -ne 0 ] || return 0
+  pybullet_lacks_wheel "pip-$1" || failed "pip-$1" "$status" "$advice"
+  build_pybullet
+  logged "pip-$1" "$advice" "${command[@]}" --find-links "$wheels"
 }
 
 # prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor
@@ -304,8 +335,8 @@ build_workspace() {
   source_setup "$setup"
 }
 
-# use_loopback: where the machine's own name leads nowhere, as in bare containers, ROS programs find
-# each other on the loopback address; the workspace's setup.bash sets it in other shells.
+# use_loopback: if the host name does not resolve, as in bare containers, use the loopback address
+# for ROS; the workspace's setup.bash sets it in other shells.
 use_loopback() {
   local name mark="$OWN/loopback"
   resolve_localhost
@@ -319,10 +350,10 @@ use_loopback() {
   : >"$mark"
   export ROS_IP=127.0.0.1
   say "This machine's own name, $name, does not resolve; ROS_IP=127.0.0.1 is used: programs on this \
-machine find each other, others do not. Name it in /etc/hosts to change that."
+machine can connect, others cannot. To change that, add the name to /etc/hosts."
 }
 
-# resolve_localhost: roslaunch needs that name, which a bare root without /etc/hosts has not.
+# resolve_localhost: add localhost to /etc/hosts if it does not resolve; roslaunch needs it.
 resolve_localhost() {
   ! timeout 5 getent hosts localhost >/dev/null || return 0
   may_install && as_root sh -c 'echo "127.0.0.1 localhost" >>/etc/hosts' ||
@@ -331,10 +362,10 @@ resolve_localhost() {
   say "The name localhost did not resolve: '127.0.0.1 localhost' was added to /etc/hosts."
 }
 
-# one_at_a_time: hold the workspace's lock while it is set up; `release` gives it back.
+# one_at_a_time: hold the lock of the workspace during the set-up; `release` releases it.
 one_at_a_time() {
   exec 9>"$OWN/lock"
-  flock -n 9 || { printf '(waiting for another set-up of it) '; flock 9; }
+  flock -n 9 || { printf '(waiting for another set-up of this workspace) '; flock 9; }
 }
 
 release() { exec 9>&-; }

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Which catkin workspace this clone belongs to, and what is linked into it. Nothing here installs.
+# Chooses the catkin workspace of this clone, and links packages into it. Installs nothing.
 
 # choose_workspace: sets WORKSPACE (absolute, may not exist yet) for the clone at CLONE.
 choose_workspace() {
@@ -19,7 +19,7 @@ choose_workspace() {
   WORKSPACE="$HOME/simulation_ws"
 }
 
-# package_name FOLDER: the name in its package.xml, or nothing.
+# package_name FOLDER: the name in its package.xml; empty if there is none.
 package_name() {
   [ -f "$1/package.xml" ] || return 0
   tr '\n' ' ' <"$1/package.xml" |
@@ -33,7 +33,7 @@ package_folders() {
     awk '{ for (outer in seen) if (index($0, outer "/") == 1) next; seen[$0] = 1; print }'
 }
 
-# foreign_package SRC: the folder there of a package my_simulations that is not this clone.
+# foreign_package SRC: the folder of a package my_simulations in SRC that is not this clone.
 foreign_package() {
   local folder
   while IFS= read -r folder; do
@@ -46,7 +46,7 @@ foreign_package() {
   fi
 }
 
-# own_package SRC: the folder there through which catkin sees this clone, or nothing.
+# own_package SRC: the folder in SRC through which catkin finds this clone; empty if none.
 own_package() {
   local folder
   while IFS= read -r folder; do
@@ -54,12 +54,12 @@ own_package() {
   done < <(package_folders "$1")
 }
 
-# link TARGET NAME: make the symbolic link NAME, or leave it when it is right.
+# link TARGET NAME: create the symbolic link NAME unless it is correct.
 link() {
   [ "$(readlink -- "$2" || true)" = "$1" ] || ln -sfn -- "$1" "$2"
 }
 
-# others_in SRC: colon-separated package folders of a source space that do not lie in this clone.
+# others_in SRC: colon-separated package folders of a source space outside of this clone.
 others_in() {
   local folder real paths=''
   while IFS= read -r folder; do
@@ -70,7 +70,7 @@ others_in() {
   printf '%s' "${paths#:}"
 }
 
-# real_package NAME SRC...: where rospack finds NAME outside of this clone's companions.
+# real_package NAME SRC...: the folder of NAME that rospack finds, except this clone's companions.
 real_package() {
   local name="$1" paths='' entry source_space
   shift
@@ -84,7 +84,7 @@ real_package() {
   ROS_PACKAGE_PATH="$paths" rospack find "$name" 2>/dev/null || true
 }
 
-# forget_build NAME: remove what an earlier build left of a companion that is linked no more.
+# forget_build NAME: remove build products of a companion package that is no longer linked.
 forget_build() {
   local name="$1" devel="${WORKSPACE:?}/devel"
   # shellcheck disable=SC2115
@@ -97,7 +97,7 @@ forget_build() {
   [ "$name" != my_simulations_underlay ] || rm -f -- "$devel/bin/roslaunch"
 }
 
-# link_companions: link each package of compat/ that rospack finds nowhere else.
+# link_companions: link each package of compat/ that rospack does not find elsewhere.
 link_companions() {
   local name target place real
   COMPANIONS=
@@ -123,8 +123,8 @@ link_companions() {
   done
 }
 
-# link_underlay: where the workspace has a package my_simulations of its own, ours comes into it as the
-# package my_simulations_underlay: what theirs lacks is found there. Elsewhere there is none.
+# link_underlay: if the workspace has its own package my_simulations, link ours as the package
+# my_simulations_underlay, which provides the files that theirs lacks; otherwise remove that link.
 link_underlay() {
   local target="$CLONE/compat/my_simulations_underlay" place="$WORKSPACE/src/my_simulations_underlay"
   if [ -n "$FOREIGN" ]; then
@@ -137,7 +137,7 @@ link_underlay() {
   fi
 }
 
-# underlay_chosen: whether an earlier --overlay is to go on.
+# underlay_chosen: whether --overlay was chosen by an earlier run.
 underlay_chosen() {
   [ -L "$WORKSPACE/src/my_simulations_underlay" ] || [ -d "$OWN/overlay" ]
 }

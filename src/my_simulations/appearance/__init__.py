@@ -1,1 +1,1 @@
-"""What visuals look like: materials, scripts, textures, for everybody who draws."""
+"""Appearance of visuals: materials, scripts and textures, for the editor and for cameras."""

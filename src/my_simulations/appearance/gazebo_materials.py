@@ -1,6 +1,6 @@
-"""Gazebo's own materials by name: numbers, and which picture a textured one means.
+"""Gazebo's built-in materials by name.
 
-The pictures themselves are not ours to ship; `pattern` names what the page draws in their place.
+Gazebo's texture images are not included; `pattern` names a generated replacement.
 Source: the names and colours of Gazebo Classic's `gazebo.material`.
 """
 from __future__ import annotations
@@ -13,7 +13,7 @@ Rgb = Tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Paint:
-    """Colours of one material; `alpha` below 1 is see-through; unlit ones ignore all lamps."""
+    """Colours of a material; `alpha` below 1 is transparent; unlit materials ignore lights."""
 
     ambient: Rgb
     diffuse: Rgb
@@ -107,4 +107,4 @@ BUILT_IN: Dict[str, Paint] = {
     "Kitchen/CounterTop": _picture("granite"), "Kitchen/CounterTop_H": _picture("granite"),
     "Kitchen/Cabinet": _plain((0.604, 0.423, 0.0313)),
 }
-"""All names that need no script."""
+"""Names of all built-in materials."""

@@ -1,4 +1,4 @@
-"""A material made ready to be drawn."""
+"""A material ready for drawing."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -9,12 +9,16 @@ from ..description.shapes import Color
 
 @dataclass(frozen=True)
 class Look:
-    """A material after its script was read: what the editor's page and cameras draw.
+    """A resolved material, as drawn by the editor's page and by cameras.
 
-    Colours are None where nothing is said, and then a mesh's own counts. `texture` is the path of a
-    picture, `pattern` the name of one that is drawn (`gazebo_materials`); `scale` is the size of
-    one repetition in texture coordinates, u and v. `transparency` 0 opaque to 1 invisible; `lit`
-    False ignores all lights.
+    Attributes:
+        name: name of the material.
+        ambient, diffuse, specular, emissive: r, g, b, a in 0..1; None for those of the mesh.
+        texture: path of an image; "" for none.
+        pattern: name of a generated image (see `gazebo_materials`); "" for none.
+        scale: size of one repetition of the texture in texture coordinates, u and v.
+        transparency: 0 opaque to 1 invisible.
+        lit: False ignores all lights.
     """
 
     name: str = ""

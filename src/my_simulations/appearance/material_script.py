@@ -1,7 +1,7 @@
-"""The subset of Ogre's `.material` scripts that models use: colours and one texture a material.
+"""Reads the subset of Ogre's `.material` scripts that models use: colours and one texture.
 
-The first technique's first pass counts. Source: Ogre's script format, as far as public Gazebo
-models use it.
+Only the first pass of the first technique is read. Source: Ogre's script format, as used by
+public Gazebo models.
 """
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DEEPEST = 20
 
 @dataclass
 class ScriptMaterial:
-    """What a script says of one material; None and "" where it says nothing."""
+    """A material of a script; None and "" for values that it does not set."""
 
     name: str
     ambient: Optional[Color] = None
@@ -34,7 +34,7 @@ class ScriptMaterial:
 
 
 def read_materials(text: str) -> Dict[str, ScriptMaterial]:
-    """The materials of a script by name; what cannot be understood is passed over."""
+    """The materials of a script by name; unknown statements are skipped."""
     words = [word.strip('"') if word.startswith('"') else word
              for word in _TOKEN.findall(_COMMENT.sub("", text[:_LARGEST]))]
     found: Dict[str, ScriptMaterial] = {}
@@ -73,7 +73,7 @@ def _line(words: Sequence[str], at: int) -> Tuple[List[str], int]:
 
 def _block(words: Sequence[str], at: int, material: ScriptMaterial, above: Tuple[str, ...],
            seen: Dict[str, int]) -> int:
-    """Read a block's inside; returns the place behind its closing brace."""
+    """Read the contents of a block; returns the position after its closing brace."""
     while at < len(words):
         if words[at] == "}":
             return at + 1

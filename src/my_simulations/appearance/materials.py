@@ -1,4 +1,4 @@
-"""What a material looks like: scripts found and read, Gazebo's own names known, colours on top."""
+"""Resolves materials: scripts, Gazebo's built-in materials, and colours of the file."""
 from __future__ import annotations
 
 import os
@@ -18,14 +18,14 @@ _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 
 
 class Textures(Protocol):
-    """Who finds the pictures of scripts; `textures.TextureFiles`, or one who gives away fewer."""
+    """Finds texture images of scripts: `textures.TextureFiles`, or the editor's served files."""
 
     def texture(self, name: str, folders: List[str]) -> Optional[str]:
-        """The path of a picture by file name, looked for in these folders first."""
+        """The path of an image by file name, searched in these folders first."""
 
 
 class Materials:
-    """Resolves materials; scripts are kept by path and time. Safe from any thread."""
+    """Resolves materials; scripts are cached by path and time. Safe from any thread."""
 
     def __init__(self, resolver: Resolver, textures: Textures) -> None:
         self._resolver = resolver
@@ -36,9 +36,9 @@ class Materials:
         self._lock = threading.Lock()
 
     def look(self, material: Optional[Material]) -> Optional[Look]:
-        """What a material looks like; None for none.
+        """The resolved material; None for none.
 
-        The script comes first, colours of the file override it (Gazebo behaviour).
+        Colours of the file override those of the script (Gazebo behaviour).
         """
         if material is None:
             return None
@@ -73,7 +73,7 @@ class Materials:
         if script.blend and diffuse is not None:
             transparency = 1.0 - diffuse[3]
         elif diffuse is not None:
-            diffuse = (*diffuse[:3], 1.0)  # without blending Ogre does not look at it
+            diffuse = (*diffuse[:3], 1.0)  # Ogre ignores it without blending
         if script.texture:
             texture = self._textures.texture(os.path.basename(script.texture), folders) or ""
             diffuse = _WHITE if diffuse is None else diffuse
@@ -82,7 +82,7 @@ class Materials:
                     transparency=transparency, lit=script.lighting)
 
     def _load(self, uri: str) -> List[str]:
-        """Read the scripts a URI names; returns the folders where their pictures may be."""
+        """Read the scripts of a URI; returns the folders that may contain their images."""
         try:
             path = self._resolver.resolve(uri)
         except ResourceNotFoundError:

@@ -1,4 +1,4 @@
-"""Where pictures of materials and meshes are kept."""
+"""Finds texture images of materials and meshes."""
 from __future__ import annotations
 
 import os
@@ -12,7 +12,7 @@ _BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials"
 
 
 def places_of_script(name: str, folders: List[str], resource_folders: List[str]) -> Iterator[str]:
-    """Where a picture that a script names may be: beside the script first (Gazebo behaviour)."""
+    """Candidate paths of a script's image, beside the script first (Gazebo behaviour)."""
     for folder in folders:
         for place in (os.path.join(folder, name), os.path.join(folder, "..", "textures", name)):
             yield os.path.normpath(place)
@@ -20,7 +20,7 @@ def places_of_script(name: str, folders: List[str], resource_folders: List[str])
 
 
 def places_of_mesh(path: str, resource_folders: List[str]) -> Iterator[str]:
-    """Where a picture that a mesh names may be when it is not at `path` (Gazebo behaviour)."""
+    """Candidate paths of a mesh's image that is not at `path` (Gazebo behaviour)."""
     folder, name = os.path.split(path)
     for beside in _BESIDE:
         yield os.path.normpath(os.path.join(folder, beside, name))
@@ -34,7 +34,7 @@ def _shared(name: str, resource_folders: List[str]) -> Iterator[str]:
 
 
 def existing(path: str) -> Optional[str]:
-    """The real path of a file; its name in any letter case. None where there is none."""
+    """The real path of a file, ignoring the letter case of its name; None if there is none."""
     real = os.path.realpath(path)
     if os.path.isfile(real):
         return real
@@ -48,12 +48,12 @@ def existing(path: str) -> Optional[str]:
 
 
 class TextureFiles:
-    """Pictures for whoever draws on this machine."""
+    """Texture images for renderers on this machine."""
 
     def __init__(self, resolver: Resolver) -> None:
         self._resolver = resolver
 
     def texture(self, name: str, folders: List[str]) -> Optional[str]:
-        """The path of a picture that a script names; None where there is none."""
+        """The path of a script's image; None if there is none."""
         places = places_of_script(name, folders, self._resolver.resource_folders())
         return next((found for found in map(existing, places) if found), None)

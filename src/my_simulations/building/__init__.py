@@ -1,1 +1,1 @@
-"""Building plans: walls, openings, stairs and floors in two dimensions, and the model they make."""
+"""Building plans: walls, openings, stairs and floors in two dimensions, and models of them."""

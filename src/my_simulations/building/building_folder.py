@@ -1,4 +1,4 @@
-"""Buildings in folders: model.config, model.sdf, the plan and its pictures."""
+"""Saves and loads buildings: folders with model.config, model.sdf, the plan and its images."""
 from __future__ import annotations
 
 import base64
@@ -27,7 +27,7 @@ from .plan_to_model import building_model, model_name
 PLAN_FILE = "building.json"
 
 LARGEST_IMAGE = 16 << 20
-"""Bytes of a floor-plan picture."""
+"""Largest size of a floor-plan image, bytes."""
 
 _DATA_URL = re.compile(r"data:image/(png|jpeg);base64,", re.ASCII)
 _ENDINGS = {"PNG": ".png", "JPEG": ".jpg"}
@@ -36,7 +36,7 @@ _FORBIDDEN = re.compile(r"[/\\:*?\"<>|\x00-\x1f\x7f]")
 
 @dataclass
 class About:
-    """What model.config says of a building."""
+    """Fields of a building's model.config."""
 
     version: str = "1.0"
     description: str = ""
@@ -45,15 +45,15 @@ class About:
 
 
 def default_folder() -> str:
-    """Where buildings are saved unless another place is chosen (Gazebo behaviour)."""
+    """The default folder of saved buildings (Gazebo behaviour)."""
     return os.path.expanduser("~/building_editor_models")
 
 
 def checked_name(name: str) -> str:
-    """A building's name as that of its folder and model.
+    """A building's name, as the name of its folder and model.
 
     Raises:
-        CommandError: it is empty, or would lead elsewhere.
+        CommandError: it is empty or not a plain file name.
     """
     made = model_name(name)
     if not made:
@@ -68,20 +68,20 @@ def checked_name(name: str) -> str:
 
 def save_building(plan: Plan, folder: str, about: Optional[About] = None,
                   overwrite: bool = False) -> List[Issue]:
-    """Write a building; whatever goes wrong, what was in the folder stays as it was.
+    """Save a building; on any error the folder is unchanged.
 
     Args:
-        plan: with its pictures as data URLs, or as files that lie in the folder already.
-        folder: the building's own folder, absolute; what else lies in it is left alone.
-        about: what model.config says.
-        overwrite: whether the folder may be there already.
+        plan: the plan, with images as data URLs or as names of files in the folder.
+        folder: absolute path of the building's folder; other files in it are kept.
+        about: fields of model.config.
+        overwrite: whether the folder may exist.
 
     Returns:
-        What is odd about the plan, but no hindrance.
+        Warnings about the plan.
 
     Raises:
-        InputError: no model can be made of the plan, or a picture is none.
-        CommandError: the folder is there, or cannot be written to.
+        InputError: the plan has errors, or an image is invalid.
+        CommandError: the folder exists or is not writable.
     """
     about = about or About()
     if os.path.lexists(folder) and not overwrite:
@@ -96,13 +96,13 @@ def save_building(plan: Plan, folder: str, about: Optional[About] = None,
 
 
 def load_building(path: str) -> Tuple[Plan, List[Issue]]:
-    """The plan of a building's folder, or of an SDF file.
+    """Load the plan of a building's folder or of an SDF file.
 
-    The plan beside the model is read; where there is none, or it cannot be read, the plan is read
-    back from the model. Pictures come as data URLs.
+    Reads the plan file beside the model; if that is missing or unreadable, the plan is derived from
+    the model. Images are returned as data URLs.
 
     Raises:
-        InputError: nothing that could be read as a building.
+        InputError: not a building.
     """
     issues: List[Issue] = []
     plan_path = os.path.join(path, PLAN_FILE)
@@ -123,7 +123,7 @@ def load_building(path: str) -> Tuple[Plan, List[Issue]]:
 
 
 def read_about(path: str) -> About:
-    """What the model.config of a building's folder says; blank where there is none."""
+    """Fields of the model.config of a building's folder; empty if there is none."""
     from lxml import etree
 
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, recover=True)
@@ -139,7 +139,7 @@ def read_about(path: str) -> About:
 
 
 def list_buildings(parent: str) -> List[Dict[str, str]]:
-    """The folders below `parent` that hold a building's plan or a model: name, path and title."""
+    """Folders in `parent` that contain a building's plan or a model: name, path and title."""
     try:
         entries = sorted(os.scandir(parent), key=lambda entry: entry.name.lower())
     except OSError:
@@ -181,10 +181,10 @@ def _load_image(level: Level, folder: str, issues: List[Issue]) -> None:
 
 
 def image_kind(content: bytes, name: str) -> str:
-    """`PNG` or `JPEG`, after the whole picture was decoded.
+    """`PNG` or `JPEG`; decodes the whole image as a check.
 
     Raises:
-        InputError: it is none, is cut off, or is too large.
+        InputError: not an image, truncated, or too large.
     """
     from PIL import Image, UnidentifiedImageError
 
@@ -209,7 +209,7 @@ def image_kind(content: bytes, name: str) -> str:
 
 
 def _with_image_files(plan: Plan, folder: str) -> Tuple[Plan, Dict[str, bytes]]:
-    """The plan with file names in place of data, and the content of those files."""
+    """The plan with file names instead of data URLs, and the content of these files."""
     levels: List[Level] = []
     files: Dict[str, bytes] = {}
     for number, level in enumerate(plan.levels):
@@ -264,7 +264,7 @@ def _child(parent: Any, tag: str, text: str) -> Any:
 
 
 def _write_all(folder: str, files: Dict[str, bytes]) -> None:
-    """All files or none: each is written in full beside its place, then all are renamed."""
+    """Write all files or none: each to a temporary file first, then all are renamed."""
     made = not os.path.isdir(folder)
     staged: List[Tuple[str, str]] = []
     try:

@@ -1,7 +1,7 @@
-"""What the editor asks about buildings, as values of JSON.
+"""Requests of the editor about buildings, with JSON values.
 
-Raised are InputError (faults of the plan) and CommandError (names, places, the disk); both leave
-everything as it was.
+They raise InputError (faults of the plan) and CommandError (names, folders, disk); nothing has
+changed then.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .plan_to_model import building_model
 
 
 def building_sdf(plan: Any, with_text: bool = True) -> Tuple[Model, str, List[Issue]]:
-    """The model of a plan, its SDF ("" unless `with_text`), and what is odd about the plan."""
+    """The model of a plan, its SDF ("" unless `with_text`), and warnings about the plan."""
     read = plan_from_json(plan)
     model = building_model(read)
     return model, write_entity(model).decode() if with_text else "", check_plan(read)
@@ -39,13 +39,13 @@ def building_save(plan: Any, name: str, options: Mapping[str, Any],
 
     Args:
         plan: JSON of a plan.
-        name: what it is called; blanks become `_`.
-        options: `folder` the building's folder is put into (default `default_folder()`),
+        name: name of the building; spaces become `_`.
+        options: `folder` that contains the building's folder (default `default_folder()`),
             `overwrite`, and the fields of `About`.
         roots: folders below which buildings may be saved, besides the default one.
 
     Returns:
-        path of the folder, name and `model://` URI of the model, issues.
+        JSON with the path of the folder, name and `model://` URI of the model, and issues.
     """
     made = checked_name(name)
     parent = _allowed(str(options.get("folder") or default_folder()), roots)
@@ -59,10 +59,10 @@ def building_save(plan: Any, name: str, options: Mapping[str, Any],
 
 
 def building_load(name: str, roots: Sequence[str] = ()) -> Dict[str, Any]:
-    """A saved building, by its name in the default folder or by its path.
+    """Load a saved building by its name in the default folder or by its path.
 
     Returns:
-        plan, path, issues, and what its model.config says as `about`.
+        JSON with plan, path, issues, and the fields of its model.config as `about`.
     """
     path = os.path.expanduser(name.strip())
     if not os.path.isabs(path):
@@ -85,7 +85,7 @@ def building_list(parents: Sequence[str] = ()) -> List[Dict[str, str]]:
 
 
 def _allowed(path: str, roots: Sequence[str]) -> str:
-    """The real path, if it is the default folder, a root, or below one of them."""
+    """The real path. Raises CommandError if it is outside the default folder and all roots."""
     places = [os.path.realpath(os.path.expanduser(root)) for root in (default_folder(), *roots)]
     real = os.path.realpath(os.path.join(places[0], os.path.expanduser(path.replace("\0", ""))))
     if "\0" in path or not any(real == place or real.startswith(place.rstrip("/") + "/")

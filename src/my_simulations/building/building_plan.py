@@ -1,8 +1,8 @@
-"""A building as it is drawn: levels with walls, openings, stairs and floors, and a roof.
+"""The plan of a building: levels with walls, openings, stairs and floors, and a roof.
 
-Metres and radians in the plan's own axes, x to the right and y up. Numbers that name items are
-counted up from 0 for each kind over the whole plan and never given twice; the links of the model
-are called after them (`Wall_0`, `Floor_1`, …: Gazebo behaviour).
+Metres and radians in the plan frame, x to the right and y up. Items of each kind have unique ids
+over the whole plan, counted from 0; links of the model are named by them (`Wall_0`, `Floor_1`, …:
+Gazebo behaviour).
 """
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ DEFAULT_NAME = "Untitled"
 
 @dataclass
 class Wall:
-    """A straight wall along its middle line, from `start` to `end`.
+    """A straight wall along its centre line, from `start` to `end`.
 
-    Walls of a level whose ends lie on the same point are linked there.
+    Walls of a level with a common end point are linked there.
     """
 
     id: int
@@ -37,21 +37,21 @@ class Wall:
 
     @property
     def length(self) -> float:
-        """From end to end along the middle line."""
+        """Length of the centre line, m."""
         return math.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
     @property
     def yaw(self) -> float:
-        """Direction from start to end."""
+        """Direction from start to end, rad."""
         return math.atan2(self.end[1] - self.start[1], self.end[0] - self.start[0])
 
 
 @dataclass
 class Opening:
-    """A window or a door, in a wall or standing free.
+    """A window or door, in a wall or free-standing.
 
-    In a wall (`wall` is its id) `along` is the distance of the opening's middle from the wall's
-    start, and `position` and `yaw` are not used. A free one makes no hole.
+    In a wall (`wall` is its id), `along` is the distance of the opening's centre from the wall's
+    start; `position` and `yaw` are unused. A free-standing one makes no hole.
     """
 
     id: int
@@ -67,7 +67,7 @@ class Opening:
 
 @dataclass
 class Stairs:
-    """A flight of stairs; `position` is the middle of its footprint; it climbs along its own +y."""
+    """A flight of stairs that ascends along its own +y; `position`: centre of its footprint."""
 
     id: int
     position: Point
@@ -80,7 +80,7 @@ class Stairs:
     texture: str = ""
 
     def corners(self) -> List[Point]:
-        """The footprint, counter-clockwise."""
+        """Corners of the footprint, counter-clockwise."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         x, y = self.width / 2, self.depth / 2
         return [(self.position[0] + cos * u - sin * v, self.position[1] + sin * u + cos * v)
@@ -88,16 +88,16 @@ class Stairs:
 
     @property
     def foot(self) -> Point:
-        """The middle of the lower edge."""
+        """Midpoint of the lower edge."""
         return (self.position[0] + math.sin(self.yaw) * self.depth / 2,
                 self.position[1] - math.cos(self.yaw) * self.depth / 2)
 
 
 @dataclass
 class Floor:
-    """A slab on the base of its level; stairs of the level below are cut out of it.
+    """A floor slab at the base of its level, with holes for the stairs of the level below.
 
-    `fit` says what the editor keeps the outline at: `walls` (their outline) or `none`.
+    `fit`: what the editor fits the outline to: `walls` or `none`.
     """
 
     id: int
@@ -111,9 +111,9 @@ class Floor:
 
 @dataclass
 class FloorImage:
-    """A picture under the canvas, centred on the origin; `resolution` pixels a metre.
+    """A floor-plan image, centred on the origin; `resolution` in pixels per metre.
 
-    `data` is a `data:` URL on its way from and to the editor; in a folder the picture is `file`.
+    `data` is a `data:` URL in messages of the editor; in a folder the image is `file`.
     """
 
     file: str
@@ -123,7 +123,7 @@ class FloorImage:
 
 @dataclass
 class Level:
-    """A storey; the next one begins `height` above its base."""
+    """A storey; the base of the next one is `height` above its own."""
 
     name: str
     height: float = WALL_HEIGHT
@@ -135,7 +135,7 @@ class Level:
     image: Optional[FloorImage] = None
 
     def openings(self) -> Iterator[Tuple[str, Opening]]:
-        """Windows, then doors, each with its kind's name."""
+        """Windows, then doors, each with the name of its kind."""
         for opening in self.windows:
             yield "Window", opening
         for opening in self.doors:
@@ -146,8 +146,8 @@ class Level:
 class Roof:
     """A roof over the walls of the top level; `kind` is `flat` or `gable`.
 
-    `overhang` m beyond the walls; `pitch` rad, of a gable roof, whose ridge runs along the longer
-    side.
+    `overhang`: extent beyond the walls, m. `pitch`: angle of a gable roof, rad; its ridge is along
+    the longer side.
     """
 
     kind: str = "flat"
@@ -160,7 +160,7 @@ class Roof:
 
 @dataclass
 class Plan:
-    """A whole building; `next` holds the next free number of each kind (`wall`, `window`, …)."""
+    """A whole building; `next`: next free id of each kind (`wall`, `window`, …)."""
 
     name: str = DEFAULT_NAME
     levels: List[Level] = field(default_factory=lambda: [Level("Level 1")])
@@ -168,7 +168,7 @@ class Plan:
     next: Dict[str, int] = field(default_factory=dict)
 
     def bases(self) -> List[float]:
-        """The height of each level's base above the ground."""
+        """Height of each level's base above the ground, m."""
         bases, z = [], 0.0
         for level in self.levels:
             bases.append(z)

@@ -1,7 +1,7 @@
-"""A plan from a building's model, as Gazebo's building editor writes it.
+"""Derives a plan from a building's model, as written by Gazebo's building editor.
 
-Walls, stairs, floors and free openings are told by the names of their links; openings in walls by
-what the boxes of a wall leave out. Source: Gazebo behaviour, building editor.
+Walls, stairs, floors and free-standing openings are identified by their link names; openings in
+walls by the gaps between the boxes of a wall. Source: Gazebo behaviour, building editor.
 """
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from .plan_to_model import GREY
 _NAME = re.compile(r"(Wall|Window|Door|Stairs|Floor|Roof)_(\d+)\Z")
 
 ROUGH = 1e-3
-"""Metres; Gazebo writes six digits, so that edges which meet differ by less."""
+"""Tolerance of coinciding edges, m: Gazebo writes six digits."""
 
 
 class _Block(NamedTuple):
-    """A box in the axes of its link, by its corners."""
+    """A box in the link frame, by two opposite corners."""
 
     low: Vec3
     high: Vec3
@@ -41,7 +41,7 @@ class _Block(NamedTuple):
 
 
 class _Item(NamedTuple):
-    """A link of a building, taken apart."""
+    """A link of a building, with its parsed name and shapes."""
 
     kind: str
     id: int
@@ -57,18 +57,18 @@ class _Item(NamedTuple):
         return rpy_from_quat(self.pose.orientation)[2]
 
     def at(self, x: float, y: float) -> Point:
-        """A point of the link's own ground, in the plan."""
+        """A point of the link frame's x-y plane, in the plan frame."""
         placed = transform(self.pose, (x, y, 0.0))
         return (_round(placed[0]), _round(placed[1]))
 
 
 def plan_from_model(model: Model, file: str = "") -> Tuple[Plan, List[Issue]]:
-    """The plan that a building's model was made from, and what could not be read back.
+    """The plan of a building's model, and issues about parts that could not be derived.
 
-    Positions are the model's own: those it has in the world at the pose of its file.
+    Positions are those in the world at the model pose of the file.
 
     Raises:
-        InputError: nothing in it looks like a building.
+        InputError: the model is not a building.
     """
     issues: List[Issue] = []
     items: List[_Item] = []
@@ -120,7 +120,7 @@ def _look(material: Optional[Material]) -> Tuple[str, str]:
 
 
 def _levels(items: List[_Item]) -> List[Level]:
-    """The items by level, each level's height from the base of the next one."""
+    """The items by level; a level's height is the distance to the base of the next one."""
     by_layer: Dict[Tuple[int, float], List[_Item]] = {}
     for item in items:
         z = round(item.pose.position[2], 2) if item.layer is None else 0.0
@@ -167,7 +167,7 @@ def _wall(level: Level, item: _Item, base: float) -> None:
 
 
 def _gaps(blocks: List[_Block], height: float) -> Iterator[Tuple[float, float, float, float]]:
-    """What the boxes of a wall leave out of its face, as rectangles."""
+    """Gaps between the boxes of a wall, as rectangles of its face."""
     from shapely import set_precision, union_all
     from shapely.geometry import box
 
@@ -240,7 +240,7 @@ def _corners(ring: Any) -> List[Point]:
 
 
 def _fill_stair_holes(level: Level, below: List[Stairs]) -> None:
-    """Holes that stairs cut are not drawn: the stairs cut them again."""
+    """Remove holes of stairs from floors: the stairs create them again."""
     from shapely.geometry import Polygon
 
     footprints = [Polygon(flight.corners()).buffer(10 * ROUGH) for flight in below]
@@ -254,7 +254,7 @@ _READERS = {"Wall": _wall, "Window": _free_opening, "Door": _free_opening, "Stai
 
 
 def _number(plan: Plan, items: List[_Item]) -> None:
-    """Numbers for what had no link of its own, above all that were given."""
+    """Assign ids to items without a link of their own, above all existing ones."""
     for name, kind in COUNTERS.items():
         at = max((item.id + 1 for item in items if item.kind.lower() == kind), default=0)
         for level in plan.levels:
@@ -269,7 +269,7 @@ def _span(blocks: List[_Block], axis: int) -> Tuple[float, float]:
 
 
 def _round(value: float) -> float:
-    """To 0.01 mm, a little finer than what Gazebo writes."""
+    """Round to 0.01 mm, slightly finer than Gazebo's precision."""
     return round(value, 5) + 0.0
 
 

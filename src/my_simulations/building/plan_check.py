@@ -1,4 +1,4 @@
-"""What is wrong with a plan that can be read: walls that cross, openings that do not fit."""
+"""Checks a plan: crossing walls, openings that do not fit."""
 from __future__ import annotations
 
 from typing import Dict, Iterator, List, Tuple
@@ -7,15 +7,15 @@ from ..errors import Issue, error, warning
 from .building_plan import Level, Opening, Plan, Point, Wall
 
 SHORTEST = 0.01
-"""Metres; a shorter wall is taken for a slip of the hand."""
+"""Least length of a wall, m; shorter ones are probably drawn by mistake."""
 
 SLACK = 1e-6
 
 
 def check_plan(plan: Plan) -> List[Issue]:
-    """Everything that is wrong, errors for what no model can be made of.
+    """All faults of a plan; with an error no model can be created.
 
-    Walls that cross or lie on each other are one solid all the same, and only mentioned.
+    Crossing or overlapping walls are warnings, because their model is valid.
     """
     issues: List[Issue] = []
     for number, level in enumerate(plan.levels):
@@ -45,7 +45,7 @@ def _walls(level: Level, path: str) -> Iterator[Issue]:
 
 
 def _touching(walls: List[Wall]) -> List[Tuple[int, int]]:
-    """Pairs of walls whose middle lines have a point in common, as places in the list."""
+    """Pairs of walls whose centre lines have a common point, as indices."""
     if len(walls) < 2:
         return []
     import shapely
@@ -56,7 +56,7 @@ def _touching(walls: List[Wall]) -> List[Tuple[int, int]]:
 
 
 def _meeting(a: Wall, b: Wall) -> str:
-    """`cross`, `overlap`, or "" for two walls that merely end at one another."""
+    """`cross`, `overlap`, or "" for two walls that only meet at their ends."""
     sides = [_side(a, b.start), _side(a, b.end)]
     if max(map(abs, sides)) < SLACK:
         along = sorted(_along(a, point) for point in (b.start, b.end))
@@ -68,7 +68,7 @@ def _meeting(a: Wall, b: Wall) -> str:
 
 
 def _side(wall: Wall, point: Point) -> float:
-    """Distance of a point from a wall's line, above 0 on its left."""
+    """Signed distance of a point from a wall's centre line, positive on its left."""
     dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
     return (dx * (point[1] - wall.start[1]) - dy * (point[0] - wall.start[0])) / wall.length
 
@@ -105,7 +105,7 @@ def _openings(level: Level, path: str) -> Iterator[Issue]:
 
 
 def opening_fault(opening: Opening, wall: Wall) -> Tuple[str, ...]:
-    """Code and phrase of why an opening does not fit its wall; () where it does."""
+    """Issue code and phrase for an opening that does not fit its wall; () if it fits."""
     left, right = opening.along - opening.width / 2, opening.along + opening.width / 2
     if opening.width > wall.length + SLACK:
         return ("opening-wider-than-wall", f"it is {opening.width:g} m wide, the wall"
@@ -120,7 +120,7 @@ def opening_fault(opening: Opening, wall: Wall) -> Tuple[str, ...]:
 
 
 def openings_overlap(a: Opening, b: Opening) -> bool:
-    """True when two openings of one wall share more than an edge."""
+    """True if two openings of one wall overlap."""
     return (abs(a.along - b.along) < (a.width + b.width) / 2 - SLACK
             and a.elevation + a.height > b.elevation + SLACK
             and b.elevation + b.height > a.elevation + SLACK)

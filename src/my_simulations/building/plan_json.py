@@ -1,4 +1,4 @@
-"""Plans as JSON: what the editor page sends, and what lies beside a saved building.
+"""Plans as JSON: in messages of the editor, and in the plan file of a saved building.
 
 Every fault is reported with the path of the value, e.g. `levels[0].walls[3].start`.
 """
@@ -14,10 +14,10 @@ from ..errors import InputError, Issue, error
 from .building_plan import Floor, FloorImage, Level, Opening, Plan, Roof, Stairs, Wall
 
 FORMAT = 1
-"""Grows when older readers could no longer read what is written."""
+"""Version of the format, increased by incompatible changes."""
 
 FARTHEST = 10000.0
-"""No coordinate or size is larger, in metres."""
+"""Largest coordinate or size, m."""
 
 MOST_ITEMS = 20000
 MOST_STEPS = 500
@@ -27,7 +27,7 @@ _NO_CONTROL = re.compile(r"[^\x00-\x1f\x7f]{0,200}\Z")
 
 
 class _UnexpectedValueError(ValueError):
-    """What was expected, for one value."""
+    """Describes the expected value."""
 
 
 Kind = Callable[[Any], Any]
@@ -140,21 +140,21 @@ KINDS: Dict[Type[Any], Dict[str, Kind]] = {
            "pitch": _pitch, **_LOOK},
     Plan: {"name": _text},
 }
-"""By class: how each of its plain fields is read; a field with a default may be left out."""
+"""Readers of the plain fields, by class; a field with a default is optional."""
 
 _LISTS: Dict[str, Type[Any]] = {"walls": Wall, "windows": Opening, "doors": Opening,
                                 "stairs": Stairs, "floors": Floor}
 
 COUNTERS = {"walls": "wall", "windows": "window", "doors": "door", "stairs": "stairs",
             "floors": "floor"}
-"""From a level's list to the name of its numbers in `Plan.next`."""
+"""Name of the id counter in `Plan.next`, by the list of a level."""
 
 
 def plan_from_text(text: Union[str, bytes], file: str = "") -> Plan:
     """As `plan_from_json`, from the text of a plan file.
 
     Raises:
-        InputError: it is no JSON, or no plan.
+        InputError: not JSON, or not a plan.
     """
     try:
         tree = json.loads(text)
@@ -169,14 +169,14 @@ def plan_from_text(text: Union[str, bytes], file: str = "") -> Plan:
 
 
 def plan_from_json(tree: Any, file: str = "") -> Plan:
-    """A plan from the values of its JSON.
+    """A plan from JSON values.
 
     Args:
-        tree: what `json` read.
-        file: for the issues.
+        tree: the parsed JSON.
+        file: name of the document in issues.
 
     Raises:
-        InputError: with every fault that was found; the plan is as if it had not been read.
+        InputError: with all faults.
     """
     reader = _Reader(file)
     plan = reader.plan(tree)
@@ -187,12 +187,12 @@ def plan_from_json(tree: Any, file: str = "") -> Plan:
 
 
 def plan_to_json(plan: Plan) -> Dict[str, Any]:
-    """The values of a plan's JSON, with every field."""
+    """The JSON values of a plan, with all fields."""
     return {"format": FORMAT, **asdict(plan)}
 
 
 def plan_to_text(plan: Plan) -> str:
-    """A plan file: one line for each item, so that differences can be read."""
+    """The text of a plan file, one line for each item, for readable diffs."""
     tree = plan_to_json(plan)
     return json.dumps(tree, indent=1, ensure_ascii=False) + "\n"
 
@@ -238,7 +238,7 @@ class _Reader:
         return level
 
     def _object(self, of: Type[Any], tree: Any, path: str) -> Any:
-        """An object of a class of the plan, its lists left empty; None where something is wrong."""
+        """An object of a class of the plan, with empty lists; None, with an issue, if faulty."""
         if not isinstance(tree, dict):
             self._wrong(path or "the plan", "an object", tree)
             return None
@@ -259,7 +259,7 @@ class _Reader:
         return of(**values) if len(self.issues) == known else None
 
     def _number_items(self, plan: Plan, following: Any) -> None:
-        """Give the counters that are missing or too low, and refuse repeated numbers."""
+        """Set missing or too low id counters, and report repeated ids."""
         counters = following if isinstance(following, dict) else {}
         for name, kind in COUNTERS.items():
             seen: Dict[int, str] = {}

@@ -1,7 +1,7 @@
-"""A plan as a model: one link for each item, boxes cut round the openings.
+"""Creates the model of a plan: one link for each item, with boxes around the openings.
 
-Source of names, poses and parts: what Gazebo's building editor writes. Ours beyond it: floors of
-any outline, and roofs.
+Names, poses and shapes are those of Gazebo's building editor. Extensions: floors of any outline,
+and roofs.
 """
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from .rectangles import Rectangle, is_rectilinear, loop_of, rectangles
 from .roof import roof_parts
 
 Part = Tuple[Geometry, Pose]
-"""A solid and where it lies in its link."""
+"""A solid and its pose in the link frame."""
 
 GREY = "Gazebo/Grey"
 
 
 def model_name(name: str) -> str:
-    """The name of a plan as that of a model: blanks become `_` (Gazebo behaviour)."""
+    """The model name of a plan: spaces become `_` (Gazebo behaviour)."""
     return "_".join(name.split())
 
 
 def building_model(plan: Plan) -> Model:
     """The static model of a plan.
 
-    Its pose is the middle of the plan's bounding box on the ground; links are relative to it.
+    The model frame is at the centre of the plan's bounding box on the ground.
 
     Raises:
-        InputError: the plan has errors (see `check`), or nothing is in it.
+        InputError: the plan has errors (see `check_plan`) or is empty.
     """
     faults = errors_of(check_plan(plan))
     if faults:
@@ -65,7 +65,7 @@ def building_model(plan: Plan) -> Model:
 
 
 def centre_of(plan: Plan) -> Point:
-    """The middle of the bounding box of everything that is drawn; the origin for nothing."""
+    """The centre of the bounding box of all items; the origin for an empty plan."""
     points: List[Point] = []
     for level in plan.levels:
         for wall in level.walls:
@@ -82,10 +82,10 @@ def centre_of(plan: Plan) -> Point:
 
 
 def wall_parts(wall: Wall, openings: Sequence[Opening]) -> List[Rectangle]:
-    """The wall's upright face without its openings, as rectangles.
+    """The wall's vertical face without its openings, as rectangles.
 
-    x runs along the wall from its middle, y up from its base. The face is longer than the middle
-    line by the thickness, so that corners overlap instead of leaving a notch.
+    x is along the wall from its centre, y up from its base. The face is longer than the centre line
+    by the thickness, so that walls overlap at corners without a gap.
     """
     half = (wall.length + wall.thickness) / 2
     holes = []
@@ -98,7 +98,7 @@ def wall_parts(wall: Wall, openings: Sequence[Opening]) -> List[Rectangle]:
 
 def floor_pieces(floor: Floor, stairs: Sequence[Stairs]) -> List[Tuple[List[Point],
                                                                        List[List[Point]]]]:
-    """A floor without the footprints of the stairs that lead up to it, as outlines with holes."""
+    """A floor without the footprints of the stairs from below, as outlines with holes."""
     from shapely.geometry import Polygon
     from shapely.geometry.polygon import orient
 
@@ -116,7 +116,7 @@ def _ring(ring: Any) -> List[Point]:
 
 
 def _tidy(value: float) -> float:
-    """Without the noise of the last digits, and never -0."""
+    """Round off errors of the last digits, and -0 to 0."""
     return round(value, 9) + 0.0
 
 
@@ -129,7 +129,7 @@ def _by_wall(level: Level) -> Dict[int, List[Opening]]:
 
 
 class _Links:
-    """Makes the links of one level."""
+    """Creates the links of one level."""
 
     def __init__(self, layer: int, centre: Point, base: float) -> None:
         self.links: List[Link] = []
@@ -210,7 +210,7 @@ def _upright(piece: Rectangle, thickness: float) -> Part:
 
 
 def _slab(loops: List[List[Point]], thickness: float) -> List[Part]:
-    """Boxes where all corners are right angles along the axes, else one extruded polygon."""
+    """Boxes for outlines with axis-aligned edges, else one extruded polygon."""
     if not all(map(is_rectilinear, loops)):
         return [(Polyline(loops, thickness), IDENTITY)]
     return [(Box((_tidy(x1 - x0), _tidy(y1 - y0), thickness)),

@@ -1,4 +1,4 @@
-"""Shapes with right angles as few boxes; other polygons as loops."""
+"""Divides rectilinear polygons into few rectangles."""
 from __future__ import annotations
 
 from typing import Iterator, List, Sequence, Tuple
@@ -7,10 +7,10 @@ from .building_plan import Point
 
 Interval = Tuple[float, float]
 Rectangle = Tuple[float, float, float, float]
-"""x from, y from, x to, y to."""
+"""Least x and y, greatest x and y."""
 
 TINY = 1e-6
-"""Metres; what is narrower is no piece."""
+"""Least width of a rectangle, m."""
 
 
 def loop_of(rectangle: Rectangle) -> List[Point]:
@@ -20,16 +20,16 @@ def loop_of(rectangle: Rectangle) -> List[Point]:
 
 
 def is_rectilinear(loop: Sequence[Point]) -> bool:
-    """True when every edge runs along x or y."""
+    """True if every edge is along x or y."""
     return all(abs(a[0] - b[0]) < TINY or abs(a[1] - b[1]) < TINY for a, b in _edges(loop))
 
 
 def rectangles(outline: Sequence[Point], holes: Sequence[Sequence[Point]]) -> List[Rectangle]:
-    """Rectangles that cover an outline without its holes, and nothing twice.
+    """Disjoint rectangles that cover an outline without its holes.
 
-    All loops are rectilinear; holes may overlap and reach beyond the outline. Upright strips
-    between the corners' x, joined with the strip before where they are alike, so that a door in a
-    wall gives three pieces and a window four.
+    All loops are rectilinear; holes may overlap and extend beyond the outline. The result consists
+    of vertical strips between the corners' x; equal neighbours are merged, so that a door in a wall
+    gives three rectangles and a window four.
     """
     xs = sorted({point[0] for loop in (outline, *holes) for point in loop})
     low, high = min(point[0] for point in outline), max(point[0] for point in outline)
@@ -50,7 +50,7 @@ def rectangles(outline: Sequence[Point], holes: Sequence[Sequence[Point]]) -> Li
 
 
 def _inside(loop: Sequence[Point], x: float) -> List[Interval]:
-    """Where the upright line at x is inside a rectilinear loop."""
+    """Intervals of the vertical line at x inside a rectilinear loop."""
     ys = sorted(a[1] for a, b in _edges(loop) if min(a[0], b[0]) < x < max(a[0], b[0]))
     return list(zip(ys[::2], ys[1::2]))
 

@@ -1,4 +1,4 @@
-"""Roofs over the walls of the top level."""
+"""Creates roofs over the walls of the top level."""
 from __future__ import annotations
 
 import math
@@ -13,10 +13,10 @@ Parts = List[Tuple[Geometry, Pose]]
 
 
 def roof_parts(plan: Plan) -> Optional[Tuple[Vec3, float, Parts]]:
-    """The roof's position and yaw in the plan's axes, and its solids; None without walls.
+    """The roof's position and yaw in the plan frame, and its solids; None without walls.
 
-    A flat roof is a slab over the outer outline of the walls, a gable roof two slopes over the
-    smallest rectangle round it, with walls in the gables. Both begin where the highest wall ends.
+    A flat roof is a slab over the outer outline of the walls. A gable roof has two slopes over the
+    smallest rectangle around it, and walls in the gables. Both are on top of the highest wall.
     """
     level, base = next(((level, base) for level, base in
                         reversed(list(zip(plan.levels, plan.bases()))) if level.walls),
@@ -31,7 +31,7 @@ def roof_parts(plan: Plan) -> Optional[Tuple[Vec3, float, Parts]]:
 
 
 def _covered(level: Level) -> Any:
-    """The ground below the walls and between them (a shapely polygon or several)."""
+    """The area below and between the walls (a shapely polygon or several)."""
     import shapely
     from shapely.geometry import LineString, Polygon
 
@@ -61,7 +61,7 @@ def _flat(covered: Any, roof: Roof, top: float) -> Tuple[Vec3, float, Parts]:
 
 
 def _gable(covered: Any, roof: Roof, top: float, thickness: float) -> Tuple[Vec3, float, Parts]:
-    """In the roof's axes the ridge runs along x; z = 0 is where the walls end."""
+    """In the roof frame the ridge is along x, and z = 0 is the top of the walls."""
     corners = list(covered.minimum_rotated_rectangle.exterior.coords)
     first, second = _edge(corners, 0), _edge(corners, 1)
     long, short = (first, second) if _length(first) >= _length(second) else (second, first)
@@ -69,7 +69,7 @@ def _gable(covered: Any, roof: Roof, top: float, thickness: float) -> Tuple[Vec3
     length, half = _length(long), _length(short) / 2
     rise = half * math.tan(roof.pitch)
     cos, sin = math.cos(roof.pitch), math.sin(roof.pitch)
-    # The lower face of a slope goes through the walls' upper edge and the ridge.
+    # The lower face of a slope contains the upper edge of the walls and the ridge.
     slope = (half + roof.overhang) / cos
     parts: Parts = []
     for side in (-1.0, 1.0):
@@ -78,7 +78,7 @@ def _gable(covered: Any, roof: Roof, top: float, thickness: float) -> Tuple[Vec3
         parts.append((Box((_mm(length + 2 * roof.overhang), _mm(slope), roof.thickness)),
                       Pose((0.0, _mm(across), _mm(height)),
                            quat_from_rpy(-side * roof.pitch, 0.0, 0.0))))
-    # Extruded along the gable wall's own z, which is turned into the ridge's direction.
+    # Extruded along the gable wall's own z, which is rotated to the direction of the ridge.
     triangle = [(_mm(-half), 0.0), (_mm(half), 0.0), (0.0, _mm(rise))]
     for x in (-length / 2, length / 2 - thickness):
         parts.append((Polyline([triangle], thickness),
@@ -96,5 +96,5 @@ def _length(edge: Tuple[float, float]) -> float:
 
 
 def _mm(value: float) -> float:
-    """To a thousandth of a millimetre, the noise of the geometry library."""
+    """Round to 0.001 mm, the accuracy of the geometry library."""
     return round(value, 6) + 0.0

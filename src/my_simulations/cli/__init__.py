@@ -1,1 +1,1 @@
-"""What people type: thin `main(argv)` functions that map faults to exit codes."""
+"""Command line programs: thin `main(argv)` functions that map faults to exit codes."""

@@ -16,11 +16,11 @@ from ..description.world import World
 from ..errors import InputError, Issue, Severity, error, errors_of, strictly
 from ..formats.reading import read_any
 from ..formats.xml.parsing import content
+from ..objects.object_documents import run_xacro
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
 from ..ros.arguments import Parser
-from .object_documents import run_xacro
 
 NAME = "check_model"
 XACRO_SECONDS = 60.0

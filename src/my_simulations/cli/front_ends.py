@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List
 
 if TYPE_CHECKING:
     from ..editor.logs.recorder import Recorder
-    from ..editor.transport.server import EditorServer
+    from ..editor.server import EditorServer
     from ..errors import Issue
     from ..resources.resolver import Resolver
     from ..ros.lifecycle.server_options import Recording

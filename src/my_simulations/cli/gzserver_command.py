@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import io
 import sys
-from typing import List, Optional
+from typing import Any, List, Optional
 
 from .signals import end_quietly
 
@@ -26,11 +26,11 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
 
     options = parse(words[1:], program)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # rospy writes its log lines there: behind a pipe they must not wait for a full buffer.
+        # rospy logs to stdout: with a pipe, lines must not wait for a full buffer.
         sys.stdout.reconfigure(line_buffering=True)
     profile = StartProfile()
     profile.mark("command line read")
-    # The engine comes before every other import: its own imports take as long as all of ours.
+    # The engine starts before all other imports: its own imports take as long as all of ours.
     from ..engine.process_engine import ProcessEngine
     from ..ros.lifecycle.engine_supply import EngineSupply
 
@@ -43,8 +43,15 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
     front_ends = FrontEnds()
-    return Server(options, words, say, engines, profile, front_ends.edit, gui,
+    return Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
                   front_ends.record).run()
+
+
+def _make_node(*arguments: Any) -> Any:
+    """Create the ROS node; rospy is imported no earlier."""
+    from ..ros.node import Node
+
+    return Node(*arguments)
 
 
 if __name__ == "__main__":

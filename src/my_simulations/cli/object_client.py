@@ -197,10 +197,10 @@ class SimulatorClient:
 
     def spawn_object(self, name: str, xml: str, position: Vec3, rpy: Vec3, *, replace: bool,
                      file: str, launch_pid: int) -> str:
-        """Puts a model into the world of our own simulator; see `SpawnObject.srv`.
+        """Spawn a model in our own simulator; see `SpawnObject.srv`.
 
         Raises:
-            ToolError: it was refused or did not answer.
+            ToolError: it failed or did not respond.
         """
         return self._checked("spawn_object", "SpawnObject", model_name=name, model_xml=xml,
                              initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))),

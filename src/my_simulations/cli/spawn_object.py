@@ -6,12 +6,12 @@ import contextlib
 from typing import List, Optional, Sequence, Set
 
 from ..errors import InputError
+from ..objects.object_documents import Document, Documents, package_finder
 from ..objects.object_list import PlacedObject
 from ..objects.selection import select
 from ..ros.arguments import Parser
 from ..ros.lifecycle.launch_info import Launch
 from . import object_client as client
-from .object_documents import Document, Documents, package_finder
 from .progress import MANY, Progress
 
 NAME = "spawn_object.py"

@@ -28,7 +28,7 @@ def main(words: List[str], program: str) -> int:
     """
     from ..ros.lifecycle.server_options import parse
 
-    end_quietly()  # also while the world is read: nothing is lost by that
+    end_quietly()  # also while the world is read
     options = parse(words[1:], program)
     def say(line: object) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)

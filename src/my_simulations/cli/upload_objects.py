@@ -7,13 +7,13 @@ import xmlrpc.client
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, error, warning
+from ..objects.object_documents import package_finder, package_names
 from ..objects.object_list import parse_objects
 from ..objects.selection import closest, parse_groups
 from ..objects.yaml_source import read_yaml
 from ..resources.package_files import file_in_package
 from ..ros.arguments import Parser
 from . import object_client as client
-from .object_documents import package_finder, package_names
 
 NAME = "upload_objects.py"
 LOCATIONS = "object_locations.yaml"

@@ -1,1 +1,1 @@
-"""What a world is made of: plain dataclasses, filled by the readers and by nothing else."""
+"""The description of a world: plain dataclasses, filled by the readers."""

@@ -20,7 +20,7 @@ class Animation:
         extra: XML of child elements that no field holds.
     """
 
-    name: str
+    name: str = ""
     filename: str = ""
     scale: float = 1.0
     interpolate_x: bool = False

@@ -1,7 +1,7 @@
-"""What is legal but rarely meant: shapes without thickness, odd inertia, things inside each other.
+"""Warnings about valid but suspicious models: flat shapes, implausible inertia, overlaps.
 
-All findings are warnings, and on the careful side: a thing that only touches another, or whose
-exact shape is not known here, is never reported.
+The checks are conservative: models that only touch, or whose exact shape is not known here, are
+not reported.
 """
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..errors import Severity
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
+from .link_surface import coefficient, counting_collision
 from .model import WORLD, Inertial, Link, Model
 from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
 from .validate import Fault
@@ -22,28 +23,32 @@ _TOO_SMALL = 0.01
 
 
 def advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
-    """Findings about models that stand in one world; each names its model and link.
+    """Findings about the models of one world, each with its model and link.
 
-    With `only`, those that have to do with the model of that name.
+    With `only`, the findings that involve the model of that name.
     """
     for model in models:
         if only not in ("", model.name):
             continue
         odd: List[Fault] = []
+        shared: List[Fault] = []
         for name, link, _pose, static in links_of(model):
             for collision in link.collisions:
                 yield from _thin(collision, name)
+            shared += _shared_friction(link, name)
             if not static:
                 odd += _odd_inertia(link, name)
-        if odd:
-            more = f" (so it is with {len(odd) - 1} more of its links)" if len(odd) > 1 else ""
-            yield replace(odd[0], message=odd[0].message + more)
+        for alike in (odd, shared):
+            if alike:
+                more = (f" (so it is with {len(alike) - 1} more of its links)"
+                        if len(alike) > 1 else "")
+                yield replace(alike[0], message=alike[0].message + more)
     yield from _overlaps(models, only)
 
 
 def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
              static: bool = False) -> Iterator[Tuple[str, Link, Pose, bool]]:
-    """(scoped name, link, world pose, whether it stands still) of all links, nested ones too."""
+    """(scoped name, link, world pose, whether it is fixed) of all links, including nested ones."""
     name = f"{scope}{model.name}::"
     base = compose(above, model.pose)
     static = static or model.static
@@ -56,7 +61,7 @@ def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
 
 
 def _held(model: Model) -> Set[str]:
-    """Links that rigid joints hold to the world."""
+    """Names of the links that fixed joints connect to the world."""
     rigid = [joint for joint in model.joints if joint.type == "fixed" or (
         joint.axis is not None and joint.axis.lower == joint.axis.upper and joint.axis2 is None)]
     held: Set[str] = {WORLD}
@@ -69,7 +74,7 @@ def _held(model: Model) -> Set[str]:
 
 
 def half_extents(geometry: Geometry) -> Optional[Vec3]:
-    """Half the edges of the box around a shape in its own axes; None for meshes and planes."""
+    """Half extents (m) of the bounding box in the shape's frame; None for meshes and planes."""
     if isinstance(geometry, Box):
         return scale(geometry.size, 0.5)
     if isinstance(geometry, Sphere):
@@ -92,15 +97,29 @@ def _thin(collision: Collision, link: str) -> Iterator[Fault]:
 
 
 def thin_mesh(collision: Collision, link: str, extents: Sequence[float]) -> Iterator[Fault]:
-    """A collision mesh without thickness; `extents`: the edges of the box around it, metres."""
+    """Warning about a flat collision mesh; `extents`: edge lengths of its bounding box, m."""
     if min(extents) < THINNEST_M:
         yield Fault("shape-thin", f"the mesh of collision {collision.name!r} of {link!r} is"
                     f" {min(extents):g} m thin; what moves passes through it", collision,
                     Severity.WARNING, "use a box of a millimetre or more, or a mesh with two sides")
 
 
+def _shared_friction(link: Link, name: str) -> Iterator[Fault]:
+    """Collisions with unlike friction, of which one holds for all."""
+    counting = counting_collision(link)
+    found = sorted({coefficient(one.surface) for one in link.collisions})
+    if counting is None or len(found) < 2:
+        return
+    listed = ", ".join(f"{mu:g}" for mu in found)
+    yield Fault("friction-shared", f"the collisions of {name!r} have unlike friction (mu {listed});"
+                f" mu {coefficient(counting.surface):g} of {counting.name!r}, which reaches lowest,"
+                " holds for all of them", counting, Severity.WARNING,
+                "give those with another friction a link of their own; in a URDF, keep it by"
+                " <preserveFixedJoint>true</preserveFixedJoint>")
+
+
 def _odd_inertia(link: Link, name: str) -> Iterator[Fault]:
-    """Moments that no filling of the collisions' bounding box could have."""
+    """Warning about moments that no mass distribution in the collisions' bounding box has."""
     extents = _extents(link)
     moments = _moments(link.inertial)
     mass = link.inertial.mass
@@ -108,7 +127,7 @@ def _odd_inertia(link: Link, name: str) -> Iterator[Fault]:
         return
     x, y, z = (edge * edge for edge in extents)
     for axis, moment, square in zip("xyz", moments, (y + z, x + z, x + y)):
-        # All of the mass in the box's edges gives a quarter, evenly spread it is a twelfth.
+        # 1/4 for all mass in the edges of the box, 1/12 for uniform density.
         if moment > _TOO_LARGE * mass * square / 4:
             yield Fault("inertia-odd", f"i{axis}{axis} of {name!r} is {moment:.3g} kg m^2; {mass:g}"
                         f" kg within its collisions have {mass * square / 12:.3g} or so",
@@ -124,7 +143,7 @@ def _odd_inertia(link: Link, name: str) -> Iterator[Fault]:
 
 
 def _moments(inertial: Inertial) -> Vec3:
-    """The diagonal in link axes, where the tensor is turned by quarters; else its mean thrice."""
+    """Moments about the link axes for rotations by 90 degrees; else three times their mean."""
     diagonal = (inertial.ixx, inertial.iyy, inertial.izz)
     if inertial.pose.orientation == IDENTITY.orientation:
         return diagonal
@@ -133,7 +152,7 @@ def _moments(inertial: Inertial) -> Vec3:
 
 
 def _extents(link: Link) -> Optional[Vec3]:
-    """Edges of the box around all collisions, in link axes; None unless all sizes are known."""
+    """Edge lengths of the collisions' bounding box in link axes, m; None if a size is unknown."""
     low, high = [math.inf] * 3, [-math.inf] * 3
     for collision in link.collisions:
         reach = _reach(collision.geometry, collision.pose)
@@ -148,7 +167,7 @@ def _extents(link: Link) -> Optional[Vec3]:
 
 
 def _reach(geometry: Geometry, pose: Pose) -> Optional[Vec3]:
-    """How far the shape's box reaches from its centre along the axes of the frame of `pose`."""
+    """Half extents of the shape's bounding box along the axes of the frame of `pose`."""
     half = half_extents(geometry)
     if half is None:
         return None
@@ -161,7 +180,7 @@ def _reach(geometry: Geometry, pose: Pose) -> Optional[Vec3]:
 
 @dataclass
 class _Core:
-    """A box with world axes that lies wholly inside a shape."""
+    """An axis-aligned box (world frame) that lies completely inside a shape."""
 
     model: str
     link: str
@@ -172,7 +191,7 @@ class _Core:
 
 
 def _overlaps(models: Sequence[Model], only: str) -> Iterator[Fault]:
-    """Pairs of different models, one of which moves, that start inside each other."""
+    """Pairs of models, at least one of them dynamic, that overlap at the start."""
     cores: List[_Core] = []
     planes: List[Tuple[str, str, Pose, Plane]] = []
     movers: List[Tuple[str, str, Collision, Pose]] = []
@@ -201,7 +220,7 @@ def _core(geometry: Geometry, pose: Pose) -> Optional[Tuple[Vec3, Vec3]]:
     inner = _inscribed(geometry, half)
     reach = _reach(Box(scale(inner, 2.0)), pose)
     if reach is None or not _is_along_axes(pose):
-        # Whatever the rotation, the ball inside holds this cube.
+        # This cube is inside the inscribed sphere for any rotation.
         reach = (min(half) / math.sqrt(3),) * 3
     p = pose.position
     return ((p[0] - reach[0], p[1] - reach[1], p[2] - reach[2]),
@@ -239,7 +258,7 @@ def _in_planes(planes: Sequence[Tuple[str, str, Pose, Plane]],
 
 
 def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
-    """How far the shape reaches from its centre against `normal`, or less where not known."""
+    """Extent of the shape from its centre against `normal`, or a lower bound."""
     half = half_extents(geometry)
     if half is None:
         return -math.inf
@@ -256,7 +275,7 @@ def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
 
 
 def _in_each_other(cores: List[_Core], only: str) -> Iterator[Fault]:
-    """Sorted along x, each is compared with those that begin before it ends."""
+    """Overlapping pairs, by sweep and prune along x."""
     cores = sorted(cores, key=lambda core: core.low[0])
     for n, one in enumerate(cores):
         for other in cores[n + 1:]:

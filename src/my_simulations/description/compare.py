@@ -1,4 +1,4 @@
-"""Whether two descriptions mean the same, and where they do not."""
+"""Compares two descriptions by meaning."""
 from __future__ import annotations
 
 import math
@@ -9,21 +9,20 @@ from typing import Any, Iterator, List, Tuple
 from ..geometry import Pose
 
 BUILT_IN = "file://media/materials/scripts/gazebo.material"
-"""The script of Gazebo's own materials, which are known without it."""
+"""URI of the script of Gazebo's own materials, which are built in."""
 
 
 def differences(a: Any, b: Any, tolerance: float = 0.0) -> List[str]:
-    """What differs between two objects of the description, as `path: this, that`.
+    """Differences between two objects of the description, as `path: this, that`.
 
-    Lists are compared in order; numbers to `tolerance`, orientations as rotations (q and -q are
-    one); XML by meaning, not by blanks, and kept XML in any order. The name of a file and how a
-    model arrived (`Model.uri`) do not count; a mesh counts by the file it resolved to, or by its
-    URI where it did not.
+    Lists are compared in order, numbers with `tolerance`, orientations as rotations (q equals -q),
+    XML without white space, and kept XML in any order. File names and `Model.uri` are ignored.
+    Meshes are compared by the file they resolved to, else by URI.
 
     Args:
-        a: e.g. a `World`.
-        b: another.
-        tolerance: for every number, in its own unit.
+        a: an object of the description, e.g. a `World`.
+        b: another one.
+        tolerance: largest difference of two equal numbers, in their unit.
     """
     return list(_compare(a, b, tolerance, ""))
 
@@ -84,7 +83,7 @@ def _furthest(a: Tuple[float, ...], b: Tuple[float, ...], sign: float) -> float:
 
 
 def _canonical(xml: str) -> str:
-    """XML without the blanks between tags, attributes in order; a prefix counts by its name."""
+    """XML without white space between tags, with sorted attributes and plain prefixes."""
     from xml.etree import ElementTree
 
     if not xml:

@@ -1,7 +1,7 @@
-"""A model with nested models as one model with scoped link names.
+"""Flattens nested models into one model with scoped link names.
 
-Gazebo names a nested link `outer::inner::link`; inside the outer model it is `inner::link`. The
-engine knows flat models only.
+In Gazebo a nested link is called `outer::inner::link`, and `inner::link` inside the outer model.
+The engine supports flat models only.
 """
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .model import WORLD, Joint, Link, Model
 
 
 def flattened(model: Model) -> Model:
-    """The same model without nested ones; poses of their links in the outer model's frame.
+    """The model without nested models; all link poses are in the frame of the outer model.
 
-    Its `guide` is the model itself, for the way back.
+    Its `guide` is the original model, for `unflattened`.
     """
     if not model.models:
         return model
@@ -29,7 +29,7 @@ def flattened(model: Model) -> Model:
 
 
 def _moved(link: Link, nested: Model, static: bool) -> Link:
-    """The link of a nested model; a static one in one that moves stands as kinematic links do."""
+    """The link of a nested model; static ones inside a dynamic model become kinematic links."""
     return replace(
         link, name=f"{nested.name}::{link.name}", pose=compose(nested.pose, link.pose),
         kinematic=link.kinematic or (nested.static and not static))

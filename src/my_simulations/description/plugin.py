@@ -1,4 +1,4 @@
-"""Plugins as a file names them."""
+"""Plugin elements of a file."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -6,7 +6,14 @@ from dataclasses import dataclass, field
 
 @dataclass
 class PluginSpec:
-    """A `<plugin>` as written: `xml` is the whole element, which begins at `line` of `file`."""
+    """A `<plugin>`. Source: SDF spec 1.7, plugin.
+
+    Attributes:
+        name: unique name of the plugin in its parent.
+        filename: shared library of Gazebo.
+        xml: the whole element as text.
+        file, line: where the element begins.
+    """
 
     name: str
     filename: str

@@ -87,7 +87,7 @@ class SavedState:
 
 @dataclass
 class InitialState:
-    """What a model starts with besides its pose.
+    """Initial state of a model besides its pose.
 
     Attributes:
         twists: velocities of link frames by scoped link name, m/s and rad/s in world axes.

@@ -1,7 +1,7 @@
 """Scoped names, `model::link`, and the one rule that splits them.
 
 Gazebo separates the names of nested entities by `::` (SDF spec 1.8, "frame semantics"). A world
-keeps nested models flattened, so a link's own name may hold the separator as well:
+keeps nested models flattened, so a link's own name may contain the separator as well:
 `outer::inner::link` is link `inner::link` of model `outer`, unless there is a model `outer::inner`.
 """
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Callable, Tuple
 
 SCOPE = "::"
-"""Between the name of a model and that of what belongs to it."""
+"""Separator between the names of a model and its link, joint or nested model."""
 
 
 def scoped(*names: str) -> str:
@@ -18,7 +18,7 @@ def scoped(*names: str) -> str:
 
 
 def split_scoped(name: str, is_model: Callable[[str], bool]) -> Tuple[str, str]:
-    """The model that a name begins with, and the rest of the name within it.
+    """Split a scoped name into a model and the rest.
 
     The longest name of an existing model wins; the page splits names by the same rule
     (`web/js/scoped_names.js`).
@@ -28,8 +28,8 @@ def split_scoped(name: str, is_model: Callable[[str], bool]) -> Tuple[str, str]:
         is_model: whether a model has this name.
 
     Returns:
-        (model, rest); rest is "" for a model itself; model is "" where no model has any beginning
-        of the name, and rest is the whole name then.
+        (model, rest). rest is "" for a model itself. If no model matches, model is "" and rest is
+        the whole name.
     """
     if is_model(name):
         return name, ""
@@ -37,6 +37,6 @@ def split_scoped(name: str, is_model: Callable[[str], bool]) -> Tuple[str, str]:
     while end > 0:
         if is_model(name[:end]):
             return name[:end], name[end + len(SCOPE):]
-        # Overlapping separators (`a:::b`) are looked at one character at a time.
+        # Overlapping separators (`a:::b`) are tried at every character.
         end = name.rfind(SCOPE, 0, end + len(SCOPE) - 1)
     return "", name

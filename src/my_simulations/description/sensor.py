@@ -14,10 +14,19 @@ from .plugin import PluginSpec
 
 @dataclass
 class Noise:
-    """Noise of one measured quantity, in its unit.
+    """Noise of one measured quantity. Source: SDF spec 1.7, sensor/noise.
 
-    `type` is none, gaussian or gaussian_quantized. The bias is drawn once, at the start, with a
-    random sign; `precision` is the step to which gaussian_quantized rounds.
+    Numbers without another unit are in the unit of the quantity.
+
+    Attributes:
+        type: `none`, `gaussian` or `gaussian_quantized`.
+        mean: mean of the white noise.
+        stddev: standard deviation of the white noise.
+        bias_mean: mean of the constant bias, drawn once at the start with a random sign.
+        bias_stddev: standard deviation of the constant bias.
+        dynamic_bias_stddev: standard deviation of the slowly changing bias.
+        dynamic_bias_correlation_time: correlation time of the slowly changing bias, s.
+        precision: step to which `gaussian_quantized` rounds; 0 for no rounding.
     """
 
     type: str = "none"
@@ -31,8 +40,28 @@ class Noise:
 
 
 @dataclass
+class AxesNoise:
+    """Noise of a vector quantity, one for each axis of the sensor's frame.
+
+    Attributes:
+        x, y, z: noise of the components.
+    """
+
+    x: Noise = field(default_factory=Noise)
+    y: Noise = field(default_factory=Noise)
+    z: Noise = field(default_factory=Noise)
+
+
+@dataclass
 class ScanAngles:
-    """One direction of a scan; `resolution` times `samples` points are given out."""
+    """Ray angles of a scan in one direction. Source: SDF spec 1.7, sensor/ray/scan.
+
+    Attributes:
+        samples: number of rays.
+        resolution: number of returned points per ray; points between rays are interpolated.
+        min_angle: angle of the first ray, rad.
+        max_angle: angle of the last ray, rad.
+    """
 
     samples: int = 1
     resolution: float = 1.0
@@ -46,7 +75,18 @@ def _horizontal() -> ScanAngles:
 
 @dataclass
 class Ray:
-    """A range finder; `ray` sees collisions, `gpu_ray` sees visuals."""
+    """A range finder. Source: SDF spec 1.7, sensor/ray.
+
+    Sensors of type `ray` detect collisions, those of type `gpu_ray` visuals.
+
+    Attributes:
+        horizontal: angles about z of the sensor frame.
+        vertical: elevation angles, positive upwards.
+        min_range: least measured distance, m.
+        max_range: greatest measured distance, m.
+        range_resolution: step of measured distances, m; 0 for none.
+        noise: noise of the distance, m.
+    """
 
     horizontal: ScanAngles = field(default_factory=_horizontal)
     vertical: ScanAngles = field(default_factory=ScanAngles)
@@ -58,10 +98,27 @@ class Ray:
 
 @dataclass
 class Camera:
-    """A pinhole camera; depth, multicamera and wide-angle cameras have the same block.
+    """A pinhole camera. Source: SDF spec 1.7, sensor/camera.
 
-    `depth_near` and `depth_far` are the clip of a depth image. Distortion is Brown's, its centre a
-    share of the picture's width and height.
+    Also used by depth, multicamera and wide-angle cameras.
+
+    Attributes:
+        name: name of the camera in its sensor.
+        pose: pose of the camera in the sensor frame.
+        horizontal_fov: horizontal field of view, rad.
+        width: pixels.
+        height: pixels.
+        format: pixel format, e.g. `R8G8B8`.
+        anti_aliasing: samples per pixel.
+        near: distance of the near clip plane, m.
+        far: distance of the far clip plane, m.
+        depth_output: kind of the depth output, e.g. `depths`.
+        depth_near: near clip of depth images, m.
+        depth_far: far clip of depth images, m.
+        noise: noise of the pixel values, of 0..1.
+        k1, k2, k3: radial coefficients of Brown's distortion model.
+        p1, p2: tangential coefficients of Brown's distortion model.
+        distortion_center: centre of the distortion as fractions of width and height.
     """
 
     name: str = ""
@@ -87,7 +144,12 @@ class Camera:
 
 @dataclass
 class ContactSensor:
-    """Names collisions of its link."""
+    """A contact sensor. Source: SDF spec 1.7, sensor/contact.
+
+    Attributes:
+        collisions: names of the collisions of the link that are observed.
+        topic: topic of Gazebo's transport.
+    """
 
     collisions: List[str] = field(default_factory=list)
     topic: str = ""
@@ -95,14 +157,19 @@ class ContactSensor:
 
 @dataclass
 class Imu:
-    """Angular velocity in rad/s, linear acceleration in m/s^2."""
+    """An inertial measurement unit. Source: SDF spec 1.7, sensor/imu.
 
-    angular_velocity_x: Noise = field(default_factory=Noise)
-    angular_velocity_y: Noise = field(default_factory=Noise)
-    angular_velocity_z: Noise = field(default_factory=Noise)
-    linear_acceleration_x: Noise = field(default_factory=Noise)
-    linear_acceleration_y: Noise = field(default_factory=Noise)
-    linear_acceleration_z: Noise = field(default_factory=Noise)
+    Attributes:
+        angular_velocity: noise of the angular velocity, rad/s.
+        linear_acceleration: noise of the linear acceleration, m/s^2.
+        localization: reference frame of the orientation: `CUSTOM`, `ENU`, `NED`, `NWU`, ...
+        custom_rpy: with `CUSTOM`, roll, pitch and yaw of the reference frame, rad.
+        grav_dir_x: with `GRAV_UP` and `GRAV_DOWN`, direction of the reference frame's x axis.
+        enable_orientation: whether the orientation is measured.
+    """
+
+    angular_velocity: AxesNoise = field(default_factory=AxesNoise)
+    linear_acceleration: AxesNoise = field(default_factory=AxesNoise)
     localization: str = "CUSTOM"
     custom_rpy: Vec3 = (0.0, 0.0, 0.0)
     grav_dir_x: Vec3 = (1.0, 0.0, 0.0)
@@ -111,7 +178,14 @@ class Imu:
 
 @dataclass
 class Gps:
-    """Position in m, velocity in m/s."""
+    """A satellite receiver. Source: SDF spec 1.7, sensor/gps.
+
+    Attributes:
+        position_horizontal: noise of the position in the horizontal plane, m.
+        position_vertical: noise of the altitude, m.
+        velocity_horizontal: noise of the horizontal velocity, m/s.
+        velocity_vertical: noise of the vertical velocity, m/s.
+    """
 
     position_horizontal: Noise = field(default_factory=Noise)
     position_vertical: Noise = field(default_factory=Noise)
@@ -121,21 +195,31 @@ class Gps:
 
 @dataclass
 class ForceTorque:
-    """Of a joint; `frame` is child, parent or sensor."""
+    """A force-torque sensor of a joint. Source: SDF spec 1.7, sensor/force_torque.
+
+    Attributes:
+        frame: frame of the wrench: `child`, `parent` or `sensor`.
+        measure_direction: `child_to_parent` or `parent_to_child`.
+        force: noise of the force, N.
+        torque: noise of the torque, N m.
+    """
 
     frame: str = "child"
     measure_direction: str = "child_to_parent"
-    force_x: Noise = field(default_factory=Noise)
-    force_y: Noise = field(default_factory=Noise)
-    force_z: Noise = field(default_factory=Noise)
-    torque_x: Noise = field(default_factory=Noise)
-    torque_y: Noise = field(default_factory=Noise)
-    torque_z: Noise = field(default_factory=Noise)
+    force: AxesNoise = field(default_factory=AxesNoise)
+    torque: AxesNoise = field(default_factory=AxesNoise)
 
 
 @dataclass
 class Sonar:
-    """The nearest thing within a cone or sphere."""
+    """A sonar: distance of the nearest object. Source: SDF spec 1.7, sensor/sonar.
+
+    Attributes:
+        geometry: shape of the beam: `cone` or `sphere`.
+        min: least distance, m.
+        max: greatest distance, m.
+        radius: radius of the cone at its greatest distance, m.
+    """
 
     geometry: str = "cone"
     min: float = 0.0
@@ -145,24 +229,30 @@ class Sonar:
 
 @dataclass
 class Altimeter:
-    """Height over the place where it began, m."""
+    """An altimeter: height above its position at the start. Source: SDF spec 1.7, sensor/altimeter.
+
+    Attributes:
+        vertical_position: noise of the height, m.
+        vertical_velocity: noise of the vertical velocity, m/s.
+    """
 
     vertical_position: Noise = field(default_factory=Noise)
     vertical_velocity: Noise = field(default_factory=Noise)
 
 
 @dataclass
-class Magnetometer:
-    """The world's magnetic field, T."""
-
-    x: Noise = field(default_factory=Noise)
-    y: Noise = field(default_factory=Noise)
-    z: Noise = field(default_factory=Noise)
+class Magnetometer(AxesNoise):
+    """A magnetometer: noise of the magnetic field, T. Source: SDF spec 1.7, sensor/magnetometer."""
 
 
 @dataclass
 class AirPressure:
-    """Pressure in Pa; `reference_altitude` is that of the world's origin."""
+    """An air pressure sensor. Source: SDF spec 1.8, sensor/air_pressure.
+
+    Attributes:
+        reference_altitude: altitude of the world's origin, m.
+        pressure: noise of the pressure, Pa.
+    """
 
     reference_altitude: float = 0.0
     pressure: Noise = field(default_factory=Noise)
@@ -170,7 +260,14 @@ class AirPressure:
 
 @dataclass
 class LogicalCamera:
-    """Which models are within a frustum."""
+    """Detects the models in a frustum. Source: SDF spec 1.7, sensor/logical_camera.
+
+    Attributes:
+        near: distance of the near clip plane, m.
+        far: distance of the far clip plane, m.
+        aspect_ratio: width over height of the near and far planes.
+        horizontal_fov: horizontal field of view, rad.
+    """
 
     near: float = 0.0
     far: float = 1.0
@@ -180,7 +277,17 @@ class LogicalCamera:
 
 @dataclass
 class Transceiver:
-    """A wireless transmitter or receiver; MHz, dBi, dBm."""
+    """A wireless transmitter or receiver. Source: SDF spec 1.7, sensor/transceiver.
+
+    Attributes:
+        essid: name of the network.
+        frequency: frequency of the transmitter, MHz.
+        min_frequency: least frequency of the receiver, MHz.
+        max_frequency: greatest frequency of the receiver, MHz.
+        gain: gain of the antenna, dBi.
+        power: transmission power, dBm.
+        sensitivity: least power that is received, dBm.
+    """
 
     essid: str = "wireless"
     frequency: float = 2442.0
@@ -193,12 +300,23 @@ class Transceiver:
 
 @dataclass
 class Sensor:
-    """A sensor; `pose` in its link's frame (of a joint: in the child link's).
+    """A sensor. Source: SDF spec 1.7, sensor.
 
-    `update_rate` 0 is every step. Of the blocks, those that the file has are set; `cameras` holds
-    one of a camera or depth sensor, several of a multicamera. The link or joint keeps the XML of
-    the whole sensor in its `extra`, which is what is written back. `file` and `line` tell where it
-    was read.
+    The link or joint keeps the XML of the whole sensor in its `extra`, which is written on saving.
+
+    Attributes:
+        name: unique in its link or joint.
+        type: SDF's name of the type: `ray`, `camera`, `imu`, ...
+        pose: pose in the frame of the link; of a joint's sensor, in the joint's.
+        always_on: whether the sensor works without subscribers.
+        update_rate: Hz of sim time; 0 for every step.
+        visualize: whether the editor draws it.
+        topic: topic of Gazebo's transport.
+        ray, contact, imu, gps, force_torque, sonar, altimeter, magnetometer, air_pressure,
+            logical_camera, transceiver: the element of that name; None if the file has none.
+        cameras: one camera of a camera or depth sensor, several of a multicamera.
+        plugins: plugins of the sensor.
+        file, line: where it was read.
     """
 
     name: str

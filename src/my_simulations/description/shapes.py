@@ -177,7 +177,7 @@ Geometry = Union[Box, Sphere, Cylinder, Plane, Mesh, Capsule, Ellipsoid, Cone, H
                  Polyline, ImageMap, Empty]
 
 Solid = Union[Mesh, Heightmap, Polyline, ImageMap]
-"""Geometry that collides as a mesh made ready beforehand, found by `mesh_key`."""
+"""Geometry that collides as a loaded mesh, found by `mesh_key`."""
 
 SOLIDS = (Mesh, Heightmap, Polyline, ImageMap)
 
@@ -189,7 +189,7 @@ class MeshData:
     Attributes:
         vertices: float64 array (n, 3), scale already applied.
         triangles: int32 array (m, 3) of vertex indices.
-        parts: convex pieces that together are the solid, for a body that moves; None: its hull.
+        parts: convex parts of the solid, for a dynamic body; None for its convex hull.
     """
 
     vertices: Any
@@ -205,7 +205,8 @@ class Surface:
         mu: Coulomb friction coefficient, no unit; with `fdir1` in the first direction.
         mu2: coefficient in the second direction; used with `fdir1`.
         fdir1: first friction direction, in the collision frame; zero for none.
-        slip1, slip2: force-dependent slip in the two directions, m/(N s); kept.
+        slip1, slip2: slip velocity by friction force along `fdir1` and across it, m/(N s); without
+            `fdir1` slip1 holds in all directions.
         restitution: coefficient of restitution, 0 to 1.
         bounce_threshold: impact velocity below which nothing bounces, m/s.
         kp: contact stiffness, N/m.
@@ -314,7 +315,7 @@ MeshTable = Dict[str, MeshData]
 
 
 def mesh_key(solid: Solid) -> str:
-    """What identifies a loaded mesh: file, scale and part, or the numbers that make it."""
+    """Key of a loaded mesh: file, scale and submesh, or the numbers that define it."""
     if not isinstance(solid, Mesh):
         return repr(solid)
     part = f"#{solid.submesh}{'@' if solid.center else ''}" if solid.submesh else ""

@@ -1,6 +1,6 @@
-"""What a world shows or states besides models: scene, GUI, wind, atmosphere, place, roads.
+"""Surroundings of a world: scene, GUI, wind, atmosphere, place, roads.
 
-Nothing of this is simulated: the editor draws it, and saving a world writes it.
+Drawn by the editor and saved, without effect on motion.
 """
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ class Gui:
 
 @dataclass
 class Wind:
-    """Wind; no force comes of it. Source: SDF spec 1.7, world/wind.
+    """Wind, without effect on motion. Source: SDF spec 1.7, world/wind.
 
     Attributes:
         linear_velocity: m/s, world axes.
@@ -148,7 +148,7 @@ class Wind:
 
 @dataclass
 class Atmosphere:
-    """The atmosphere at sea level; no force comes of it. Source: SDF spec 1.7, atmosphere.
+    """The atmosphere at sea level, without effect on motion. Source: SDF spec 1.7, atmosphere.
 
     Attributes:
         type: model of the atmosphere, `adiabatic`.

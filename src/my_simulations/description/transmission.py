@@ -7,7 +7,12 @@ from typing import List
 
 @dataclass
 class TransmissionJoint:
-    """A joint, and the interfaces through which it is driven (`hardware_interface/...`)."""
+    """A joint of a transmission.
+
+    Attributes:
+        name: name of the joint.
+        interfaces: its hardware interfaces, e.g. `hardware_interface/EffortJointInterface`.
+    """
 
     name: str
     interfaces: List[str] = field(default_factory=list)
@@ -15,7 +20,13 @@ class TransmissionJoint:
 
 @dataclass
 class Actuator:
-    """A motor; `reduction` is its revolutions for one of the joint."""
+    """A motor of a transmission.
+
+    Attributes:
+        name: name of the actuator.
+        reduction: revolutions of the motor for one of the joint.
+        interfaces: its hardware interfaces.
+    """
 
     name: str
     reduction: float = 1.0
@@ -24,7 +35,16 @@ class Actuator:
 
 @dataclass
 class Transmission:
-    """A `<transmission>` of a robot; `type` is e.g. transmission_interface/SimpleTransmission."""
+    """A `<transmission>` of a robot.
+
+    Attributes:
+        name: name of the transmission.
+        type: class of the transmission, e.g. `transmission_interface/SimpleTransmission`.
+        namespace: `<robotNamespace>`; "" for none.
+        joints: the driven joints.
+        actuators: the motors.
+        file, line: where it was read.
+    """
 
     name: str
     type: str = ""

@@ -1,4 +1,4 @@
-"""Scoped link names back into nested models: the way back from `flatten`."""
+"""Restores nested models from scoped link names: the inverse of `flatten`."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -10,12 +10,12 @@ from .scoped_names import SCOPE
 
 
 def unflattened(flat: Model) -> Model:
-    """The model with a nested one for every scope in its links' names.
+    """The model with a nested model for every scope in its link names.
 
     Args:
-        flat: as `flattened` makes it. What it says of its links and joints counts; its guide has
-            the poses, plugins and kept XML of the nested ones. Without one they lie at the origin
-            of the outer model.
+        flat: a result of `flattened`, possibly edited. Links and joints are taken from it; poses,
+            plugins and kept XML of nested models from its `guide`. Without a guide, nested models
+            are at the origin of the outer model.
     """
     if not any(SCOPE in link.name for link in flat.links):
         return flat
@@ -25,9 +25,9 @@ def unflattened(flat: Model) -> Model:
 
 def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guide: Model,
               above: Pose) -> Model:
-    """Gives `model` these links and joints, named as seen from it.
+    """Add these links and joints to `model`, with names relative to it.
 
-    `above`: pose of its frame in the outermost model, in whose frame the links are.
+    `above`: pose of its frame in the outermost model, whose frame the link poses are in.
     """
     known = {link.name: link for link in guide.links}
     own: List[Link] = []
@@ -61,7 +61,7 @@ def _pose(link: Link, known: Optional[Link], above: Pose) -> Pose:
     if above == IDENTITY:
         return link.pose
     if known is not None and compose(above, known.pose) == link.pose:
-        return known.pose  # to the last digit
+        return known.pose  # keep the exact digits
     return compose(inverse(above), link.pose)
 
 

@@ -1,7 +1,7 @@
-"""What makes a model impossible to simulate, whatever file it came from.
+"""Validates models, independent of the file format.
 
-The rules need no file: readers add file and line through `locate`, requests made in a program use
-`validate` as it is.
+The rules need no file. Readers add file and line with `locate`; requests of programs use
+`validate` without it.
 """
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _AXIS_FREE = ("fixed", "ball")
 
 @dataclass(frozen=True)
 class Fault:
-    """One fault of a model; `subject` is the object of the description that has it."""
+    """One fault of a model; `subject` is the faulty object of the description."""
 
     code: str
     message: str
@@ -48,11 +48,11 @@ class Fault:
 
 
 Locate = Callable[[Any], Dict[str, Any]]
-"""From an object of the description to `file`, `line`, `xpath` of an `Issue`."""
+"""Returns `file`, `line` and `xpath` of an object of the description, for its `Issue`."""
 
 
 def validate(model: Model, locate: Optional[Locate] = None) -> List[Issue]:
-    """Every fault of the model; with one of severity ERROR it cannot be simulated as described."""
+    """All faults of the model; with a fault of severity ERROR it cannot be simulated."""
     return [
         Issue(fault.severity, fault.code, fault.message, hint=fault.hint,
               **(locate(fault.subject) if locate else {}))
@@ -61,7 +61,7 @@ def validate(model: Model, locate: Optional[Locate] = None) -> List[Issue]:
 
 
 def faults(model: Model, static: bool = False) -> Iterator[Fault]:
-    """Every fault of the model and of those nested in it; `static` when an outer model is."""
+    """All faults of the model and its nested models; `static`: an outer model is static."""
     static = static or model.static
     yield from own_faults(model, static)
     for nested in model.models:
@@ -69,7 +69,7 @@ def faults(model: Model, static: bool = False) -> Iterator[Fault]:
 
 
 def own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
-    """Faults of the model without those of what is nested in it."""
+    """Faults of the model without those of its nested models."""
     static = static or model.static
     yield from place_faults(model)
     yield from _repeated("link", model.links)
@@ -86,7 +86,7 @@ def own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
 
 
 def place_faults(model: Model) -> Iterator[Fault]:
-    """Faults of name and pose, which the outer model has a part in."""
+    """Faults of name and pose, which depend on the outer model."""
     if not model.name:
         yield Fault("name-empty", "the model has no name", model)
     if not pose_is_finite(model.pose):
@@ -117,7 +117,7 @@ def _repeated(kind: str, items: Sequence[Any]) -> Iterator[Fault]:
 
 
 def link_faults(link: Link, static: bool) -> Iterator[Fault]:
-    """Faults of one link; mass and inertia count for links that can move only."""
+    """Faults of a link; mass and inertia are checked for dynamic links only."""
     if link.name == WORLD:
         yield Fault("name-reserved",
                     "a link is named 'world', which means the world in joints", link)
@@ -140,7 +140,7 @@ def link_faults(link: Link, static: bool) -> Iterator[Fault]:
 
 
 def inertial_faults(inertial: Inertial, link: str) -> Iterator[Fault]:
-    """Mass above zero; inertia finite and positive definite."""
+    """Faults of mass (must be positive) and inertia (finite, positive definite)."""
     tensor = (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy, inertial.ixz, inertial.iyz)
     if not is_finite(inertial.mass, *tensor) or not pose_is_finite(inertial.pose):
         yield Fault("inertia-not-finite", f"mass or inertia of link {link!r} is not finite",
@@ -167,7 +167,7 @@ def tensor_text(i: Inertial) -> str:
 
 
 def is_positive_definite(i: Inertial) -> bool:
-    """True when all leading minors of the tensor are above zero (Sylvester)."""
+    """True if all leading minors of the tensor are positive (Sylvester's criterion)."""
     return i.ixx > 0 and i.ixx * i.iyy - i.ixy * i.ixy > 0 and _determinant(
         i.ixx, i.iyy, i.izz, i.ixy, i.ixz, i.iyz) > 0
 
@@ -179,7 +179,7 @@ def _determinant(xx: float, yy: float, zz: float, xy: float, xz: float, yz: floa
 def _is_a_body(i: Inertial) -> bool:
     """The triangle inequality of the principal moments: trace/2 E - I has no negative eigenvalue.
 
-    With a tolerance of 1e-4 of the trace, since files round their numbers.
+    The tolerance is 1e-4 of the trace, because files contain rounded numbers.
     """
     half = (i.ixx + i.iyy + i.izz) / 2 * (1 + 1e-4)
     xx, yy, zz = half - i.ixx, half - i.iyy, half - i.izz
@@ -188,7 +188,7 @@ def _is_a_body(i: Inertial) -> bool:
 
 
 def geometry_fault(geometry: Geometry) -> str:
-    """What is wrong with a shape's numbers, as a phrase; "" when nothing is."""
+    """The fault of a shape's numbers, as a phrase; "" if there is none."""
     if isinstance(geometry, Box):
         return _not_positive("size of the box", geometry.size)
     if isinstance(geometry, Sphere):
@@ -227,7 +227,7 @@ def _solid_fault(solid: Union[Heightmap, ImageMap, Polyline]) -> str:
 
 
 def has_zero_size(geometry: Geometry) -> bool:
-    """True for a shape that is merely flat or empty: some size 0, none negative or not finite."""
+    """True for a flat or empty shape: a size is 0, none is negative or non-finite."""
     sizes: Sequence[float] = ()
     if isinstance(geometry, Box):
         sizes = geometry.size
@@ -253,7 +253,7 @@ def _meant(name: str, known: Set[str]) -> str:
 
 
 def joint_faults(joint: Joint, links: Set[str]) -> Iterator[Fault]:
-    """Faults of one joint; `links` are the names it may connect, besides the world."""
+    """Faults of a joint; `links`: names of the links it may connect, besides the world."""
     name = joint.name
     for role, link in (("parent", joint.parent), ("child", joint.child)):
         if not link:

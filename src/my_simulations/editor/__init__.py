@@ -11,7 +11,7 @@ from .editor_options import EditorOptions
 if TYPE_CHECKING:
     from ..resources.resolver import Resolver
     from ..simulator.simulator import Simulator
-    from .transport.server import EditorServer
+    from .server import EditorServer
 
 __all__ = ["EditorOptions", "start"]
 
@@ -23,6 +23,6 @@ def start(simulator: "Simulator", resolver: "Resolver",
     Raises:
         CommandError: the address cannot be listened at, or the page is not installed.
     """
-    from .transport.server import EditorServer
+    from .server import EditorServer
 
     return EditorServer(simulator, resolver, options or EditorOptions())

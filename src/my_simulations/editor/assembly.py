@@ -28,9 +28,9 @@ from .transport.error_messages import EditRefusedError
 from .transport.http_pages import Pages
 from .transport.hub import Hub
 from .transport.protocol import Protocol
-from .transport.requests import Requests
 from .transport.watch_requests import Watching
 from .transport.web_socket import Route, Sockets
+from .world_requests import Requests
 
 _AUTOSAVE_S = 1.0
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Callable, List, Optional, Tuple
 
 from ..errors import Issue
-from .topics.topic_source import TopicSource
+from .topic_source import TopicSource
 
 DEFAULT_PORT = 11346
 """Beside Gazebo's master port, 11345."""

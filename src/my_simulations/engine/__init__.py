@@ -1,1 +1,1 @@
-"""The physics: PyBullet in a process of its own, told by commands and read from a ring."""
+"""The physics engine: PyBullet in a child process, with commands in and snapshots out."""

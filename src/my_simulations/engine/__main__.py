@@ -36,7 +36,7 @@ class _Pipes:
         try:
             os.write(self._bell, b"\0")
         except BlockingIOError:
-            return  # nobody has emptied it: whoever waits is awake already
+            return  # the pipe is full: the reader is awake already
 
     def _send(self, message: object) -> None:
         try:
@@ -59,9 +59,9 @@ def _silent_stderr() -> Iterator[None]:
 
 
 def main(argv: List[str]) -> int:
-    """Work until the parent hangs up or dies."""
-    # The parent decides when to end: a Ctrl-C reaches the whole group, and must not kill the
-    # physics while the parent still saves or answers.
+    """Run the engine until the parent closes the socket or ends."""
+    # The parent decides when to stop: Ctrl-C is sent to the whole process group, and must not
+    # stop the engine while the parent is saving or responding.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     die_with_parent()

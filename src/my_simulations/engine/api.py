@@ -1,7 +1,7 @@
 """The interface of an engine: commands in, replies out, states in a ring.
 
-Whoever moves the world (PyBullet in a child process, PyBullet in this process, a kinematic fake)
-satisfies `Engine`. A command is answered once a snapshot that shows its effect is in the ring.
+`Engine` is implemented by PyBullet in a child process and by backends in a thread (PyBullet or
+kinematic). A command is answered when a snapshot with its effect is in the ring.
 """
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .ring import RingReader
 
 @dataclass(frozen=True)
 class Reply:
-    """What came of a command.
+    """The result of a command.
 
     Attributes:
         step: step count at which it was applied.
         sequence: ring sequence of the first snapshot that shows its effect.
-        value: the command's own result.
-        error: one sentence when it was refused; then nothing has changed.
+        value: result value of the command.
+        error: one sentence if it was rejected, and nothing has changed; "" otherwise.
     """
 
     step: int
@@ -35,7 +35,7 @@ class Reply:
 class Event:
     """Something the engine reports by itself.
 
-    `kind`: `meeting` (the engine stands at a consumer's credit), `diverged` (a model's state became
+    `kind`: `meeting` (the engine waits at a consumer's credit), `diverged` (a model's state became
     non-finite; it was restored to its last finite pose, at rest) or `log` (a setting is simulated
     approximately).
     """
@@ -47,82 +47,82 @@ class Event:
 
 
 class Engine(Protocol):
-    """What the simulator needs of whoever moves the world."""
+    """Interface of engines for the simulator."""
 
     @property
     def ring(self) -> RingReader:
-        """Where the states are read."""
+        """The ring with the snapshots."""
 
     def submit(self, command: Command) -> "Future[Reply]":
-        """Queue a command. The future fails with `EngineDiedError` when the engine died first."""
+        """Queue a command. The future fails with `EngineDiedError` if the engine dies before."""
 
     def nudge(self) -> None:
-        """Tell an engine that stands at a credit to look whether the credit was raised."""
+        """Notify an engine that waits at a credit that credits were raised."""
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
-        """Set who hears of events (called from the engine's reader thread)."""
+        """Set the listener of events, called from the engine's reader thread."""
 
     def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
-        """Set who hears of the engine's death: a reason, and the commands without an answer."""
+        """Set the listener of the engine's death: gets a reason and the unanswered commands."""
 
     def wait_bell(self, timeout: float) -> bool:
-        """Wait until the engine rings (when asked to, for steps and changes).
+        """Wait for a notification of the engine (if requested, about steps and changes).
 
-        False when `timeout` s pass first.
+        False after `timeout` s.
         """
 
     def restart(self) -> None:
-        """After a death: start anew on the same ring, empty; call from a long-lived thread."""
+        """After a death: start an empty engine on the same ring; call from a long-lived thread."""
 
     def kill(self, reason: str = "") -> None:
-        """End it at once, as a crash would; `reason` is what `on_death` is told then."""
+        """Kill the engine, as a crash would; `reason` is passed to the listener of `on_death`."""
 
     @property
     def pid(self) -> int:
-        """The process number; 0 where there is none."""
+        """Process id; 0 if it has no process."""
 
     def close(self) -> None:
-        """End it and wait for the end."""
+        """Stop the engine and wait until it has ended."""
 
 
 class EngineDiedError(SimulationError):
-    """The engine died before it answered."""
+    """The engine died before it replied."""
 
 
 class CommandRefusedError(SimulationError):
-    """A command that cannot be carried out; the message is one sentence for the user."""
+    """A rejected command; the message is one sentence for the user."""
 
 
 class EngineBrokenError(SimulationError):
-    """The world is lost half way through a change: this engine ends, and another takes over."""
+    """The world was lost during a change: this engine ends and is replaced by another one."""
 
 
 class Backend(Protocol):
-    """Who moves the bodies, one step at a time; `engine.runner` drives it."""
+    """Moves the bodies step by step; driven by `engine.runner`."""
 
     def apply(self, command: Command) -> object:
-        """Carry out a command that changes the world.
+        """Apply a command that changes the world.
 
-        Raises `CommandRefusedError`, then nothing changed, or `EngineBrokenError`.
+        Raises `CommandRefusedError`, if nothing has changed, or `EngineBrokenError`.
         """
 
     def configure(self, settings: PhysicsSettings) -> None:
-        """Use other settings from the next step on."""
+        """Set the settings from the next step on."""
 
     def step(self, first: int, count: int) -> None:
-        """Make `count` steps, the first of which begins at step count `first`."""
+        """Execute `count` steps; the first one begins at step count `first`."""
 
     def read(self) -> bool:
-        """Bring the tables up to date; False when nothing can have changed since the last time."""
+        """Update the tables; False if nothing can have changed since the last call."""
 
     def read_poses(self) -> bool:
-        """Bring the poses in the link table up to date; the rest may stay as it was."""
+        """Update the poses in the link table; twists and joints may be old."""
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used link and joint rows as raw doubles, for the ring."""
 
     def events(self) -> List[Event]:
-        """What has happened since the last call."""
+        """Events since the last call."""
 
     def close(self) -> None:
-        """Give everything back."""
+        """Free all resources."""

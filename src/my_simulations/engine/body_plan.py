@@ -1,8 +1,8 @@
-"""Which bodies a model becomes: rigid bodies and trees of links, decided without PyBullet.
+"""Plans the PyBullet bodies of a model: rigid bodies and trees of links. Independent of PyBullet.
 
-A joint-free link is a rigid body. Links connected by joints form a tree, the way reduced-coordinate
-solvers want it: every link but the root hangs on one joint. Joints to the world hang on a fixed,
-massless base. Static models become immovable links, joints or not.
+A link without joints is a rigid body. Links connected by joints form a tree, as required by
+reduced coordinates: every link except the root has one parent joint. Joints to the world connect to
+a fixed, massless base. Static models become fixed links, with or without joints.
 """
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ BASE = -1
 """The link index of a base: the root link, or the fixed one of a body joined to the world."""
 
 NO_LINK = -1
-"""`TreeLink.index` of the massless piece between the two axes of a joint."""
+"""`TreeLink.index` of the massless link between the two axes of a joint."""
 
 TIE_TYPES = ("fixed", "revolute", "continuous", "ball", "universal", "revolute2", "prismatic")
-"""The types of joints between models that constraints can stand for."""
+"""Types of joints between models that can be modelled by constraints."""
 
 MAX_TREE_LINKS = 127
-"""Links beside the base that Bullet's multibody takes; it drops the rest silently (measured)."""
+"""Most links of a multibody besides the base; Bullet drops the rest silently (measured)."""
 
 
 @dataclass
@@ -35,11 +35,11 @@ class TreeLink:
     Attributes:
         index: position in `Model.links`, or NO_LINK.
         parent: position of the parent in `BodyPlan.links`, or BASE.
-        joint: what it hangs on; None for the root.
-        kind: how it moves on its parent: revolute, prismatic, fixed or ball.
+        joint: its parent joint; None for the root.
+        kind: motion relative to its parent: revolute, prismatic, fixed or ball.
         axis: unit vector in the joint frame, such that the joint's position is positive in the
             direction of the description; None for fixed and ball joints.
-        number: which of the joint's axes it is, or None when that has no row.
+        number: number of the joint's axis; None if it has no row.
         link_from_frame: the joint frame in the link's own frame (identity for the root).
         parent_from_frame: the joint frame in the parent's joint frame, at position 0.
     """
@@ -60,7 +60,7 @@ class BodyPlan:
 
     Attributes:
         links: the root first unless `fixed_base`; parents before children.
-        fixed_base: an immovable base at the model frame that is none of the links.
+        fixed_base: the base is fixed and massless at the model frame, none of the links.
     """
 
     links: List[TreeLink] = field(default_factory=list)
@@ -77,9 +77,9 @@ class BodyPlanError(SimulationError):
 
 
 def plan_bodies(model: Model) -> List[BodyPlan]:
-    """The bodies of a flattened model, every link in exactly one of them.
+    """The bodies of a flattened model; every link is in exactly one body.
 
-    Joints of types the engine does not move, and joints that would close a loop, connect nothing.
+    Joints of unsupported types, and joints that would close a loop, connect nothing.
 
     Raises:
         BodyPlanError: a joint names a link that does not exist, or a tree exceeds Bullet's limit.
@@ -191,10 +191,10 @@ class _Planner:
 
 
 def _moves(joint: Joint, forward: bool) -> List[Tuple[str, Optional[Vec3], Optional[int]]]:
-    """The single motions a joint is made of, from the tree's parent on: (kind, axis, row).
+    """The single motions of a joint, from the parent in the tree on: (kind, axis, row).
 
-    `forward`: the joint's child hangs on its parent. The other way round the order and the axes
-    turn, and positions keep their sign.
+    `forward`: the joint's child is the child in the tree. Otherwise order and axes are reversed,
+    and positions keep their sign.
     """
     if joint.type in ("fixed", "ball"):
         return [(joint.type, None, None)]
@@ -213,9 +213,9 @@ def _moves(joint: Joint, forward: bool) -> List[Tuple[str, Optional[Vec3], Optio
 
 
 def depth_first(links: List[TreeLink]) -> List[TreeLink]:
-    """The same tree with every link right behind its parent's earlier branches.
+    """The same tree in depth-first order.
 
-    PyBullet numbers the links of a multibody so, whatever their order (measured, 3.2.7).
+    PyBullet numbers the links of a multibody in this order (measured, 3.2.7).
     """
     below: Dict[int, List[int]] = {}
     for n, link in enumerate(links):
@@ -230,7 +230,7 @@ def depth_first(links: List[TreeLink]) -> List[TreeLink]:
 
 
 def open_joints(model: Model, bodies: List[BodyPlan]) -> List[Joint]:
-    """The joints that connect nothing in `bodies`: loops, and types the engine does not move."""
+    """The joints that connect nothing in `bodies`: loops, and unsupported types."""
     if model.static:
         return []
     used = {link.joint.name for body in bodies for link in body.links if link.joint is not None}

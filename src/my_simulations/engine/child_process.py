@@ -1,4 +1,4 @@
-"""Processes of our own: the interpreter and the package that run here, and the end of both."""
+"""Child processes with this interpreter and package, which end with their parent."""
 from __future__ import annotations
 
 import contextlib
@@ -15,15 +15,15 @@ _KEPT_BYTES, _HEAP_BYTES = 64 << 20, 32 << 20
 
 
 def command(module: str, *arguments: str) -> List[str]:
-    """The command line of `module` of this package; run it with `environment`."""
+    """The command line that runs `module` of this package; use it with `environment`."""
     return [sys.executable, "-m", f"my_simulations.{module}", *arguments]
 
 
 def environment() -> Dict[str, str]:
-    """The environment in which another interpreter finds this package first.
+    """The environment in which a child finds this package first.
 
-    Its matrices are small: threads for them would cost more than they bring. It also says who
-    started it, for `die_with_parent`.
+    Disables threads of linear algebra, which are slower for small matrices, and passes the process
+    id of the parent, for `die_with_parent`.
     """
     root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
@@ -33,10 +33,10 @@ def environment() -> Dict[str, str]:
 
 @contextlib.contextmanager
 def shielded() -> Iterator[None]:
-    """What this thread starts meanwhile hears neither Ctrl-C nor SIGTERM, from its first moment.
+    """Block SIGINT and SIGTERM for the children that this thread starts in the `with` block.
 
-    A Ctrl-C reaches the whole foreground group; while an interpreter starts it would end it with a
-    traceback. The blocked signals are inherited, and the parent ends such a child.
+    Ctrl-C is sent to the whole foreground group, and would end a starting interpreter with a
+    traceback. Blocked signals are inherited; the parent ends the child.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
     try:
@@ -46,9 +46,9 @@ def shielded() -> Iterator[None]:
 
 
 def die_with_parent() -> None:
-    """In the child: have the kernel end it with the thread that started it (Linux).
+    """In the child: have the kernel kill it with the thread that started it (Linux).
 
-    One whose parent has ended while it was still importing ends here.
+    Exits if the parent has ended already.
     """
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.environ.get(_PARENT, str(os.getppid())) != str(os.getppid()):
@@ -56,10 +56,10 @@ def die_with_parent() -> None:
 
 
 def keep_freed_memory() -> None:
-    """In the child: have the C library hold freed memory for the next who asks (glibc).
+    """In the child: have the C library keep freed memory (glibc).
 
-    Bullet takes 5 MB for every new world; when they come from the kernel page by page each time, a
-    reset takes three times as long (measured).
+    Bullet allocates 5 MB for every new world; if the kernel provides them page by page, a reset
+    takes three times as long (measured).
     """
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt"):

@@ -1,8 +1,7 @@
-"""What an engine can be told: every change of the world is one of these commands.
+"""Commands of the engine: every change of the world is one of them.
 
-Commands are applied between steps, also while paused. Entities are known to the engine by numbers
-that the simulator hands out: a model by its id, a link by its row in the ring's link table, a joint
-axis by its row in the joint table.
+Commands are applied between steps, also while paused. The simulator identifies a model by its id, a
+link by its row in the ring's link table, a joint axis by its row in the joint table.
 """
 from __future__ import annotations
 
@@ -11,10 +10,10 @@ from typing import Dict, Optional, Tuple, TypeVar, Union
 
 from ..description.model import Joint, Model
 from ..description.shapes import MeshData
-from ..geometry import STILL, Pose, Twist, Vec3
+from ..geometry import IDENTITY_QUAT, STILL, ZERO3, Pose, Quat, Twist, Vec3
 
 FOREVER = 1 << 62
-"""A step that never comes: the horizon of a world nobody needs to meet."""
+"""A step count that is never reached: no horizon."""
 
 
 @dataclass(frozen=True)
@@ -57,11 +56,11 @@ class PhysicsSettings:
 
 @dataclass(frozen=True)
 class JointPid:
-    """A PID loop that drives a joint axis anew in every step (see `engine.bullet.servos`).
+    """A PID controller of a joint axis, computed in every step (see `engine.bullet.joint_pid`).
 
     Attributes:
         target: rad or m, or with `rate` per second.
-        rate: it follows a velocity, else a position.
+        rate: True to control the velocity, False for the position.
         p, i, d: gains: effort by error, by its integral over time, and by its rate.
     """
 
@@ -79,7 +78,7 @@ class TimedWrench:
     Acts in steps `start` (the first step whose beginning is at this count) to `stop` - 1.
 
     Attributes:
-        force_id: to clear it by.
+        force_id: id, to clear it.
         row: link row.
         start, stop: step counts; `stop` FOREVER for until cleared.
         force, torque: N and N m, world axes, at the centre of mass.
@@ -97,7 +96,7 @@ class TimedWrench:
     point: Vec3 = (0.0, 0.0, 0.0)
 
     def begun(self, step: int) -> "TimedWrench":
-        """As it acts when it is queued whole at `step`: none of its steps lies in the past."""
+        """The same with its full duration from `step` on, if its start has passed."""
         return _begun(self, step)
 
 
@@ -106,7 +105,7 @@ class TimedEffort:
     """An effort on a joint axis, exact to the step.
 
     Attributes:
-        force_id: to clear it by.
+        force_id: id, to clear it.
         row: joint row.
         start, stop: as of `TimedWrench`.
         effort: N m or N; ignored with `pid`.
@@ -121,7 +120,7 @@ class TimedEffort:
     pid: Optional[JointPid] = None
 
     def begun(self, step: int) -> "TimedEffort":
-        """As it acts when it is queued whole at `step`: none of its steps lies in the past."""
+        """The same with its full duration from `step` on, if its start has passed."""
         return _begun(self, step)
 
 
@@ -138,25 +137,25 @@ def _begun(force: _Timed, step: int) -> _Timed:
 
 
 class Command:
-    """Base of all commands; each says what its reply's `value` holds (None where silent)."""
+    """Base of all commands; each documents the `value` of its reply (None if not documented)."""
 
 
 @dataclass(frozen=True)
 class LoadModel(Command):
-    """Put a model into the world.
+    """Add a model to the world.
 
     Attributes:
-        model_id: new number.
+        model_id: new id.
         model: flattened (no nested models).
         pose: world pose of the model frame.
         first_link_row, first_joint_row: rows of its links (in order) and of its movable joints'
-            axes (in order, `joint_rows` in `engine.rows` says how many).
-        meshes: what its collisions need, by `mesh_key`.
-        state: where its links and joints are, instead of the pose of the file.
-        articulated: build it as articulated bodies even where it has no joints: sliding joints to
-            other models need that.
-        inherit: number of a model in the world whose present states its links and joints of the
-            same names take on; a link's pose in the model may differ. 0 for none.
+            axes (in order, see `ring_rows.axis_rows`).
+        meshes: meshes of its collisions, by `mesh_key`.
+        state: state of its links and joints; None for the initial state at `pose`.
+        articulated: build articulated bodies even without joints, as prismatic joints to other
+            models require.
+        inherit: id of a model whose present states are taken over by links and joints of the same
+            names; poses of links in the model may differ. 0 for none.
     """
 
     model_id: int
@@ -172,10 +171,10 @@ class LoadModel(Command):
 
 @dataclass(frozen=True)
 class ConnectModels(Command):
-    """Join links of two models, or a link and the world, until either model is removed.
+    """Connect links of two models, or a link and the world, until either model is removed.
 
     Attributes:
-        joint: its type and the direction of its axis count; limits and the like do not act.
+        joint: its type and axis direction are used; limits, damping and so on have no effect.
         parent_row, child_row: link rows; -1 for the world.
         parent_from_joint, child_from_joint: the joint frame in the frame of each link (world pose
             for the world); at position 0 they are the same frame.
@@ -190,17 +189,17 @@ class ConnectModels(Command):
 
 @dataclass(frozen=True)
 class RemoveModel(Command):
-    """Take a model out; bodies that rested on it wake up."""
+    """Remove a model; bodies that rested on it wake up."""
 
     model_id: int
 
 
 @dataclass(frozen=True)
 class SetModelState(Command):
-    """Move all links of a model rigidly so that its frame gets `pose`; joints keep their positions.
+    """Move all links of a model rigidly so that its frame has `pose`; joints keep their positions.
 
     Every link gets the rigid body's velocity, v + w x r. With `frame`, pose and twist are given in
-    it (the frame's own velocity is not added). `twist` None keeps the velocities, turned along.
+    it (the frame's own velocity is not added). `twist` None keeps the velocities, rotated.
     """
 
     model_id: int
@@ -213,8 +212,8 @@ class SetModelState(Command):
 class SetLinkState(Command):
     """Move one link and set its velocity.
 
-    A link of an articulated body takes the whole body along, joint positions kept: reduced
-    coordinates know no pose of a single link. A body joined to the world cannot be moved so.
+    A link of an articulated body moves the whole body with its joint positions, because reduced
+    coordinates have no poses of single links. A body with a joint to the world cannot be moved.
     """
 
     row: int
@@ -225,14 +224,14 @@ class SetLinkState(Command):
 
 @dataclass(frozen=True)
 class SetJoints(Command):
-    """Set positions (and rates) of joint axes by row; the subtree moves along."""
+    """Set positions (and rates) of joint axes by row; the links below move with them."""
 
     joints: Tuple[Tuple[int, float, float], ...]
 
 
 @dataclass(frozen=True)
 class SetAxes(Command):
-    """Give the joints of a model other axes: limits, friction, damping, spring, motor.
+    """Replace the axes of a model's joints: limits, friction, damping, spring, motor.
 
     `joints` are the model's joints, in order, of unchanged names, types, ends, poses and axis
     directions.
@@ -249,7 +248,7 @@ class JointMotor:
     Attributes:
         row: joint row.
         rate: rad/s or m/s.
-        effort: N m or N at most; 0 turns the motor off, and the axis has its friction again.
+        effort: maximum effort, N m or N; 0 turns the motor off and restores the joint friction.
     """
 
     row: int
@@ -259,14 +258,45 @@ class JointMotor:
 
 @dataclass(frozen=True)
 class SetMotors(Command):
-    """Set the motors of some joint axes; those of others stay. A motor replaces the friction."""
+    """Set motors of some joint axes; others are unchanged. A motor replaces joint friction."""
 
     motors: Tuple[JointMotor, ...]
 
 
 @dataclass(frozen=True)
+class WheelSlip:
+    """A wheel that slips in proportion to its speed (Gazebo's WheelSlipPlugin).
+
+    Its slips (see `Surface.slip1`) are `radius` times the rate of its joint, by the normal force,
+    times a compliance: worked out anew in every step.
+
+    Attributes:
+        row: link row of the wheel.
+        joint_row: row of the joint axis that it turns about.
+        radius: m.
+        normal_force: N, about what the wheel carries.
+        lateral, longitudinal: compliances along the first direction of friction (the axle, by the
+            plugin's convention) and across it, no unit.
+    """
+
+    row: int
+    joint_row: int
+    radius: float
+    normal_force: float
+    lateral: float = 0.0
+    longitudinal: float = 0.0
+
+
+@dataclass(frozen=True)
+class SetWheelSlips(Command):
+    """Let wheels slip from now on, until their models are removed; those of others stay."""
+
+    wheels: Tuple[WheelSlip, ...]
+
+
+@dataclass(frozen=True)
 class PlanarVelocity:
-    """A velocity that a model is given anew before every step, in its own frame's heading.
+    """A velocity that is set before every step, in the heading of the model frame.
 
     Attributes:
         model_id: the model.
@@ -282,16 +312,16 @@ class PlanarVelocity:
 
 @dataclass(frozen=True)
 class SetPlanarVelocities(Command):
-    """Models that move as they are told, whatever acts on them; replaces those told so far."""
+    """Set the planar velocities of models, regardless of forces; replaces all earlier ones."""
 
     velocities: Tuple[PlanarVelocity, ...]
 
 
 @dataclass(frozen=True)
 class PinModels(Command):
-    """Hold models where they are, at rest, whatever acts on them; `SetModelState` moves them.
+    """Pin models: they stay at rest regardless of forces; `SetModelState` moves them.
 
-    Replaces those held so far; the others fall, wakened, from where they are.
+    Replaces all earlier ones; released models wake up.
     """
 
     model_ids: Tuple[int, ...]
@@ -327,22 +357,58 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Clear(Command):
-    """Take everything out: models, loads, contacts. Settings and clock stay.
+class ReadJointWrenches(Command):
+    """What joints transmitted in the last step.
 
-    What is loaded afterwards behaves bit for bit as in a new engine.
+    A joint is measured from the step after its first reading on, until nobody has read it for
+    `joint_wrenches.FORGOTTEN` steps: whoever wants every value asks once in advance.
+
+    Reply value: a tuple with a `JointWrench` for each joint; None for one that was not measured in
+    the last step (read for the first time, or since then everything began anew) or is not there.
+
+    Attributes:
+        joints: numbers of models and names of joints, fixed ones too.
+    """
+
+    joints: Tuple[Tuple[int, str], ...]
+
+
+@dataclass(frozen=True)
+class JointWrench:
+    """What the parent link exerted on the child link through a joint, the mean over one step.
+
+    It holds all that passes through the joint: what keeps the links together, and the efforts of
+    motors, springs, dampers, friction and stops.
+
+    Attributes:
+        force: N, in the axes of the child link.
+        torque: N m, about the joint's origin, in the axes of the child link.
+        parent_from_child: how the child link is turned in the parent's axes; none for a joint to
+            the world.
+    """
+
+    force: Vec3 = ZERO3
+    torque: Vec3 = ZERO3
+    parent_from_child: Quat = IDENTITY_QUAT
+
+
+@dataclass(frozen=True)
+class Clear(Command):
+    """Remove all models, timed forces and contacts. Settings and clock are kept.
+
+    Models loaded afterwards behave bit for bit as in a new engine.
     """
 
 
 @dataclass(frozen=True)
 class Restart(Command):
-    """As `Clear`, and then these models in again as they are described, in this order, at rest.
+    """`Clear`, then add these models again in their initial state, in this order.
 
-    Quicker than loading each: nothing has to be read or worked out again, and an engine that knows
-    how the world looks when it begins may answer before it has built it.
+    Faster than loading each model: nothing is read or computed again, and an engine that has cached
+    the initial state may reply before the world is built.
 
     Attributes:
-        models: numbers and world poses of the model frames. What is not named stays out.
+        models: ids and world poses of the model frames. Other models are not added.
     """
 
     models: Tuple[Tuple[int, Pose], ...]
@@ -352,8 +418,8 @@ class Restart(Command):
 class Batch(Command):
     """Commands applied in the same gap between steps, in order.
 
-    The first one that is refused ends the batch: those before it stay done, and the reply carries
-    its error. Reply value: the list of their values.
+    The first rejected command ends the batch: earlier ones stay applied, and the reply has its
+    error. Reply value: the list of their values.
     """
 
     commands: Tuple[Command, ...]
@@ -361,7 +427,7 @@ class Batch(Command):
 
 @dataclass(frozen=True)
 class SetPhysics(Command):
-    """Replace the settings; a changed gravity wakes everything."""
+    """Replace the settings; a change of gravity wakes all bodies."""
 
     settings: PhysicsSettings
 
@@ -388,7 +454,7 @@ class Run(Command):
 
 @dataclass(frozen=True)
 class Advance(Command):
-    """Make exactly `steps` steps as fast as possible, also while paused; answered when done."""
+    """Execute `steps` steps as fast as possible, also while paused, then reply."""
 
     steps: int
 
@@ -397,8 +463,7 @@ class Advance(Command):
 class AddTimedForces(Command):
     """Add timed wrenches and efforts; those on one link or axis add up.
 
-    With `whole`, one whose start has passed begins with the next step and lasts as many steps as
-    it would have lasted.
+    With `whole`, an entry whose start has passed begins with the next step and keeps its duration.
     """
 
     forces: Tuple[TimedForce, ...]
@@ -407,16 +472,16 @@ class AddTimedForces(Command):
 
 @dataclass(frozen=True)
 class ClearTimedForces(Command):
-    """Clear timed wrenches and efforts by id; unknown ids have run out and are ignored."""
+    """Clear timed wrenches and efforts by id; ids that have expired are ignored."""
 
     force_ids: Tuple[int, ...]
 
 
 @dataclass(frozen=True)
 class Nudge(Command):
-    """Look at the credits again. It is no question, and gets no answer."""
+    """Check the credits again; has no reply."""
 
 
 @dataclass(frozen=True)
 class Ping(Command):
-    """Nothing; the reply shows that everything before it is done."""
+    """Does nothing; its reply shows that all earlier commands are done."""

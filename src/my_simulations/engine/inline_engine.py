@@ -1,4 +1,4 @@
-"""An engine in a thread of this process: for tests, and for tools that need no crash safety."""
+"""An engine in a thread of this process, for tests and for tools without crash safety."""
 from __future__ import annotations
 
 import queue
@@ -69,11 +69,11 @@ class InlineEngine:
         return 0
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
-        """Set who hears of events."""
+        """Set the listener of events."""
         self._on_event = listener
 
     def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
-        """Set who hears of deaths."""
+        """Set the listener of deaths."""
         self._on_death = listener
 
     def restart(self) -> None:
@@ -98,18 +98,18 @@ class InlineEngine:
         return future
 
     def nudge(self) -> None:
-        """Have the thread look at the credits."""
+        """Notify the thread that credits were raised."""
         self._channel.commands.put((0, Nudge()))
 
     def answer(self, number: int, reply: Reply) -> None:
-        """The engine's side: a command is done."""
+        """Called by the engine: a command is done."""
         with self._lock:
             waiting = self._waiting.pop(number, None)
         if waiting is not None:
             waiting[1].set_result(reply)
 
     def report(self, event: Event) -> None:
-        """The engine's side: something happened."""
+        """Called by the engine: an event occurred."""
         self._on_event(event)
 
     def wait_bell(self, timeout: float) -> bool:
@@ -119,7 +119,7 @@ class InlineEngine:
         return rung
 
     def kill(self, reason: str = "") -> None:
-        """Drop the backend as a crash would, with what has no answer yet."""
+        """Drop the backend and all unanswered commands, as a crash would."""
         reason = reason or "the engine was killed"
         self._stop()
         with self._lock:
@@ -129,7 +129,7 @@ class InlineEngine:
             future.set_exception(EngineDiedError(reason))
 
     def close(self) -> None:
-        """End it."""
+        """Stop the engine."""
         self._stop()
         self.backend.close()
 

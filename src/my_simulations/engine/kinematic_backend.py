@@ -1,4 +1,4 @@
-"""A backend that moves nothing by itself but what has a velocity: for tests without PyBullet."""
+"""A backend without dynamics, for tests without PyBullet."""
 from __future__ import annotations
 
 import struct
@@ -15,12 +15,14 @@ from .commands import (
     Command,
     ConnectModels,
     JointMotor,
+    JointWrench,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
     PlanarVelocity,
     ReadContacts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -29,6 +31,8 @@ from .commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetWheelSlips,
+    WheelSlip,
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
@@ -37,7 +41,7 @@ _LINK = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class KinematicBackend:
-    """Links fly straight on with their twists; no gravity or contacts. Timed forces are kept."""
+    """Links move with constant twists, without gravity and contacts; timed forces are stored."""
 
     def __init__(self) -> None:
         self.settings = PhysicsSettings()
@@ -48,6 +52,8 @@ class KinematicBackend:
         self.held: Tuple[int, ...] = ()
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.wheel_slips: Dict[int, WheelSlip] = {}
+        self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
@@ -63,7 +69,11 @@ class KinematicBackend:
             PinModels: self._hold,
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
             SetPlanarVelocities: self._set_planar,
+            SetWheelSlips: lambda c: self.wheel_slips.update(
+                {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
+            ReadJointWrenches: lambda command: tuple(
+                self.joint_wrenches.get(key) for key in command.joints),
             ConnectModels: lambda _: None,
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
@@ -74,7 +84,7 @@ class KinematicBackend:
         }
 
     def apply(self, command: Command) -> object:
-        """Carry out a command; raises `CommandRefusedError`."""
+        """Apply a command. Raises `CommandRefusedError`."""
         self._dirty = True
         handler = self._appliers.get(type(command))
         if handler is None:
@@ -82,7 +92,7 @@ class KinematicBackend:
         return handler(command)
 
     def configure(self, settings: PhysicsSettings) -> None:
-        """Only the step size matters."""
+        """Set the step size; other settings are ignored."""
         self.settings = settings
 
     def step(self, first: int, count: int) -> None:
@@ -103,7 +113,7 @@ class KinematicBackend:
         return dirty
 
     def read_poses(self) -> bool:
-        """Whether something may have changed; the next `read` says it again."""
+        """Whether something may have changed; the next `read` reports it again."""
         return self._dirty
 
     def tables(self) -> Tuple[memoryview, memoryview]:
@@ -118,11 +128,11 @@ class KinematicBackend:
         return memoryview(links), memoryview(joints)
 
     def events(self) -> List[Event]:
-        """Nothing ever happens by itself."""
+        """No events."""
         return []
 
     def close(self) -> None:
-        """Nothing to give back."""
+        """Does nothing."""
 
     def _clear(self, _: Clear) -> None:
         for model_id in list(self.models):
@@ -142,7 +152,7 @@ class KinematicBackend:
         self.planar = {one.model_id: one for one in command.velocities}
 
     def _turn_motors(self, span: float) -> None:
-        """Axes with a motor turn as fast as they are told at once."""
+        """Move axes with a motor at its rate, without acceleration."""
         for row, motor in self.motors.items():
             if motor.effort > 0.0 and row in self.joints:
                 self.joints[row] = (self.joints[row][0] + motor.rate * span, motor.rate)

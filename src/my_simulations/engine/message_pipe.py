@@ -1,4 +1,4 @@
-"""Messages over a stream socket: a length and a pickle, both ends our own processes."""
+"""Messages over a stream socket between our own processes: a length and a pickle."""
 from __future__ import annotations
 
 import pickle
@@ -12,21 +12,21 @@ _CHUNK = 1 << 18
 
 
 class Wire:
-    """One end. Sending may be shared by threads under a lock of the caller's; receiving may not."""
+    """One end. Several threads may send with a lock of the caller; only one may receive."""
 
     def __init__(self, sock: socket.socket) -> None:
         self.sock = sock
         self._pending = bytearray()
 
     def send(self, message: object) -> None:
-        """Send one message whole. Raises OSError when the other side is gone."""
+        """Send a message completely. Raises OSError if the other side is closed."""
         body = pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
         self.sock.sendall(_LENGTH.pack(len(body)) + body)
 
     def receive(self, timeout: float) -> List[Any]:
-        """All whole messages there are; waits up to `timeout` s for the first bytes.
+        """All complete messages received; waits up to `timeout` s for the first bytes.
 
-        Raises EOFError when the other side is gone.
+        Raises EOFError if the other side is closed.
         """
         while True:
             if not select.select([self.sock], [], [], timeout)[0]:

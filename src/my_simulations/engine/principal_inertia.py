@@ -1,4 +1,4 @@
-"""Inertia tensors as engines want them: a frame and a diagonal."""
+"""Principal axes and moments of inertia tensors."""
 from __future__ import annotations
 
 from typing import Any, Tuple
@@ -12,7 +12,7 @@ from ..geometry import Pose, Quat, Vec3, multiply, normalised
 def principal(inertial: Inertial) -> Tuple[Pose, Vec3]:
     """The pose of the principal axes in the link frame and the moments about them (kg m^2).
 
-    The tensor of the file is taken as it is; a diagonal one keeps its axes.
+    A diagonal tensor keeps its axes.
     """
     diagonal = (inertial.ixx, inertial.iyy, inertial.izz)
     if not (inertial.ixy or inertial.ixz or inertial.iyz):

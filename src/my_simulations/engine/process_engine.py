@@ -1,4 +1,4 @@
-"""The engine as a child process, seen from the parent."""
+"""The engine in a child process: the parent's side."""
 from __future__ import annotations
 
 import contextlib
@@ -26,10 +26,10 @@ _END_S = 3.0  # how long a child may take to end by itself
 
 
 class ProcessEngine:
-    """A PyBullet child. The constructor returns at once; commands queue while it still imports.
+    """PyBullet in a child process. The constructor returns at once; commands are queued.
 
-    After its death `restart` starts another child on the same ring, so that the last whole snapshot
-    stays readable until the new one has been told what to restore.
+    After its death `restart` starts another child on the same ring; the last complete snapshot
+    stays readable until the world was restored.
     """
 
     def __init__(self) -> None:
@@ -52,31 +52,31 @@ class ProcessEngine:
 
     @property
     def ring(self) -> RingReader:
-        """Where the states are read; the same for every child."""
+        """The ring with the snapshots, the same for every child."""
         return self._ring
 
     @property
     def ring_fd(self) -> int:
-        """The descriptor of the ring's memory, for other processes that look at it."""
+        """File descriptor of the ring's memory, for other processes that read it."""
         return self._ring_fd
 
     @property
     def pid(self) -> int:
-        """The child's process number."""
+        """Process id of the child."""
         return self._child.pid if self._child else 0
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
-        """Set who hears of events."""
+        """Set the listener of events."""
         self._event_listener = listener
 
     def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
-        """Set who hears of a child's death; called from its reader thread, once a child."""
+        """Set the listener of a child's death, called from its reader thread, once per child."""
         self._death_listener = listener
 
     def restart(self) -> None:
-        """Start a child. Call it from a thread that lives as long as the child is wanted.
+        """Start a child. Call it from a thread that lives as long as the child.
 
-        The kernel ends the child when the thread that started it ends (PR_SET_PDEATHSIG).
+        The kernel kills the child when the thread that started it ends (PR_SET_PDEATHSIG).
         """
         ours, theirs = socket.socketpair()
         descriptors = (theirs.fileno(), self._ring_fd, self._bell_in)
@@ -93,7 +93,7 @@ class ProcessEngine:
         self._reader.start()
 
     def submit(self, command: Command) -> "Future[Reply]":
-        """Queue a command; the future fails with `EngineDiedError` when the child dies first."""
+        """Queue a command; the future fails with `EngineDiedError` if the child dies before."""
         future: "Future[Reply]" = Future()
         with self._lock:
             if self._wire is None:
@@ -109,7 +109,7 @@ class ProcessEngine:
         return future
 
     def nudge(self) -> None:
-        """Have the child look at the credits."""
+        """Notify the child that credits were raised."""
         with self._lock:
             if self._wire is not None:
                 try:
@@ -128,13 +128,13 @@ class ProcessEngine:
         return True
 
     def kill(self, reason: str = "") -> None:
-        """End the child at once, as a crash would; `reason` is told instead of the signal."""
+        """Kill the child; `reason` is reported instead of the signal."""
         if self._child is not None and self._child.poll() is None:
             self._verdict = reason
             self._child.kill()
 
     def close(self) -> None:
-        """End the child and wait for the end."""
+        """Stop the child and wait until it has ended."""
         self._closing = True
         with self._lock:
             wire, self._wire = self._wire, None
@@ -187,11 +187,11 @@ class ProcessEngine:
 
 def answer_shown(ring: RingReader, waiting: "Dict[int, Tuple[Command, Future[Reply]]]"
                  ) -> "List[Tuple[Future[Reply], Reply]]":
-    """Take those out of `waiting` whose effect the last whole snapshot shows, with their replies.
+    """Remove commands from `waiting` whose effect the last snapshot shows; returns replies.
 
-    An engine may die after it has carried a command out and before it has said so. The world is
-    put back as in that snapshot, so what changes only states did take effect, and must not be done
-    again. What changes more than states is not in a snapshot.
+    An engine may die after it has applied a command and before it has replied. The world is
+    restored from that snapshot, so commands that change only states have taken effect and must not
+    be repeated. Other changes are not in a snapshot.
     """
     applied, found = ring.applied, []
     for number in [n for n in waiting if n <= applied]:

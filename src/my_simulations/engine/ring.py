@@ -4,7 +4,7 @@ A control page (int64 words) is followed by a ring of slots. A slot holds the st
 and joint axes after one step; its sequence number is written before (begin) and after (end) its
 body, so a reader that finds both equal to the one it asked for has a whole snapshot, and a writer
 that dies in the middle leaves the previous slot untouched. The step count of the control page is
-newer than the latest slot while nothing has moved, or when the read-out is thinned.
+newer than the latest slot while nothing has moved, or if not every step is read out.
 
 Who only wants to see where everything is, is served from a second, smaller ring: its slots hold
 link rows whose poses are new and whose twists may be older. To read twists costs as much again.

@@ -1,4 +1,4 @@
-"""How many rows of the ring a model takes, and which belongs to what."""
+"""Assigns rows of the ring to the links and joint axes of a model."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ from ..description.model import Joint, Model
 
 AXES = {"revolute": 1, "continuous": 1, "prismatic": 1, "fixed": 0, "ball": 0, "universal": 2,
         "revolute2": 2, "screw": 1}
-"""Axes with a row each, by type of the joints that connect links of a tree.
+"""Number of axes with a row, by type of joints in a tree.
 
-A ball joint has no axis to speak of; a screw has its angle. Gearboxes connect joints, not links.
+A ball joint has no axis; the position of a screw joint is its angle. Gearboxes connect joints.
 """
 
 
@@ -30,5 +30,5 @@ def axis_rows(model: Model) -> List[AxisRow]:
 
 
 def row_name(joint: str, number: int) -> str:
-    """What an axis of a joint is called."""
+    """Name of a joint axis."""
     return f"{joint}::{number}" if number else joint

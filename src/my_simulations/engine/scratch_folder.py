@@ -1,7 +1,7 @@
-"""Folders for files that other code reads by name, gone at the latest when the next one is made.
+"""Temporary folders that are removed at the latest when the next one is created.
 
-A folder belongs to whoever holds the lock on it. The kernel drops the locks of a process that ends
-in whatever way, so a folder that can be locked has been left behind.
+A folder belongs to the process that holds its lock. The kernel releases the locks of a process that
+ends for any reason, so a folder that can be locked was left behind.
 """
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PREFIX = "my_simulations_scratch_"
 
 
 class Scratch:
-    """A private folder, made when its path is first asked for.
+    """A private folder, created when its path is first used.
 
     As a context manager it is removed at the end.
     """
@@ -32,17 +32,17 @@ class Scratch:
 
     @property
     def path(self) -> str:
-        """The folder. Raises OSError when there is no room for one."""
+        """The path of the folder. Raises OSError if it cannot be created."""
         while not self._path:
             sweep()
             made = tempfile.mkdtemp(prefix=_PREFIX)
             self._lock = _locked(made)
-            if self._lock >= 0:  # else somebody swept it between the two
+            if self._lock >= 0:  # otherwise another process removed it in between
                 self._path = made
         return self._path
 
     def close(self) -> None:
-        """Remove the folder and all that is in it."""
+        """Remove the folder with its content."""
         if self._path:
             shutil.rmtree(self._path, ignore_errors=True)
             os.close(self._lock)
@@ -50,11 +50,11 @@ class Scratch:
 
 
 def sweep() -> None:
-    """Remove the folders whose owners have ended without doing so."""
+    """Remove folders of processes that have ended without removing them."""
     try:
         parent = tempfile.gettempdir()
         names = os.listdir(parent)
-    except OSError:  # no folder for such things: then there are none
+    except OSError:  # no parent folder: nothing to remove
         return
     for name in names:
         if name.startswith(_PREFIX):
@@ -66,7 +66,7 @@ def sweep() -> None:
 
 
 def _locked(path: str) -> int:
-    """A descriptor that locks a folder of ours; -1 when it is not to be had."""
+    """A descriptor that locks a folder; -1 if it cannot be locked."""
     descriptor = -1
     with contextlib.suppress(OSError):  # gone, another user's, or locked
         descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)

@@ -1,1 +1,1 @@
-"""Files to descriptions and back, by tables. Readers collect issues; they never print."""
+"""Reads and writes SDF and URDF by tables. Readers collect issues; they never print."""

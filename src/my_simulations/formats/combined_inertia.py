@@ -14,12 +14,13 @@ def combined_inertia(a: Optional[Inertial], b: Optional[Inertial],
     """The inertia of two rigidly joined bodies, in the link frame of `a`.
 
     Args:
-        a: None or mass 0 for no mass.
-        b: likewise.
-        b_pose: the link frame of `b` in that of `a`.
+        a: inertial of the first body; None or mass 0 for no mass.
+        b: inertial of the second body, likewise.
+        b_pose: pose of the link frame of `b` in that of `a`.
 
     Returns:
-        the sum, its inertia about the common centre of mass along the axes of `a`'s link frame.
+        The combined inertial; its tensor is about the common centre of mass, in the axes of the
+        link frame of `a`.
     """
     if b is None or b.mass <= 0:
         return a

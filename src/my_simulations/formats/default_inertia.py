@@ -1,9 +1,9 @@
-"""An inertia for links whose file gives none that a body can have.
+"""Substitute inertia for links whose file has an impossible inertia.
 
-Gazebo loads such links: ODE, which cannot invert the tensor, goes on with 1 kg m^2 about each axis
-(`dBodySetMass`), and so do we. Only what is merely left out, by zeros, is filled in better: from
-the shapes, or with as little as a body can have. Care-O-bot's furniture has tensors of zeros, and
-files that care about one axis only give its moment and zeros for the others.
+Gazebo loads such links: ODE cannot invert the tensor and uses 1 kg m^2 about each axis
+(`dBodySetMass`); so does this module. Zeros are treated as omitted values and replaced by better
+ones: those of the collision shapes, or the least that a body can have. Examples: the furniture of
+Care-O-bot has all-zero tensors, and some files give the moment about one axis only.
 """
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .combined_inertia import combined_inertia
 from .xml.source import Source
 
 _LEAST = 1e-3
-"""The least moment, of the largest one: a rod a hundred times as long as it is wide."""
+"""Smallest ratio of two principal moments: that of a rod a hundred times as long as wide."""
 
 
 def usable_inertia(link: Link, source: Source, element: Any) -> Inertial:
-    """The inertia of a link that can move, or one that can be simulated, with a warning."""
+    """The inertia of a dynamic link; one that cannot be simulated is replaced, with a warning."""
     inertial = link.inertial
     better = completed(inertial, link.collisions)
     if better is not None:
@@ -39,10 +39,10 @@ def usable_inertia(link: Link, source: Source, element: Any) -> Inertial:
 
 def completed(inertial: Inertial,
               collisions: List[Collision]) -> Optional[Tuple[Inertial, str]]:
-    """The inertia with what was left out, and words that end "the inertia of link 'x' …".
+    """The inertia with omitted values filled in, and a phrase for the warning.
 
     Returns:
-        None where nothing is left out, or nothing can be said about it.
+        None if no value is omitted, or if the omitted values cannot be estimated.
     """
     if is_zero(inertial):
         better = of_shapes(inertial, collisions)
@@ -51,9 +51,9 @@ def completed(inertial: Inertial,
 
 
 def _raised(i: Inertial) -> Optional[Tuple[Inertial, str]]:
-    """Moments of 0 beside others, about the given axes, as small as a body of the others has.
+    """Replace zero moments by the least value that is possible beside the other moments.
 
-    No principal moment is larger than the sum of the two others.
+    No principal moment exceeds the sum of the two others.
     """
     moments = (i.ixx, i.iyy, i.izz)
     least, middle, largest = sorted(moments)
@@ -67,16 +67,16 @@ def _raised(i: Inertial) -> Optional[Tuple[Inertial, str]]:
 
 
 def is_zero(inertial: Inertial) -> bool:
-    """True for a body with a mass and nothing but zeros in its tensor."""
+    """True for a body with a mass and an all-zero tensor."""
     i = inertial
     return i.mass > 0 and not any((i.ixx, i.iyy, i.izz, i.ixy, i.ixz, i.iyz))
 
 
 def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inertial]:
-    """The same mass and centre, with the tensor of the shapes at one density.
+    """The same mass and centre of mass, with the tensor of the collision shapes at uniform density.
 
     Returns:
-        None where there is no box, sphere or cylinder among the collisions.
+        None if no collision is a box, sphere or cylinder.
     """
     solids = [(collision, solid) for collision in collisions
               for solid in [_solid(collision.geometry)] if solid is not None]
@@ -94,7 +94,7 @@ def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inert
 
 
 def _solid(geometry: Geometry) -> Optional[Tuple[float, Tuple[float, float, float]]]:
-    """(volume, principal moments of 1 kg) of a solid shape about its centre."""
+    """Volume (m^3) and principal moments of 1 kg (kg m^2) of a solid shape about its centre."""
     if isinstance(geometry, Box):
         x, y, z = geometry.size
         return x * y * z, ((y * y + z * z) / 12, (x * x + z * z) / 12, (x * x + y * y) / 12)

@@ -1,4 +1,4 @@
-"""What an `<include>` or a spawn request changes in the model it brings."""
+"""Changes that an `<include>` or a spawn request makes to the model."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Warnings about models that load, but look wrong: `description.advice`, and mesh shapes."""
+"""Warnings about suspicious models: those of `description.advice`, and about mesh shapes."""
 from __future__ import annotations
 
 from itertools import islice
@@ -12,7 +12,7 @@ from ..description.validate import Fault
 from ..errors import Issue, warning
 
 ADVICE_LIMIT = 20
-"""Findings logged for one world; a pile whose models overlap has one for each pair."""
+"""Most findings logged for one world: overlapping models cause one for each pair."""
 
 
 def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],
@@ -55,7 +55,7 @@ def advice_issues(models: Sequence[Model], meshes: Mapping[str, MeshTable], file
 
 
 def _issue(fault: Fault, models: Sequence[Model], file: str, root: Any) -> Issue:
-    """The finding, at the element that it is about, or at the one that includes it."""
+    """The finding as an issue, located at its element or at the `<include>` of the model."""
     where: Dict[str, Any] = {"file": file}
     element = _element_of(fault.subject, models, root) if root is not None else None
     if element is not None:
@@ -73,7 +73,7 @@ def _element_of(subject: Any, models: Sequence[Model], root: Any) -> Any:
 
 
 def _named(root: Any, model: Model, link: Link, collision: str) -> Any:
-    """The innermost element that the names of collision, link and model identify; or None."""
+    """The innermost element with the names of model, link and collision; None if not found."""
     holder = root if root.tag == "robot" else None
     for element in root.iter("model", "include"):
         name = element.get("name") if element.tag == "model" else element.findtext("name")

@@ -1,4 +1,4 @@
-"""Reading whole files and texts: worlds, models, lights, of SDF or URDF."""
+"""Reads files and texts: worlds, models and lights, in SDF or URDF."""
 from __future__ import annotations
 
 import os
@@ -31,7 +31,7 @@ Text = Union[str, bytes]
 Entity = Union[Model, Light]
 
 _UNNAMED = "unnamed"
-_SDF_ROOTS = ("sdf", "gazebo")  # `<gazebo version="1.x">` is SDF from before it had its name
+_SDF_ROOTS = ("sdf", "gazebo")  # root element of the first SDF versions
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ class LoadedWorld:
 
     Attributes:
         world: the description; a saved state of the file is applied.
-        meshes: the collision meshes of its models, by model name. A collision whose mesh is not
-            there collides with nothing; it stays in the description, so that saving keeps it.
-        issues: all faults of the file and of the files that it names, and advice.
+        meshes: the collision meshes of its models, by model name. A collision without its mesh
+            does not collide; it stays in the description, so that saving keeps it.
+        issues: all faults of the file and of the files it refers to, and advice.
     """
 
     world: World
@@ -54,12 +54,11 @@ def read_world(path: str, resolver: Resolver, *, seed: int = 0, profile: str = "
                advice_limit: Optional[int] = ADVICE_LIMIT) -> LoadedWorld:
     """Read the first world of a file, completely.
 
-    A model that cannot be used is skipped, with its errors among the issues and in
-    `World.losses`.
+    An unusable model is skipped; its errors are among the issues and in `World.losses`.
 
     Args:
         path: the file.
-        resolver: finds the files that it names.
+        resolver: finds the files it refers to.
         seed: seed of populations that are placed at random.
         profile: name of the physics preset to use; "" for the default of the world.
         advice_limit: see `advice_issues`.
@@ -85,10 +84,10 @@ def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, se
 
 def parse_world(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
                 profile: str = "") -> Tuple[World, List[Issue]]:
-    """The description in a document, without what `read_world` adds.
+    """The description in a document, without the further steps of `read_world`.
 
-    `World.state` is not applied and no mesh is loaded: for copies and for tools that look into
-    files. Arguments and errors are those of `read_world_text`.
+    `World.state` is not applied and no mesh is loaded. For copies, and for tools that inspect
+    files. Arguments and errors as for `read_world_text`.
     """
     source, root = _open(text, resolver, file)
     return _world_in(root, source, seed, profile), source.log.issues
@@ -121,7 +120,7 @@ def _loaded_world(root: Any, source: Source, parsed: World,
 
 
 def read_file(path: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
-    """The model or light of a file; see `read_entity`.
+    """The first model or light of a file; see `read_entity`.
 
     Raises:
         InputError: nothing usable.
@@ -131,14 +130,14 @@ def read_file(path: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
 
 def read_entity(text: Text, resolver: Resolver,
                 file: str = "<model_xml>") -> Tuple[Entity, List[Issue]]:
-    """The first model or light of a document: `<robot>`, or `<sdf>` with one, also in a world.
+    """The first model or light of a document: `<robot>`, or `<sdf>` with a model, light or world.
 
-    With an issue of severity ERROR the result is not what the document describes.
+    If an issue has severity ERROR, the result differs from the document.
 
     Args:
         text: the document; bytes in any declared encoding.
-        resolver: finds what it names.
-        file: for the issues; where it is a path, relative URIs start from its folder.
+        resolver: finds the files it refers to.
+        file: name of the document in issues; if it is a path, relative URIs start from its folder.
 
     Raises:
         InputError: nothing usable.
@@ -147,7 +146,7 @@ def read_entity(text: Text, resolver: Resolver,
 
 
 class ParsedDocument:
-    """A parsed document whose root element can be looked at before its entity is read.
+    """A parsed document whose root element can be inspected before its entity is read.
 
     Attributes:
         root_tag: tag of the root element: `robot`, `sdf`, ...
@@ -159,23 +158,23 @@ class ParsedDocument:
         self.root_tag: str = root.tag
 
     def take_attributes(self, names: Iterable[str]) -> Dict[str, str]:
-        """Remove attributes from the root element; those that were there, by name."""
+        """Remove attributes from the root element; returns those that existed, by name."""
         return {name: self._root.attrib.pop(name) for name in names if name in self._root.attrib}
 
     def set_file(self, file: str) -> None:
-        """Give the document another name in issues, those that were found already included."""
+        """Change the document's name in issues, including issues that were already found."""
         log = self._source.log
         log.issues = [replace(issue, file=file) if issue.file == self._source.file else issue
                       for issue in log.issues]
         self._source.file = file
 
     def read_entity(self) -> Tuple[Entity, List[Issue]]:
-        """The first model or light; see the function `read_entity`. To be called once."""
+        """The first model or light; see the function `read_entity`. Call it once."""
         return _entity_in(self._root, self._source), self._source.log.issues
 
 
 def parse_document(text: Text, resolver: Resolver, file: str = "<model_xml>") -> ParsedDocument:
-    """Parse a document; arguments and errors are those of `read_entity`."""
+    """Parse a document; arguments and errors as for the function `read_entity`."""
     source, root = _open(text, resolver, file)
     return ParsedDocument(source, root)
 
@@ -197,7 +196,7 @@ def read_any(text: Text, resolver: Resolver,
              file: str) -> Tuple[Union[World, Model, Light, Actor], List[Issue]]:
     """The first world of a document, else its first model or light, else an actor.
 
-    The issues are complete, as those of `read_world`, and all advice is among them.
+    The issues are complete, as those of `read_world`, and include all advice.
 
     Raises:
         InputError: nothing is usable.
@@ -249,12 +248,12 @@ def _first_entity(root: Any, source: Source) -> Entity:
 
 
 def _suggestion(element: Any, known: Sequence[str]) -> str:
-    """A hint about an element whose name is unknown: the one it may be a misspelling of."""
+    """Hint for an unknown element: the known name most similar to its tag."""
     return closest(element.tag.lower() if isinstance(element.tag, str) else "", list(known))
 
 
 def _child_suggestion(root: Any, known: Sequence[str]) -> str:
-    """The same for the children of the root, with the line of the first that looks like one."""
+    """Hint for a root with unknown children: the similar known name and the line of the first."""
     for child in root:
         hint = _suggestion(child, known)
         if hint:
@@ -263,7 +262,7 @@ def _child_suggestion(root: Any, known: Sequence[str]) -> str:
 
 
 def _name_if_missing(element: Any, source: Source) -> IncludeOverrides:
-    """A spawn request brings a name of its own; a document without one will do for it."""
+    """Set a name if the document has none: a spawn request provides its own."""
     if (element.get("name") or "").strip():
         return IncludeOverrides()
     source.warn("name-missing", f"<{element.tag}> has no name; it is named {_UNNAMED!r}", element)

@@ -1,11 +1,11 @@
-"""What is read, and what becomes of it: a table for people, from the readers' own tables."""
+"""Generates the tables of supported elements from the readers' tables, for the documentation."""
 from __future__ import annotations
 
 from typing import Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from .sdf import model_tables, sensor_tables, world_tables
 from .urdf import transmission, urdf_tables
-from .xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from .xml.binding import Entry, Group, Kept, Nested, Part, Table, Use, Value
 
 
 class Supported(NamedTuple):
@@ -52,7 +52,7 @@ _URDF: Tuple[Table, ...] = (
 
 
 def supported(table: Table) -> Iterator[Supported]:
-    """The rows of one table; groups give way to what they hold."""
+    """The rows of one table; groups are replaced by their children and attributes."""
     for name in table.attributes:
         yield Supported(f"@{name}", table.attributes[name].use or table.use,
                         table.attributes[name].since)
@@ -73,12 +73,12 @@ def _rows(children: Mapping[str, Entry], usual: Use, path: str, since: str) -> I
 def _use(entry: Entry, usual: Use) -> Use:
     if isinstance(entry, Kept):
         return entry.use
-    assert isinstance(entry, (Value, Part))
+    assert isinstance(entry, (Value, Part, Nested))
     return entry.use or usual
 
 
 def markdown() -> str:
-    """Two tables, of SDF and of URDF, one row for each element with a table of its own."""
+    """Two Markdown tables, SDF and URDF, with a row for each element that has its own table."""
     lines: List[str] = []
     for title, tables in (("SDF", _SDF), ("URDF", _URDF)):
         lines += [f"| {title} element | {' | '.join(use.value for use in Use)} |",

@@ -1,1 +1,1 @@
-"""Object lists: what stands where in a world, read from YAML and checked. Pure, without ROS."""
+"""Object lists in YAML: names, files and poses of objects in a world. Independent of ROS."""

@@ -1,4 +1,4 @@
-"""A YAML loader for files that anybody may have written: plain values, bounded in every way."""
+"""A YAML loader for untrusted files: plain values only, with limits of size and depth."""
 from __future__ import annotations
 
 import re
@@ -8,22 +8,22 @@ import yaml
 
 DEEPEST = 64
 MOST_VALUES = 100_000
-"""Most values of a document, aliases expanded."""
+"""Largest number of values in a document, with aliases expanded."""
 LARGEST = 8 << 20
 """Largest file in bytes."""
 
-# What XML cannot hold: names and paths of a list end up in descriptions of models.
+# Characters that XML does not allow: names and paths of a list are written to XML.
 _BAD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 class GuardedLoader(yaml.SafeLoader):
-    """Raises yaml.MarkedYAMLError, with the place, for whatever it does not take.
+    """Raises yaml.MarkedYAMLError, with line and column, for all that it does not accept.
 
-    Dates stay texts: nothing in a list is one, and a name or path may look like one.
+    Dates are read as text, because a name or path may look like a date.
 
     Attributes:
-        keys: of the mappings that were being read when a fault was raised; empty when the document
-            had been read as a whole.
+        keys: keys of the mappings that were being read when a fault was raised; empty after the
+            whole document was read.
     """
 
     yaml_implicit_resolvers = {
@@ -38,7 +38,7 @@ class GuardedLoader(yaml.SafeLoader):
         self._values: Dict[int, int] = {}
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """The next node, refused where it is too deep, too large, or holds itself."""
+        """The next node; raises if it is too deep, too large, or contains itself."""
         is_value = isinstance(parent, yaml.MappingNode) and isinstance(index, yaml.ScalarNode)
         if is_value:
             self.keys.append(str(index.value))
@@ -66,7 +66,7 @@ class GuardedLoader(yaml.SafeLoader):
         return node
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
-        """A node's value; what Python cannot make of it is a fault of the file."""
+        """A node's value; exceptions of conversions are reported as faults of the file."""
         if isinstance(node, yaml.ScalarNode) and _BAD.search(node.value):
             raise _fault("text contains a control character or an unpaired surrogate",
                          node.start_mark)

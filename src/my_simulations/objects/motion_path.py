@@ -11,7 +11,7 @@ Point = Tuple[float, float]
 
 
 class Waypoint(NamedTuple):
-    """A place on a route: metres, heading in radians, world frame."""
+    """A pose on a path in the world frame: x, y (m), yaw (rad)."""
 
     x: float
     y: float
@@ -19,13 +19,13 @@ class Waypoint(NamedTuple):
 
 
 class Polygon:
-    """Straight edges from corner to corner and back to the first."""
+    """A closed path of straight edges."""
 
     def __init__(self, corners: Sequence[Point]) -> None:
-        """Takes at least two corners; equal neighbours are left out.
+        """Create a path through at least two corners (m); equal neighbours are skipped.
 
         Raises:
-            InputError: the corners do not span any way to go.
+            InputError: the length of the path is zero.
         """
         edges = []
         for start, end in zip(corners, [*corners[1:], *corners[:1]]):
@@ -38,7 +38,7 @@ class Polygon:
         self.length = sum(edge[2] for edge in edges)
 
     def at(self, distance: float) -> Waypoint:
-        """The place `distance` metres along the path, counted round and round."""
+        """The pose at `distance` (m) along the path, over any number of rounds."""
         start, end, length, into = self._edge(distance)
         part = into / length
         return Waypoint(start[0] + part * (end[0] - start[0]),
@@ -46,7 +46,7 @@ class Polygon:
                         math.atan2(end[1] - start[1], end[0] - start[0]))
 
     def restart(self, distance: float) -> float:
-        """Where to begin again when blocked: the start of the current edge."""
+        """Distance from which to restart when blocked: the start of the current edge."""
         return distance - self._edge(distance)[3]
 
     def _edge(self, distance: float) -> Tuple[Point, Point, float, float]:
@@ -60,10 +60,10 @@ class Polygon:
 
 
 class Circle:
-    """Clockwise seen from above, from the point of greatest y, heading along the path."""
+    """A clockwise circle (seen from above) from its point of greatest y, heading along the path."""
 
     def __init__(self, centre: Point, radius: float) -> None:
-        """Takes metres.
+        """Create a circle; centre and radius in m.
 
         Raises:
             InputError: the radius is not a positive number.
@@ -75,18 +75,18 @@ class Circle:
         self.length = 2.0 * math.pi * radius
 
     def at(self, distance: float) -> Waypoint:
-        """The place `distance` metres along the path; the heading there is minus the angle."""
+        """The pose at `distance` (m) along the path; its yaw is minus the angle."""
         angle = math.remainder(distance / self._radius, 2.0 * math.pi)
         return Waypoint(self._centre[0] + self._radius * math.sin(angle),
                         self._centre[1] + self._radius * math.cos(angle), -angle)
 
     def restart(self, distance: float) -> float:
-        """Where to begin again when blocked: angle 0 of the same round."""
+        """Distance from which to restart when blocked: angle 0 of the same round."""
         return distance - distance % self.length
 
 
 def parse_numbers(text: str, count: int, what: str) -> List[float]:
-    """Reads a list such as `[1, 2.5]` from a command line.
+    """Parse a list such as `[1, 2.5]` of a command line.
 
     Raises:
         InputError: it is not a list of `count` finite numbers.
@@ -95,7 +95,7 @@ def parse_numbers(text: str, count: int, what: str) -> List[float]:
 
 
 def parse_points(text: str, what: str) -> List[Point]:
-    """Reads a list of points such as `[[0, 0], [1, 0]]` from a command line.
+    """Parse a list of points such as `[[0, 0], [1, 0]]` of a command line.
 
     Raises:
         InputError: it is not a list of pairs of finite numbers.

@@ -1,7 +1,7 @@
-"""The XML text of an object, read from its file.
+"""Reads the XML text of an object from its file.
 
-The text is handled as text: whether its XML is sound is for the simulator to say, which can
-recover more than a parser here could, and names line and column.
+The text is not parsed here: the simulator checks the XML, can repair more, and reports line and
+column.
 """
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _START_TAG = re.compile(r"<[A-Za-z_][\w.:-]*")
 
 
 def read_document(file: str) -> str:
-    """The text of an XML file, decoded as its declaration says, UTF-8 without one.
+    """The text of an XML file, decoded as declared, else as UTF-8.
 
     Raises:
-        InputError: the file is missing, unreadable, empty, or not in its encoding.
+        InputError: the file is missing, unreadable, empty, or not in the declared encoding.
     """
     try:
         with open(file, "rb") as stream:
@@ -37,13 +37,13 @@ def read_document(file: str) -> str:
         raise InputError([error("object-encoding", f"the file is not {encoding} text: {fault}",
                                 file=file, hint="save it as UTF-8")]) from fault
     if declared and encoding.lower() not in ("utf-8", "utf8"):
-        # The service carries UTF-8, so the declared encoding would be wrong there.
+        # The service message is UTF-8, so the declared encoding would be wrong.
         text = re.sub(r"\A(\s*<\?xml[^>]*?)\s+encoding\s*=\s*[\"'][^\"']*[\"']", r"\1", text)
     return text
 
 
 def root_tag(xml: str) -> str:
-    """The name of the root element, "" where there is none."""
+    """The name of the root element; "" if there is none."""
     start = _root_start(xml)
     found = _START_TAG.match(xml, start)
     return found.group(0)[1:] if found else ""

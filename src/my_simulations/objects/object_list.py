@@ -1,8 +1,8 @@
-"""Object lists, in both formats of the Care-O-bot tools, as placed objects.
+"""Reads object lists in both formats of the Care-O-bot tools.
 
-2012 format: `model` (a file name without its ending) and `model_type` (the ending), under the
-`objects` folder of a package. Current format: `model: PACKAGE/relative/path.ext`, with nested
-`children` placed relative to their parent.
+2012 format: `model` (file name without extension) and `model_type` (the extension), in the folder
+`objects` of a package. Current format: `model: PACKAGE/relative/path.ext`, with nested `children`
+whose poses are relative to their parent.
 """
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .yaml_source import KeyPath, Source
 
 ENDINGS = {"urdf.xacro": "xacro", "sdf.xacro": "sdf.xacro", "xacro": "xacro",
            "urdf": "urdf", "sdf": "sdf"}
-"""File endings that can be spawned, longest first, and what each is."""
+"""File extensions that can be spawned, longest first, with (xacro, SDF)."""
 
 KEYS = ("model", "model_type", "position", "orientation", "children")
 MAX_DEPTH = 16
@@ -25,14 +25,14 @@ MAX_DEPTH = 16
 
 @dataclass(frozen=True)
 class ObjectFile:
-    """The file an object is made from.
+    """The model file of an object.
 
     Attributes:
-        package: ROS package that holds it.
-        path: path inside the package, with forward slashes.
-        xacro: whether it goes through xacro first.
-        sdf: whether the result is SDF; URDF otherwise.
-        named: whether the entry itself names the package.
+        package: ROS package that contains it.
+        path: path in the package, with forward slashes.
+        xacro: whether xacro is applied first.
+        sdf: whether the result is SDF; otherwise URDF.
+        named: whether the entry itself contains the package.
     """
 
     package: str
@@ -48,10 +48,10 @@ class PlacedObject:
 
     Attributes:
         name: flattened name, `PARENT_CHILD_GRANDCHILD`; the model's name in the world.
-        chain: the names it is made of, outermost first.
-        file: what it is made from.
-        position: metres, world frame.
-        rpy: fixed-axis roll, pitch, yaw, radians, world frame.
+        chain: the names it consists of, outermost first.
+        file: its model file.
+        position: position in the world frame, m.
+        rpy: fixed-axis roll, pitch, yaw in the world frame, rad.
         param: parameter path of its entry.
     """
 
@@ -70,11 +70,11 @@ class PlacedObject:
 
 @dataclass
 class ObjectList:
-    """A list as read: the sound objects, and what is wrong with the others.
+    """A list that was read: valid objects, and the faults of the others.
 
     Attributes:
         objects: by flattened name, in the order of the list.
-        faults: by flattened name ("" for the list itself); warnings are among them.
+        faults: by flattened name ("" for the list itself); includes warnings.
     """
 
     objects: Dict[str, PlacedObject] = field(default_factory=dict)
@@ -82,7 +82,7 @@ class ObjectList:
 
     @property
     def names(self) -> List[str]:
-        """Every name of the list, of sound and of faulty objects."""
+        """All names of the list, including those of faulty objects."""
         return list(dict.fromkeys([*self.objects, *(name for name in self.faults if name)]))
 
     def issues(self) -> List[Issue]:
@@ -91,15 +91,15 @@ class ObjectList:
 
 
 def parse_objects(tree: Any, source: Source, package: str = "my_simulations") -> ObjectList:
-    """Checks and flattens an object list.
+    """Check and flatten an object list.
 
     Args:
         tree: the values of the file, or of the parameter `/objects`; None is an empty list.
-        source: where they came from, for messages.
-        package: where a 2012 entry's file is looked for, in the folder `objects`.
+        source: origin of the values, for messages.
+        package: package whose folder `objects` contains the files of 2012-style entries.
 
     Returns:
-        The list; nothing is raised for a fault in it.
+        The list, with its faults; nothing is raised for them.
     """
     result = ObjectList()
     if tree is None:
@@ -114,7 +114,7 @@ def parse_objects(tree: Any, source: Source, package: str = "my_simulations") ->
 
 
 class _Reader:
-    """Walks one tree; every fault goes to the name of the object that has it."""
+    """Reads a tree; faults are collected by object name."""
 
     def __init__(self, source: Source, package: str, result: ObjectList) -> None:
         self._source = source
@@ -163,7 +163,7 @@ class _Reader:
         placed: Vec3 = (origin[0] + c * position[0] - s * position[1],
                         origin[1] + s * position[0] + c * position[1],
                         origin[2] + position[2])
-        # Only the parent's yaw turns a child; its roll and pitch do not (Care-O-bot tools).
+        # Only the parent's yaw rotates a child, not its roll and pitch (Care-O-bot tools).
         turned: Vec3 = (rpy[0], rpy[1], rpy[2] + yaw)
         if file is not None:
             self._result.objects[name] = PlacedObject(
@@ -271,7 +271,7 @@ class _Reader:
 
 
 def _number(value: Any) -> Optional[float]:
-    """A finite number, also from text: YAML 1.1 reads `1e-3` as a text."""
+    """A finite number, also from text, because YAML 1.1 reads `1e-3` as text."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         return None
     try:

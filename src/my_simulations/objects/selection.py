@@ -1,4 +1,4 @@
-"""Which objects of a list the words on a command line mean."""
+"""Selects objects of a list by the arguments of a command line."""
 from __future__ import annotations
 
 import difflib
@@ -14,13 +14,13 @@ ALL = "all"
 
 @dataclass
 class Selection:
-    """What was asked for.
+    """The selected objects.
 
     Attributes:
-        objects: sound objects, each once, in the order asked for.
-        names: every name asked for that the list has, of sound and of faulty objects.
-        unknown: words and group members that are no object of the list.
-        issues: everything that is wrong with the request or with the objects it names.
+        objects: valid objects, each once, in the requested order.
+        names: all requested names that the list contains, including those of faulty objects.
+        unknown: arguments and group members that are not in the list.
+        issues: faults of the request and of the requested objects.
     """
 
     objects: List[PlacedObject] = field(default_factory=list)
@@ -30,14 +30,14 @@ class Selection:
 
 
 def parse_groups(tree: Any, source: Source) -> Tuple[Dict[str, List[str]], List[Issue]]:
-    """Reads object groups: `group: [name, ...]`.
+    """Read object groups: `group: [name, ...]`.
 
     Args:
-        tree: the values of the file, or of the parameter `/object_groups`; None means no groups.
-        source: where they came from, for messages.
+        tree: the values of the file, or of the parameter `/object_groups`; None for no groups.
+        source: origin of the values, for messages.
 
     Returns:
-        The members by group name, and the faults; a faulty group is left out.
+        The members by group name, and the faults; faulty groups are skipped.
     """
     if tree is None:
         return {}, []
@@ -63,7 +63,7 @@ def parse_groups(tree: Any, source: Source) -> Tuple[Dict[str, List[str]], List[
 
 
 def closest(name: str, known: Iterable[str], count: int = 3) -> List[str]:
-    """The known names most like `name`, best first; letter case does not count."""
+    """The known names most similar to `name`, best first, ignoring letter case."""
     by_lower: Dict[str, List[str]] = {}
     for candidate in known:
         by_lower.setdefault(candidate.lower(), []).append(candidate)
@@ -72,7 +72,7 @@ def closest(name: str, known: Iterable[str], count: int = 3) -> List[str]:
 
 
 def unknown_name(name: str, known: Sequence[str], where: str) -> Issue:
-    """The error for a name that is not known, with the closest ones that are."""
+    """The error for an unknown name, with the most similar known ones."""
     near = closest(name, known)
     if near:
         hint = "did you mean " + " or ".join(near) + "?"
@@ -86,18 +86,18 @@ def unknown_name(name: str, known: Sequence[str], where: str) -> Issue:
 
 def select(words: Sequence[str], listing: ObjectList,
            groups: Mapping[str, Sequence[str]]) -> Selection:
-    """Resolves `all`, group names and object names.
+    """Resolve `all`, group names and object names.
 
-    A word is, in this order, `all`, a group, or an object. Members of groups may carry their
-    flattened name in either order of its parts, `PARENT_CHILD` or `CHILD_PARENT`.
+    An argument is, in this order, `all`, a group, or an object. Members of groups may have their
+    flattened names in either order of parts, `PARENT_CHILD` or `CHILD_PARENT`.
 
     Args:
-        words: the words of the command line.
+        words: the arguments of the command line.
         listing: the object list.
         groups: members by group name.
 
     Returns:
-        The selection; faults of objects that were not asked for are not in it.
+        The selection, without faults of other objects.
     """
     result = Selection()
     aliases = {placed.old_name: name for name, placed in listing.objects.items()}

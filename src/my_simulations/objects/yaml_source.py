@@ -1,4 +1,4 @@
-"""Reads a YAML file and remembers on which line every key stands."""
+"""Reads a YAML file with the line number of every key."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -14,12 +14,12 @@ KeyPath = Tuple[str, ...]
 
 @dataclass(frozen=True)
 class Source:
-    """Where a tree of values came from.
+    """Origin of a tree of values.
 
     Attributes:
         root: parameter path of the tree, e.g. `/objects`.
         file: path of the file, "" for values read from the parameter server.
-        lines: 1-based line of each key, by its path of keys below the root.
+        lines: 1-based line number of each key, by its path of keys below the root.
     """
 
     root: str
@@ -31,7 +31,7 @@ class Source:
         return "/".join([self.root, *path])
 
     def where(self, path: Sequence[str]) -> Dict[str, Any]:
-        """Keywords for an `Issue` about the key, or its nearest known parent."""
+        """Arguments of an `Issue` about the key, or its nearest known parent."""
         known = tuple(path)
         while known and known not in self.lines:
             known = known[:-1]
@@ -39,11 +39,11 @@ class Source:
 
 
 def read_yaml(file: str, root: str) -> Tuple[Any, Source, List[Issue]]:
-    """Reads one YAML document.
+    """Read one YAML document.
 
     Args:
         file: path of the file.
-        root: parameter path under which its content is known, for messages.
+        root: parameter path of its content, for messages.
 
     Returns:
         The plain values (None for an empty file), their source, and warnings about repeated keys.
@@ -61,7 +61,7 @@ def read_yaml(file: str, root: str) -> Tuple[Any, Source, List[Issue]]:
         node = loader.get_single_node()
         if node is None:
             return None, Source(root, file), []
-        # Lines are collected first: constructing flattens `<<` merges into the nodes.
+        # Lines are collected first, because construction merges `<<` into the nodes.
         _collect_lines(node, (), lines, issues, source)
         data = loader.construct_document(node)
     except yaml.YAMLError as fault:
@@ -112,7 +112,7 @@ def _yaml_issue(fault: yaml.YAMLError, text: str, source: Source,
     line, column = _place(fault, text)
     problem = (getattr(fault, "problem", None) or getattr(fault, "reason", None)
                or str(fault).splitlines()[0])
-    # The key that begins last before the fault is the one whose value it is in.
+    # The fault is in the value of the last key before it.
     above = [path for path, begins in source.lines.items() if begins <= line]
     key = max(above, key=lambda path: (source.lines[path], len(path)), default=())
     if not above and loader is not None:
@@ -123,8 +123,8 @@ def _yaml_issue(fault: yaml.YAMLError, text: str, source: Source,
 
 
 def _place(fault: yaml.YAMLError, text: str) -> Tuple[int, int]:
-    """Line and column, from 1; 0 where it is not known."""
-    if isinstance(fault, yaml.reader.ReaderError):  # of a character that YAML does not allow
+    """Line and column, from 1; 0 if unknown."""
+    if isinstance(fault, yaml.reader.ReaderError):  # position of an invalid character
         before = text[:fault.position]
         return before.count("\n") + 1, len(before) - before.rfind("\n")
     mark = getattr(fault, "problem_mark", None) or getattr(fault, "context_mark", None)

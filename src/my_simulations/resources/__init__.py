@@ -1,1 +1,1 @@
-"""From a URI to a path, or to an error that lists every place tried."""
+"""Resolves URIs to paths; errors list every place that was tried."""

@@ -1,4 +1,4 @@
-"""Which description file of a model folder to read (model.config, or the older manifest.xml)."""
+"""Selects the description file of a model folder (model.config, or the older manifest.xml)."""
 from __future__ import annotations
 
 import os
@@ -9,7 +9,7 @@ NEWEST: Tuple[int, ...] = (1, 7)
 
 
 def version_of(text: str) -> Tuple[int, ...]:
-    """`1.10` as (1, 10); () where the text is not a version."""
+    """`1.10` as (1, 10); () if the text is not a version."""
     try:
         return tuple(int(part) for part in text.strip().split("."))
     except ValueError:
@@ -17,11 +17,11 @@ def version_of(text: str) -> Tuple[int, ...]:
 
 
 def description_in(folder: str) -> Optional[str]:
-    """The path of the model's description, None where the folder holds none.
+    """The path of the model's description; None if the folder has none.
 
-    The `<sdf>` with the highest version not above `NEWEST` wins; one without a version counts as
-    the lowest; where all are newer the lowest of them is taken. Without a config file it is
-    model.sdf, or the only .sdf or .urdf there. Source: Gazebo's model folders.
+    The `<sdf>` with the highest version up to `NEWEST` is used; one without a version counts as the
+    lowest. If all are newer, the lowest is used. Without a config file it is model.sdf, or the only
+    .sdf or .urdf file. Source: Gazebo's model folders.
     """
     for config in ("model.config", "manifest.xml"):
         path = os.path.join(folder, config)

@@ -1,4 +1,4 @@
-"""What the resolver and the providers of models that must be downloaded have in common."""
+"""Interface between the resolver and providers that download models."""
 from __future__ import annotations
 
 from typing import Callable

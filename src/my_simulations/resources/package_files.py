@@ -1,4 +1,4 @@
-"""Where this package's own files lie: in the source tree, or in an install space."""
+"""Locates this package's own files, in the source tree or an install space."""
 from __future__ import annotations
 
 import os
@@ -6,14 +6,14 @@ from typing import List
 
 PACKAGE = "my_simulations"
 UNDERLAY = "MY_SIMULATIONS_UNDERLAY"
-"""Variable of a workspace that has a package of our name of its own: a prefix with ours in it."""
+"""Environment variable of a workspace with its own package of our name: prefix of our package."""
 
 
 def own_directory() -> str:
     """The folder with `models/`, `world/` and `Media/` of this package; "" where there is none.
 
-    Found without rospkg, which costs start-up time: the source tree holds this module, an install
-    space has `share/my_simulations` beside its `lib`, and CMAKE_PREFIX_PATH names the others.
+    Found without rospkg, which takes start-up time: the source tree contains this module, an
+    install space has `share/my_simulations` beside `lib`, and CMAKE_PREFIX_PATH lists the others.
     """
     above = _parents(os.path.realpath(__file__))
     source_root = above[3]  # resources/, my_simulations/, src/, the root
@@ -30,10 +30,10 @@ def own_directory() -> str:
 
 
 def package_directories() -> List[str]:
-    """The folders in which `package://my_simulations/...` is looked for, best first.
+    """Folders that are searched for `package://my_simulations/...`, in order.
 
-    Ours alone, unless the workspace has a package of this name of its own (`tools/run --overlay`):
-    that one comes first then. ROS is asked in such a workspace only; it costs start-up time.
+    Only ours, unless the workspace has its own package of this name (`tools/run --overlay`), which
+    comes first. rospack is queried in such a workspace only, because it takes start-up time.
     """
     own = own_directory()
     folders = [own] if own else []
@@ -49,7 +49,7 @@ def package_directories() -> List[str]:
 def file_in_package(folder: str, package: str, inside: str) -> str:
     """The path of `inside` below the folder of a package.
 
-    Where a user's package has our name and no such file, the path below ours if there is one.
+    If a user's package with our name lacks the file, the path in our package if it exists there.
     """
     path = os.path.join(folder, inside)
     if package == PACKAGE and not os.path.exists(path):

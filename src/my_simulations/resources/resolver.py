@@ -1,9 +1,8 @@
-"""From `model://`, `package://`, `file://`, addresses of Fuel and plain paths to a file.
+"""Resolves `model://`, `package://`, `file://`, Fuel URIs and plain paths to files.
 
-The order of search is Gazebo's. Look-up is lazy: an answer found in the first places never makes
-the package path be crawled. Nothing is fetched from a network but models that no place on this
-machine holds: of the database that GAZEBO_MODEL_DATABASE_URI names, if it does, and of a Fuel
-server where a file names one by its address.
+The search order is Gazebo's. Look-up is lazy: the package path is crawled only if the first places
+have no result. Only models that are not on this machine are downloaded: from the database in
+GAZEBO_MODEL_DATABASE_URI, if set, and from a Fuel server if a file refers to it by its address.
 """
 from __future__ import annotations
 
@@ -25,9 +24,9 @@ class ResourceNotFoundError(ResourceError):
     """No file for a URI.
 
     Attributes:
-        uri: as asked for.
-        tried: every place looked at, in order.
-        reason: why nothing was looked at, or empty.
+        uri: the URI.
+        tried: every place that was searched, in order.
+        reason: why nothing was searched; "" otherwise.
     """
 
     def __init__(self, uri: str, tried: Sequence[str] = (), reason: str = "") -> None:
@@ -40,26 +39,26 @@ class ResourceNotFoundError(ResourceError):
 
 
 class MissingModels(Protocol):
-    """Where models come from that no place on this machine holds."""
+    """Provides models that are not on this machine."""
 
     def begin(self) -> None:
-        """A new document is being read."""
+        """Start reading a new document."""
 
     def provide(self, name: str) -> str:
-        """The folder of a model; raises ModelNotProvidedError."""
+        """The folder of a model. Raises ModelNotProvidedError."""
 
 
 class WebModels(Protocol):
-    """Models of Fuel servers, from caches or the network (see `resources.fuel`)."""
+    """Models of Fuel servers, from caches or the network (see `database.fuel`)."""
 
     def begin(self) -> None:
-        """A new document is being read."""
+        """Start reading a new document."""
 
     def path(self, uri: FuelUri) -> str:
-        """The folder of a model or a file of it; raises ModelNotProvidedError."""
+        """The folder of a model, or a file in it. Raises ModelNotProvidedError."""
 
     def beside(self, base_dir: str, rest: str) -> List[str]:
-        """Where `model://` and `rest` may lie for a file that lies in a cache."""
+        """Candidate path of `model://` + `rest` for a file in a cache."""
 
     def folders(self) -> List[str]:
         """The caches."""
@@ -69,14 +68,14 @@ class Resolver:
     """Finds files by URI.
 
     Args:
-        model_paths: folders whose children are models (`model://child/...`), best first.
-        resource_paths: folders that plain relative paths and `file://` start from.
-        find_package: from a ROS package's name to its folder; never called for other URIs.
-        exported: more of both lists, asked for once, when the first ones hold no answer.
-        missing: asked for models that are nowhere here, None for nobody.
-        packages: the folders of all ROS packages.
-        fuel: models of Fuel servers, None for none.
-        own: the folders of the package my_simulations, best first, where there are several.
+        model_paths: folders whose children are models (`model://child/...`), in search order.
+        resource_paths: folders from which plain relative paths and `file://` start.
+        find_package: returns the folder of a ROS package; called for `package://` only.
+        exported: returns more of both lists; called once, if the first ones have no result.
+        missing: provides models that are not on this machine; None for no downloads.
+        packages: returns the folders of all ROS packages.
+        fuel: models of Fuel servers; None for none.
+        own: folders of the package my_simulations, in search order, if there are several.
     """
 
     def __init__(
@@ -104,8 +103,7 @@ class Resolver:
     def from_environment(cls, progress: Optional[Progress] = None) -> "Resolver":
         """A resolver with Gazebo's variables, ~/.gazebo/models, our own models and ROS packages.
 
-        Buildings that were drawn are models, too, where there are any (Gazebo behaviour).
-        `progress` hears of downloads (see `resources.database`).
+        Saved buildings are models, too (Gazebo behaviour). `progress` is called during downloads.
         """
         own = package_directories()
         models = [os.path.expanduser("~/.gazebo/models"), *_listed("GAZEBO_MODEL_PATH")]
@@ -133,53 +131,53 @@ class Resolver:
                    lambda: packages.folders() + own, FuelModels.from_environment(progress), own)
 
     def model_folders(self) -> List[str]:
-        """Folders whose children are models, best first, as far as they were needed yet."""
+        """Folders whose children are models, in search order, as far as searched until now."""
         return self._model_paths + (self._late.models if self._late else [])
 
     def resource_folders(self) -> List[str]:
-        """Folders that relative paths start from, as far as they were needed yet."""
+        """Folders from which relative paths start, as far as searched until now."""
         return self._resource_paths + (self._late.media if self._late else [])
 
     def fuel_folders(self) -> List[str]:
-        """The caches of Fuel models that are there."""
+        """The existing caches of Fuel models."""
         return self._fuel.folders() if self._fuel is not None else []
 
     def all_folders(self) -> List[str]:
-        """Model and resource folders, whether or not they were needed yet, and ROS packages."""
+        """All model and resource folders, and the folders of ROS packages."""
         return [*self._all("models"), *self._all("media"), *self._packages(),
                 *self.fuel_folders()]
 
     def meant(self, missing: ResourceNotFoundError) -> str:
-        """The beginning of a hint: a URI that is there and much like one that is not; or ""."""
+        """Hint for a missing URI: an existing, similar one; "" if there is none."""
         found = suggestion(missing.uri, missing.tried, self._packages)
         return f"did you mean {found}? Otherwise " if found else ""
 
     def add_model_folder(self, folder: str) -> None:
-        """Look for models in one more folder, after the others."""
+        """Add a model folder, searched after the others."""
         if folder not in self._model_paths:
             self._model_paths.append(folder)
 
     def knows_package(self, folder: str) -> bool:
-        """Whether a folder with a package.xml is where `package://` finds that package."""
+        """Whether a folder with a package.xml is the one that `package://` resolves to."""
         name = package_name(folder)
         found = self._find_package(name) if name else None
         return found is not None and os.path.realpath(found) == os.path.realpath(folder)
 
     def begin(self) -> None:
-        """A new document is being read: what could not be downloaded may be tried again."""
+        """Start reading a new document: failed downloads may be tried again."""
         for source in (self._missing, self._fuel):
             if source is not None:
                 source.begin()
 
     def resolve(self, uri: str, base_dir: str = "") -> str:
-        """The absolute path of what `uri` names, a file or a folder.
+        """The absolute path of the file or folder of a URI.
 
         Args:
             uri: `model://`, `package://`, `file://`, an address of Fuel, or a path.
-            base_dir: folder of the file that holds the URI, "" for none.
+            base_dir: folder of the file that contains the URI; "" for none.
 
         Raises:
-            ResourceNotFoundError: nothing is there.
+            ResourceNotFoundError: the file does not exist.
         """
         uri = uri.strip()
         if not uri or uri == "__default__":
@@ -209,7 +207,7 @@ class Resolver:
             raise ResourceNotFoundError(uri, reason=str(fault)) from None
 
     def _provided(self, uri: str, tried: List[str]) -> str:
-        """The path from the source of missing models, else ResourceNotFoundError."""
+        """The path of a downloaded model. Raises ResourceNotFoundError."""
         name, inside = _split_package(uri.partition("://")[2])
         if self._missing is not None and uri.startswith("model://") and name:
             try:
@@ -222,10 +220,10 @@ class Resolver:
         raise ResourceNotFoundError(uri, tried)
 
     def model_file(self, uri: str, base_dir: str = "") -> str:
-        """The description file `uri` names: the file itself, or the one its folder's config picks.
+        """The description file of a URI: the file itself, or that of a model folder.
 
         Raises:
-            ResourceNotFoundError: nothing is there, or the folder holds no description.
+            ResourceNotFoundError: not found, or the folder has no description.
         """
         path = self.resolve(uri, base_dir)
         if not os.path.isdir(path):
@@ -250,7 +248,7 @@ class Resolver:
 
                 yield from self._for_path(unquote(rest), base_dir)
         elif scheme == "model":
-            rest = rest.lstrip("/")  # `model:///name` is found, too (Gazebo behaviour)
+            rest = rest.lstrip("/")  # `model:///name` is accepted, too (Gazebo behaviour)
             if self._fuel is not None:
                 yield from self._fuel.beside(base_dir, rest)
             yield from self._for_model(rest)
@@ -285,7 +283,7 @@ class Resolver:
         if base_dir:
             yield os.path.join(base_dir, path)
         yield os.path.abspath(path)
-        # `worlds/` of a resource path is where Gazebo keeps worlds; ours is called `world/`.
+        # Gazebo has worlds in `worlds/` of a resource path, this package in `world/`.
         inside = path[len("worlds/"):] if path.startswith("worlds/") else ""
         for folder in self._all("media"):
             for suffix in _MEDIA_SUFFIXES:

@@ -1,7 +1,6 @@
-"""ROS packages: where one lies, and which Gazebo folders they export.
+"""Folders of ROS packages, and the Gazebo folders that they export.
 
-rospkg is imported, and the package path crawled, at the first question only: the node must not
-pay for it at start-up.
+rospkg is imported and the package path crawled on first use only, to keep start-up fast.
 """
 from __future__ import annotations
 
@@ -11,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any, Callable, List, Optional, Tuple, Type
 
 FindPackage = Callable[[str], Optional[str]]
-"""From a package's name to its folder, None where it is unknown."""
+"""Returns the folder of a package; None if it is unknown."""
 
 _EXPORT = re.compile(r"<gazebo_ros\b([^>]*)>")
 _NAME = re.compile(r"<name>([^<]*)</name>")
@@ -27,14 +26,14 @@ class ExportedPaths:
 
 
 class PackageIndex:
-    """The packages of ROS_PACKAGE_PATH (or of `rospack`, for tests)."""
+    """The packages of ROS_PACKAGE_PATH (tests pass in `rospack`)."""
 
     def __init__(self, rospack: Optional[Any] = None) -> None:
         self._rospack = rospack
         self._unknown: Tuple[Type[Exception], ...] = (KeyError,)
 
     def find(self, name: str) -> Optional[str]:
-        """The folder of package `name`, None where it is unknown or ROS is not there."""
+        """The folder of a package; None if it is unknown or ROS is not installed."""
         rospack = self._get()
         if rospack is None:
             return None
@@ -44,13 +43,13 @@ class PackageIndex:
             return None
 
     def folders(self) -> List[str]:
-        """Where all packages lie, in the order rospkg lists them."""
+        """Folders of all packages, in the order of rospkg."""
         rospack = self._get()
         found = [self.find(name) for name in (rospack.list() if rospack is not None else ())]
         return [folder for folder in found if folder]
 
     def exported(self) -> ExportedPaths:
-        """What all packages export, in the order rospkg lists them."""
+        """Exported folders of all packages, in the order of rospkg."""
         paths = ExportedPaths()
         for folder in self.folders():
             _add_exports(os.path.join(folder, "package.xml"), folder, paths)
@@ -68,7 +67,7 @@ class PackageIndex:
 
 
 def package_name(folder: str) -> str:
-    """The `<name>` in a folder's package.xml; "" where there is none."""
+    """The `<name>` in a folder's package.xml; "" if there is none."""
     try:
         with open(os.path.join(folder, "package.xml"), encoding="utf-8",
                   errors="replace") as stream:

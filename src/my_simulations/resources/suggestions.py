@@ -1,4 +1,4 @@
-"""What a URI that leads nowhere may have meant."""
+"""Suggestions for URIs that cannot be resolved."""
 from __future__ import annotations
 
 import difflib
@@ -10,16 +10,16 @@ _SCHEME = re.compile(r"([A-Za-z]+):/*")
 _SCHEMES = ("model", "package", "file")
 _LIKE = 0.7
 _NO_PACKAGE = "ROS package "
-"""What the places that were tried begin with where a package is unknown (`Resolver`)."""
+"""Prefix of `ResourceNotFoundError.tried` for an unknown package."""
 
 
 def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]) -> str:
-    """The URI with its misspelt part put right, where something of such a name exists; else "".
+    """The URI with its misspelt part corrected, if such a file exists; else "".
 
     Args:
-        uri: as asked for.
+        uri: the URI.
         tried: the paths that do not exist.
-        packages: the folders of all ROS packages; asked only about an unknown one.
+        packages: returns the folders of all ROS packages; called for an unknown package only.
     """
     scheme = _SCHEME.match(uri)
     if scheme and scheme.group(1).lower() in _SCHEMES:
@@ -41,7 +41,7 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
 
 
 def _first_missing(path: str) -> "tuple[str, str]":
-    """The deepest folder of a path that exists, and the name in it that does not."""
+    """The deepest existing folder of a path, and the missing name in it."""
     folder, name = os.path.split(path)
     while folder != os.path.dirname(folder) and not os.path.isdir(folder):
         folder, name = os.path.split(folder)

@@ -1,4 +1,4 @@
-"""Which world file a name means, which ones ship with this package, and where a user's are kept."""
+"""Finds world files by name; tells shipped worlds from those of users."""
 from __future__ import annotations
 
 import difflib
@@ -9,28 +9,28 @@ from .package_files import own_directory
 from .resolver import Resolver, ResourceNotFoundError
 
 ENDINGS = (".world", ".sdf")
-"""What a world's file name ends in."""
+"""File extensions of worlds."""
 
 SHIPPED = (
     "empty_world.world", "lab_course.world", "lab_room.world", "worlds/elevator_ros.world",
     "worlds/empty.world", "worlds/gazebo_ros_range.world", "worlds/mud.world",
     "worlds/rubble.world", "worlds/shapes.world", "worlds/willowgarage.world",
 )
-"""The worlds of this package, below its folder `world`; every other file there is a user's."""
+"""The worlds of this package, in its folder `world`; all other files there are the user's."""
 
 _SYSTEM = ("/usr/", "/opt/ros/")
-"""Below these, files belong to installed packages, also where an administrator may write."""
+"""Folders of installed packages, which are never used for saving, even if writable."""
 
 
 def users_folder() -> str:
-    """Where worlds are saved that belong to no other place; it need not exist yet."""
+    """Default folder for saved worlds; it need not exist."""
     return os.path.expanduser("~/my_simulations/worlds")
 
 
 def ships(path: str) -> bool:
-    """Whether a file that exists came with this package: a world of `SHIPPED`, a model, an object.
+    """Whether an existing file ships with this package: a world of `SHIPPED`, a model, an object.
 
-    Links are followed: what lies in the package by a link alone is not the package's.
+    Symbolic links are resolved: files that are linked into the package do not count.
     """
     own, real = own_directory(), os.path.realpath(path)
     if not own or not os.path.exists(real):
@@ -43,9 +43,9 @@ def ships(path: str) -> bool:
 
 
 def folder_of_users(world_file: str) -> str:
-    """The folder of a world file that is the user's own; "" when it ships or nobody may write.
+    """The folder of a user's world file; "" if the file ships or the folder is not writable.
 
-    Links are followed.
+    Symbolic links are resolved.
     """
     if not world_file or not os.path.isfile(world_file):
         return ""
@@ -57,18 +57,18 @@ def folder_of_users(world_file: str) -> str:
 
 
 def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
-    """The absolute path of the world that a name means.
+    """The absolute path of a world.
 
-    Relative names are looked for in the caller's folder, then in `users_folder`, then where the
-    resolver looks (Gazebo's order).
+    Relative names are searched in the caller's folder, in `users_folder`, then by the resolver
+    (Gazebo's order).
 
     Args:
         name: path, URI, or a name in one of those folders; `~` is the home folder.
-        resolver: see above.
-        caller: folder in which the command was typed; "" for the working directory.
+        resolver: searches Gazebo's resource folders.
+        caller: working directory of the user's command; "" for that of this process.
 
     Raises:
-        ResourceNotFoundError: it is in none of them; `tried` names every place.
+        ResourceNotFoundError: not found; `tried` lists every place.
     """
     name = os.path.expanduser(name.strip())
     tried: List[str] = []
@@ -87,7 +87,7 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
 
 
 def advice_on(name: str, caller: str = "") -> str:
-    """What to do about a world that was not found: the files it may have meant."""
+    """Hint for a world that was not found: similar existing files."""
     known = _known(caller or os.getcwd())
     base = os.path.basename(name.strip().rstrip("/"))
     same = [os.path.join(folder, file) for folder, file in known
@@ -101,12 +101,12 @@ def advice_on(name: str, caller: str = "") -> str:
 
 
 def _stem(file: str) -> str:
-    """A name without its ending, which is often forgotten or another one."""
+    """A name without its extension, for comparison."""
     return os.path.splitext(os.path.basename(file))[0].lower()
 
 
 def _known(caller: str) -> List[Tuple[str, str]]:
-    """World files that a name could mean: folder, and name in it."""
+    """Existing world files: (folder, name)."""
     own = own_directory()
     folders = [caller, users_folder(), *([os.path.join(own, "world")] if own else [])]
     found: List[Tuple[str, str]] = []

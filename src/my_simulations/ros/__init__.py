@@ -1,1 +1,1 @@
-"""The ROS face: converts, asks the simulator, converts back."""
+"""The ROS interface: converts requests, calls the simulator, converts results."""

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import time
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional
 
 import rospy
@@ -23,9 +22,6 @@ from .services.world_services import WorldServices
 
 if TYPE_CHECKING:
     from .services.model_services import ModelServices
-
-ROSOUT_SECONDS = 1.0
-"""Longest wait for /rosout to connect before the node exits with an error."""
 
 
 class Node:
@@ -69,9 +65,11 @@ class Node:
         """The ROS topics, for the world editor; None without `~enable_ros_network`."""
         if not self._network:
             return None
+        from .lifecycle import master_api
         from .plugins.topic_graph import TopicGraph
 
-        return TopicGraph(self._plugins.topic_uses, self._master_uri)
+        return TopicGraph(self._plugins.topic_uses, lambda method: master_api.call(
+            self._master_uri, method, rospy.get_name()))
 
     def advertise(self) -> None:
         """Advertise topics and services, and set parameters."""
@@ -255,19 +253,6 @@ def _reconfigure(simulator: Simulator) -> Optional[Any]:
 def base_name(world_file: str) -> str:
     """A world file's name without folder and extension."""
     return os.path.splitext(os.path.basename(world_file))[0]
-
-
-def fail(lines: List[str]) -> None:
-    """Log why the node exits, on standard error and /rosout, and wait until it is sent."""
-    from rosgraph_msgs.msg import Log
-
-    out = rospy.Publisher("/rosout", Log, queue_size=100)
-    until = time.monotonic() + ROSOUT_SECONDS
-    while out.get_num_connections() == 0 and time.monotonic() < until:
-        time.sleep(0.02)
-    for line in lines:
-        rospy.logfatal("%s", line)
-    time.sleep(0.1)
 
 
 def _private_parameters() -> Dict[str, Any]:

@@ -1,1 +1,1 @@
-"""The world as the faces see it: description, clock, and the only caller of the engine."""
+"""The running world for front ends: description, clock, and the only caller of the engine."""

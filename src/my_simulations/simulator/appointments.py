@@ -1,7 +1,7 @@
-"""Steps at which somebody must act: the engine stops there until everybody is done.
+"""Steps at which a plugin or sensor must act: the engine waits there until all are done.
 
-Appointments are whole steps: the k-th of a rate is the first step that does not begin before sim
-time k / rate. So they never drift, and the same run has the same ones.
+Appointments are whole steps: the k-th appointment of a rate is the first step that begins at or
+after sim time k / rate. They do not drift, and repeated runs have the same appointments.
 """
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _PS = 10 ** 12
 
 
 class Moment(NamedTuple):
-    """Where the engine is.
+    """Position of the engine in time.
 
     Attributes:
-        clock_sets: how often the clock was set; another number is another clock.
+        clock_sets: how often the clock was set; steps of different counts are not comparable.
         step: the step count.
-        clock: turns step counts into sim time.
+        clock: converts step counts to sim time.
     """
 
     clock_sets: int
@@ -30,12 +30,12 @@ class Moment(NamedTuple):
 
     @property
     def sim_ns(self) -> int:
-        """Sim time, ns."""
+        """Sim time at the step, ns."""
         return self.clock.sim_ns(self.step)
 
 
 class Rate:
-    """Appointments of a rate in Hz of sim time; 0 or less is every step."""
+    """Appointments at a rate in Hz of sim time; 0 or less means every step."""
 
     def __init__(self, hertz: float) -> None:
         from fractions import Fraction  # a world without appointments starts without it
@@ -45,7 +45,7 @@ class Rate:
             self._period_ps = _PS / Fraction(hertz).limit_denominator(10 ** 6)
 
     def after(self, step: int, clock: Clock) -> int:
-        """The first appointment after a step."""
+        """Step count of the first appointment after `step`."""
         if not self._period_ps or self._period_ps <= clock.step_ps:
             return step + 1
         number = (clock.epoch_ns * 1000 + (step - clock.epoch_step) * clock.step_ps) \
@@ -57,7 +57,7 @@ class Rate:
                 return found
 
     def is_at(self, step: int, clock: Clock) -> bool:
-        """Whether a step is an appointment."""
+        """Whether `step` is an appointment."""
         return self.after(step - 1, clock) == step
 
     def _step_of(self, number: int, clock: Clock) -> int:
@@ -66,10 +66,10 @@ class Rate:
 
 
 class Consumer:
-    """One who has appointments, in a thread of its own.
+    """A thread that has appointments, such as that of the plugins.
 
-    The engine stands at the step allowed last, and whenever the clock is set, until the next
-    `allow`. Whoever does not need the world any more must `leave` it, or it stands for ever.
+    The engine waits at the last allowed step, and after each setting of the clock, until the next
+    `allow`. Call `leave` when done; otherwise the engine waits for ever.
     """
 
     def __init__(self, session: Session, word: int, leave: "Appointments") -> None:
@@ -79,31 +79,31 @@ class Consumer:
         self.rung = threading.Event()
 
     def now(self) -> Moment:
-        """Where the engine is; while it stands at an appointment, it stays there."""
+        """Position of the engine; it does not change while the engine waits at an appointment."""
         return Moment(*self._session.ring.clock_now())
 
     def allow(self, moment: Moment, step: Optional[int]) -> None:
-        """Let the engine go on to a step, or for ever with None, by the clock of `moment`."""
+        """Let the engine advance to `step` by the clock of `moment`; None for no limit."""
         self._session.ring.words[self._word] = credit_word(
             moment.clock_sets, NO_LIMIT >> 17 if step is None else step)
         self._session.supervisor.engine.nudge()
 
     def wait(self, timeout: float) -> bool:
-        """Wait until the engine stands somewhere, or `rung` is set; False after `timeout` s."""
+        """Wait until the engine stops at an appointment or `rung` is set; False on timeout (s)."""
         if not self.rung.wait(timeout):
             return False
         self.rung.clear()
         return True
 
     def leave(self) -> None:
-        """Have no appointments any more."""
+        """Cancel all appointments of this consumer."""
         self._owner.forget(self)
         self._session.ring.words[self._word] = 0
         self._session.supervisor.engine.nudge()
 
 
 class Appointments:
-    """Hands out the credits of the engine. Safe from any thread; takes no other lock."""
+    """Distributes the step credits of the engine. Safe from any thread; takes no other lock."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -111,13 +111,13 @@ class Appointments:
         self._consumers: List[Optional[Consumer]] = [None] * CONSUMERS
 
     def now(self) -> Moment:
-        """Where the engine is, for who does not wait for it."""
+        """Position of the engine, for callers without appointments."""
         return Moment(*self._session.ring.clock_now())
 
     def join(self) -> Consumer:
-        """Become one whom the engine waits for: at once, until the first `allow`.
+        """Register a consumer; the engine waits for it from now until its first `allow`.
 
-        Raises CommandError when there are too many.
+        Raises CommandError if all credit words are in use.
         """
         with self._lock:
             if None not in self._consumers:
@@ -130,12 +130,12 @@ class Appointments:
         return consumer
 
     def forget(self, consumer: Consumer) -> None:
-        """A consumer has left."""
+        """Free the credit word of a consumer."""
         with self._lock:
             self._consumers = [None if one is consumer else one for one in self._consumers]
 
     def ring_all(self) -> None:
-        """The engine stands at somebody's appointment, or may have."""
+        """Wake all consumers, because the engine has stopped at an appointment."""
         for consumer in list(self._consumers):
             if consumer is not None:
                 consumer.rung.set()

@@ -38,7 +38,7 @@ class SimClock:
         return clock.sim_ns(step)
 
     def now(self) -> Tuple[int, Clock]:
-        """The step count, and the clock that turns it into sim time."""
+        """The step count, and the clock that converts it to sim time."""
         return self._session.ring.clock()
 
     @property
@@ -91,7 +91,7 @@ class SimClock:
     # -- for the other parts -----------------------------------------------------------------------
 
     def resume_commands(self) -> List[Command]:
-        """`Run`, unless paused, stepped manually or loading."""
+        """Commands that resume stepping; none if paused, stepped manually or loading."""
         stands = self._paused or self._manual_stepping or self._loading
         return [] if stands else [Run(self._horizon)]
 
@@ -105,7 +105,7 @@ class SimClock:
             self._loading = False
 
     def pause_after_recovery(self) -> None:
-        """Stay paused after a restart of the engine, because it keeps crashing while running."""
+        """Stay paused after a restart of the engine, because stepping crashes it repeatedly."""
         self._paused = True
 
     def start_command(self, start_ns: int, step_size: float) -> Command:

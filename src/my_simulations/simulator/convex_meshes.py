@@ -12,7 +12,7 @@ _MOST_KEPT = 1000
 
 
 class ConvexParts:
-    """Decomposes meshes, each once."""
+    """Decomposes meshes into convex parts, each mesh once."""
 
     def __init__(self, log: Callable[[Issue], None], progress: Callable[[str], None]) -> None:
         self._log = log
@@ -20,7 +20,7 @@ class ConvexParts:
         self._divided: Dict[int, MeshData] = {}
 
     def of(self, model: Model, meshes: MeshTable) -> MeshTable:
-        """The collision meshes of a flattened model, those of moving links with convex parts.
+        """The collision meshes of a flattened model; those of moving links get convex parts.
 
         Blocks while a mesh is decomposed for the first time.
         """

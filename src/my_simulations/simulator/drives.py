@@ -1,4 +1,4 @@
-"""Motors of joints and planar velocities of models, which the engine keeps up by itself."""
+"""Joint motors, planar velocities and wheel slips, which the engine applies in every step."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -11,32 +11,44 @@ from ..engine.commands import (
     PlanarVelocity,
     SetMotors,
     SetPlanarVelocities,
+    SetWheelSlips,
+    WheelSlip,
 )
 from .registry import Entity
 from .session import Session
 
 
 class Drives:
-    """Owns what drives models from within. Changes take the structure lock."""
+    """Owns joint motors and planar velocities. Changes take the structure lock."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
         self._motors: Dict[int, JointMotor] = {}
         self._planar: Dict[int, PlanarVelocity] = {}
+        self._slips: Dict[int, WheelSlip] = {}
+
+    def set_wheel_slips(self, wheels: Sequence[WheelSlip]) -> None:
+        """Let wheels slip in proportion to their speed, until a reset; others stay.
+
+        Raises CommandError when a link or joint is not there.
+        """
+        with self._session.structure_lock:
+            self._session.call(SetWheelSlips(tuple(wheels)))
+            self._slips.update({wheel.row: wheel for wheel in wheels})
 
     def set(self, motors: Sequence[JointMotor] = (),
             planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None) -> bool:
-        """Set motors by joint row and planar velocities by model number; others stay.
+        """Set motors by joint row and planar velocities by model id; others keep their values.
 
         Args:
-            motors: of any models.
-            planar: of any models.
-            revision: of the models when the rows were looked up (`Models.revision`).
+            motors: joint motors by row; rate in rad/s or m/s, maximum effort in N m or N.
+            planar: planar velocities by model id, m/s and rad/s.
+            revision: `Models.revision` when the rows were looked up.
 
         Returns:
-            False when the models have changed since; then nothing is set.
+            False if the models have changed since then; nothing is set.
 
-        Raises CommandError when a joint is not there.
+        Raises CommandError if a joint does not exist.
         """
         with self._session.structure_lock:
             if revision is not None and revision != self._session.registry.revision:
@@ -56,7 +68,7 @@ class Drives:
             return True
 
     def stop(self, entity: Entity) -> None:
-        """Nothing drives a model any more: motors off, no planar velocity."""
+        """Switch off the motors and the planar velocity of a model."""
         with self._session.structure_lock:
             mine = [motor for row, motor in self._motors.items() if entity.has_joint_row(row)]
             commands: List[Command] = []
@@ -72,27 +84,32 @@ class Drives:
     # -- for the other parts, which hold the structure lock ----------------------------------------
 
     def restore_commands(self) -> List[Command]:
-        """What a new engine must be told."""
+        """Commands that set the drives in a new engine."""
         commands: List[Command] = []
         if self._motors:
             commands.append(SetMotors(tuple(self._motors.values())))
         if self._planar:
             commands.append(SetPlanarVelocities(tuple(self._planar.values())))
+        if self._slips:
+            commands.append(SetWheelSlips(tuple(self._slips.values())))
         return commands
 
     def forget_entity(self, entity: Entity) -> None:
-        """Drop what drives a model that has left the engine."""
+        """Remove the drives of a model that was deleted from the engine."""
         self._motors = {row: motor for row, motor in self._motors.items()
                         if not entity.has_joint_row(row)}
         self._planar.pop(entity.model_id, None)
+        self._slips = {row: wheel for row, wheel in self._slips.items()
+                       if not entity.has_link_row(row)}
 
     def forget_all(self) -> None:
-        """The engine has begun anew without them."""
+        """Remove all drives, after the engine was cleared."""
         self._motors.clear()
         self._planar.clear()
+        self._slips.clear()
 
     def transferred(self, old: Entity, new: Entity) -> List[Command]:
-        """What drives a model, for the entity that replaces it; they are kept from now on."""
+        """Commands that move the drives of a replaced model to its successor `new`."""
         names = {old.first_joint_row + n: name for n, name in enumerate(old.joint_names)}
         motors = [replace(motor, row=new.first_joint_row + new.joint_names.index(names[row]))
                   for row, motor in self._motors.items() if names.get(row) in new.joint_names]
@@ -102,12 +119,22 @@ class Drives:
             moved = replace(planar, model_id=new.model_id)
             others = [one for one in self._planar.values() if one is not planar]
             commands.append(SetPlanarVelocities((*others, moved)))
+        links = {old.first_link_row + n: name for n, name in enumerate(old.link_names)}
+        wheels = [replace(wheel, row=new.first_link_row + new.link_names.index(links[row]),
+                          joint_row=new.first_joint_row
+                          + new.joint_names.index(names[wheel.joint_row]))
+                  for row, wheel in self._slips.items() if links.get(row) in new.link_names
+                  and names.get(wheel.joint_row) in new.joint_names]
+        if wheels:
+            commands.append(SetWheelSlips(tuple(wheels)))
         return commands
 
     def adopt(self, commands: Sequence[Command]) -> None:
-        """The engine has carried out what `transferred` gave."""
+        """Keep the drives of `transferred` commands, which the engine has applied."""
         for command in commands:
             if isinstance(command, SetMotors):
                 self._motors.update({motor.row: motor for motor in command.motors})
             elif isinstance(command, SetPlanarVelocities):
                 self._planar = {one.model_id: one for one in command.velocities}
+            elif isinstance(command, SetWheelSlips):
+                self._slips.update({wheel.row: wheel for wheel in command.wheels})

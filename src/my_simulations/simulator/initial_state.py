@@ -10,10 +10,10 @@ from .registry import Entity
 
 
 def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Command]:
-    """The commands that apply the saved state to a model just loaded.
+    """Commands that apply a saved initial state to a model that was just loaded.
 
-    A model without joints gets the twist of each link, an articulated one that of its canonical
-    link, as one rigid body; its joint rates are zero.
+    A model without joints gets the twist of each link. An articulated model moves as one rigid
+    body with the twist of its canonical link; its joint rates are zero.
     """
     if start is None or entity.model.static:
         return []

@@ -1,4 +1,4 @@
-"""The joints between models: what an engine must be told of them, and what is saved."""
+"""Joints between models: their commands for the engine, and their description for saving."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
@@ -24,48 +24,48 @@ class _Connection:
 
 
 class InterModelJoints:
-    """Joints whose ends are scoped link names of several models. Never changes."""
+    """Joints whose parent and child are links of different models, by scoped name. Immutable."""
 
     def __init__(self, joints: Sequence[Joint] = ()) -> None:
         self._all = [_Connection(joint) for joint in joints]
 
     @property
     def joints(self) -> List[Joint]:
-        """Those that hold."""
+        """The joints that are located, in order."""
         return [one.joint for one in self._all]
 
     def slides(self, model: str) -> bool:
-        """Whether a sliding joint ends at a link of that model."""
+        """Whether a prismatic joint connects a link of that model."""
         return any(one.joint.type == "prismatic" and _touches(one.joint, model)
                    for one in self._all)
 
     def without(self, model: str) -> "InterModelJoints":
-        """What is left when a model goes."""
+        """These joints without those that connect a model."""
         return self._of([one for one in self._all if not _touches(one.joint, model)])
 
     def of(self, model: str) -> "InterModelJoints":
-        """Those that go when a model does."""
+        """The joints that connect a model, which are deleted with it."""
         return self._of([one for one in self._all if _touches(one.joint, model)])
 
     def joined(self, others: "InterModelJoints") -> "InterModelJoints":
-        """These and others."""
+        """The union of these joints and others."""
         return self._of(self._all + others._all)
 
     def renamed(self, old: str, new: str) -> "InterModelJoints":
-        """The same when a model is named otherwise."""
+        """The same joints after a model was renamed."""
         return self._of([replace(one, joint=replace(
             one.joint, name=_rescoped(one.joint.name, old, new),
             parent=_rescoped(one.joint.parent, old, new),
             child=_rescoped(one.joint.child, old, new))) for one in self._all])
 
     def present(self, registry: Registry) -> "InterModelJoints":
-        """Those whose links are there."""
+        """The joints whose parent and child links exist in the registry."""
         return self._of([one for one in self._all if all(
             _row(registry, end, "", None) is not None
             for end in (one.joint.parent, one.joint.child))])
 
     def located(self, registry: Registry) -> Tuple["InterModelJoints", List[Issue]]:
-        """With their places in the world as loaded, and warnings about those that cannot hold."""
+        """The joints with their poses in the world as loaded; warnings about unusable ones."""
         found, issues = [], []
         for joint in self.joints:
             child, parent = (_initial(registry, name) for name in (joint.child, joint.parent))
@@ -81,9 +81,9 @@ class InterModelJoints:
 
     def commands(self, registry: Registry, model: str = "",
                  instead: Optional[Entity] = None) -> List[ConnectModels]:
-        """What connects the models of the registry; with `model`, only that one with others.
+        """Commands that create the joints; with `model`, only the joints of that model.
 
-        `instead`: what is going to take the place of `model`.
+        `instead`: the entity that is about to replace `model`.
         """
         made = []
         for one in self._all:
@@ -105,7 +105,7 @@ class InterModelJoints:
 
 @dataclass(frozen=True)
 class DeletedModel:
-    """What a deleted model needs to come back: its place in the order, its joints to others.
+    """What restores a deleted model: its position in the order, its joints to other models.
 
     `launched`: see `Entity`.
     """
@@ -124,7 +124,7 @@ def _rescoped(name: str, old: str, new: str) -> str:
 
 
 def _initial(registry: Registry, name: str) -> Optional[Pose]:
-    """World pose of a link as loaded; the origin for the world; None for no such link."""
+    """World pose of a link as loaded; identity for the world; None if the link does not exist."""
     if name == WORLD:
         return IDENTITY
     try:

@@ -2,10 +2,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint
-from ..engine.commands import SetAxes, SetJoints
+from ..engine.commands import JointWrench, ReadJointWrenches, SetAxes, SetJoints
 from .models import Models
 from .session import Session
 
@@ -37,6 +37,21 @@ class Joints:
             return [snapshot.joint(row) for row in (entity.axis_row(joint.name, number)
                                                     for number in (0, 1)) if row is not None]
 
+    def wrenches(self, names: Sequence[str]) -> List[Optional[JointWrench]]:
+        """What joints (fixed ones too) transmitted in the last step, in one question to the engine.
+
+        A joint is measured from the step after its first reading on: the first answer is None, and
+        so is the one after a reset, a change of its model, or a crash of the engine. None for ever
+        for joints between models.
+
+        Raises UnknownEntityError, CommandError.
+        """
+        with self._session.registry_lock:
+            found = [self._session.registry.joint(name) for name in names]
+        answer = self._session.call(ReadJointWrenches(tuple(
+            (entity.model_id, joint.name) for entity, joint, _ in found))).value
+        return list(answer) if isinstance(answer, tuple) else [None] * len(found)
+
     def set_positions(self, positions: Dict[str, float]) -> None:
         """Move joint axes to positions (rad or m), at rest.
 
@@ -50,9 +65,9 @@ class Joints:
         self._session.call(SetJoints(rows))
 
     def edit(self, name: str, joint: Joint) -> None:
-        """Give a joint other axes (limits, friction, damping, spring, motor) or another type.
+        """Change the axes (limits, friction, damping, spring, motor) or the type of a joint.
 
-        Raises CommandError; then nothing has changed.
+        Raises CommandError if the engine rejects it; then nothing has changed.
         """
         session = self._session
         with session.structure_lock:
@@ -71,7 +86,7 @@ class Joints:
 
 
 def _fixed_properties(joint: Joint) -> Tuple[object, ...]:
-    """What of a joint the engine cannot change in place."""
+    """The properties of a joint that the engine cannot change without building the model again."""
     return (joint.name, joint.type, joint.parent, joint.child, joint.pose, joint.thread_pitch,
             joint.gearbox_ratio, joint.gearbox_reference,
             *((axis.xyz, axis.mimic) if axis is not None else None

@@ -13,7 +13,7 @@ from .session import Session
 
 
 class Lights:
-    """Owns the lights, which the engine does not know. Changes take both locks of the session."""
+    """Owns the lights, which are not simulated. Changes take both locks of the session."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -31,9 +31,9 @@ class Lights:
         raise UnknownEntityError(f"unknown light '{name}'")
 
     def add(self, light: Light, frame: str = "", slot: Optional[OrderSlot] = None) -> None:
-        """Add a light, its pose given in `frame`; last, or at its former place in the order.
+        """Add a light whose pose is given in `frame`: last, or at its former position in the order.
 
-        Raises CommandError: empty or taken name, unknown frame, a pose that is not finite.
+        Raises CommandError for an empty or existing name, an unknown frame, or a non-finite pose.
         """
         if not light.name:
             raise CommandError("the name of a light must not be empty")
@@ -50,7 +50,7 @@ class Lights:
             session.set_world_fields(lights=lights)
 
     def set(self, name: str, light: Light) -> None:
-        """Replace a light; another name renames it. Raises CommandError."""
+        """Replace the light `name`; a new name in `light` renames it. Raises CommandError."""
         session = self._session
         with session.structure_lock, session.registry_lock:
             self.get(name)
@@ -63,7 +63,7 @@ class Lights:
                 lights=[light if one.name == name else one for one in self.all()])
 
     def delete(self, name: str) -> Light:
-        """Delete a light; returns what it was. Raises UnknownEntityError."""
+        """Delete a light; returns its description. Raises UnknownEntityError."""
         session = self._session
         with session.structure_lock, session.registry_lock:
             light = self.get(name)

@@ -1,4 +1,4 @@
-"""Models that come, go and change in a running world."""
+"""Spawns, deletes and edits models in a running world."""
 from __future__ import annotations
 
 from dataclasses import replace as replaced
@@ -57,7 +57,7 @@ class Models:
             return self._session.registry.names()
 
     def has(self, name: str) -> bool:
-        """Whether there is a model of that name."""
+        """Whether a model of that name exists."""
         with self._session.registry_lock:
             return name in self._session.registry
 
@@ -74,18 +74,18 @@ class Models:
 
     @property
     def revision(self) -> int:
-        """Grows with every change of names, descriptions, lights or scene settings."""
+        """Increases with every change of names, descriptions, lights or scene settings."""
         with self._session.registry_lock:
             return self._session.registry.revision
 
     def inventory(self) -> Tuple[int, List[Entity]]:
-        """The revision and all entities in order; one whose description changes is a new object."""
+        """The revision and all entities in load order; an edited entity is a new object."""
         with self._session.registry_lock:
             return self._session.registry.revision, self._session.registry.entities()
 
     @property
     def inter_model_joints(self) -> List[Joint]:
-        """Joints between models that hold now; their ends are scoped link names, or `world`."""
+        """The joints between models in effect; their ends are scoped link names or `world`."""
         return self._between.joints
 
     def launched(self) -> List[str]:
@@ -93,14 +93,14 @@ class Models:
         return [entity.model.name for entity in self._session.entities() if entity.launched]
 
     def set_launched(self, names: Sequence[str]) -> None:
-        """Say which models the launch file spawned; the others it did not."""
+        """Set which models the launch file spawned; clears the flag of all others."""
         with self._session.registry_lock:
             for entity in self._session.registry.entities():
                 entity.launched = entity.model.name in names
 
     @property
     def losses(self) -> List[str]:
-        """What of the world's file could not be loaded, one sentence each."""
+        """Elements of the world file that could not be loaded, one sentence each."""
         return self._losses
 
     # -- spawning and deleting ---------------------------------------------------------------------
@@ -109,21 +109,21 @@ class Models:
               meshes: Optional[MeshTable] = None, replace: bool = False,
               state: Optional[ModelState] = None, deleted: Optional[DeletedModel] = None,
               launched: bool = False) -> None:
-        """Put a model into the world; returns when it is there.
+        """Add a model to the world; returns when a snapshot contains it.
 
         Args:
-            model: with its name; nested models are flattened.
-            pose: of the model frame in `frame`; None for the model's own.
-            frame: reference frame of `pose`.
+            model: the description, with its name; nested models are flattened.
+            pose: pose of the model frame in `frame`; None for the pose of the description.
+            frame: reference frame of `pose`, "" for the world.
             meshes: its loaded collision meshes by `mesh_key`.
-            replace: replace a model of that name, in one step.
-            state: where its links and joints are, instead of at rest at `pose`.
-            deleted: what `delete` returned: the model gets its place in the order and its joints
-                to other models again.
+            replace: replace a model of that name within one step.
+            state: state of its links and joints; None for at rest at `pose`.
+            deleted: result of `delete`; restores the position in the order and the joints to other
+                models.
             launched: see `Entity`.
 
         Raises:
-            CommandError: empty or taken name, unknown frame, or the engine refused it.
+            CommandError: empty or existing name, unknown frame, or rejected by the engine.
         """
         if not model.name:
             raise CommandError("the name of a model must not be empty")
@@ -156,7 +156,7 @@ class Models:
                     self._forget(old)
 
     def delete(self, name: str) -> DeletedModel:
-        """Delete a model; returns when it is gone, with what brings it back to its place.
+        """Delete a model; returns when it is gone, with the data that `spawn` restores it from.
 
         Raises UnknownEntityError.
         """
@@ -192,7 +192,7 @@ class Models:
         return compose(anchor.state(self._session.snapshot())[0], wanted)
 
     def _forget(self, entity: Entity) -> None:
-        """An entity that is not in the engine (any more): its rows may be used by others."""
+        """Release the rows, drives and wrenches of an entity that is not in the engine."""
         with self._session.registry_lock:
             self._wrenches.forget_entity(entity)
             self._drives.forget_entity(entity)
@@ -201,19 +201,19 @@ class Models:
     # -- changing ----------------------------------------------------------------------------------
 
     def edit(self, name: str, model: Model, meshes: Optional[MeshTable] = None) -> None:
-        """Give a model another description; what is in both keeps its state.
+        """Replace the description of a model; links and joints in both keep their state.
 
         Links keep pose and twist (moved along when their pose in the model differs), joints
         position and rate, timed wrenches go on, and bodies that rested on it wake up.
 
         Args:
-            name: of the model now.
-            model: what it becomes; another name renames it. Its pose is ignored: the model stays,
-                and a reset moves it to where it was loaded.
-            meshes: collision meshes by `mesh_key`; those it has are kept.
+            name: present name of the model.
+            model: the new description; a new name renames the model. Its pose is ignored: the
+                model stays in place, and a reset moves it to where it was loaded.
+            meshes: added collision meshes by `mesh_key`; the present ones are kept.
 
         Raises:
-            CommandError: unknown or taken name, or the engine refused it; nothing has changed.
+            CommandError: unknown or existing name, or rejected by the engine; nothing has changed.
         """
         if not model.name:
             raise CommandError("the name of a model must not be empty")
@@ -253,7 +253,7 @@ class Models:
 
     def set_link_inertial(self, link: str, inertial: Inertial,
                           gravity: Optional[bool] = None) -> None:
-        """Give a link (plain or scoped name) another inertial; `gravity` None keeps that flag.
+        """Set the inertial of a link (plain or scoped name), and its gravity flag unless None.
 
         Raises CommandError.
         """
@@ -267,7 +267,7 @@ class Models:
             self.edit(entity.model.name, replaced(entity.model, links=links))
 
     def pin(self, names: List[str]) -> None:
-        """Keep these models at rest where they are put, and release all others.
+        """Pin these models, which then stay at rest where they are set, and release all others.
 
         Raises UnknownEntityError.
         """
@@ -289,8 +289,8 @@ class Models:
     def load_all(self, meshes: Dict[str, MeshTable]) -> None:
         """Load the models of the session's world and join them.
 
-        Faults of single models are logged; the rest is loaded. Raises CommandError when there is
-        no engine.
+        Models that cannot be loaded are logged and skipped. Raises CommandError if no engine
+        starts.
         """
         session = self._session
         self._saved_starts = dict(session.world.initial)
@@ -316,9 +316,9 @@ class Models:
 
     def divide_meshes(self, world: World, meshes: Dict[str, MeshTable],
                       gently: bool = False) -> None:
-        """Divide the meshes of all models of a world into convex parts where they need it.
+        """Decompose the meshes of all moving models of a world into convex parts.
 
-        With `gently`, at a low priority: another world runs meanwhile.
+        With `gently`, at low priority, because another world is running meanwhile.
         """
         self._convex_meshes.prepare([(flattened(model), meshes.get(model.name) or {})
                                      for model in world.models], gently)
@@ -333,14 +333,14 @@ class Models:
         self._pinned = []
 
     def commands_after_loading(self) -> List[Command]:
-        """What must follow when all models are loaded anew: joints between them, and pins."""
+        """Commands to send after all models were loaded: joints between models, and pins."""
         commands: List[Command] = list(self._between.commands(self._session.registry))
         if self._pinned:
             commands.append(self._pin_command())
         return commands
 
     def restore_commands(self, snapshot: Snapshot) -> List[Command]:
-        """What loads every model into a new engine, in the states of a snapshot."""
+        """Commands that load every model into a new engine, in the states of a snapshot."""
         entities = self._session.registry.entities()
         return [*(load_command(entity, entity.saved(snapshot)) for entity in entities),
                 *self.commands_after_loading()]

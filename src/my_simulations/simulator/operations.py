@@ -1,7 +1,7 @@
-"""What an editor does to a world: each operation carries itself out and answers with its inverse.
+"""Edits of a running world that can be undone: applying an operation returns its inverse.
 
-An inverse restores what the operation has changed, not the world of that time: what physics or
-others did meanwhile stays.
+An inverse restores only what the operation changed; changes by physics or by others since then
+are kept.
 """
 from __future__ import annotations
 
@@ -25,20 +25,24 @@ from .wrenches import Effort
 
 
 class Operation(Protocol):
-    """One change."""
+    """An edit of the world."""
 
     def apply(self, world: Simulator) -> "Operation":
-        """Carry it out; returns what undoes it. Raises CommandError, then nothing has changed."""
+        """Apply the edit and return its inverse.
+
+        Raises:
+            CommandError: the edit is not possible; nothing has changed.
+        """
 
 
 @dataclass(frozen=True)
 class Group:
-    """Several as one: all of them or none."""
+    """Several operations as one: all are applied, or none."""
 
     parts: Tuple[Operation, ...]
 
     def apply(self, world: Simulator) -> Operation:
-        """In order; undone in the opposite order."""
+        """Apply the parts in order; the inverse undoes them in reverse order."""
         done: List[Operation] = []
         for part in self.parts:
             try:
@@ -52,7 +56,15 @@ class Group:
 
 @dataclass(frozen=True)
 class AddModel:
-    """A model comes, at `pose`, or with the state it had; or it comes back."""
+    """Spawn a model, or restore a deleted one.
+
+    Attributes:
+        model: its description.
+        pose: world pose of the model frame.
+        meshes: its collision meshes by `mesh_key`.
+        state: state of its links and joints; None for at rest at `pose`.
+        deleted: what `Models.delete` returned for it; None for a new model.
+    """
 
     model: Model
     pose: Pose
@@ -61,7 +73,7 @@ class AddModel:
     deleted: Optional[DeletedModel] = None
 
     def apply(self, world: Simulator) -> Operation:
-        """Put it in."""
+        """Spawn the model."""
         world.models.spawn(self.model, self.pose, meshes=self.meshes, state=self.state,
                            deleted=self.deleted)
         return RemoveModel(self.model.name)
@@ -69,13 +81,13 @@ class AddModel:
 
 @dataclass(frozen=True)
 class RemoveModel:
-    """A model goes."""
+    """Delete the model `name`."""
 
     name: str
 
     def apply(self, world: Simulator) -> Operation:
-        """Take it out, remembering where everything of it was."""
-        world.models.get(self.name)  # says when there is none
+        """Delete the model; the inverse restores it with the states of its links and joints."""
+        world.models.get(self.name)  # raises UnknownEntityError
         entities, snapshot = world.states.latest()
         entity = next(one for one in entities if one.model.name == self.name)
         state = entity.saved(snapshot) if entity.link_names else None
@@ -87,14 +99,20 @@ class RemoveModel:
 
 @dataclass(frozen=True)
 class EditModel:
-    """A model gets another description, perhaps another name."""
+    """Replace the description of the model `name`; the new description may rename it.
+
+    Attributes:
+        name: present name of the model.
+        model: the new description.
+        meshes: collision meshes to add, by `mesh_key`.
+    """
 
     name: str
     model: Model
     meshes: MeshTable = field(default_factory=dict)
 
     def apply(self, world: Simulator) -> Operation:
-        """Change it; states stay."""
+        """Edit the model; its links and joints keep their states."""
         old = world.models.get(self.name)
         world.models.edit(self.name, self.model, self.meshes)
         return EditModel(self.model.name, old)
@@ -102,13 +120,13 @@ class EditModel:
 
 @dataclass(frozen=True)
 class EditJoint:
-    """A joint of `model` gets other properties."""
+    """Replace the properties of a joint, found by its name in `model`."""
 
     model: str
     joint: Joint
 
     def apply(self, world: Simulator) -> Operation:
-        """Change it in place where the engine can."""
+        """Edit the joint, in place if the engine supports the change."""
         scoped = f"{self.model}::{self.joint.name}"
         _, old, _ = world.joints.find(scoped)
         world.joints.edit(scoped, self.joint)
@@ -117,16 +135,18 @@ class EditJoint:
 
 @dataclass(frozen=True)
 class SetPoses:
-    """Models, lights and links (`model::link`) go to world poses, at rest.
+    """Move models, lights and links (`model::link`) to world poses, at rest.
 
-    `before`: where they were, when that is not where they are (a drag moved them already).
+    Attributes:
+        poses: world poses by name.
+        before: poses to restore on undo, for entities that a drag has already moved.
     """
 
     poses: Dict[str, Pose]
     before: Dict[str, Pose] = field(default_factory=dict)
 
     def apply(self, world: Simulator) -> Operation:
-        """Move them all; those before one that cannot be moved go back."""
+        """Move all entities; if one cannot be moved, the others return to their poses."""
         done: Dict[str, Pose] = {}
         try:
             for name, pose in self.poses.items():
@@ -142,19 +162,19 @@ class SetPoses:
 
 
 def pose_of(world: Simulator, name: str) -> Pose:
-    """World pose of a model, light or link. Raises CommandError for none of them."""
+    """World pose of a model, light or link. Raises CommandError for an unknown name."""
     if world.models.has(name):
         return world.states.model_state(name)[0]
     for light in world.lights.all():
         if light.name == name:
             return light.pose
     if "::" not in name:
-        world.models.get(name)  # says that there is none
+        world.models.get(name)  # raises UnknownEntityError
     return world.states.link_state(name)[0]
 
 
 def place(world: Simulator, name: str, pose: Pose) -> None:
-    """Put a model, light or link at a world pose, at rest. Raises CommandError."""
+    """Set the world pose of a model, light or link, at rest. Raises CommandError."""
     if world.models.has(name):
         world.states.set_model_state(name, pose, STILL)
     elif any(light.name == name for light in world.lights.all()):
@@ -167,38 +187,38 @@ def place(world: Simulator, name: str, pose: Pose) -> None:
 
 @dataclass(frozen=True)
 class AddLight:
-    """A light comes: last, or where its turn is."""
+    """Add a light: at `slot` in the order of lights, or last."""
 
     light: Light
     slot: Optional[OrderSlot] = None
 
     def apply(self, world: Simulator) -> Operation:
-        """Put it in."""
+        """Add the light."""
         world.lights.add(self.light, slot=self.slot)
         return RemoveLight(self.light.name)
 
 
 @dataclass(frozen=True)
 class RemoveLight:
-    """A light goes."""
+    """Delete the light `name`."""
 
     name: str
 
     def apply(self, world: Simulator) -> Operation:
-        """Take it out."""
+        """Delete the light; the inverse restores it at its position in the order."""
         names = [light.name for light in world.lights.all()]
         return AddLight(world.lights.delete(self.name), OrderSlot.of(names, self.name))
 
 
 @dataclass(frozen=True)
 class EditLight:
-    """A light gets other properties, perhaps another name."""
+    """Replace the description of the light `name`; the new description may rename it."""
 
     name: str
     light: Light
 
     def apply(self, world: Simulator) -> Operation:
-        """Change it."""
+        """Edit the light."""
         old = world.lights.get(self.name)
         world.lights.set(self.name, self.light)
         return EditLight(self.light.name, old)
@@ -206,13 +226,13 @@ class EditLight:
 
 @dataclass(frozen=True)
 class SetPhysics:
-    """Other physics settings and gravity."""
+    """Set the physics settings and gravity (m/s^2, world frame)."""
 
     physics: Physics
     gravity: Vec3
 
     def apply(self, world: Simulator) -> Operation:
-        """Set both."""
+        """Set physics and gravity."""
         back = SetPhysics(world.physics.settings, world.physics.gravity)
         world.physics.set(self.physics, self.gravity)
         return back
@@ -224,18 +244,18 @@ SETTERS: Dict[str, Callable[[SceneSettings, Any], None]] = {
     "magnetic_field": SceneSettings.set_magnetic_field,
     "spherical_coordinates": SceneSettings.set_spherical_coordinates,
 }
-"""Fields of a world besides models, lights and physics, and what sets them."""
+"""Fields of a world besides models, lights and physics, each with its setter."""
 
 
 @dataclass(frozen=True)
 class SetWorldField:
-    """Another value of one of `SETTERS`."""
+    """Set a field of the world, one of `SETTERS`."""
 
     name: str
     value: Any
 
     def apply(self, world: Simulator) -> Operation:
-        """Set it."""
+        """Set the field."""
         back = SetWorldField(self.name, getattr(world.world, self.name))
         SETTERS[self.name](world.scene, self.value)
         return back
@@ -243,12 +263,12 @@ class SetWorldField:
 
 @dataclass(frozen=True)
 class RestoreState:
-    """States as they were at a moment."""
+    """Restore captured states of all models."""
 
     moment: WorldState
 
     def apply(self, world: Simulator) -> Operation:
-        """Put them back."""
+        """Restore the states; the clock keeps its time."""
         back = RestoreState(world.states.capture())
         world.states.restore(self.moment)
         return back
@@ -256,12 +276,16 @@ class RestoreState:
 
 @dataclass(frozen=True)
 class Reset:
-    """`what`: time, poses (of models), or world (all of it, as loaded)."""
+    """Reset the world.
+
+    Attributes:
+        what: `time`, `poses` (of models) or `world` (everything, as loaded).
+    """
 
     what: str
 
     def apply(self, world: Simulator) -> Operation:
-        """Reset it."""
+        """Reset the world; the inverse restores states and time."""
         back = RestoreState(world.states.capture())
         {"time": world.resets.reset_time, "poses": world.resets.reset_world,
          "world": world.resets.reset_simulation}[self.what]()
@@ -270,10 +294,15 @@ class Reset:
 
 @dataclass(frozen=True)
 class ApplyWrench:
-    """A wrench on a link for some steps.
+    """Apply a wrench to a link for a number of steps.
 
-    `point`: of attack in the link frame, m; None for the centre of mass. Force (N) and torque (N m)
-    in world axes, or in the link's, with which they turn then.
+    Attributes:
+        link: scoped link name.
+        force: N, in world axes, or in link axes with `in_link_axes`.
+        torque: N m, likewise.
+        point: point of application in the link frame, m; None for the centre of mass.
+        in_link_axes: the wrench rotates with the link.
+        steps: duration in steps.
     """
 
     link: str
@@ -284,7 +313,7 @@ class ApplyWrench:
     steps: int
 
     def apply(self, world: Simulator) -> Operation:
-        """Push the link; undone, the model is where it was, as fast as it was."""
+        """Apply the wrench; the inverse restores pose and velocity of the model."""
         name, plain = split_scoped(self.link, world.models.has)
         model = world.models.get(name)
         com = next((link.inertial.pose.position for link in model.links if link.name == plain),
@@ -307,26 +336,26 @@ class ApplyWrench:
 
 @dataclass(frozen=True)
 class _RestoreModel:
-    """Undoes a push: states go back, the clock does not; its own inverse is the push again."""
+    """Inverse of `ApplyWrench`: restores states, not the clock; its inverse is the wrench."""
 
     moment: WorldState
     wrench: ApplyWrench
 
     def apply(self, world: Simulator) -> Operation:
-        """Put the model back."""
+        """Restore the states of the model."""
         world.states.restore(self.moment, clock=False)
         return self.wrench
 
 
 @dataclass(frozen=True)
 class DriveJoint:
-    """What drives a joint axis until something else does; nothing lets go of it."""
+    """Replace the efforts and PID controllers of a joint axis; an empty list removes them."""
 
     joint: str
     efforts: Tuple[Effort, ...] = ()
 
     def apply(self, world: Simulator) -> Operation:
-        """Replace what drives it."""
+        """Replace the efforts and PID controllers of the axis."""
         before = world.wrenches.efforts_on(self.joint)
         world.wrenches.clear_efforts(self.joint)
         for effort in self.efforts:

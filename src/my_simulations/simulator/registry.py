@@ -57,7 +57,8 @@ class Entity:
         meshes: its collision meshes, kept for a restart of the engine.
         pose: world pose of a model without links; that of others is in the ring.
         articulated: built as an articulated body, for a prismatic joint to another model.
-        launched: spawned by the launch file that started the simulator, as at its next start.
+        launched: spawned by the launch file that started the simulator, and spawned again by it at
+            the next start.
     """
 
     model_id: int
@@ -85,6 +86,20 @@ class Entity:
     def canonical_row(self) -> int:
         """Row of the link that carries the model frame."""
         return self.first_link_row + self.canonical
+
+    @property
+    def link_ids(self) -> range:
+        """Ids of its links in feeds of poses and states, in the order of `link_names`."""
+        return range(self.first_link_row, self.first_link_row + len(self.link_names))
+
+    def link_state(self, snapshot: Snapshot, link: str) -> Tuple[Pose, Twist]:
+        """World pose and twist of a link by its name in the model. Raises ValueError."""
+        return snapshot.link(self.first_link_row + self.link_names.index(link))
+
+    def axis_states(self, snapshot: Snapshot) -> Iterator[Tuple[str, int, float, float]]:
+        """Joint, axis number, position (rad or m) and rate (rad/s or m/s) of all joint axes."""
+        for n, axis in enumerate(axis_rows(self.model)):
+            yield (axis.joint.name, axis.number, *snapshot.joint(self.first_joint_row + n))
 
     def has_link_row(self, row: int) -> bool:
         """Whether a row of the link table is one of its links."""
@@ -136,38 +151,6 @@ class ReferenceFrame:
             return self.offset, STILL
         pose, twist = snapshot.link(self.row)
         return compose(pose, self.offset), twist
-
-
-class RowAllocator:
-    """Allocates contiguous rows of a table, first fit."""
-
-    def __init__(self, size: int) -> None:
-        self._free: List[Tuple[int, int]] = [(0, size)]
-
-    def take(self, count: int) -> Optional[int]:
-        """The first of `count` free rows, or None."""
-        if count == 0:
-            return 0
-        for n, (start, length) in enumerate(self._free):
-            if length >= count:
-                rest = (start + count, length - count)
-                self._free[n:n + 1] = [rest] if rest[1] else []
-                return start
-        return None
-
-    def give(self, start: int, count: int) -> None:
-        """Free rows again."""
-        if count == 0:
-            return
-        self._free.append((start, count))
-        self._free.sort()
-        merged: List[Tuple[int, int]] = []
-        for at, length in self._free:
-            if merged and merged[-1][0] + merged[-1][1] == at:
-                merged[-1] = (merged[-1][0], merged[-1][1] + length)
-            else:
-                merged.append((at, length))
-        self._free = merged
 
 
 class Registry:
@@ -296,7 +279,7 @@ class Registry:
                         yield entity, joint, number
 
     def frame(self, name: str) -> Optional[ReferenceFrame]:
-        """What a reference frame name means; None for the world frame.
+        """Resolve the name of a reference frame; None for the world frame.
 
         Entities are searched first (models, links, collisions, lights), then the literals.
         Raises UnknownFrameError.
@@ -335,7 +318,7 @@ class Registry:
         return found[0]
 
     def _joint_taken(self, name: str, taken: Entity) -> None:
-        """A joint of `taken` was found for a name, which others may have as well."""
+        """Log once if the plain name of a joint exists in several models."""
         if ("joint", name) in self._told or name.startswith(taken.model.name + "::"):
             return
         self._tell("joint", name, [
@@ -368,7 +351,7 @@ class Registry:
         return _meant(name, self._entities)
 
     def _nearest_link(self, name: str) -> str:
-        """The links of a model of that name, else the scoped names most like it."""
+        """Suggestions for an unknown link: those of a model of that name, else similar names."""
         of_model = self._entities.get(name)
         if of_model is not None:
             named = [f"{name}::{link}" for link in of_model.link_names]
@@ -390,7 +373,7 @@ def _meant(name: str, known: Iterable[str]) -> str:
 
 
 def _scoped_meant(name: str, owned: Mapping[str, Sequence[str]]) -> str:
-    """The names `model::part` that a wrong one may have meant, with or without its model's."""
+    """Scoped names (`model::part`) similar to an unknown one."""
     model, _, part = name.partition("::")
     if part and model not in owned:
         return _meant(name, [f"{owner}::{one}" for owner, names in owned.items() for one in names])

@@ -35,15 +35,15 @@ class Resets:
         self._wrenches = wrenches
         self._drives = drives
         self._clock = clock
-        self.world_resets = 0        # counted when models are back where they began
-        self.simulation_resets = 0   # counted before: who hears of the new clock can tell why
+        self.world_resets = 0        # counts resets of model poses
+        self.simulation_resets = 0   # counted before the clock is set
 
     def reset_time(self) -> None:
         """Set sim time to 0. Models stay; timed wrenches last as long as they would have."""
         with self._session.structure_lock:
             now = self._session.call(Pause()).step
-            # What is known here changes after the engine did it: until then, an engine that takes
-            # over from one that died must be told what was before.
+            # Our own data changes after the engine has applied the reset: an engine that is
+            # restarted before that must get the old data.
             pending = [replace(force, start=max(0, force.start - now),
                                stop=force.stop if force.stop == FOREVER else force.stop - now)
                        for force in self._wrenches.pending(now)]
@@ -63,9 +63,9 @@ class Resets:
             self.world_resets += 1
 
     def reset_simulation(self) -> None:
-        """Start again: models and joints as loaded, time 0, no timed wrenches; spawned models stay.
+        """Reset models and joints to their loaded state, time to 0; clear timed wrenches.
 
-        What follows repeats, bit for bit, what followed the start.
+        Spawned models are kept. The run that follows repeats that after the start bit for bit.
         """
         session = self._session
         with session.structure_lock:
@@ -82,11 +82,11 @@ class Resets:
             dropped = self._wrenches.ids
             self._wrenches.replace_all()
             self._drives.forget_all()
-            if dropped:  # an engine that has just taken over may have been told of them
+            if dropped:  # a restarted engine may have received them already
                 session.call(ClearTimedForces(dropped))
 
     def _move_linkless_models(self, entities: List[Entity]) -> None:
-        """Models without links, which the engine does not know, go to where they were loaded."""
+        """Reset the poses of models without links, which the engine does not have."""
         with self._session.registry_lock:
             for entity in entities:
                 entity.pose = entity.initial_pose

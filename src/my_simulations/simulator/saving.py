@@ -1,8 +1,7 @@
-"""A running world as a file: the description with the present poses, and a `<state>`.
+"""Saves a running world as an SDF file: the description with present poses, and a `<state>`.
 
-The final poses stand in the models themselves, so that every reader finds them. A `<state>` tells
-what they cannot: where the links of an articulated model are and, on request, sim time and
-velocities of everything.
+Present poses are written into the models themselves, so that every SDF reader uses them. The
+`<state>` holds the rest: link poses of articulated models and, on request, sim time and velocities.
 """
 from __future__ import annotations
 
@@ -31,19 +30,19 @@ from .simulator import Simulator
 EXTENSIONS = ENDINGS
 
 _DISPLACED = 1e-6
-"""By how much what has not been moved may be off: m, rad, parts of a quaternion."""
+"""Tolerance below which a link or joint counts as unmoved: m, rad, components of a quaternion."""
 
 
 def present_world(simulator: Simulator, *, state: bool = True, launched: bool = True) -> World:
-    """The description of what is in the world now, with `state` set.
+    """The description of the present world, with `World.state` set.
 
-    Models stand in load order, at the poses of one snapshot; physics and gravity are as last set.
+    Models are in load order, at the poses of one snapshot; physics and gravity as last set.
 
     Args:
-        simulator: what is described.
-        state: the `<state>` holds sim time, velocities and every model; else it is about time 0,
-            and holds the models whose joints or links are elsewhere than in their description.
-        launched: with the models that the launch file spawned.
+        simulator: the running world.
+        state: write a `<state>` with sim time, velocities and every model; otherwise its time is 0
+            and it holds only models whose joints or links differ from their description.
+        launched: include the models that the launch file spawned.
     """
     entities, snapshot = simulator.states.fresh()
     if not launched:
@@ -76,10 +75,9 @@ def _state(world: World, entities: Sequence[Entity], snapshot: Snapshot) -> Save
 
 def _configuration(world: World, entities: Sequence[Entity],
                    snapshot: Snapshot) -> Optional[SavedState]:
-    """What the poses of the models do not tell, at rest at time 0; None where they tell all.
+    """State of the models whose links or joints have moved, at rest at time 0; None if none have.
 
-    A model that the `<state>` does not name is where its own <pose> says, which a person may
-    change in the file by hand.
+    A model without an entry is at its own `<pose>`, so that users can edit that in the file.
     """
     models = [_at_rest(_model_state(entity, snapshot)) for entity in entities
               if not entity.model.static and _is_displaced(entity, snapshot)]
@@ -91,7 +89,7 @@ def _at_rest(state: ModelState) -> ModelState:
 
 
 def _is_displaced(entity: Entity, snapshot: Snapshot) -> bool:
-    """Whether a joint or a link is elsewhere in its model than the description says."""
+    """Whether a joint or link has moved within its model, relative to the description."""
     model_from_world = inverse(entity.state(snapshot)[0])
     saved = entity.saved(snapshot)
     return any(abs(position) > _DISPLACED for position, _rate in saved.joints) or any(
@@ -118,23 +116,23 @@ def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
     """Write the running world to a file.
 
     Args:
-        simulator: what is saved; it goes on meanwhile.
+        simulator: the world to save; it keeps running.
         path: absolute, or relative to the first root; ends in .world or .sdf.
         roots: folders below which files may be written; see `default_roots`.
-        resolver: finds what includes bring; needed unless `inline`.
-        overwrite: whether a file of that name may be replaced.
-        inline: write models from includes in full; else those that nothing changed but for name,
-            pose, static and more plugins are includes again.
-        state: with sim time and velocities; see `present_world`.
-        launched: with the models that the launch file spawned.
-        despite_losses: whether a file may be replaced of which parts could not be loaded.
+        resolver: finds the files of includes; not needed if `inline`.
+        overwrite: replace an existing file.
+        inline: write included models in full; otherwise a model that differs from its file only in
+            name, pose, static and added plugins is written as an `<include>`.
+        state: write sim time and velocities; see `present_world`.
+        launched: include the models that the launch file spawned.
+        despite_losses: replace the world's file although parts of it could not be loaded.
 
     Returns:
         The absolute path that was written.
 
     Raises:
         CommandError: the path is not allowed, the file ships with this package, or it cannot be
-            written; a file that was there is untouched.
+            written; an existing file is unchanged.
     """
     target = allowed_path(path, roots)
     refuse_shipped(target)
@@ -147,7 +145,7 @@ def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
 
 
 def _refuse_losses(simulator: Simulator, target: str) -> None:
-    """Keep a file from being replaced by less than what it holds. Raises CommandError."""
+    """Raises CommandError if `target` is the world's file and parts of it could not be loaded."""
     losses, file = simulator.models.losses, simulator.world.file
     if losses and file and os.path.realpath(file) == target:
         more = f" (and {len(losses) - 1} more)" if len(losses) > 1 else ""
@@ -156,7 +154,7 @@ def _refuse_losses(simulator: Simulator, target: str) -> None:
 
 
 class _Includes:
-    """What the URIs of included models bring, each read once."""
+    """Reads the files of included models, each once."""
 
     def __init__(self, resolver: Resolver) -> None:
         self._resolver = resolver
@@ -171,27 +169,27 @@ class _Includes:
         try:
             found, _ = read_file(self._resolver.model_file(uri), self._resolver)
         except (ResourceNotFoundError, InputError):
-            return None  # what cannot be found again must be written in full
+            return None  # a model whose file is gone is written in full
         return found if isinstance(found, Model) else None
 
 
 def refuse_shipped(target: str) -> None:
-    """Raise CommandError for a file that came with this package."""
+    """Raises CommandError for a file that ships with this package."""
     if ships(target):
         raise CommandError(f"{target} ships with my_simulations and is never overwritten; choose "
                            "another name or folder")
 
 
 def default_roots(world_file: str = "", caller: str = "") -> List[str]:
-    """Where worlds may be saved.
+    """Folders below which worlds may be saved.
 
-    The first one is where relative paths start: the folder of the running world's file, if that is
-    the user's own, else `~/my_simulations/worlds`. The others are the package's `world` folder,
-    workspaces' sources, and the folder in which the command was typed.
+    Relative paths start from the first one: the folder of the running world's file if it belongs
+    to the user, else `~/my_simulations/worlds`. The others are the package's `world` folder, the
+    source folders of workspaces, and the working directory of the user's command.
 
     Args:
-        world_file: of the running world; "" for none.
-        caller: folder in which the command was typed; "" for the working directory.
+        world_file: file of the running world; "" for none.
+        caller: working directory of the user's command; "" for that of this process.
     """
     roots = [folder_of_users(world_file), users_folder()]
     own = package_directories()
@@ -205,10 +203,10 @@ def default_roots(world_file: str = "", caller: str = "") -> List[str]:
 
 
 def allowed_path(path: str, roots: Sequence[str]) -> str:
-    """The path to write, with links in its folders followed.
+    """The absolute path to write, with symbolic links in its folders resolved.
 
     Raises:
-        CommandError: not below a root, not a world file's name, or a link that leads elsewhere.
+        CommandError: not below a root, not a .world or .sdf file, or a link to another place.
     """
     path = os.path.expanduser(path.strip())
     if not roots:

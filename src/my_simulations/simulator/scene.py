@@ -1,4 +1,4 @@
-"""What a world holds besides models, lights and physics: scene, camera, wind, air, place."""
+"""Settings of a world besides models, lights and physics: scene, camera, wind, place, ..."""
 
 from __future__ import annotations
 
@@ -11,36 +11,35 @@ from .session import Session
 
 
 class SceneSettings:
-    """Sets fields of the description that are shown or saved, and not simulated.
+    """Sets fields of the description that are drawn or saved, but not simulated.
 
-    They are read from `Simulator.world`. Each call takes both locks of the session. A new value
-    without XML of its own (`extra`) takes over that of the value which it replaces, so that saving
-    the world does not lose elements of its file.
+    Read them from `Simulator.world`. Each call takes both locks of the session. A new value without
+    `extra` XML keeps that of the old value, so that saving the world loses no elements of its file.
     """
 
     def __init__(self, session: Session) -> None:
         self._session = session
 
     def set_scene(self, scene: Scene) -> None:
-        """Ambient light, background, sky, fog, shadows and grid."""
+        """Set ambient light, background, sky, fog, shadows and grid."""
         self._session.set_world_fields(scene=_with_extra(scene, self._session.world.scene))
 
     def set_gui_camera(self, camera: Optional[GuiCamera]) -> None:
-        """The view that the world opens with."""
+        """Set the initial view of the editor."""
         self._session.set_world_fields(gui_camera=_with_extra(
             camera, self._session.world.gui_camera))
 
     def set_wind(self, wind: Wind) -> None:
-        """Kept and saved; no force comes of it."""
+        """Set the wind velocity, m/s in the world frame; saved, without effect on motion."""
         self._session.set_world_fields(wind=_with_extra(wind, self._session.world.wind))
 
     def set_atmosphere(self, atmosphere: Atmosphere) -> None:
-        """Kept and saved."""
+        """Set the atmosphere; saved, without effect on motion."""
         self._session.set_world_fields(atmosphere=_with_extra(
             atmosphere, self._session.world.atmosphere))
 
     def set_magnetic_field(self, field: Vec3) -> None:
-        """T, world axes; kept and saved."""
+        """Set the magnetic field, T in the world frame; used by magnetometers and saved."""
         self._session.set_world_fields(magnetic_field=field)
 
     def set_spherical_coordinates(self, place: Optional[SphericalCoordinates]) -> None:
@@ -50,7 +49,7 @@ class SceneSettings:
 
 
 def _with_extra(new: Any, old: Any) -> Any:
-    """A dataclass of the surroundings with the kept XML of the value that it replaces."""
+    """`new` with the `extra` XML of `old`, unless it has its own."""
     if not is_dataclass(new) or isinstance(new, type) or type(new) is not type(old):
         return new
     changes: Dict[str, Any] = {}

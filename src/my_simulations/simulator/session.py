@@ -1,4 +1,4 @@
-"""What the parts of a simulator share: engine, entities, description and locks."""
+"""Shared state of the simulator's parts: engine, entities, description and locks."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
 from ..geometry import Pose
-from .registry import Entity, Registry, RowAllocator
+from .registry import Entity, Registry
+from .row_allocator import RowAllocator
 from .supervisor import Supervisor
 
 
 class Session:
-    """One running world, as its parts see it. Front ends use the parts, never this.
+    """One running world, shared by the simulator's parts. Front ends use the parts only.
 
     Two locks, taken in this order when both are needed:
 
@@ -49,12 +50,12 @@ class Session:
         self._last_id = 0
 
     def call(self, command: Command) -> Reply:
-        """Carry out an engine command. Raises CommandError, see `Supervisor.call`."""
+        """Send an engine command and wait for its reply; see `Supervisor.call` for errors."""
         return self.supervisor.call(command)
 
     @property
     def ring(self) -> RingReader:
-        """The engine's snapshots."""
+        """The ring with the engine's snapshots."""
         return self.supervisor.engine.ring
 
     def snapshot(self) -> Snapshot:
@@ -65,15 +66,15 @@ class Session:
         return found
 
     def new_id(self) -> int:
-        """A number that no model and no timed force had before. Needs `structure_lock`."""
+        """A new id, unique among models and timed forces. Requires `structure_lock`."""
         self._last_id += 1
         return self._last_id
 
     def new_entity(self, model: Model, initial_pose: Pose, meshes: MeshTable,
                    articulated: bool) -> Entity:
-        """An entity with an id and rows of its own, not in the registry yet.
+        """A new entity with its id and rows, not yet in the registry.
 
-        Needs both locks. Raises CommandError when the ring has no rows left.
+        Requires both locks. Raises CommandError if the ring has no free rows.
         """
         links, joints = len(model.links), len(axis_rows(model))
         first_link = self._link_rows.take(links)
@@ -87,12 +88,12 @@ class Session:
                       articulated=articulated)
 
     def free_rows(self, entity: Entity) -> None:
-        """Let other entities use the rows of one that has left the engine. Needs both locks."""
+        """Free the rows of an entity that was deleted from the engine. Requires both locks."""
         self._link_rows.give(entity.first_link_row, len(entity.link_names))
         self._joint_rows.give(entity.first_joint_row, len(entity.joint_names))
 
     def check_name_is_free(self, name: str) -> None:
-        """Raises CommandError if a model or light has that name. Needs `registry_lock`."""
+        """Raises CommandError if a model or light has that name. Requires `registry_lock`."""
         if name in self.registry or any(light.name == name for light in self.world.lights):
             raise CommandError(f"a model or light named '{name}' already exists")
 

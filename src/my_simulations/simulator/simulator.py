@@ -1,4 +1,4 @@
-"""A running world: its parts, its start and its end.
+"""A running world: its parts, how it starts and ends.
 
 Reads come from snapshots and never wait for the engine; changes are commands that return once a
 snapshot shows their effect. All parts are safe from any thread.
@@ -46,22 +46,22 @@ class Simulator:
         joints: find, read, set and edit joints.
         states: poses, twists and contacts; capture and restore.
         drives: motors of joints, planar velocities of models.
-        appointments: steps at which somebody acts.
-        wrenches: timed wrenches on links, efforts and PID controllers on joints.
+        appointments: steps at which plugins and sensors act.
+        wrenches: timed wrenches on links, timed efforts and PID controllers on joints.
         lights: the lights.
-        scene: scene, camera, wind, air, place on Earth.
+        scene: scene, camera, wind, atmosphere, place on Earth.
         physics: step size, solver and gravity.
         clock: sim time, pausing, stepping.
         resets: time, model poses, everything.
         feed: rows of states for topics and pages.
 
     Args:
-        world: what to load.
-        engine_factory: makes the engine.
+        world: the description to load.
+        engine_factory: creates the engine.
         paused: start paused.
         log: receives issues that no caller waits for.
         meshes: the collision meshes of the world's models, by model name.
-        steps: pause after so many steps from the start.
+        steps: pause after this many steps from the start.
     """
 
     def __init__(self, world: World, *, engine_factory: Callable[[], Engine],
@@ -95,10 +95,10 @@ class Simulator:
         return self._session.supervisor.engine.pid
 
     def start(self) -> None:
-        """Set the physics, load every model, and run unless paused.
+        """Set the physics, load all models, and run unless paused.
 
-        Faults of single models are logged; the rest is loaded. Raises CommandError when there is
-        no engine.
+        Models that cannot be loaded are logged and skipped. Raises CommandError if no engine
+        starts.
         """
         self._fill()
         self._session.supervisor.engine.on_event(self._on_event)
@@ -106,23 +106,23 @@ class Simulator:
             self._session.call(command)
 
     def close(self) -> None:
-        """End the engine."""
+        """Stop the engine."""
         self._session.supervisor.close()
 
     def load_world(self, world: World, meshes: Optional[Dict[str, MeshTable]] = None) -> None:
-        """Replace everything by another world, as at a start; a paused simulator stays paused.
+        """Replace the world by another one, as at a start; a paused simulator stays paused.
 
-        Faults of single models are logged; the rest is loaded. Raises CommandError when there is
-        no engine.
+        Models that cannot be loaded are logged and skipped. Raises CommandError if no engine
+        starts.
         """
         session = self._session
-        self.models.divide_meshes(world, meshes or {}, gently=True)  # meanwhile the old one goes on
+        self.models.divide_meshes(world, meshes or {}, gently=True)  # the old world runs meanwhile
         with session.structure_lock:
             session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids))))
             self.models.forget_all()
             self.wrenches.replace_all()
             self.drives.forget_all()
-            # Once more: an engine that took over just now was told of the old models.
+            # Again: an engine that was restarted just now has received the old models.
             session.call(Batch((Pause(), Clear())))
             session.world, self._world_meshes = world, meshes or {}
             self.physics.adopt_world()

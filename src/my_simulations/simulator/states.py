@@ -64,26 +64,26 @@ class States:
         return relative(snapshot.link(row), anchor, snapshot)
 
     def link_at(self, row: int) -> Tuple[Pose, Twist]:
-        """World pose and twist of the link in a row, for who has looked its row up."""
+        """World pose and twist of the link in a row, for callers that know the row."""
         return self._session.ring.link(row)
 
     def axis_at(self, row: int) -> Tuple[float, float]:
-        """Position and rate of the joint axis in a row, for who has looked its row up."""
+        """Position (rad or m) and rate (rad/s or m/s) of the joint axis in a row."""
         return self._session.ring.joint(row)
 
     def latest(self) -> Tuple[List[Entity], Snapshot]:
-        """All entities in load order, and the newest snapshot; it is old where nothing moves."""
+        """All entities in load order, and the newest snapshot (an old one if nothing moves)."""
         session = self._session
         with session.registry_lock:
             entities, snapshot = session.registry.entities(), session.snapshot()
-        # A model that is being deleted may have left the engine, and its rows the table, already.
+        # A model that is being deleted may be gone from the engine, and its rows from the table.
         rows = len(snapshot.links) // LINK_WIDTH
         return [entity for entity in entities
                 if entity.first_link_row + len(entity.link_names) <= rows
                 or not entity.link_names], snapshot
 
     def fresh(self) -> Tuple[List[Entity], Snapshot]:
-        """As `latest`, after the engine has written a snapshot. Raises CommandError without one."""
+        """As `latest`, after the engine has written a new snapshot. Raises CommandError."""
         self._session.call(Ping())
         return self.latest()
 

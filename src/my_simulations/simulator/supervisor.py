@@ -166,7 +166,7 @@ class Supervisor:
     def _revive(self, reason: str, at_a_load: bool) -> None:
         now = time.monotonic()
         self._recent = [at for at in self._recent if now - at < _RAPID_S]
-        if not at_a_load:  # else it is not the world's fault
+        if not at_a_load:  # otherwise the world is not the cause
             self._recent.append(now)
         paused = len(self._recent) >= _RAPID_DEATHS
         if len(self._recent) > 3 * _RAPID_DEATHS:
@@ -183,7 +183,7 @@ class Supervisor:
             self._engine.restart()
             self._restore(self._submit, paused)
         except EngineDiedError:
-            return  # it died again: that death is in the queue
+            return  # it crashed again: that crash is in the queue
         except (OSError, CommandError) as fault:
             self._failure = f"cannot restore the world after a crash: {fault}"
             self._log(error("engine-lost", self._failure))
@@ -205,14 +205,14 @@ class Supervisor:
             except FutureTimeout as late:
                 words = engine.ring.words
                 if words[HEARTBEAT] == beat and words[PROGRESS] != progress:
-                    continue  # it is still at one long row of commands, and gets on
+                    continue  # it is still working through a long batch of commands
                 raise EngineTimeoutError(
                     f"the physics engine did not respond for {self._patience:g} s; "
                     f"{type(command).__name__} may still be executed") from late
 
 
 def _brings_models(command: Command) -> bool:
-    """Whether a model comes with a command: then this is the first to be suspected."""
+    """Whether a command loads models: these are the first suspects after a crash."""
     if isinstance(command, Batch):
         return any(map(_brings_models, command.commands))
     return isinstance(command, LoadModel)

@@ -9,15 +9,15 @@ PERIOD_S = 2.0
 """Longest time between two checks; a longer one means that this process was stopped, too."""
 
 _STALL_S = 30.0     # of processor time without a sign of life, or asleep
-_START_S = 90.0     # the same until the first sign of life: the imports show none
-_WALL_S = 900.0     # whatever the processor time says
-_WAITS = "RD"       # states of a process that would go on if it could (proc(5))
+_START_S = 90.0     # the same until the first sign of life; imports give none
+_WALL_S = 900.0     # regardless of processor time
+_WAITS = "RD"       # states of a process that waits for a processor or is stopped (proc(5))
 
 Probe = Callable[[int], Optional[Tuple[float, str]]]
 
 
 def process_time(pid: int) -> Optional[Tuple[float, str]]:
-    """Processor time in s and state of a process (proc(5), stat); None where there is none."""
+    """Processor time (s) and state of a process (proc(5), stat); None if it does not exist."""
     try:
         with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as stat:
             fields = stat.read().rpartition(")")[2].split()
@@ -53,7 +53,7 @@ class Watchdog:
         """For how long the engine has hung; "" if it does not.
 
         Args:
-            pid: of its process; 0 without one, then wall time counts.
+            pid: its process id; 0 for an engine without a process, for which wall time counts.
             sign: a value that changes while it works.
         """
         now = self._clock()

@@ -1,4 +1,4 @@
-"""Finding and reading a world by name, and starting its simulator."""
+"""Finds and reads a world by name, and starts its simulator."""
 from __future__ import annotations
 
 from typing import Callable
@@ -22,7 +22,7 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
     Args:
         name: see `load_world`.
         resolver: see `load_world`.
-        engines: makes the engine.
+        engines: creates the engine.
         log: receives every issue of a usable world, and those of the simulator.
         seed: see `load_world`.
         profile: see `load_world`.
@@ -31,7 +31,7 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
         read: called when the file has been read.
 
     Raises:
-        InputError: the world is unusable.
+        InputError: the world cannot be used.
         CommandError: the engine cannot be started.
     """
     loaded = load_world(name, resolver, log, seed=seed, profile=profile, caller=caller)
@@ -48,11 +48,11 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profil
 
     Args:
         name: a file name as `find_world` takes it.
-        resolver: finds the file and the files that it names.
-        log: receives every issue of a world that is usable.
+        resolver: finds the file and the files it refers to.
+        log: receives every issue of a usable world.
         seed: seed of populations that are placed at random.
         profile: name of the physics preset to use; "" for the default of the world.
-        caller: folder that relative names start from; "" for the working directory.
+        caller: folder from which relative names start; "" for the working directory.
 
     Raises:
         InputError: the world is unusable.

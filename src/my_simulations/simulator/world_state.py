@@ -1,4 +1,4 @@
-"""States of all models at one time, to be restored later."""
+"""Captured states of all models, to be restored later."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from .registry import Entity
 
 @dataclass(frozen=True)
 class RememberedState:
-    """A model: world pose of its frame, twist of its canonical link, and its links and joints."""
+    """State of a model: world pose of its frame, twist of its canonical link, links and joints."""
 
     pose: Pose
     twist: Twist
@@ -31,7 +31,7 @@ class WorldState:
     @classmethod
     def of(cls, entities: Sequence[Entity], snapshot: Snapshot,
            now: Tuple[int, Clock]) -> "WorldState":
-        """The state in a snapshot; `now`: the step count, at which nothing has moved since."""
+        """The state in a snapshot; `now`: the present step count, if nothing has moved since."""
         step, clock = now
         return cls(step, clock.sim_ns(step), {
             entity.model.name: RememberedState(*entity.state(snapshot), tuple(entity.link_names),
@@ -53,7 +53,7 @@ class WorldState:
 
 
 def _commands(entity: Entity, was: RememberedState) -> List[Command]:
-    """An articulated model is restored by frame and joints, others link by link."""
+    """Restore an articulated model by its frame and joints, others link by link."""
     model = entity.model
     if model.static or len(entity.link_names) == 1:
         return [SetModelState(entity.model_id, was.pose, None if model.static else was.twist)]

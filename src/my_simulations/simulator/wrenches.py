@@ -25,7 +25,7 @@ Effort = Union[float, JointPid]
 
 
 class Wrenches:
-    """Owns what acts on links and joints for a time. Changes take the session's structure lock.
+    """Owns timed wrenches, efforts and PID controllers. Changes take the structure lock.
 
     Wrenches on one link add up, and so do efforts on one joint axis (Gazebo behaviour).
     """
@@ -87,7 +87,7 @@ class Wrenches:
                          whole=True)
 
     def efforts_on(self, joint: str) -> Tuple[Effort, ...]:
-        """What acts on a joint axis until it is cleared. Raises as `apply_effort` does."""
+        """Efforts and controllers on an axis that act until cleared; raises as `apply_effort`."""
         row = self._session.axis_row(joint)
         return tuple(force.effort if force.pid is None else force.pid
                      for force in list(self._forces.values())
@@ -109,8 +109,7 @@ class Wrenches:
 
         Args:
             forces: their `force_id` is replaced.
-            whole: one whose start has passed begins with the next step and lasts as many steps as
-                it would have lasted.
+            whole: an entry whose start has passed begins with the next step and keeps its duration.
         """
         with self._session.structure_lock:
             numbered = [replace(force, force_id=self._session.new_id()) for force in forces]
@@ -121,7 +120,7 @@ class Wrenches:
             return [force.force_id for force in numbered]
 
     def remove(self, force_ids: Sequence[int]) -> None:
-        """Clear by id; unknown ids have run out."""
+        """Clear by id; ids that have expired are ignored."""
         with self._session.structure_lock:
             for force_id in force_ids:
                 self._forces.pop(force_id, None)
@@ -131,29 +130,29 @@ class Wrenches:
 
     @property
     def ids(self) -> Tuple[int, ...]:
-        """Ids of all that is queued or acts."""
+        """Ids of all queued and acting wrenches and efforts."""
         return tuple(self._forces)
 
     def pending(self, step: int) -> Tuple[TimedForce, ...]:
-        """What still acts, or will, after a step count."""
+        """Wrenches and efforts that act or start after a step count."""
         return tuple(force for force in self._forces.values() if force.stop > step)
 
     def replace_all(self, forces: Sequence[TimedForce] = ()) -> None:
-        """Forget all, and keep these instead; the engine is told by the caller."""
+        """Replace all entries; the caller updates the engine."""
         self._forces = {force.force_id: force for force in forces}
 
     def keep(self, forces: Sequence[TimedForce]) -> None:
-        """Keep these as well, which the engine has been given by the caller."""
+        """Add entries that the caller has sent to the engine."""
         self._forces.update({force.force_id: force for force in forces})
 
     def forget_entity(self, entity: Entity) -> None:
-        """Drop what acts on a model that has left the engine."""
+        """Remove the entries of a model that was deleted from the engine."""
         self._forces = {key: force for key, force in self._forces.items()
                         if not (entity.has_link_row if isinstance(force, TimedWrench)
                                 else entity.has_joint_row)(force.row)}
 
     def transferred(self, old: Entity, new: Entity) -> List[TimedForce]:
-        """What acts on a model, for the rows of the entity that replaces it."""
+        """The entries of a replaced model, with the rows of its successor `new`."""
         links = {old.first_link_row + n: new.first_link_row + new.link_names.index(name)
                  for n, name in enumerate(old.link_names) if name in new.link_names}
         axes = {old.first_joint_row + n: new.first_joint_row + new.joint_names.index(name)
@@ -187,5 +186,5 @@ def first_step(clock: Clock, sim_ns: int) -> int:
 
 
 def steps_of(clock: Clock, duration_ns: int) -> int:
-    """How many steps are nearest to a duration, at least one."""
+    """The number of steps nearest to a duration (ns), at least one."""
     return max(1, (duration_ns * NANOSECOND_PS + clock.step_ps // 2) // clock.step_ps)

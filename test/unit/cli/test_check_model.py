@@ -75,6 +75,19 @@ def test_odd_inertia_is_told_once_for_a_model(found):
     assert issue.code == "inertia-odd" and "1 more" in issue.message
 
 
+def test_unlike_friction_of_one_link_is_told_with_the_one_that_holds(found):
+    def collision(name: str, height: float, mu: str) -> str:
+        return (f'<collision name="{name}"><pose>0 0 {height} 0 0 0</pose><geometry><sphere>'
+                f"<radius>0.1</radius></sphere></geometry><surface><friction><ode><mu>{mu}</mu></ode>"
+                "</friction></surface></collision>")
+    one = solid("b", "0 0 5 0 0 0")
+    unlike = one.replace("</link>", collision("caster", -0.6, "0") + "</link>")
+    (issue,) = found(unlike)
+    assert issue.code == "friction-shared" and issue.severity is Severity.WARNING
+    assert "mu 0, 1" in issue.message and "mu 0 of 'caster'" in issue.message
+    assert found(one.replace("</link>", collision("caster", -0.6, "1") + "</link>")) == []
+
+
 @pytest.mark.parametrize("pose, depth", [("0 0 0.4 0 0 0", "100"), ("0 0 0.5 0.785398 0 0", "207"),
                                          ("0 0 -3 0 0 0", "3.5e+03")])
 def test_a_box_in_the_ground_is_reported(found, pose, depth):

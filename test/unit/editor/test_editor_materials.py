@@ -8,7 +8,7 @@ from my_simulations.appearance.material_script import read_materials
 from my_simulations.description.compare import BUILT_IN
 from my_simulations.description.shapes import Material
 from my_simulations.editor.scene.materials import Materials
-from my_simulations.editor.transport.served_files import ServedFiles
+from my_simulations.editor.scene.served_files import ServedFiles
 from my_simulations.resources.resolver import Resolver
 
 SCRIPT = """

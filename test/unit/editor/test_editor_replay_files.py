@@ -10,7 +10,7 @@ import pytest
 from editor_case import Case, box
 
 from my_simulations.description.shapes import Material, Mesh
-from my_simulations.editor.transport.served_files import ServedFiles
+from my_simulations.editor.scene.served_files import ServedFiles
 from my_simulations.resources.resolver import Resolver
 
 

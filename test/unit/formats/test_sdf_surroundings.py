@@ -200,3 +200,14 @@ def test_what_does_nothing_is_said_once_for_each_kind():
     assert [issue.message.split(">")[0] for issue in issues] == ["<road", "<sensor camera",
                                                                  "<sensor gps"]
     assert all(issue.code == "not-simulated" and issue.line for issue in issues)
+
+
+@pytest.mark.parametrize("tag, value", [("scene", "<grid>0</grid>"),
+                                        ("atmosphere", "<pressure>1</pressure>"),
+                                        ("spherical_coordinates", "<elevation>1</elevation>")])
+def test_the_first_of_repeated_surroundings_is_used(tag, value):
+    other = value.replace("0", "1") if "0" in value else value.replace("1", "2")
+    world, issues = world_of(f"<{tag}>{value}</{tag}><{tag}>{other}</{tag}>")
+    alone, _ = world_of(f"<{tag}>{value}</{tag}>")
+    assert getattr(world, tag) == getattr(alone, tag)
+    assert [issue.code for issue in issues] == ["element-repeated"]

@@ -76,8 +76,8 @@ def test_imu_noise_by_axis():
         "<sensor name='i' type='imu'><imu><angular_velocity><x><noise type='gaussian'>"
         "<stddev>0.02</stddev></noise></x></angular_velocity></imu></sensor>"))
     imu = model.links[0].sensors[0].imu
-    assert imu.angular_velocity_x == Noise("gaussian", stddev=0.02)
-    assert imu.angular_velocity_y == Noise() and imu.enable_orientation
+    assert imu.angular_velocity.x == Noise("gaussian", stddev=0.02)
+    assert imu.angular_velocity.y == Noise() and imu.enable_orientation
 
 
 def test_several_cameras_and_their_names():

@@ -6,7 +6,15 @@ import math
 import numpy as np
 import pytest
 
-from my_simulations.description.sensor import ContactSensor, Imu, Noise, Ray, ScanAngles, Sensor
+from my_simulations.description.sensor import (
+    AxesNoise,
+    ContactSensor,
+    Imu,
+    Noise,
+    Ray,
+    ScanAngles,
+    Sensor,
+)
 from my_simulations.engine.commands import Contact
 from my_simulations.geometry import Twist
 from my_simulations.plugins.context import PluginError
@@ -89,7 +97,7 @@ def test_an_imu_at_rest_feels_gravity_and_in_free_fall_nothing():
 
 
 def test_an_imu_sensor_has_the_noise_of_its_block():
-    block = Imu(angular_velocity_x=Noise("gaussian", mean=0.25))
+    block = Imu(AxesNoise(x=Noise("gaussian", mean=0.25)))
     context = FakeContext("<plugin><frameName>imu</frameName><updateRateHZ>10</updateRateHZ>"
                           "</plugin>", sensor=Sensor("i", "imu", imu=block), sensor_link="base")
     SensorImu(context).load()

@@ -9,6 +9,7 @@ from typing import List, Tuple
 
 import pytest
 import yaml
+from architecture_walks import walks
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
@@ -151,11 +152,31 @@ def test_options_of_tools_in_the_pages_are_understood():
 
 def test_modules_named_on_the_pages_exist():
     modules = {path.name for path in (REPOSITORY / "src").rglob("*.py")}
-    modules |= {path.name for folder in ("test", "tools", "scripts")
+    modules |= {path.name for folder in ("test", "tools", "scripts", "examples")
                 for path in (REPOSITORY / folder).rglob("*.py")}
     for page in PAGES:
         for name in re.findall(r"`[\w/]*?(\w+\.py)`", text_of(page)):
             assert name in modules, f"{page.name}: {name}"
+
+
+def quoted_messages():
+    """The fixed parts of our messages in the first column of the troubleshooting page."""
+    others = ("/usr/bin/env", "Could not find a package", "RLException")
+    page = text_of(REPOSITORY / "doc" / "troubleshooting.md")
+    rows = [row for row in re.findall(r"^\| `([^|`]*)` \|", page, re.MULTILINE)
+            if not row.startswith(others)]
+    parts = [part.strip(" ,;") for row in rows for part in row.split("…")]
+    return [part for part in parts if part]
+
+
+def test_messages_of_the_troubleshooting_page_are_those_of_the_programs():
+    files = [path for folder in ("src", "tools", "web/js") for path in
+             (REPOSITORY / folder).rglob("*") if path.suffix in (".py", ".sh", ".js")]
+    # String literals over several lines are joined.
+    text = re.sub(r"""["']\s*\n\s*f?["']|\\\n""", "", "\n".join(map(text_of, files)))
+    found = quoted_messages()
+    assert len(found) > 10
+    assert [part for part in found if part not in text] == []
 
 
 def test_every_parameter_of_the_node_is_documented():
@@ -249,23 +270,6 @@ def test_changelog_is_catkins():
 
 
 # -- the walks of the architecture page ----------------------------------------------------------
-
-ARCHITECTURE = REPOSITORY / "doc" / "architecture.md"
-NUMBERS = re.compile(r"(\d+) modules, (\d+) revisits")
-
-
-def walks():
-    """Title, counts that are stated, and rows (module, functions) of each walk."""
-    text = text_of(ARCHITECTURE).split("## Four walks")[1].split("\n## ")[0]
-    found = []
-    for part in text.split("\n### ")[1:]:
-        rows = re.search(r"```text walk\n(.*?)```", part, re.DOTALL).group(1).splitlines()
-        # The remarks begin after two blanks or more, or where no comma goes before.
-        split = [re.match(r"(\S+)\s+(\w+(?:, \w+)*)", row).groups() for row in rows]
-        found.append((part.splitlines()[0], tuple(map(int, NUMBERS.search(part).groups())),
-                      [(module, names.split(", ")) for module, names in split]))
-    return found
-
 
 @pytest.mark.parametrize("title, stated, rows", walks(), ids=lambda value: str(value)[:20])
 def test_walk_counts_its_modules_right(title, stated, rows):

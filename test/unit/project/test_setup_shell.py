@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import subprocess
 from pathlib import Path
@@ -97,7 +98,7 @@ def test_variable_overrides_the_workspace(tmp_path):
 def test_workspace_that_catkin_cannot_build_in_is_refused_at_once(clone, tmp_path, name):
     done = shell(clone, "find_workspace", tmp_path / "home", MY_SIMULATIONS_WS=str(tmp_path / name))
     assert done.returncode == 1
-    assert "which catkin cannot build in" in done.stderr
+    assert "which catkin does not support" in done.stderr
     assert not (tmp_path / name).exists()
 
 
@@ -308,7 +309,7 @@ def test_failed_part_of_a_step_says_which_why_and_what_to_do(clone, tmp_path):
     done = shell(clone, script, tmp_path / "home")
     assert done.returncode == 1
     assert "[1/1] Fetching things" in done.stdout
-    for text in ("Fetching things", "'fetch' ended with status 7", "the disk is full",
+    for text in ("Fetching things", "'fetch' failed with status 7", "the disk is full",
                  "Try it by daylight.", "logs/fetch.log"):
         assert text in done.stderr
     assert "the disk is full" in (tmp_path / "home" / "logs" / "fetch.log").read_text()
@@ -517,3 +518,112 @@ def test_page_packages_that_do_not_come_stop_the_set_up_and_are_asked_for_again(
     assert "Is there a network?" in done.stderr
     (page_home / "offline").unlink()
     assert "installed" in shell(clone, PAGE, page_home).stdout
+
+
+PIP = """
+for word; do
+  case $last in --find-links) wheels=$word ;; -d) out=$word ;; esac
+  last=$word
+done
+echo "$@" >>$HOME/calls
+case "$*" in
+  --version) echo Python 3.99 ;;
+  *"pip install"*requirements.txt*)
+    [ ! -e $HOME/offline ] ||
+      { echo "Temporary failure in name resolution: No matching distribution found"; exit 1; }
+    [ -n "$(ls $wheels/*.whl 2>/dev/null)" ] ||
+      { echo "ERROR: No matching distribution found for pybullet==3.2.7"; exit 1; } ;;
+  *"pip download"*)
+    mkdir -p $HOME/source/pybullet-3.2.7
+    echo "EGL_CXX_FLAGS += '-DBT_USE_EGL '" >$HOME/source/pybullet-3.2.7/setup.py
+    echo 'sources = ["a.c"]' >>$HOME/source/pybullet-3.2.7/setup.py
+    tar -czf $out/pybullet-3.2.7.tar.gz -C $HOME/source pybullet-3.2.7 ;;
+  *bdist_wheel*)
+    grep -q BT_USE_EGL setup.py && exit 3
+    echo "gcc -c a.c -o a.o"
+    [ ! -e $HOME/broken ] || { echo "Python.h: No such file or directory"; exit 1; }
+    mkdir -p $out; touch $out/pybullet.whl ;;
+esac
+"""
+
+
+@pytest.fixture
+def bare_index(tmp_path):
+    """A home with a Python for which the package index has no wheel of PyBullet."""
+    home = tmp_path / "home"
+    fake(home, "fake_python", PIP)
+    fake(home, "id", "echo 0")
+    fake(home, "dpkg-query", "shift 2; for name; do echo installed $name; done")
+    (home / "ws" / "venv" / "bin").mkdir(parents=True)
+    (home / "ws" / "venv" / "bin" / "python3").symlink_to(home / "bin" / "fake_python")
+    return home
+
+
+INSTALL = ("STEPS=9; OWN=$HOME/ws; LOGS=$HOME/logs; VENV=$OWN/venv; PYTHON=$HOME/bin/fake_python\n"
+           "COMMAND=tools/run; begin 'Python packages'\n"
+           "rm -f $VENV/.requirements; prepare_python $CLONE/requirements.txt\n")
+
+
+def wheels_compiled(home):
+    return (home / "calls").read_text().count("bdist_wheel")
+
+
+def with_requirements(clone):
+    (clone / "requirements.txt").write_text("pybullet==3.2.7\n")
+    return clone
+
+
+def test_pybullet_without_a_wheel_is_compiled_once_for_all_workspaces(clone, bare_index):
+    for _workspace in range(2):
+        done = shell(with_requirements(clone), INSTALL, bare_index)
+        assert done.returncode == 0, done.stderr
+        assert wheels_compiled(bare_index) == 1
+        assert "minutes" in done.stdout or _workspace
+    assert (bare_index / ".cache/my_simulations/wheels/pybullet.whl").exists()
+    assert "compiling 1 of about 1: a.c" in (bare_index / "logs/pybullet-compile.log").read_text()
+
+
+def test_compilation_that_fails_is_told_with_the_compilers_words(clone, bare_index):
+    (bare_index / "broken").touch()
+    done = shell(with_requirements(clone), INSTALL, bare_index)
+    assert done.returncode == 1
+    assert "Python.h: No such file" in done.stderr and "pybullet-compile" in done.stderr
+
+
+def test_missing_network_does_not_start_a_compiler(clone, bare_index):
+    (bare_index / "offline").touch()
+    done = shell(with_requirements(clone), INSTALL, bare_index)
+    assert done.returncode == 1
+    assert "The network does not answer" in done.stderr
+    assert wheels_compiled(bare_index) == 0
+
+
+def test_source_of_pybullet_is_the_version_that_is_required():
+    pinned = [line.split()[0] for line in (REPOSITORY / "tools/lib/pybullet-source.txt")
+              .read_text().splitlines() if line.startswith("pybullet")]
+    assert pinned == [line for line in (REPOSITORY / "requirements.txt").read_text().splitlines()
+                      if line.startswith("pybullet")]
+
+
+@pytest.mark.parametrize(("line", "advice"), [
+    ("OSError: [Errno 28] No space left on device", "The disk is full"),
+    ("E: dpkg was interrupted, you must manually run 'dpkg --configure -a'", "dpkg --configure -a"),
+    ("E: Could not get lock /var/lib/dpkg/lock-frontend", "Another package manager"),
+    ("SSLError(SSLCertVerificationError(1, '[SSL: CERTIFICATE_VERIFY_FAILED]", "PIP_CERT"),
+    ("npm ERR! code SELF_SIGNED_CERT_IN_CHAIN", "NODE_EXTRA_CA_CERTS"),
+    ("npm ERR! code EAI_AGAIN", "does not answer"),
+    ("OSError('Tunnel connection failed: 407 Proxy Authentication Required')", "proxy refuses"),
+    ("pybullet.c:9:10: fatal error: Python.h: No such file or directory", "python3-dev"),
+    ("error: command 'x86_64-linux-gnu-gcc' failed: No such file or directory", "build-essential"),
+    ("c++: fatal error: Killed signal terminated program cc1plus", "memory is too small"),
+    ("no such option: --require-hashes", "too old"),
+    ("E: Unable to locate package catkin", "universe"),
+    ("something that nobody has seen", "Try it by daylight.")])
+def test_failure_is_explained_by_what_the_log_holds(clone, tmp_path, line, advice):
+    script = "LOGS=$HOME/logs; begin X\nlogged part 'Try it by daylight.' bash -c 'cat; exit 1'\n"
+    text = shlex.quote(line)
+    done = shell(clone, script.replace("'cat; exit 1'", shlex.quote(f"echo {text}; exit 1")),
+                 tmp_path / "home")
+    assert done.returncode == 1
+    advices = [row for row in done.stderr.splitlines() if row.startswith("  -> ")]
+    assert advice in advices[0]

@@ -24,13 +24,22 @@ MODELS = [*sorted(ROOT.glob("models/*/model.sdf")), *sorted(ROOT.glob("objects/*
           Path(VALID) / "everything.sdf"]
 
 
+def is_packaged(name):
+    """Whether the distribution has a package of this name."""
+    return subprocess.run(["apt-cache", "show", name], capture_output=True,
+                          timeout=60).returncode == 0
+
+
 @pytest.fixture(scope="session")
 def faults(tmp_path_factory):
     """What libsdformat says of files."""
     program = tmp_path_factory.mktemp("parse_sdf") / "parse_sdf"
     known = subprocess.run(["pkg-config", "--list-package-names"], capture_output=True, text=True,
                            check=True, timeout=60).stdout.split()
-    (package,) = (name for name in known if name.startswith("sdformat"))
+    package = next((name for name in known if name.startswith("sdformat")), None)
+    if package is None and not is_packaged("libsdformat-dev"):
+        pytest.skip("this distribution has no libsdformat")
+    assert package is not None, "libsdformat-dev is not installed: tools/test installs it"
     flags = subprocess.run(["pkg-config", "--cflags", "--libs", package], capture_output=True,
                            text=True, check=True, timeout=60).stdout.split()
     built = subprocess.run(["g++", "-std=c++17", str(ROOT / "tools/generate/parse_sdf.cc"), "-o",

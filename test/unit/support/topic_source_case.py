@@ -21,7 +21,7 @@ class Listed:
 
 @dataclass
 class Source:
-    """`editor.topics.topic_source.TopicSource`."""
+    """`editor.topic_source.TopicSource`."""
 
     listed: list = field(default_factory=list)
     heard: dict = field(default_factory=dict)

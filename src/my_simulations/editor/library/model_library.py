@@ -18,7 +18,7 @@ from ...resources.model_provider import ModelNotProvidedError
 from ...resources.package_files import own_directory
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.safe_file import write_whole
-from ..transport.served_files import ServedFiles
+from ..scene.served_files import ServedFiles
 
 _DOWNLOAD_S = 300.0
 _CONFIGS = ("model.config", "manifest.xml")

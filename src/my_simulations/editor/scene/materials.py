@@ -7,7 +7,7 @@ from ...appearance import materials
 from ...appearance.looks import Look
 from ...description.shapes import Color, Material
 from ...resources.resolver import Resolver
-from ..transport.served_files import ServedFiles
+from .served_files import ServedFiles
 
 
 class Materials:

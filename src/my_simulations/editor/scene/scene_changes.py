@@ -94,7 +94,7 @@ class Mirror:
                 del models[name]
                 continue
             models[name] = self._documents.entity(entity, snapshot)
-            links += range(entity.first_link_row, entity.first_link_row + len(entity.link_names))
+            links += entity.link_ids
         lights: Dict[str, Any] = {name: None for name in self._lights}
         for light in self._simulator.lights.all():
             if self._lights.get(light.name) is light:

@@ -28,10 +28,10 @@ from ...engine.ring import Snapshot
 from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.registry import Entity
-from ..transport.served_files import MESHES, ServedFiles
 from .generated_meshes import Solids
 from .materials import Materials
 from .plain_json import plain, plain_fields
+from .served_files import MESHES, ServedFiles
 
 NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule", Cone: "cone",
          Ellipsoid: "ellipsoid", Plane: "plane", Mesh: "mesh", Heightmap: "heightmap",
@@ -73,8 +73,8 @@ class Documents:
                                 "spherical_coordinates")}}
 
     def entity(self, entity: Entity, snapshot: Snapshot) -> Dict[str, Any]:
-        """A model of the running world; ids are the rows of its links."""
-        return self.model(entity.model, entity.state(snapshot)[0], entity.first_link_row)
+        """A model of the running world; with the ids of its links."""
+        return self.model(entity.model, entity.state(snapshot)[0], entity.link_ids.start)
 
     def model(self, model: Model, pose: Pose, first_id: int = 0) -> Dict[str, Any]:
         """The protocol's `Model` of a flattened model at a world pose."""

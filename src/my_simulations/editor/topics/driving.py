@@ -6,8 +6,8 @@ from concurrent.futures import Executor
 from typing import Any, Dict, List, Optional, Sequence
 
 from ...errors import CommandError, SimulationError
+from ..topic_source import ListedTopic, Publisher, TopicSource
 from ..transport.browser_client import Client
-from .topic_source import ListedTopic, Publisher, TopicSource
 
 KIND = "geometry_msgs/Twist"
 _SILENCE_S = 0.5

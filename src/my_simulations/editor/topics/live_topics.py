@@ -13,16 +13,14 @@ from concurrent.futures import Executor
 from typing import Any, Callable, Dict, List, Optional, Set
 
 from ...errors import CommandError, SimulationError
+from ..topic_source import Subscription, TopicSource
 from ..transport.browser_client import Client, encoded
 from ..transport.hub import Hub
+from ..transport.watch_requests import PREFIX
 from .message_views import Viewer
-from .topic_source import Subscription, TopicSource
 
 TOPIC = 3
 """Kind of the frames (`frames` of the protocol)."""
-
-PREFIX = "ros:"
-"""Begins what a page watches, before the name of the topic."""
 
 _HEAD = struct.Struct("<II")
 _LOOK_S = 1.0

@@ -7,12 +7,12 @@ from typing import Any, Dict, List, Optional
 
 from ...errors import CommandError
 from ..scene.plain_json import plain
+from ..topic_source import ListedTopic, TopicSource
 from ..transport.browser_client import Client
 from ..transport.hub import Hub
 from ..transport.web_socket import Route
 from .driving import Driving
 from .live_topics import LiveTopic, LiveTopics
-from .topic_source import ListedTopic, TopicSource
 
 
 class TopicRequests:

@@ -13,9 +13,9 @@ from ...errors import CommandError, InputError
 from ...resources.package_files import own_directory
 from ...simulator.safe_file import write_whole
 from ..editor_options import EditorOptions
+from ..scene.content_types import BYTES, PAGE, page_type, resource_type
 from ..scene.scene_json import Documents
-from .content_types import BYTES, PAGE, page_type, resource_type
-from .served_files import SERVED
+from ..scene.served_files import SERVED
 
 _SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL | re.IGNORECASE)
 _HOST = re.compile(r"[\w.-]+(:\d+)?\Z|\[[0-9a-fA-F:.]+\](:\d+)?\Z")

@@ -3,15 +3,24 @@ from __future__ import annotations
 
 import asyncio
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Dict, Optional, Set, Tuple
+from typing import Any, Dict, Optional, Protocol, Set, Tuple
 
 from ...errors import CommandError
-from ..topics.live_topics import PREFIX, LiveTopics
 from .browser_client import Client, encoded
 from .hub import Hub
 from .pose_messages import Poses
 from .watched_values import MOST_TOPICS, Watches, check_topic
 from .web_socket import Route
+
+PREFIX = "ros:"
+"""Begins what a page watches of ROS, before the name of the topic."""
+
+
+class RosTopics(Protocol):
+    """What of ROS pages watch (`editor.topics`)."""
+
+    def want(self, client: Client, names: Set[str]) -> None:
+        """These topics are what a page watches from now on. Raises CommandError."""
 
 
 class Watching:
@@ -20,7 +29,7 @@ class Watching:
     Topics of ROS are handed on to `live`.
     """
 
-    def __init__(self, hub: Hub, live: LiveTopics) -> None:
+    def __init__(self, hub: Hub, live: RosTopics) -> None:
         self._hub, self._live = hub, live
         self._watches = Watches(hub.simulator, hub.clock)
         self._thread = ThreadPoolExecutor(1, "editor watches")

@@ -136,7 +136,7 @@ def _state(names: Dict[str, Entity], name: str, snapshot: Snapshot) -> Tuple[Pos
     entity, link = _split(names, name)
     if link not in entity.link_names:
         raise WatchedEntityGoneError(f"unknown link {name!r}")
-    return snapshot.link(entity.first_link_row + entity.link_names.index(link))
+    return entity.link_state(snapshot, link)
 
 
 def _joint_value(names: Dict[str, Entity], name: str, axis: int, which: int,
@@ -161,10 +161,7 @@ def _drive(efforts: Sequence[Effort]) -> Optional[Dict[str, Any]]:
 
 def _joints(entity: Entity, snapshot: Snapshot) -> Iterable[Dict[str, Any]]:
     """Positions and rates of all axes of a model."""
-    for n, row in enumerate(entity.joint_names):
-        position, rate = snapshot.joint(entity.first_joint_row + n)
-        second = row.endswith("::1")
-        yield {"name": row[:-3] if second else row, "axis": int(second), "position": position,
-               "rate": rate}
+    for joint, number, position, rate in entity.axis_states(snapshot):
+        yield {"name": joint, "axis": number, "position": position, "rate": rate}
 
 

@@ -44,8 +44,7 @@ class JointMotors:
                 continue
             self._motors[motor.row] = motor
             self._drive(body, axis, motor)
-            if before is None or before.rate != motor.rate:
-                woken[body.uid] = body
+            woken[body.uid] = body
         if woken:
             self._wake(list(woken.values()))
 

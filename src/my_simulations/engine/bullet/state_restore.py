@@ -15,6 +15,7 @@ from . import bodies
 from .bodies import Body
 from .body_builder import Builder
 from .joint_constraints import Constraints
+from .link_states import place
 
 
 @dataclass
@@ -52,8 +53,7 @@ def _restore_base(body: Body, link_pose: Pose) -> None:
     """Put the fixed base where it must be for the first link to have its pose."""
     base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
     part = body.parts[0]
-    at = pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)
-    base_from_com = compose(inverse(base), Pose(at[0], at[1]))
+    base_from_com = compose(inverse(base), Pose(*place(body.uid, part.index)))
     target = compose(part.com_pose(link_pose), inverse(base_from_com))
     if not _nearly(base, target):
         pybullet.resetBasePositionAndOrientation(body.uid, target.position,

@@ -1,4 +1,4 @@
-"""The meshes of a whole world divided into convex parts, a few at a time, with word of it."""
+"""Decomposes the meshes of a world into convex parts, a few at a time, and reports progress."""
 from __future__ import annotations
 
 import functools
@@ -14,7 +14,7 @@ from .decomposition import divided, kept_in, ready_parts, undivided
 
 AT_A_TIME = 2
 WORD_EVERY_S = 5.0
-"""Longest time without a word while meshes are divided."""
+"""Longest time between two progress messages, s."""
 
 Progress = Callable[[str], None]
 Named = Tuple[str, MeshData]
@@ -24,19 +24,19 @@ def divide_all(meshes: Sequence[Named], progress: Progress, *,
                cache_dir: Optional[str] = None, gently: bool = False) -> List[Decomposition]:
     """The convex parts of each mesh, in order.
 
-    Blocks until all are there: a world begins with the same shapes whether they were known before
-    or not. What must be divided is told first, then each mesh that is begun or done, and every few
-    seconds what the work is at. The threads are daemons and their processes end with them, so a
-    program that ends does not wait for the work.
+    Blocks until all are done, so that a world starts with the same shapes whether they were cached
+    or not. Reports the meshes to decompose, the start and end of each, and the progress every few
+    seconds. The threads are daemons and their processes end with them, so a program that exits does
+    not wait.
 
     Args:
-        meshes: name for the messages, and mesh.
-        progress: called from this thread.
-        cache_dir: where parts are kept; None for the user's cache folder (XDG).
-        gently: let physics that runs meanwhile come first.
+        meshes: name for messages, and mesh.
+        progress: called with messages, from this thread.
+        cache_dir: folder of the cache; None for the user's cache folder (XDG).
+        gently: run at low priority, because a world is running meanwhile.
     """
     found: Dict[int, Decomposition] = {}
-    hard: Dict[str, List[int]] = {}  # the same mesh in two files is divided once
+    hard: Dict[str, List[int]] = {}  # equal meshes in two files are decomposed once
     for n, (_, mesh) in enumerate(meshes):
         ready = ready_parts(mesh, cache_dir=cache_dir)
         if ready is None:
@@ -51,7 +51,7 @@ def divide_all(meshes: Sequence[Named], progress: Progress, *,
 
 
 class _Work:
-    """Meshes that are being divided."""
+    """Meshes that are being decomposed."""
 
     def __init__(self, meshes: Sequence[Named], progress: Progress,
                  cache_dir: Optional[str], gently: bool) -> None:
@@ -67,7 +67,7 @@ class _Work:
         self._made: Dict[int, Decomposition] = {}
 
     def done(self) -> List[Decomposition]:
-        """Divide them all; returns when the last one is done."""
+        """Decompose all meshes; returns when the last one is done."""
         count = len(self._meshes)
         several = f"{count} meshes are" if count > 1 else "a mesh is"
         self._progress(f"{several} divided into convex parts before the world goes on; the parts "
@@ -92,7 +92,7 @@ class _Work:
             try:
                 made = divided(self._meshes[n][1], cache_dir=self._cache_dir, gently=self._gently,
                                progress=functools.partial(self._percent.__setitem__, n))
-            finally:  # whoever waits must not wait for ever, whatever is raised
+            finally:  # any exception must reach the waiting thread
                 self._told.put((n, made))
 
     def _hear(self) -> None:

@@ -1,4 +1,4 @@
-"""Convex parts kept on disk, by the content of the mesh they were made of."""
+"""Caches convex parts on disk, by the content of the mesh."""
 from __future__ import annotations
 
 import contextlib
@@ -22,11 +22,11 @@ _DIGEST_BYTES = 32
 
 @dataclass
 class Decomposition:
-    """Convex parts, and what had to be done to get them.
+    """Convex parts of a mesh.
 
     Attributes:
-        parts: at least one, each convex, in the frame of the mesh, metres.
-        notice: code of the warning that goes with them, "" for none.
+        parts: at least one convex part, in the frame of the mesh, m.
+        notice: code of a warning to report; "" for none.
     """
 
     parts: List[MeshData]
@@ -34,15 +34,15 @@ class Decomposition:
 
 
 def default_folder() -> str:
-    """Where the parts are kept: XDG base directory specification, cache."""
+    """The default cache folder (XDG base directory specification)."""
     base = os.environ.get("XDG_CACHE_HOME") or ""
-    if not os.path.isabs(base):  # the specification: relative ones count as unset
+    if not os.path.isabs(base):  # by the specification, relative paths count as unset
         base = os.path.join(os.path.expanduser("~"), ".cache")
     return os.path.join(base, "my_simulations", "decompositions")
 
 
 def content_key(mesh: MeshData, parameters: str) -> str:
-    """The same for meshes of the same vertices and triangles and the same parameters."""
+    """A key that is equal for equal vertices, triangles and parameters."""
     import numpy as np
 
     digest = hashlib.sha256(parameters.encode())
@@ -54,7 +54,7 @@ def content_key(mesh: MeshData, parameters: str) -> str:
 
 
 def save(path: str, made: Decomposition) -> None:
-    """Write a decomposition to a file: a SHA-256 sum, and the arrays that it is of."""
+    """Write a decomposition to a file: a SHA-256 checksum and the arrays."""
     import numpy as np
 
     stream = io.BytesIO()
@@ -70,7 +70,7 @@ def save(path: str, made: Decomposition) -> None:
 
 
 def load(path: str) -> Decomposition:
-    """Read what `save` wrote.
+    """Read a file written by `save`.
 
     Raises:
         OSError: the file cannot be read.
@@ -104,11 +104,11 @@ def _split(vertices: Any, triangles: Any, counts: Any) -> List[MeshData]:
 
 
 class PartsCache:
-    """A folder of decompositions. Faults of the disk are logged and cost the caching only.
+    """A folder of decompositions. Errors of the disk are logged and disable caching only.
 
     Args:
-        folder: made when it is first written to.
-        limit: bytes; the entries longest unused go first.
+        folder: created at the first write.
+        limit: largest size, bytes; the least recently used entries are deleted first.
     """
 
     def __init__(self, folder: str, limit: int = 256 * 1024 * 1024) -> None:
@@ -116,7 +116,7 @@ class PartsCache:
         self._limit = limit
 
     def get(self, key: str) -> Optional[Decomposition]:
-        """What was put under the key; None when nothing was, or when it is damaged."""
+        """The entry of a key; None if it is missing or damaged."""
         path = self._path(key)
         try:
             made = load(path)
@@ -126,12 +126,12 @@ class PartsCache:
             return None
         except (OSError, ValueError) as fault:
             _log.warning("%s is made anew: %s", path, fault)
-            with contextlib.suppress(OSError):  # it is replaced in any case
+            with contextlib.suppress(OSError):  # it will be replaced
                 os.remove(path)
             return None
 
     def put(self, key: str, made: Decomposition) -> None:
-        """Keep a decomposition; readers see the whole of it or nothing."""
+        """Store a decomposition atomically."""
         unfinished = ""
         try:
             os.makedirs(self._folder, exist_ok=True)
@@ -143,7 +143,7 @@ class PartsCache:
         except OSError as fault:
             _log.warning("convex parts cannot be kept in %s: %s", self._folder, fault)
             if unfinished:
-                with contextlib.suppress(OSError):  # there is nothing more to be done
+                with contextlib.suppress(OSError):  # not cached
                     os.remove(unfinished)
 
     def _path(self, key: str) -> str:
@@ -152,7 +152,7 @@ class PartsCache:
     def _trim(self, newest: str) -> None:
         entries = []
         for entry in os.scandir(self._folder):
-            with contextlib.suppress(FileNotFoundError):  # another process trims, too
+            with contextlib.suppress(FileNotFoundError):  # deleted by another process
                 status = entry.stat()
                 if entry.name.endswith(_SUFFIX):
                     entries.append((status.st_mtime_ns, status.st_size, entry.path))

@@ -1,9 +1,9 @@
-"""Convex parts of a mesh, for bodies that move: PyBullet lets only convex shapes do that.
+"""Decomposes meshes into convex parts for dynamic bodies: in PyBullet only convex shapes can move.
 
-What is convex already is taken as its hull at once. The rest is divided by
-`python -m my_simulations.engine.convex.decomposition FOLDER CPU_SECONDS NICE`, a process of its
-own: it takes seconds, and V-HACD may crash. Only processor time limits it, so that a mesh gives the
-same parts on a busy machine.
+A convex mesh becomes its hull at once. Others are decomposed by a separate process,
+`python -m my_simulations.engine.convex.decomposition FOLDER CPU_SECONDS NICE`, because it takes
+seconds and V-HACD may crash. Only its processor time is limited, so that a mesh gives the same
+parts on a busy machine.
 """
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from .cache import Decomposition, PartsCache, content_key, default_folder, load,
 
 _log = logging.getLogger(__name__)
 
-# Lengths are relative: V-HACD sees every mesh centred, its longest edge 1.
+# Relative lengths: meshes are centred and scaled to a longest edge of 1 for V-HACD.
 _VHACD: Dict[str, Any] = {"concavity": 0.0025, "alpha": 0.04, "resolution": 100000,
                           "planeDownsampling": 8, "convexhullDownsampling": 8,
                           "maxNumVerticesPerCH": 64}
-_VERSION = 2  # to be raised when the same mesh gives other parts than before
+_VERSION = 2  # increase it when a mesh gives other parts than before
 _PARAMETERS = f"{_VERSION} {sorted(_VHACD.items())!r}"
-_THICKNESS_M = (0.001, 0.01)  # of a mesh without volume: a hundredth of its extent within these
+_THICKNESS_M = (0.001, 0.01)  # a flat mesh gets 1/100 of its extent, within these
 _INPUT, _RESULT, _FALLBACK, _FAULTS = "mesh.npz", "result.parts", "hull.parts", "faults"
-_CPU_S = 30           # V-HACD never ends on some meshes, thin rings for one: then the hull it is
-_DEADLINE_S = 900.0   # only for work that stands still: what a busy machine does must not count
+_CPU_S = 30           # V-HACD may not terminate, e.g. for thin rings; then: the hull
+_DEADLINE_S = 900.0   # only for work without progress: a busy machine must not matter
 _NICE = 5
-_MOST_AT_ONCE = 20000  # triangles that are looked at in this process; more would hold it up
+_MOST_AT_ONCE = 20000  # most triangles that are checked in this process, to avoid delays
 _PROGRESS = re.compile(rb"^ *(\d+)% \[", re.MULTILINE)
 
 _FLAT, _NOT_DIVIDED = "mesh-flat", "mesh-not-decomposed"
@@ -57,9 +57,9 @@ def _silent(_: int) -> None:
 
 
 def ready_parts(mesh: MeshData, *, cache_dir: Optional[str] = None) -> Optional[Decomposition]:
-    """The convex parts that are to be had at once; None when the mesh must be divided first.
+    """The convex parts that are available at once; None if the mesh must be decomposed.
 
-    At once are those in the cache, and those of meshes that are convex, flat, or made of separate
+    Available are cached parts, and those of meshes that are convex, flat, or consist of separate
     convex pieces.
     """
     found = _cache(cache_dir).get(content_key(mesh, _PARAMETERS))
@@ -71,37 +71,37 @@ def ready_parts(mesh: MeshData, *, cache_dir: Optional[str] = None) -> Optional[
 def divided(mesh: MeshData, *, cache_dir: Optional[str] = None, progress: Progress = _silent,
             deadline: float = _DEADLINE_S, cpu_seconds: int = _CPU_S,
             gently: bool = False) -> Decomposition:
-    """The convex parts of a mesh by V-HACD, which are kept; blocks for seconds.
+    """The convex parts of a mesh by V-HACD, which are cached; blocks for seconds.
 
-    Together they have the shape of the mesh; each has about 64 corners at most. A mesh that cannot
-    be divided, in `cpu_seconds` or at all, gives its hull.
+    Together they approximate the mesh; each has about 64 corners at most. A mesh that cannot be
+    decomposed within `cpu_seconds` gives its hull.
 
     Args:
-        mesh: finite vertices, metres; with or without openings.
-        cache_dir: where the parts are kept; None for the user's cache folder (XDG).
-        progress: told how many per cent are done.
-        deadline: seconds after which work that stands still is given up.
-        cpu_seconds: processor time that it may take; a mesh that needs more is never tried again.
-        gently: let physics that runs meanwhile come first.
+        mesh: finite vertices, m; with or without openings.
+        cache_dir: folder of the cache; None for the user's cache folder (XDG).
+        progress: called with the progress in per cent.
+        deadline: wall seconds without progress after which it is aborted.
+        cpu_seconds: limit of processor time; a mesh that needs more is not tried again.
+        gently: run at low priority, because a world is running meanwhile.
     """
     limits = (str(cpu_seconds), str(_NICE if gently else 0))
     try:
         made, whole = _in_child(mesh, progress, time.monotonic() + deadline, limits)
-    except OSError as fault:  # no room for files or for one more process
+    except OSError as fault:  # no disk space or no more processes
         _log.warning("dividing a mesh was not possible: %s", fault)
         return undivided(mesh)
-    if whole:  # what only took too long may be done another time
+    if whole:  # may succeed another time
         _cache(cache_dir).put(content_key(mesh, _PARAMETERS), made)
     return made
 
 
 def undivided(mesh: MeshData) -> Decomposition:
-    """A mesh whose hull must do."""
+    """A mesh that is represented by its hull."""
     return Decomposition([mesh], _NOT_DIVIDED)
 
 
 def notices(made: Decomposition) -> List[Issue]:
-    """The warning that goes with a decomposition, if there is one; without a file."""
+    """The warning of a decomposition, if any, without a file."""
     if not made.notice:
         return []
     message, hint = _NOTICES.get(made.notice, _NOTICES[_NOT_DIVIDED])
@@ -109,7 +109,7 @@ def notices(made: Decomposition) -> List[Issue]:
 
 
 def kept_in(cache_dir: Optional[str] = None) -> str:
-    """The folder in which parts are kept."""
+    """The folder of the cache."""
     return default_folder() if cache_dir is None else cache_dir
 
 
@@ -119,7 +119,7 @@ def _cache(cache_dir: Optional[str]) -> PartsCache:
 
 def _in_child(mesh: MeshData, progress: Progress, end: float,
               limits: Sequence[str]) -> "tuple[Decomposition, bool]":
-    """The work of a child process, and whether it came to its end in time."""
+    """Decompose in a child process; also returns whether it finished in time."""
     import numpy as np
 
     with Scratch() as scratch:
@@ -135,7 +135,7 @@ def _in_child(mesh: MeshData, progress: Progress, end: float,
 
 
 def _run(folder: str, progress: Progress, end: float, limits: Sequence[str]) -> bool:
-    """Run the child; False when it had to be killed because its time was over."""
+    """Run the child; False if it was killed at its deadline."""
     faults = os.path.join(folder, _FAULTS)
     with open(faults, "wb") as stream:
         with child_process.shielded():
@@ -164,7 +164,7 @@ def _watched(started: "subprocess.Popen[bytes]", progress: Progress, end: float)
 
 
 def _follow(output: int, progress: Progress, end: float) -> bool:
-    """Pass on how far the child is until it closes its output; False when time is over."""
+    """Report the progress of the child until it closes its output; False at the deadline."""
     told, rest = 0, b""
     while True:
         left = end - time.monotonic()
@@ -182,7 +182,7 @@ def _follow(output: int, progress: Progress, end: float) -> bool:
 
 
 def main(argv: List[str]) -> int:
-    """Divide the mesh in a folder; the result is put beside it, and first the hull alone."""
+    """Decompose the mesh in a folder; writes the hull first, then the result, beside it."""
     import numpy as np
 
     child_process.die_with_parent()
@@ -200,19 +200,19 @@ def main(argv: List[str]) -> int:
 
 @dataclass(frozen=True)
 class _Frame:
-    """A mesh centred, its longest edge 1, and the way back."""
+    """A mesh centred and scaled to a longest edge of 1, and the inverse transform."""
 
     points: Any
     centre: Any
     size: float
 
     def result(self, solids: Sequence[Any], notice: str = "") -> Decomposition:
-        """Solids in this frame as parts in the mesh's."""
+        """Transform solids of this frame to parts in the frame of the mesh."""
         return Decomposition([MeshData(solid.vertices * self.size + self.centre, solid.faces)
                               for solid in solids], notice)
 
     def parts_at_once(self, triangles: Any) -> Optional[Decomposition]:
-        """The parts of what need not be divided; None for other meshes."""
+        """The parts of a mesh that need not be decomposed; None for other meshes."""
         from . import hulls
 
         if hulls.is_flat(self.points):
@@ -238,7 +238,7 @@ def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
     from . import hulls
 
     frame = _frame(vertices)
-    if len(triangles) > _MOST_AT_ONCE:  # else it is known to need dividing
+    if len(triangles) > _MOST_AT_ONCE:  # otherwise it must be decomposed
         made = frame.parts_at_once(triangles)
         if made is not None:
             return made
@@ -249,7 +249,7 @@ def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
 
 
 def _divided(mesh: Any, folder: str) -> List[Any]:
-    """The hulls that V-HACD finds, with their corners limited."""
+    """The hulls found by V-HACD, with a limited number of corners."""
     import pybullet
     import trimesh
 

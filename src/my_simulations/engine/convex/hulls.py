@@ -1,24 +1,24 @@
-"""Convex hulls of meshes: which meshes are convex, which have no volume, what to do then."""
+"""Convex hulls of meshes; tests for convex and flat meshes."""
 from __future__ import annotations
 
 from typing import Any, List, NamedTuple, Optional
 
 MOST_VERTICES = 64
-"""Of one convex part; contacts cost time for each."""
+"""Most corners of a convex part: each takes time in contacts."""
 
-_SAME_VOLUME = 0.02  # a mesh that fills its hull up to this share is convex: V-HACD's own error
-_SAME_AREA = 0.02    # share of its hull's area that a mesh may leave open
-_ON_HULL = 1e-4      # distance from a hull's face for each metre of extent, to lie on it
+_SAME_VOLUME = 0.02  # missing share of its hull: V-HACD's own error
+_SAME_AREA = 0.02    # share of the hull's area that may be open
+_ON_HULL = 1e-4      # tolerance to lie on a face of the hull, per metre of extent
 _MOST_PAIRS = 4e6    # of faces and hull planes that are compared
-_FLAT = 1e-4         # thickness for each metre of extent, below which a mesh has no volume
+_FLAT = 1e-4         # thickness per metre of extent below which a mesh has no volume
 _PROJECTIONS = 50    # onto one face of a hull after the other
 _SHORT = 0.03        # of the extent
 _VOXEL = 0.02        # of the longest extent, about V-HACD's at this resolution
-_MOST_PIECES = 64    # more separate pieces than that are better merged than kept
+_MOST_PIECES = 64    # more separate pieces are merged
 
 
 def cleaned(vertices: Any, triangles: Any) -> Any:
-    """A `trimesh.Trimesh` with equal vertices made one, without triangles of no area."""
+    """A `trimesh.Trimesh` with merged equal vertices, without degenerate triangles."""
     import trimesh
 
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
@@ -34,7 +34,7 @@ class Hull(NamedTuple):
 
     Attributes:
         vertices: float64 (n, 3).
-        faces: int32 (m, 3), outside out.
+        faces: int32 (m, 3), counter-clockwise from outside.
         planes: float64 (m, 4): outward normal and offset of each face.
         volume: cubic units of the vertices.
     """
@@ -46,15 +46,15 @@ class Hull(NamedTuple):
 
 
 def full_hull(points: Any) -> Hull:
-    """The convex hull of an array (n, 3) whose points do not lie in a plane."""
-    # Not trimesh's, which turns the faces with networkx; Qhull knows which way they look.
+    """The convex hull of points (n, 3) that are not coplanar."""
+    # Not trimesh's, which orients faces with networkx; Qhull gives their orientation.
     import numpy as np
     from scipy.spatial import ConvexHull
 
     points = np.asarray(points, dtype=np.float64)
     try:
         found = ConvexHull(points, qhull_options="Pp Qt")
-    except RuntimeError:  # next to flat: Qhull may shake the points by its rounding error
+    except RuntimeError:  # nearly flat: let Qhull joggle the points by its rounding error
         found = ConvexHull(points, qhull_options="Pp QJ")
     corners = found.points[found.simplices]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -66,10 +66,10 @@ def full_hull(points: Any) -> Hull:
 
 
 def hull_of(points: Any) -> Hull:
-    """The convex hull of an array (n, 3), at most `MOST_VERTICES` corners of it.
+    """The convex hull of points (n, 3), reduced to at most `MOST_VERTICES` corners.
 
-    A larger hull keeps its outermost points in evenly spread directions and along the axes, so
-    that it lies inside the true one and has the same bounding box.
+    A larger hull keeps its extreme points in evenly spread directions and along the axes, so that
+    it is inside the exact one and has the same bounding box.
     """
     import numpy as np
 
@@ -83,7 +83,7 @@ def hull_of(points: Any) -> Hull:
 
 
 def _spread(count: int) -> Any:
-    """Directions spread evenly over the sphere, by the golden angle."""
+    """Evenly spread directions on the sphere (golden angle)."""
     import numpy as np
 
     steps = np.arange(count) + 0.5
@@ -94,13 +94,13 @@ def _spread(count: int) -> Any:
 
 
 def is_flat(points: Any) -> bool:
-    """Whether points lie in a plane, on a line or at one place."""
+    """Whether points are coplanar, collinear or equal."""
     _, spans = _principal(points)
     return bool(spans[-1] <= _FLAT * max(spans[0], 1e-12))
 
 
 def thickened(points: Any, thickness: float) -> Hull:
-    """The hull of points that have no volume, made `thickness` m thick where they are thinner."""
+    """The hull of flat points, extended to a thickness of at least `thickness` m."""
     import numpy as np
 
     points = np.asarray(points, dtype=np.float64)
@@ -113,7 +113,7 @@ def thickened(points: Any, thickness: float) -> Hull:
 
 
 def _principal(points: Any) -> Any:
-    """(principal axes as rows, extents along them), the longest first."""
+    """(principal axes as rows, extents along them), longest first."""
     import numpy as np
 
     points = np.asarray(points, dtype=np.float64)
@@ -126,10 +126,10 @@ def _principal(points: Any) -> Any:
 
 
 def is_convex(mesh: Any) -> bool:
-    """Whether a mesh is its own hull but for 2 % of its volume.
+    """Whether a mesh fills its convex hull except for 2 % of the volume.
 
-    One with openings is convex when it covers every face of its hull, as a box does whose corners
-    lie a hair apart.
+    A mesh with openings is convex if it covers every face of its hull, such as a box whose faces do
+    not exactly share their corners.
     """
     if is_flat(mesh.vertices):
         return False
@@ -140,7 +140,7 @@ def is_convex(mesh: Any) -> bool:
 
 
 def _covers(mesh: Any, hull: Hull) -> bool:
-    """Whether the triangles of a mesh that lie on a hull leave next to none of it open."""
+    """Whether the triangles of a mesh on a hull cover nearly all of it."""
     import numpy as np
 
     planes, face_of = np.unique(np.round(hull.planes, 6), axis=0, return_inverse=True)
@@ -163,7 +163,7 @@ def _areas(corners: Any) -> Any:
 
 
 def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
-    """The hulls of a mesh's separate pieces when each is convex, such as a table of boxes."""
+    """The hulls of a mesh's separate pieces, if all are convex, such as a table of boxes."""
     import numpy as np
     from trimesh.graph import connected_components
 
@@ -175,7 +175,7 @@ def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
 
 
 def drawn_in(points: Any, hull: Hull) -> Any:
-    """Points outside a hull moved onto it: V-HACD's parts stick out by half a voxel."""
+    """Move points outside of a hull onto it: V-HACD's parts protrude by half a voxel."""
     import numpy as np
 
     normals, offsets = hull.planes[:, :3], hull.planes[:, 3]
@@ -191,10 +191,10 @@ def drawn_in(points: Any, hull: Hull) -> Any:
 
 
 def stretched(parts: List[Any], points: Any) -> List[Any]:
-    """Points of parts moved so that all together they reach as far along the axes as `points`.
+    """Scale parts so that their common bounding box is that of `points`.
 
-    V-HACD's parts fall a little short of the mesh too, and what stands on them would sink in. Along
-    an axis where they fall far short, something is missing, and nothing is moved.
+    V-HACD's parts are also slightly smaller than the mesh, so bodies on them would sink in. Along
+    an axis where they are much smaller, a part is missing, and nothing is changed.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""Image files as grey levels, and GeoTIFF files as heights."""
+"""Reads grey levels of images, and heights of GeoTIFF files."""
 from __future__ import annotations
 
 import math
@@ -9,7 +9,7 @@ from typing import Any, Iterator, Optional, Tuple
 from ...errors import InputError, error
 
 MOST_PIXELS = 64 << 20
-"""Pillow holds up to four bytes a pixel."""
+"""Most pixels of an image: Pillow uses up to four bytes for each."""
 _BAND = 256
 _EARTH_M = 6371000.0
 # TIFF tags of GeoTIFF and GDAL.
@@ -22,8 +22,8 @@ class Levels:
     """Grey levels of an image.
 
     Attributes:
-        values: array of whole numbers, rows from the top, of the pixels that were asked for.
-        white: the number that stands for 1.
+        values: integer array of the requested pixels, rows from the top.
+        white: the value of white.
     """
 
     values: Any
@@ -35,11 +35,11 @@ class Elevations:
     """A digital elevation model.
 
     Attributes:
-        heights: array of metres, rows from the north, of the pixels that were asked for.
+        heights: array of the requested pixels, m, rows from the north.
         shape: rows and columns of the file.
-        lowest: metres, of all its pixels.
-        highest: metres, of all its pixels.
-        extent: metres from west to east and from south to north; None where the file does not say.
+        lowest: least height of all pixels, m.
+        highest: greatest height of all pixels, m.
+        extent: size from west to east and from south to north, m; None if the file has none.
     """
 
     heights: Any
@@ -52,11 +52,11 @@ class Elevations:
 def grey_levels(path: str, widest: int = 0, step: int = 1) -> Levels:
     """The brightest channel of each pixel.
 
-    An image of 100 KB may have 60 million pixels: no more of them than wanted are held.
+    Only the requested pixels are held in memory: an image of 100 KB may have 60 million.
 
     Args:
-        path: of the image.
-        widest: take every n-th row and column, so that no side has more; 0 for any.
+        path: path of the image.
+        widest: greatest number of rows and columns, to which the image is sampled; 0 for all.
         step: take every `step`-th row and column, rows counted from the bottom.
 
     Raises:
@@ -75,10 +75,9 @@ def grey_levels(path: str, widest: int = 0, step: int = 1) -> Levels:
 
 
 def elevations(path: str, widest: int) -> Optional[Elevations]:
-    """The heights in a GeoTIFF, or another image of real numbers; None for other images.
+    """The heights in a GeoTIFF or another floating-point image; None for other images.
 
-    Where the file says that a pixel has no height, it has the lowest of the others. `widest` as in
-    `grey_levels`.
+    Pixels without data get the least height of the others. `widest` as in `grey_levels`.
 
     Raises:
         InputError: with one issue, `image-unreadable`.
@@ -96,7 +95,7 @@ def elevations(path: str, widest: int) -> Optional[Elevations]:
         try:
             nothing = float(tags.get(_NO_DATA, "nan"))
         except ValueError:
-            nothing = math.nan  # some other words; every number is a height then
+            nothing = math.nan  # not a number: every pixel is a height
         for band in _bands(image, 0, step):
             heights = np.asarray(band, dtype=np.float64)
             known = np.isfinite(heights) & (heights != nothing)
@@ -120,12 +119,12 @@ def _brightest(image: Any) -> Any:
 
 
 def _step(image: Any, widest: int) -> int:
-    """Every how many-th row and column to take."""
+    """Sampling step of rows and columns."""
     return max(1, -(-(max(image.size) - 1) // (widest - 1))) if widest else 1
 
 
 def _bands(image: Any, first: int, step: int) -> Iterator[Any]:
-    """The image in pieces of some rows from `first` on; each begins with a row to be taken."""
+    """The image in bands of rows from `first` on; each begins with a sampled row."""
     rows = max(1, _BAND // step) * step
     for top in range(first, image.height, rows):
         yield image.crop((0, top, image.width, min(top + rows, image.height)))

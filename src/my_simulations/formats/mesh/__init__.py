@@ -1,1 +1,1 @@
-"""Mesh files, and shapes that become meshes, as triangles in metres."""
+"""Loads meshes, and makes meshes of shapes; triangles in metres."""

@@ -1,7 +1,7 @@
-"""COLLADA, read by pycollada: the triangles of the visual scene, every instance in its place.
+"""Reads COLLADA with pycollada: the triangles of all instances in the visual scene.
 
-The file's unit is applied to everything, translations of nodes included; `up_axis` is not, as in
-Gazebo, whose users have turned their models accordingly.
+The file's unit is applied to all lengths, including translations of nodes. `up_axis` is not
+applied (Gazebo behaviour).
 """
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _DEEPEST = 100
 
 
 def read_collada(data: bytes) -> List[MeshPart]:
-    """The pieces of a .dae file.
+    """The parts of a .dae file.
 
     Raises:
-        MeshFault: not COLLADA, or numbers that do not fit each other.
+        MeshError: not COLLADA, or inconsistent numbers.
     """
     import numpy as np
     from lxml import etree
@@ -29,13 +29,13 @@ def read_collada(data: bytes) -> List[MeshPart]:
     try:
         document = _loaded(etree.tostring(root))
         unit = unit_of(document, root)
-        with np.errstate(all="ignore"):  # what is not finite is reported later
+        with np.errstate(all="ignore"):  # non-finite numbers are reported later
             made = (_part(names, geometry, unit) for names, geometry in instances(document))
             return bounded(part for part in made if part is not None)
     except RecursionError:
         raise MeshError("its nodes form a cycle or are nested too deeply") from None
     except (LookupError, TypeError, ValueError, OverflowError, AttributeError) as fault:
-        # pycollada takes for granted that what it has not checked is there.
+        # pycollada fails in many ways on elements that it expects and does not check.
         raise MeshError(str(fault), _line_of_fault(root)) from None
 
 
@@ -49,7 +49,7 @@ def _loaded(text: bytes) -> Any:
 
 
 def _line_of_fault(root: Any) -> int:
-    """Where the geometry is that pycollada cannot read; 0 when they all are readable."""
+    """Line of the geometry that pycollada cannot read; 0 if all are readable."""
     import collada
     from collada.common import tagger
     from lxml import etree
@@ -70,7 +70,7 @@ def unit_of(document: Any, root: Any) -> float:
     text = element.get("meter") if element is not None else None
     if text is None:
         return 1.0
-    # What is not a number is None to pycollada, as if it were not there.
+    # pycollada reads an invalid number as None, as if it were missing.
     unit = document.assetInfo.unitmeter
     if unit is None or not (unit > 0 and math.isfinite(unit)):
         raise MeshError(f"the unit {text!r} is not a length in metres", element.sourceline)
@@ -78,7 +78,7 @@ def unit_of(document: Any, root: Any) -> float:
 
 
 def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
-    """(names, bound geometry) of every piece of the scene."""
+    """(names, bound geometry) of every instance in the scene."""
     import numpy as np
     from collada.scene import GeometryNode
 
@@ -87,7 +87,7 @@ def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
         for geometry in document.geometries:
             yield _names(geometry), geometry.bind(np.eye(4), {})
         return
-    # Not scene.objects("geometry"): that tells nothing of the nodes, whose names are wanted.
+    # Not scene.objects("geometry"), which does not give the names of the nodes.
     waiting: List[Tuple[Any, Any, Tuple[str, ...], int]] = [
         (node, np.eye(4), (), 0) for node in reversed(scene.nodes)]
     count = 0
@@ -126,7 +126,7 @@ def _part(names: Tuple[str, ...], geometry: Any, unit: float) -> Any:
         return None
     joined = np.concatenate(triangles)
     if np.linalg.det(geometry.matrix[:3, :3]) < 0:
-        joined = joined[:, ::-1]  # a mirrored piece is inside out
+        joined = joined[:, ::-1]  # mirrored: reverse the winding
     return MeshPart(names, np.concatenate(vertices).astype(np.float64) * unit, joined)
 
 
@@ -135,6 +135,6 @@ def _triangles(primitive: Any) -> Any:
 
     if not isinstance(primitive, BoundPolylist):
         return primitive.vertex_index
-    if primitive.nvertices != len(primitive.index):  # pycollada does not look
+    if primitive.nvertices != len(primitive.index):  # pycollada does not check it
         raise ValueError("<vcount> and <p> do not fit each other")
     return primitive.triangleset().vertex_index

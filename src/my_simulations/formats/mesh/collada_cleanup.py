@@ -1,9 +1,9 @@
-"""What of a COLLADA file reaches pycollada: nodes and positions, in the form it expects.
+"""Reduces a COLLADA file to nodes and positions, in the form that pycollada expects.
 
-pycollada gives up on a node whose material is missing, reads a number up to the first letter and
-a NaN as 0. Whatever has no part in the shape is therefore taken out (images, effects, normals,
-texture coordinates, cameras, animations), skins become what they are bound to, and the numbers of
-the shape are checked where the line is still known.
+pycollada fails on a node with a missing material, reads a number up to the first letter, and NaN
+as 0. Therefore everything but the shape is removed (images, effects, normals, texture coordinates,
+cameras, animations), skins are replaced by their geometry, and the numbers are checked here, where
+the line is known.
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PLACES = {"translate", "rotate", "scale", "matrix"}
 _NODE = _PLACES | {"node", "instance_geometry", "instance_node"}
 _PRIMITIVES = {"triangles", "trifans", "tristrips", "polylist", "polygons"}
 _NO_INDEX = re.compile(r"[^\s\d+]+")
-_LARGE_INDEX = re.compile(r"0*[1-9]\d{9,}")  # of a thousand million and more
+_LARGE_INDEX = re.compile(r"0*[1-9]\d{9,}")  # of 1e9 and more
 _NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
 
 
@@ -28,7 +28,7 @@ def tidied(data: bytes) -> Any:
     Elements keep the line numbers of the file.
 
     Raises:
-        MeshFault: not COLLADA, or numbers that are none.
+        MeshError: not COLLADA, or invalid numbers.
     """
     root = _parsed(data)
     document = _Document(root)
@@ -69,7 +69,7 @@ class _Document:
         self._used: List[Any] = []
 
     def replace_controllers(self) -> None:
-        """Put the geometry of a skin or morph, in its bind shape, in the place of its instance."""
+        """Replace instances of skins and morphs by their geometry, in its bind shape."""
         for instance in list(self._root.iter("{*}instance_controller")):
             matrices, source = [], self._target(instance)
             for _ in range(3):  # a skin may refer to a morph, and that to a geometry
@@ -89,7 +89,7 @@ class _Document:
             instance.getparent().replace(instance, node)
 
     def tidy_nodes(self) -> None:
-        """Leave of each node its transforms and what it places, where that is to be had."""
+        """Reduce each node to its transforms and the instances whose targets exist."""
         scene = self._root.find("{*}scene/{*}instance_visual_scene")
         if scene is not None and self._target(scene) is None:
             scene.getparent().remove(scene)
@@ -115,7 +115,7 @@ class _Document:
         return True
 
     def share_nodes(self) -> None:
-        """Put a copy of each node that is used twice where pycollada looks for such nodes."""
+        """Copy nodes that are instantiated several times to where pycollada searches for them."""
         library = _made(self._root, "library_nodes")
         wanted: Set[str] = {i.get("url")[1:] for i in self._root.iter("{*}instance_node")}
         for name in sorted(wanted):
@@ -125,7 +125,7 @@ class _Document:
             self._root.append(library)
 
     def tidy_geometries(self) -> None:
-        """Leave of each geometry in use its positions and faces; leave out the others."""
+        """Reduce each used geometry to positions and faces; remove the others."""
         used = {id(geometry) for geometry in self._used}
         placed = next(self._root.iter("{*}visual_scene"), None) is not None
         for geometry in list(self._root.iterfind("{*}library_geometries/{*}geometry")):
@@ -153,7 +153,7 @@ class _Document:
                 mesh.remove(child)
 
     def _positions(self, entry: Any) -> Any:
-        """The source of an input, as plain x y z numbers."""
+        """The source of an input, as x y z numbers."""
         source = self._target(entry, "source")
         accessor = source.find("{*}technique_common/{*}accessor") if source is not None else None
         array = self._target(accessor, "source") if accessor is not None else None
@@ -167,13 +167,13 @@ class _Document:
         return source
 
     def _target(self, instance: Any, attribute: str = "url") -> Optional[Any]:
-        """What a reference within the file names; None for nothing, and for other files."""
+        """The element that a reference points to; None if missing or in another file."""
         url = instance.get(attribute) or ""
         return self._by_id.get(url[1:]) if url.startswith("#") else None
 
 
 def _set_xyz(array: Any, accessor: Any) -> None:
-    """Check the numbers of an array, and give it and its accessor the form x y z, x y z."""
+    """Check the numbers of an array and rearrange it as x y z, x y z, with its accessor."""
     numbers = _check_numbers(array, finite=True)
     stride, offset = int(accessor.get("stride") or 3), int(accessor.get("offset") or 0)
     if stride < 3 or (len(numbers) - offset) % stride:
@@ -188,7 +188,7 @@ def _set_xyz(array: Any, accessor: Any) -> None:
 
 
 def _tidy_primitive(primitive: Any, positions: Dict[str, Any]) -> bool:
-    """Check the indices of a primitive; False when it has no faces."""
+    """Check the indices of a primitive; False if it has no faces."""
     for holed in list(primitive.iterfind("{*}ph")):  # holes are not cut
         primitive.replace(holed, holed.find("{*}p"))
     lists = primitive.findall("{*}p") + primitive.findall("{*}vcount")
@@ -198,14 +198,14 @@ def _tidy_primitive(primitive: Any, positions: Dict[str, Any]) -> bool:
             raise MeshError(f"<{_local(element)}>: {bad.group()!r} is not part of an index",
                             element.sourceline)
         large = _LARGE_INDEX.search(element.text or "")
-        if large:  # pycollada makes a negative one of it
+        if large:  # pycollada reads it as negative
             raise MeshError(f"<{_local(element)}>: there is no vertex {large.group()}",
                             element.sourceline)
     for entry in primitive.iterfind("{*}input"):
         entry.set("offset", entry.get("offset") or "0")
         source = positions.get((entry.get("source") or "")[1:])
         if entry.get("semantic") != "VERTEX":
-            # Its offset counts, its values do not: they may be missing.
+            # Only its offset is used; its values may be missing.
             other = next(iter(positions.values()), None)
             if other is not None:
                 entry.set("semantic", "COLOR")
@@ -234,7 +234,7 @@ def _first(element: Any, *kinds: str) -> Optional[Any]:
 
 
 def _made(like: Any, kind: str, **attributes: str) -> Any:
-    """A new element with the namespace of another."""
+    """A new element in the namespace of `like`."""
     from lxml import etree
 
     return etree.Element(f"{{{etree.QName(like).namespace}}}{kind}", attributes)

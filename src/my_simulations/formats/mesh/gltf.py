@@ -1,4 +1,4 @@
-"""What a glTF file asks of its reader, looked at before anything is allocated for it."""
+"""Checks sizes and references of a glTF file before memory is allocated for it."""
 from __future__ import annotations
 
 import json
@@ -15,14 +15,14 @@ _MOST_NODES = 100_000
 
 
 def check_gltf(data: bytes, path: str) -> None:
-    """Refuse a file that is small and becomes large, or that names what is no plain file.
+    """Reject a file that expands to a large size or refers to anything but regular files.
 
     Args:
-        data: of a .gltf or .glb file.
-        path: where it lies.
+        data: content of a .gltf or .glb file.
+        path: path of the file.
 
     Raises:
-        MeshFault: it is not to be read.
+        MeshError: the file is rejected.
     """
     tree = _tree(data)
     if sum(_counts(tree)) > 3 * MOST_TRIANGLES:
@@ -38,7 +38,7 @@ def check_gltf(data: bytes, path: str) -> None:
 
 
 def _counts(tree: Any) -> List[int]:
-    """Of the vertices and indices; what has no data of its own stands for zeros."""
+    """Numbers of vertices and indices; accessors without data stand for zeros."""
     found = []
     for accessor in _dicts(tree, "accessors"):
         count = accessor.get("count")
@@ -52,7 +52,7 @@ def _check_file(file: str, uri: str) -> None:
     try:
         status = os.stat(file)
     except (OSError, ValueError):
-        return  # the reader says what it misses
+        return  # the reader reports missing elements
     if not stat.S_ISREG(status.st_mode) or status.st_size > _LARGEST_BUFFER:
         raise MeshError(f"{uri!r} is no plain file of at most {_LARGEST_BUFFER >> 20} MB")
 

@@ -1,4 +1,4 @@
-"""Mesh files: DAE, STL, OBJ and what else trimesh reads, as triangles in metres."""
+"""Loads mesh files: DAE, STL, OBJ and other formats of trimesh, as triangles in metres."""
 from __future__ import annotations
 
 import functools
@@ -18,10 +18,10 @@ Reader = Callable[[bytes], List[MeshPart]]
 
 
 def load_mesh(mesh: Mesh) -> MeshData:
-    """The triangles of a mesh file, with its unit and the mesh's scale, part and centring applied.
+    """The triangles of a mesh file (m), with unit, scale, submesh and centring applied.
 
-    The up axis of the file is not (Gazebo behaviour). The arrays are shared between calls and
-    cannot be written to.
+    The up axis of the file is not applied (Gazebo behaviour). The arrays are shared between calls
+    and read-only.
 
     Raises:
         InputError: with one issue: `mesh-not-found`, `mesh-unreadable`, `mesh-empty` (no faces, or
@@ -42,7 +42,7 @@ def load_mesh(mesh: Mesh) -> MeshData:
 def load_solid(solid: Solid) -> MeshData:
     """The triangles of a mesh, a terrain, a map image or a polygon.
 
-    Whatever its file holds, the fault is that file's: a reader's own exception is one, too.
+    Exceptions of the readers are reported as faults of the file.
 
     Raises:
         InputError: with one issue; see `load_mesh` and `solids.solid_mesh`.
@@ -57,11 +57,11 @@ def load_solid(solid: Solid) -> MeshData:
 
 
 def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
-    """What the collisions of a model need, by `mesh_key`, and a warning for each that is not had.
+    """Meshes of a model's collisions by `mesh_key`, and a warning for each that cannot be loaded.
 
-    A collision whose mesh is not in the table cannot be simulated; `without_missing_meshes` leaves
-    such ones out, as Gazebo does. Nested models are included. A mesh whose size looks like a lost
-    unit gets a warning, `mesh-size-odd`.
+    Collisions without their mesh cannot be simulated; `without_missing_meshes` removes them, as
+    Gazebo does. Nested models are included. A mesh whose size suggests a wrong unit gets the
+    warning `mesh-size-odd`.
     """
     table: MeshTable = {}
     issues: List[Issue] = []
@@ -84,7 +84,7 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
 
 
 def without_missing_meshes(model: Model, table: MeshTable) -> Model:
-    """The model without the collisions whose mesh is not in `table`; the links stay."""
+    """The model without the collisions whose mesh is not in `table`; links are kept."""
 
     def usable(collision: Collision) -> bool:
         mesh = collision.geometry
@@ -113,7 +113,7 @@ def _fault(code: str, message: str, path: str, line: int = 0, hint: str = "") ->
 @functools.lru_cache(maxsize=32)
 def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float], submesh: str,
             center: bool) -> MeshData:
-    """Kept by the file's time and size, so that an object spawned again costs nothing."""
+    """Cached by time and size of the file, so that another spawn of an object is fast."""
     return _to_data(_chosen(_parts(path), submesh, path), path, scale, bool(submesh and center))
 
 
@@ -148,7 +148,7 @@ def _parts(path: str) -> List[MeshPart]:
     except MeshError as fault:
         said = "" if fault.code == "mesh-not-finite" else "the mesh cannot be read: "
         raise _fault(fault.code, f"{said}{fault}", path, fault.line) from None
-    except (ValueError, OverflowError) as fault:  # an attribute that should be a number
+    except (ValueError, OverflowError) as fault:  # an attribute that is not a number
         raise _fault("mesh-unreadable", f"the mesh cannot be read: {fault}", path) from None
 
 
@@ -179,7 +179,7 @@ def _to_data(parts: List[MeshPart], path: str, scale: Tuple[float, float, float]
         vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
     vertices = vertices * np.array(scale)
     if scale[0] * scale[1] * scale[2] < 0:
-        triangles = triangles[:, ::-1]  # a mirrored mesh is inside out
+        triangles = triangles[:, ::-1]  # mirrored: reverse the winding
     vertices = np.ascontiguousarray(vertices)
     triangles = np.ascontiguousarray(triangles, dtype=np.int32)
     vertices.flags.writeable = triangles.flags.writeable = False
@@ -187,7 +187,7 @@ def _to_data(parts: List[MeshPart], path: str, scale: Tuple[float, float, float]
 
 
 def _joined(parts: List[MeshPart]) -> Tuple[Any, Any]:
-    """One array of the vertices in use, and the triangles over it."""
+    """One array of all used vertices, and the triangles that index it."""
     import numpy as np
 
     vertices, triangles, first = [], [], 0

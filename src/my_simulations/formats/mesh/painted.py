@@ -1,4 +1,4 @@
-"""Meshes as they are drawn: normals, texture coordinates and the file's own materials."""
+"""Meshes for drawing: with normals, texture coordinates and the file's materials."""
 from __future__ import annotations
 
 import io
@@ -17,7 +17,7 @@ from .part import MeshError
 
 _PAINTED = (".obj", ".glb", ".gltf", ".ply")
 
-Array = Any  # a numpy array; its shape is said where it is used
+Array = Any  # a NumPy array; its shape is documented at each use
 
 
 @dataclass(frozen=True)
@@ -25,10 +25,12 @@ class PaintedPart:
     """Triangles of one material, scale applied.
 
     Attributes:
-        vertices: float64 (n, 3), metres; normals: (n, 3) unit; uv: (n, 2), v upwards.
-        triangles: int32 (m, 3).
-        color: diffuse of the file; None where it has no material.
-        picture: of its texture: a path that may not exist, a decoded PIL image, or None.
+        vertices: float64 (n, 3), m.
+        normals: (n, 3), unit vectors.
+        uv: texture coordinates (n, 2), v upwards.
+        triangles: int32 (m, 3), vertex indices.
+        color: diffuse colour of the file; None without a material.
+        picture: texture: a path that may not exist, a decoded PIL image, or None.
     """
 
     vertices: Array
@@ -40,9 +42,9 @@ class PaintedPart:
 
 
 def painted_parts(mesh: Mesh) -> List[PaintedPart]:
-    """A mesh file with its materials, or without where they cannot be read.
+    """The parts of a mesh file with their materials, or without if these cannot be read.
 
-    The triangles are always those of `load_mesh`, which also says what is wrong with a file.
+    The triangles are those of `load_mesh`, which reports faults of the file.
 
     Raises:
         InputError: see `load_mesh`.
@@ -52,14 +54,14 @@ def painted_parts(mesh: Mesh) -> List[PaintedPart]:
         parts = _read(mesh)
     except (MeshError, InputError, LookupError, TypeError, ValueError, AttributeError, OSError,
             ImportError, RecursionError, OverflowError):
-        parts = []  # what draws is lenient: the shape counts, and that has been read
+        parts = []  # materials are optional; the shape was read
     if sum(len(part.triangles) for part in parts) != len(plain.triangles):
         return [flat(plain)]
     return _placed(parts, mesh)
 
 
 def flat(data: MeshData) -> PaintedPart:
-    """Triangles with a normal each, as STL files are drawn."""
+    """Triangles with one normal each (flat shading), as for STL files."""
     corners = np.asarray(data.vertices)[np.asarray(data.triangles)].reshape(-1, 3)
     return _indexed(corners, None, None, None, None)
 
@@ -74,7 +76,7 @@ def _read(mesh: Mesh) -> List[PaintedPart]:
 
 
 def _placed(parts: List[PaintedPart], mesh: Mesh) -> List[PaintedPart]:
-    """Scale and centring of the visual, as `load_mesh` applies them."""
+    """Apply scale and centring of the visual, as `load_mesh` does."""
     scale, shift = np.array(mesh.scale), np.zeros(3)
     if mesh.submesh and mesh.center:
         low = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
@@ -106,7 +108,7 @@ def _unit_rows(rows: Array) -> Array:
 
 def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
              color: Optional[Color], picture: Any) -> PaintedPart:
-    """Three corners a triangle, those that are the same made one."""
+    """Merge equal corners of triangles into shared vertices."""
     if normals is None or len(normals) != len(corners):
         faces = corners.reshape(-1, 3, 3)
         normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]).repeat(3, axis=0)
@@ -175,7 +177,7 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
     import trimesh
 
     if mesh.submesh:
-        return []  # which part is meant is known to `load_mesh` only
+        return []  # only `load_mesh` knows the selected submesh
     scene = trimesh.load_scene(mesh.path, file_type=extension[1:], process=False)
     parts = []
     for node in scene.graph.nodes_geometry:

@@ -1,4 +1,4 @@
-"""Pieces of a mesh file, and what can be wrong with one."""
+"""Parts of a mesh file, and the error of an unreadable one."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -7,15 +7,15 @@ from typing import Any, Iterator, List, Tuple
 from ...errors import SimulationError
 
 MOST_TRIANGLES = 10_000_000
-"""Of a file, what it uses several times counted as often."""
+"""Most triangles of a file; instances count separately."""
 
 
 class MeshError(SimulationError):
     """A mesh file that cannot be read.
 
     Attributes:
-        line: 1-based, 0 where unknown.
-        code: of the issue it becomes.
+        line: 1-based; 0 if unknown.
+        code: code of the issue to report.
     """
 
     def __init__(self, message: str, line: int = 0, code: str = "mesh-unreadable") -> None:
@@ -26,10 +26,10 @@ class MeshError(SimulationError):
 
 @dataclass(frozen=True)
 class MeshPart:
-    """One named piece.
+    """One named part of a mesh file.
 
     Attributes:
-        names: what a `<submesh>` may call it, the closest name first.
+        names: names by which a `<submesh>` may refer to it, the most specific first.
         vertices: float64 array (n, 3), metres, in the frame of the file.
         triangles: int64 array (m, 3) of vertex indices.
     """
@@ -40,10 +40,10 @@ class MeshPart:
 
 
 def bounded(parts: Iterator[MeshPart]) -> List[MeshPart]:
-    """The parts of a file, which may be small itself and use one piece a million times.
+    """The parts, checked for their number of triangles: a small file may have many instances.
 
     Raises:
-        MeshFault: they have more than `MOST_TRIANGLES`.
+        MeshError: they have more than `MOST_TRIANGLES`.
     """
     found: List[MeshPart] = []
     count = 0

@@ -8,7 +8,7 @@ Triangle = Tuple[int, int, int]
 
 
 def signed_area(loop: Sequence[Point]) -> float:
-    """The area inside a loop, above zero where it runs counter-clockwise."""
+    """The area inside a loop; positive if it is counter-clockwise."""
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(loop, [*loop[1:], *loop[:1]])) / 2
 
 
@@ -19,14 +19,14 @@ def oriented(loops: Sequence[Sequence[Point]]) -> List[List[Point]]:
 
 
 def triangulated(loops: Sequence[Sequence[Point]]) -> Tuple[List[Point], List[Triangle]]:
-    """Triangles that cover the first loop but not the others.
+    """Triangulate the first loop with the others as holes.
 
     Args:
-        loops: as `oriented` gives them. Time grows with the square of the number of points.
+        loops: as returned by `oriented`. Time grows with the square of the number of points.
 
     Returns:
-        all points, loop after loop, and counter-clockwise triangles over them. A loop that crosses
-        itself gives triangles too, if not always the area that was meant.
+        All points, loop after loop, and counter-clockwise triangles that index them. For a loop
+        that crosses itself the covered area may differ from the intended one.
     """
     points = [point for loop in loops for point in loop]
     ends: List[List[int]] = []
@@ -37,7 +37,7 @@ def triangulated(loops: Sequence[Sequence[Point]]) -> Tuple[List[Point], List[Tr
 
 
 def _bridged(loops: List[List[int]], points: List[Point]) -> List[int]:
-    """One loop of indices, each hole tied to it by a bridge that is walked twice."""
+    """One loop of indices; each hole is connected by a bridge that is passed twice."""
     ring = loops[0]
     holes = sorted(loops[1:], key=lambda hole: -max(points[i][0] for i in hole))
     for number, hole in enumerate(holes):
@@ -50,7 +50,7 @@ def _bridged(loops: List[List[int]], points: List[Point]) -> List[int]:
 
 
 def _visible(start: int, ring: List[int], walls: List[List[int]], points: List[Point]) -> int:
-    """The place in the ring of the nearest corner that can be seen from a point."""
+    """Index in the ring of the nearest corner visible from a point."""
     x, y = points[start]
     order = sorted(range(len(ring)), key=lambda k: (points[ring[k]][0] - x) ** 2
                    + (points[ring[k]][1] - y) ** 2)
@@ -64,7 +64,7 @@ def _visible(start: int, ring: List[int], walls: List[List[int]], points: List[P
 
 
 def _opens_to(ring: List[int], k: int, target: Point, points: List[Point]) -> bool:
-    """True when the inside of the ring lies towards `target` at its corner `k`."""
+    """True if the inside of the ring at corner `k` is towards `target`."""
     before, here = points[ring[k - 1]], points[ring[k]]
     after = points[ring[(k + 1) % len(ring)]]
     if _turn(before, here, after) >= 0:
@@ -81,13 +81,13 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def _crosses(a: Point, b: Point, c: Point, d: Point) -> bool:
-    """True when two segments cross inside both."""
+    """True if two segments cross in the interior of both."""
     return (_turn(a, b, c) > 0) != (_turn(a, b, d) > 0) and (
         (_turn(c, d, a) > 0) != (_turn(c, d, b) > 0)) and not ({a, b} & {c, d})
 
 
 def _clipped(ring: List[int], points: List[Point]) -> List[Triangle]:
-    """Ears cut off one by one."""
+    """Triangulate a ring by ear clipping."""
     triangles: List[Triangle] = []
     ring = list(ring)
     at, waited = 0, 0
@@ -118,9 +118,9 @@ def _is_ear(ring: List[int], at: int, points: List[Point]) -> bool:
 
 
 def convex_pieces(points: Sequence[Point], triangles: Sequence[Triangle]) -> List[List[int]]:
-    """The triangles, joined across their edges as long as the pieces stay convex.
+    """Convex pieces: triangles merged across their edges as long as the result is convex.
 
-    Source: the method of Hertel and Mehlhorn: at most four times as many pieces as there must be.
+    Source: Hertel and Mehlhorn; at most four times the minimal number of pieces.
     """
     pieces: Dict[int, List[int]] = {n: list(triangle) for n, triangle in enumerate(triangles)}
     owner = {edge: n for n, piece in pieces.items() for edge in _edges(piece)}
@@ -139,7 +139,7 @@ def convex_pieces(points: Sequence[Point], triangles: Sequence[Triangle]) -> Lis
 
 
 def _joined(first: List[int], second: List[int], a: int, b: int) -> List[int]:
-    """Two counter-clockwise loops as one, without their common edge a-b."""
+    """Merge two counter-clockwise loops across their common edge a-b."""
     i, j = first.index(b), second.index(a)
     return first[i:] + first[:i] + (second[j:] + second[:j])[1:-1]
 

@@ -1,7 +1,7 @@
-"""Meshes that look as if their numbers were inches or millimetres, read as metres.
+"""Warns about meshes whose numbers are probably inches or millimetres, read as metres.
 
-Nothing is changed for them: the numbers may be meant. Public models of that size are buildings,
-which do not move, or files whose unit was lost, for which their models have a `<scale>`.
+The mesh is not changed, because the size may be intended. Public models of that size are either
+buildings, which are static, or files with a wrong unit, which their models correct by `<scale>`.
 """
 from __future__ import annotations
 
@@ -16,23 +16,22 @@ _LARGEST_M = 25.0
 _SMALLEST_M = 3.0
 _STATIC_M = 10.0
 _INCH_M = 0.0254
-_HEAD_BYTES = 8192  # the asset of a .dae comes first
+_HEAD_BYTES = 8192  # the <asset> of a .dae is at its beginning
 _TOOL = re.compile(rb"<authoring_tool>[^<]*SketchUp", re.IGNORECASE)
 _UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']([^\"']*)[\"']")
 
 
 def odd_size(mesh: Mesh, data: MeshData, moves: bool) -> List[Issue]:
-    """A warning for a mesh that is more than 25 m long although its model moves.
+    """A warning for a mesh of more than 25 m in a model that is not static.
 
-    Also for one that does not move, when SketchUp, which writes inches, is said to have written it
-    in metres. A Collada file without a <unit> is read in metres (its specification) and needs no
-    more than 3 m for the warning, 10 m where its model does not move: what SketchUp writes for
-    half a metre is 20 then.
+    Also for a static model if the file claims to be written by SketchUp, which uses inches, in
+    metres. For a Collada file without `<unit>`, which means metres, the limit is 3 m, or 10 m in a
+    static model: half a metre written in inches is 20.
 
     Args:
-        mesh: with the path of its file.
-        data: as loaded, scale applied.
-        moves: whether the model is not static.
+        mesh: the mesh, with the path of its file.
+        data: its triangles, scale applied.
+        moves: False for a static model.
     """
     size = float((data.vertices.max(axis=0) - data.vertices.min(axis=0)).max())
     if size <= _SMALLEST_M:
@@ -54,13 +53,13 @@ def odd_size(mesh: Mesh, data: MeshData, moves: bool) -> List[Issue]:
 
 
 def _collada_head(path: str) -> bytes:
-    """The beginning of a Collada file, with its asset; empty for other files."""
+    """The beginning of a Collada file with its `<asset>`; b"" for other files."""
     if os.path.splitext(path)[1].lower() != ".dae":
         return b""
     try:
         with open(path, "rb") as stream:
             return stream.read(_HEAD_BYTES)
-    except OSError:  # it was there when it was loaded, and nothing depends on this
+    except OSError:  # deleted since it was loaded; the warning is optional
         return b""
 
 

@@ -1,4 +1,4 @@
-"""Terrains, map images and extruded polygons as meshes that collide."""
+"""Makes collision meshes of heightmaps, map images and extruded polygons."""
 from __future__ import annotations
 
 import functools
@@ -16,15 +16,15 @@ Solid = Union[Heightmap, ImageMap, Polyline]
 _MOST_POINTS = 2000
 _MOST_BOXES = 20000
 _WIDEST = 1025
-"""Vertices along a side of a terrain; a finer image is thinned out."""
+"""Most vertices along a side of a terrain; larger images are sampled."""
 
 
 def solid_mesh(solid: Solid) -> MeshData:
-    """The triangles of a shape that is made from an image or from points.
+    """The triangles of a heightmap, a map image or a polyline.
 
-    Metres, in the frame of the collision; the arrays are shared between calls and cannot be
-    written to. A heightmap is a surface, not a body: it collides where nothing moves it. Polylines
-    and map images come with their convex pieces.
+    In metres, in the frame of the collision; the arrays are shared between calls and read-only.
+    A heightmap is a surface, so it can only be static. Polylines and map images have convex
+    parts.
 
     Raises:
         InputError: with one issue: `image-not-found`, `image-unreadable`, `solid-complex` (too many
@@ -59,11 +59,11 @@ def _data(vertices: Any, triangles: Any) -> MeshData:
 @functools.lru_cache(maxsize=8)
 def _terrain(path: str, changed: int, size: Tuple[float, float, float],
              position: Tuple[float, float, float], sampling: int) -> MeshData:
-    """Black lies at `position`, white `size[2]` above it; the image's top row lies at +y.
+    """Black is at `position`, white `size[2]` above it; the image's top row is at +y.
 
-    A negative height turns the levels round. Of an elevation model the lowest point lies at its own
-    height above `position` and the highest `size[2]` above that; without a size both extent and
-    heights are the real ones. Source: SDF spec, heightmap, and Gazebo behaviour.
+    A negative height inverts the levels. The lowest point of an elevation model is at its own
+    height above `position`, the highest `size[2]` above that; without a size, extent and heights
+    are those of the file. Source: SDF spec, heightmap, and Gazebo behaviour.
     """
     import numpy as np
 
@@ -90,7 +90,7 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
 
 
 def _to_scale(model: Elevations, size: Vec3) -> Tuple[Any, Vec3]:
-    """Heights as the collision has them, in metres, and the extent with a height of 1."""
+    """Heights scaled for the collision (m), and its extent with height 1."""
     low, high = model.lowest, model.highest
     if size == Heightmap().size:
         x, y = model.extent or (float(model.shape[1]), float(model.shape[0]))
@@ -101,7 +101,7 @@ def _to_scale(model: Elevations, size: Vec3) -> Tuple[Any, Vec3]:
 
 
 def _refined(levels: Any, sampling: int) -> Any:
-    """Points put in between, on straight lines, as long as the terrain stays small enough."""
+    """Insert linearly interpolated points, up to the largest terrain size."""
     import numpy as np
 
     while sampling > 1 and (max(levels.shape) - 1) * sampling > _WIDEST // 2:
@@ -120,7 +120,7 @@ def _refined(levels: Any, sampling: int) -> Any:
 @functools.lru_cache(maxsize=8)
 def _plan(path: str, changed: int, scale: float, threshold: int, height: float,
           granularity: int) -> MeshData:
-    """Dark pixels as boxes on z = 0, centred on the origin, the image's top row at +y."""
+    """Boxes on z = 0 for dark pixels, centred on the origin; the image's top row is at +y."""
     grey = grey_levels(path, step=granularity)
     dark = grey.values[::-1] < threshold * (grey.white / 255.0)
     boxes = _rectangles(dark)
@@ -141,7 +141,7 @@ def _plan(path: str, changed: int, scale: float, threshold: int, height: float,
 
 
 def _rectangles(dark: Any) -> List[Tuple[int, int, int, int]]:
-    """(left, bottom, right, top) of cells: runs of each row, joined where rows repeat them."""
+    """Rectangles (left, bottom, right, top) in cells: runs of each row, merged over equal rows."""
     import numpy as np
 
     found: List[Tuple[int, int, int, int]] = []
@@ -183,7 +183,7 @@ def _distinct(loop: Sequence[Point]) -> List[Point]:
 
 def _prism(points: Sequence[Point], triangles: Sequence[Tuple[int, int, int]],
            loops: Sequence[Sequence[Point]], height: float) -> MeshData:
-    """A flat shape between z = 0 and z = height; `loops` are its rims, inside on their left."""
+    """Extrude a flat shape from z = 0 to `height`; `loops` are its borders, interior left."""
     count = len(points)
     vertices = [(x, y, z) for z in (0.0, height) for x, y in points]
     faces = [(a, c, b) for a, b, c in triangles]

@@ -1,7 +1,7 @@
-"""STL, OBJ and whatever else trimesh reads. STL and OBJ know no unit: their numbers are metres.
+"""Reads STL, OBJ and other formats of trimesh. STL and OBJ have no unit: their numbers are metres.
 
-trimesh reads as much of a damaged file as it understands and takes OBJ's negative indices from
-the end of the file; so the text of both is checked and put into plain form first.
+trimesh silently skips damaged parts of a file, and counts negative indices of OBJ from the end of
+the file. Therefore the text of both formats is checked and normalised first.
 """
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _METRES = {"millimeter": 0.001, "millimeters": 0.001, "centimeter": 0.01, "micro
 
 
 def extensions() -> Set[str]:
-    """What trimesh reads as meshes here, e.g. `.ply`; some only with libraries of their own."""
+    """Extensions of mesh formats of trimesh, e.g. `.ply`; some need further libraries."""
     from trimesh.exchange.load import mesh_formats
 
-    # Archives could hold anything of any size.
+    # Archives may expand to any size.
     return {f".{name}" for name in mesh_formats()} - {".bz2", ".zip", ".zae", ".tar.gz", ".tar.bz2"}
 
 
@@ -30,9 +30,9 @@ def read_stl(data: bytes) -> List[MeshPart]:
     """The triangles of an STL file, binary or ASCII.
 
     Raises:
-        MeshFault: neither binary nor ASCII STL.
+        MeshError: neither binary nor ASCII STL.
     """
-    # A binary file may begin with `solid` too; its length gives it away.
+    # A binary file may begin with `solid`, too; its length identifies it.
     if len(data) >= _HEADER:
         count = int.from_bytes(data[80:_HEADER], "little")
         end = _HEADER + _RECORD * count
@@ -49,16 +49,16 @@ def read_stl(data: bytes) -> List[MeshPart]:
             rows.append("vertex " + " ".join(words[1:4]))
     if len(rows) % 3:
         raise MeshError(f"{len(rows)} corners are not triangles; the file may be cut off")
-    # The name of a solid may hold the word vertex, and its end may be missing.
+    # The name of a solid may contain the word vertex, and its end may be missing.
     plain = "\n".join(["solid", *rows, "endsolid", ""])
     return [_welded(part) for part in _read(plain.encode(), "stl")]
 
 
 def read_obj(data: bytes) -> List[MeshPart]:
-    """The pieces of an OBJ file, by its `o` and `g` lines.
+    """The parts of an OBJ file, by its `o` and `g` lines.
 
     Raises:
-        MeshFault: a number that is none, or an index out of range.
+        MeshError: an invalid number, or an index out of range.
     """
     text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
     plain, names = _plain_obj(text.replace("\\\n", " "))
@@ -67,12 +67,12 @@ def read_obj(data: bytes) -> List[MeshPart]:
 
 
 def read_other(data: bytes, path: str) -> List[MeshPart]:
-    """The pieces of a file of another format, in the unit that it declares, else in metres.
+    """The parts of a file in another format, in its declared unit, else in metres.
 
-    `path` gives the format by its extension and is where a .gltf finds its buffers.
+    The extension of `path` gives the format; a .gltf file finds its buffers beside it.
 
     Raises:
-        MeshFault: trimesh cannot read it, or lacks a library for it.
+        MeshError: trimesh cannot read it, or lacks a library for it.
     """
     from trimesh.resolvers import FilePathResolver
 
@@ -89,7 +89,7 @@ def _read(data: bytes, kind: str, **options: Any) -> List[MeshPart]:
         scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, **options)
     except ImportError as fault:
         raise MeshError(f"reading .{kind} needs a library that is not there: {fault}") from None
-    except Exception as fault:  # each format of trimesh fails in its own way
+    except Exception as fault:  # the formats of trimesh raise various exceptions
         raise MeshError(str(fault) or type(fault).__name__) from None
     return bounded(_scene_parts(scene))
 
@@ -109,22 +109,22 @@ def _scene_parts(scene: Any) -> Iterator[MeshPart]:
         if triangles.min() < 0 or triangles.max() >= len(vertices):
             raise MeshError("a face names a vertex that does not exist")
         if np.linalg.det(matrix[:3, :3]) < 0:
-            triangles = triangles[:, ::-1]  # a mirrored piece is inside out
+            triangles = triangles[:, ::-1]  # mirrored: reverse the winding
         yield MeshPart(tuple(dict.fromkeys((name, node))), vertices, triangles)
 
 
 def _welded(part: MeshPart) -> MeshPart:
-    """Corners at the same place made one vertex; STL has three of its own for each triangle."""
+    """Merge corners at the same position; STL has three vertices for each triangle."""
     import numpy as np
 
-    rows = np.ascontiguousarray(part.vertices + 0.0)  # -0.0 and 0.0 are one place
+    rows = np.ascontiguousarray(part.vertices + 0.0)  # -0.0 equals 0.0
     keys = rows.view([("", rows.dtype)] * 3).ravel()
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     return MeshPart(part.names, rows[first], inverse.reshape(-1)[part.triangles])
 
 
 def _plain_obj(text: str) -> Tuple[str, List[Tuple[str, ...]]]:
-    """Positions and faces alone, with positive indices, in groups 0, 1, …; their names."""
+    """Reduce to positions and faces with positive indices, in groups 0, 1, …; their names."""
     rows: List[str] = []
     groups: Dict[Tuple[str, ...], int] = {}
     shape, group, count, current = "", "", 0, -1
@@ -159,7 +159,7 @@ def _three(words: List[str], line: int) -> None:
 
 
 def _index(word: str, count: int, line: int) -> int:
-    """The vertex of `7/1/3`, from 1; negative ones count from the last vertex so far."""
+    """The vertex index of `7/1/3`, from 1; negative ones count back from the last vertex so far."""
     try:
         index = int(word.partition("/")[0])
     except ValueError:

@@ -26,7 +26,7 @@ from .model_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
 def read_collision(
     element: Any, source: Source, kept: List[str]
 ) -> Optional[Tuple[Collision, Found]]:
-    """A collision; None where it is skipped: its XML is then in `kept`.
+    """A collision; None if it is skipped, with its XML added to `kept`.
 
     Source: SDF spec 1.7, link/collision.
     """
@@ -41,7 +41,7 @@ def read_collision(
 
 
 def read_visual(element: Any, source: Source, kept: List[str]) -> Optional[Tuple[Visual, Found]]:
-    """A visual; None where it is skipped: its XML is then in `kept`.
+    """A visual; None if it is skipped, with its XML added to `kept`.
 
     Source: SDF spec 1.7, link/visual.
     """
@@ -58,7 +58,7 @@ def read_visual(element: Any, source: Source, kept: List[str]) -> Optional[Tuple
 
 
 def fill_material(element: Any, source: Source, extra: List[str]) -> Material:
-    """A `<material>`; what is not simulated of it goes to `extra`. Source: SDF spec, material."""
+    """A `<material>`; elements without a field go to `extra`. Source: SDF spec, material."""
     material = Material()
     kept: List[str] = []
     fill(material, element, MATERIAL, source, kept)
@@ -68,7 +68,7 @@ def fill_material(element: Any, source: Source, extra: List[str]) -> Material:
 
 
 def _anchored(uri: str, base_dir: str) -> str:
-    """A relative URI made absolute while the folder it starts from is still known."""
+    """A relative URI as an absolute path below `base_dir`."""
     if base_dir and "://" not in uri and not os.path.isabs(uri):
         path = os.path.join(base_dir, uri)
         return path if os.path.exists(path) else uri
@@ -106,7 +106,7 @@ def _geometry(
 
 
 def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: FaultLevel) -> bool:
-    """The points of all sibling polylines: the first is the outline, the others are holes."""
+    """The corners (m) of all sibling polylines: the first is the outline, the others are holes."""
     for shape in shapes:
         loop: List[Tuple[float, float]] = []
         for point in shape.iterfind("point") if shape.tag == "polyline" else ():
@@ -123,7 +123,7 @@ def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: Fau
 
 
 _CLOSED = 1e-4
-"""Metres between the first and the last point of a loop that was closed by hand (Gazebo)."""
+"""Largest distance (m) between first and last point of an explicitly closed loop (Gazebo)."""
 
 
 def unknown_shape(shape: Any, owner: str, level: FaultLevel, source: Source,
@@ -135,7 +135,7 @@ def unknown_shape(shape: Any, owner: str, level: FaultLevel, source: Source,
 
 
 def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optional[Geometry]:
-    """The shape where it can be used, its mesh found; None, with an issue, where it cannot."""
+    """The shape, with its mesh found; None, with an issue, if it cannot be used."""
     collides = owner == "collision"
     if isinstance(geometry, (Mesh, Heightmap, ImageMap)) and not find_mesh(
             geometry, shape, source, collides):
@@ -144,7 +144,7 @@ def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optio
         _thicken(geometry, shape, owner, source)
     problem = geometry_fault(geometry)
     if problem:
-        # ODE never lets a geometry of size 0 touch anything: files use them as place-holders.
+        # ODE geometries of size 0 have no contacts; files use them as placeholders.
         mild = not collides or has_zero_size(geometry)
         say = source.warn if mild else source.tolerate
         say("bad-shape", f"{problem}; this {owner} is skipped", shape)
@@ -153,11 +153,11 @@ def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optio
 
 
 THINNEST_SCALE = 1e-3
-"""What a mesh without thickness keeps of it; Gazebo's triangles collide when they lie flat, too."""
+"""Scale of a mesh axis in place of 0: flat meshes collide in Gazebo, too."""
 
 
 def _thicken(mesh: Mesh, shape: Any, owner: str, source: Source) -> None:
-    """A mesh scaled flat stays a thin one, on which things can lie; one scaled to a point goes."""
+    """Give a mesh scaled to a plane a small thickness; one scaled to a point is skipped."""
     if 0.0 not in mesh.scale or not any(mesh.scale):
         return
     shown = " ".join(f"{value:g}" for value in mesh.scale)
@@ -169,9 +169,9 @@ def _thicken(mesh: Mesh, shape: Any, owner: str, source: Source) -> None:
 
 def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Source,
               collides: bool) -> bool:
-    """Set the path of the mesh or image; False where its owner must be left out.
+    """Set the path of the mesh or image; False if its collision or visual must be skipped.
 
-    A visual whose file is missing stays, without a path, so that saving loses nothing.
+    A visual whose file is missing is kept without a path, so that saving keeps it.
     """
     try:
         mesh.path = source.resolver.resolve(mesh.uri, source.base_dir)

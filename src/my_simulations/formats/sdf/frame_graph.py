@@ -1,8 +1,8 @@
-"""Poses given in the frame of something else (`pose@relative_to`), brought to the model frame.
+"""Resolves poses in named frames (`pose@relative_to`) to the model frame.
 
 Source: SDF spec 1.7, pose frame semantics: `relative_to` names a sibling link, joint, frame or
 nested model; without it a pose is in the frame of its parent element, a joint's in its child link.
-A frame travels with the link it is attached to, directly or through other frames.
+A frame moves with the link it is attached to, directly or through other frames.
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...geometry import IDENTITY, Pose, compose
 
 
 class Placed(NamedTuple):
-    """A named frame: its pose in the frame called `relative_to`, and what it is attached to."""
+    """A named frame: its pose in the frame `relative_to`, and the frame it is attached to."""
 
     pose: Pose
     relative_to: str
@@ -22,15 +22,15 @@ class Placed(NamedTuple):
 
 
 class FrameError(SimulationError):
-    """A frame that does not exist, or that is defined by itself."""
+    """A frame that does not exist, or whose definition is circular."""
 
 
 class FrameTree:
     """The frames of one model (or world).
 
     Attributes:
-        root: the name of the frame of the whole.
-        body: the link that frame is attached to; "" for none.
+        root: name of the root frame.
+        body: link that the root frame is attached to; "" for none.
     """
 
     def __init__(self, root: str) -> None:
@@ -44,35 +44,35 @@ class FrameTree:
 
     def add(self, name: str, pose: Pose, relative_to: str, element: Any,
             attached_to: str = "") -> None:
-        """Declare a frame; the first of two with one name stays. A link is attached to itself."""
+        """Declare a frame; the first of two with one name is kept. A link is attached to itself."""
         if name not in self._placed:
             self._placed[name] = Placed(pose, relative_to or self.root, element,
                                         attached_to or self.root)
 
     def include(self, scope: str, inner: "FrameTree", element: Any) -> None:
-        """Declare the frames of a nested model, whose own frame is declared as `scope`."""
+        """Declare the frames of a nested model, scoped by `scope`, the name of its model frame."""
         self.add(f"{scope}::{inner.root}", IDENTITY, scope, element, scope)
         for name, pose, body in inner._settled():
             self.add(f"{scope}::{name}", pose, scope, element, f"{scope}::{body}")
 
     def merge(self, base: str, inner: "FrameTree", element: Any) -> None:
-        """Declare the frames of a model under their own names; its own frame is called `base`."""
+        """Declare the frames of a merged model under their own names; its model frame is `base`."""
         for name, pose, body in inner._settled():
             self.add(name, pose, base, element, body)
 
     def _settled(self) -> Iterator[Tuple[str, Pose, str]]:
-        """(name, pose in the root frame, link) of the frames without a fault."""
+        """(name, pose in the root frame, link) of all frames without a fault."""
         for name in self._placed:
             try:
                 yield name, self.pose(name), self.body_of(name)
             except FrameError:
-                continue  # the model it belongs to has said so itself
+                continue  # reported by its own model
 
     def pose(self, name: str) -> Pose:
         """The pose of a frame in the root frame.
 
         Raises:
-            FrameFault: unknown name, or a cycle.
+            FrameError: unknown name, or a cycle.
         """
         chain: List[str] = []
         while name not in self._known:
@@ -85,10 +85,10 @@ class FrameTree:
         return self._known[chain[0] if chain else name]
 
     def body_of(self, name: str) -> str:
-        """The link a frame travels with; "" where the root has none.
+        """The link a frame moves with; "" if the root frame has none.
 
         Raises:
-            FrameFault: unknown name, or a cycle.
+            FrameError: unknown name, or a cycle.
         """
         chain: List[str] = []
         while name != self.root:

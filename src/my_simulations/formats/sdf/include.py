@@ -1,4 +1,4 @@
-"""`<include>`: the model or light of another file, with changes."""
+"""`<include>`: the model or light of another file, with overrides."""
 from __future__ import annotations
 
 import functools
@@ -29,24 +29,24 @@ _MOST = 20000
 
 Included = Union[ParsedModel, LightPlacement, Actor]
 ModelReader = Callable[..., ParsedModel]
-"""`model.read_model`, which reads models with includes inside and is therefore handed in."""
+"""Type of `model.read_model`, which is passed in because models contain includes."""
 
 
 def read_include(element: Any, source: Source, read_model: ModelReader, static: bool = False,
                  outer: Sequence[str] = (), alone: bool = True) -> Optional[Included]:
-    """The entity that an `<include>` names; None, with an issue, if it cannot be used.
+    """The entity of an `<include>`; None, with an issue, if it cannot be used.
 
     Name, pose and static replace those of the included model; plugins are added. Source: SDF spec
     1.7, include; an include whose file is missing is skipped, and the world loads (Gazebo
     behaviour).
 
     Args:
-        element: `<include>`.
-        source: the file that it is in.
-        read_model: reads a `<model>`; see `model.read_model` for this and the rest.
+        element: the `<include>`.
+        source: its file.
+        read_model: reads a `<model>`; see `model.read_model`.
         static: True if an outer model is static.
         outer: names of the models around the include, outermost first.
-        alone: False if joints may name links of other models.
+        alone: False if joints may refer to links of other models.
     """
     probe = _Include()
     found = fill(probe, element, INCLUDE, source, [])
@@ -55,7 +55,7 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
         say("include-uri-missing", "<include> has no <uri>; it is skipped", element)
         return None
     if probe.pose is None and element.find("pose") is not None:
-        probe.pose = IDENTITY  # an empty one, too, replaces that of the model
+        probe.pose = IDENTITY  # an empty pose replaces that of the model, too
     changes = IncludeOverrides(
         probe.name or None, probe.pose, relative_to(found), probe.static,
         [read_plugin(plugin, source) for plugin in found.get("plugin", ())],

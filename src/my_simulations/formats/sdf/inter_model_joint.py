@@ -1,6 +1,6 @@
-"""Joints between models of a world, which belong to none of them.
+"""Joints between models of a world.
 
-Gazebo looks for links of other models in the whole world; SDF 1.10 has joints of the world.
+Gazebo searches the whole world for the links of a joint. SDF 1.10 has joints in `<world>`.
 """
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .link import relative_to
 
 
 class InterModelJointReader:
-    """Finds the ends of joints, and brings them to the frame of the child.
+    """Finds parent and child of joints, and transforms the joints to the child frame.
 
     Args:
         links: scoped names of all links of the world.
-        frames: of the world, those inside its models included.
-        source: where faults go.
+        frames: all frames of the world, including those inside its models.
+        source: receives faults.
     """
 
     def __init__(self, links: Set[str], frames: FrameTree, source: Source) -> None:
@@ -29,7 +29,7 @@ class InterModelJointReader:
         self._source = source
 
     def connect(self, one: UnresolvedJoint) -> bool:
-        """Complete the joint; False, with an issue, where it cannot be used."""
+        """Complete the joint; False, with an issue, if it cannot be used."""
         joint = one.joint
         parent, child = self._link(joint.parent, one), self._link(joint.child, one)
         if parent is None or child is None:
@@ -47,7 +47,7 @@ class InterModelJointReader:
         return True
 
     def _place(self, one: UnresolvedJoint) -> None:
-        """Joint pose and axes in the frame of the child; the child is never the world."""
+        """Transform joint pose and axes to the frame of the child, which is never the world."""
         joint = one.joint
         frame = relative_to(one.found)
         base = self._pose(frame, one) if frame else self._frames.pose(joint.child)
@@ -57,14 +57,14 @@ class InterModelJointReader:
             joint.parent, joint.child = WORLD, joint.parent
         if turned or frame:
             joint.pose = compose(inverse(self._frames.pose(joint.child)), at)
-        # Axes in world coordinates are so here, where all frames are the world's.
+        # All frames are given in the world frame here, so such axes need no transform.
         place_axes(joint, one.found, self._source, lambda name: self._pose(name, one), None)
         if turned:
             reverse_axes(joint)
 
     def _pose(self, name: str, one: UnresolvedJoint) -> Pose:
         scoped = one.scoped(name)
-        # Joints of the world were there before 1.2, too, with axes "in the model frame" by default.
+        # SDF before 1.2 had joints in the world, too, with axes in the model frame by default.
         if name == WORLD or scoped == "__model__":
             return IDENTITY
         return self._frames.pose(scoped if scoped in self._frames else name)

@@ -1,4 +1,4 @@
-"""SDF joints: their links, their axes, and the frames both are given in."""
+"""SDF joints: their links, their axes, and the frames of both."""
 from __future__ import annotations
 
 import math
@@ -19,13 +19,13 @@ from .upgrade import WORLD_AXES
 
 @dataclass
 class UnresolvedJoint:
-    """A joint on its way to the model that holds both its links.
+    """A joint whose links are not both found yet.
 
     Attributes:
-        joint: with its pose as written, and the names of its links as written or found.
-        found: what `read_joint` returned.
-        element: where it stands.
-        scope: what names of its own model begin with in the model that is asked now, "" there.
+        joint: its pose is as written; its links are names as written or found.
+        found: the elements returned by `read_joint`.
+        element: its `<joint>`.
+        scope: prefix of names of its own model in the model that is searched now; "" in its own.
     """
 
     joint: Joint
@@ -34,21 +34,21 @@ class UnresolvedJoint:
     scope: str = ""
 
     def scoped(self, name: str) -> str:
-        """A name of its own model, as the model that is asked now knows it."""
+        """A name of its own model, scoped for the model that is searched now."""
         return f"{self.scope}{name}" if name and self.scope else name
 
     def moved_out(self, model: str) -> "UnresolvedJoint":
-        """The same joint, for the model around `model`."""
+        """The same joint, to be searched in the model around `model`."""
         self.joint.name = f"{model}::{self.joint.name}"
         return UnresolvedJoint(self.joint, self.found, self.element, f"{model}::{self.scope}")
 
 
 PoseOf = Callable[[str], Pose]
-"""From the name of a frame to its pose in the model; raises `FrameError`."""
+"""Returns the pose of a frame in the model frame; raises `FrameError`."""
 
 
 def read_joint(element: Any, source: Source) -> Tuple[Joint, Found]:
-    """A joint with its pose as written; `place_axes` completes it once all frames are known.
+    """A joint with its pose as written; `place_axes` completes it when all frames are known.
 
     Source: SDF spec 1.7, joint.
     """
@@ -69,7 +69,7 @@ def read_joint(element: Any, source: Source) -> Tuple[Joint, Found]:
 
 def _axis(tag: str, table: Table, found: Found, source: Source,
           joint: Joint) -> Optional[JointAxis]:
-    """The axis without its direction, whose elements go to `found` as `<tag>/xyz`."""
+    """The axis without its direction, whose elements are added to `found` as `<tag>/xyz`."""
     elements = found.get(tag)
     if not elements:
         return None
@@ -85,7 +85,7 @@ def _axis(tag: str, table: Table, found: Found, source: Source,
 
 
 def _mimic(element: Any, source: Source) -> Mimic:
-    """q = multiplier (q_joint - reference) + offset. Source: SDF spec 1.11, axis/mimic."""
+    """Read `<mimic>`: q = multiplier (q_joint - reference) + offset. Source: SDF spec 1.11."""
     values = _Follow()
     fill(values, element, MIMIC, source, [])
     if not values.joint:
@@ -111,7 +111,7 @@ MIMIC = Table("mimic", _Follow, {
 
 
 def _thread(joint: Joint, element: Any, source: Source) -> None:
-    """Metres a turn, right-handed, as rad/m, left-handed. Source: SDF spec 1.10, joint."""
+    """Convert m per revolution (right-handed) to rad/m (left-handed). Source: SDF spec 1.10."""
     try:
         pitch = FLOAT.parse(element.text or "")
     except ValueError as fault:
@@ -127,7 +127,7 @@ _TWO_AXES = ("universal", "revolute2", "gearbox")
 
 
 def _default_axes(joint: Joint, element: Any, source: Source) -> None:
-    """Axes of a joint with two that the file leaves out; those of others must be given."""
+    """Default axes of two-axis joints; other types require their axes."""
     if joint.type == "universal" and joint.axis is None:
         source.warn("joint-axis-missing", f"universal joint {joint.name!r} has no axis; x and y are"
                     " used", element)
@@ -159,10 +159,10 @@ def _type(element: Any, source: Source) -> str:
 
 
 def is_complete(one: UnresolvedJoint, source: Source) -> bool:
-    """False for a joint that Gazebo does not make, either, for what it says itself."""
+    """False for a joint that Gazebo does not create, either, because of its own elements."""
     joint = one.joint
     if joint.type not in (*JOINT_TYPES, "piston"):
-        return False  # `read_joint` has said so
+        return False  # reported by `read_joint`
     missing = [role for role in ("parent", "child") if not getattr(joint, role)]
     if missing:
         source.report(FaultLevel.ERROR, "joint-link-missing", f"joint {joint.name!r} has no"
@@ -178,17 +178,17 @@ def is_complete(one: UnresolvedJoint, source: Source) -> bool:
 def place_axes(
     joint: Joint, found: Found, source: Source, pose_of: PoseOf, model_turn: Optional[Quat]
 ) -> None:
-    """Bring the axes into the joint frame, as unit vectors.
+    """Transform the axes to the joint frame, as unit vectors.
 
     Args:
-        joint: its `pose` already in the child link's frame.
-        found: what `read_joint` returned.
-        source: where faults go.
-        pose_of: poses of links and frames in the model.
+        joint: the joint; its `pose` is already in the frame of the child link.
+        found: the elements returned by `read_joint`.
+        source: receives faults.
+        pose_of: returns poses of links and frames in the model frame.
         model_turn: orientation of the model in the world.
     """
     if joint.type == "fixed":
-        joint.axis = joint.axis2 = None  # files often keep an axis there; it means nothing
+        joint.axis = joint.axis2 = None  # many files have an axis here; it is unused
         return
     if joint.axis is None and joint.type != "ball":
         joint.axis = JointAxis(rotate(conjugate(joint.pose.orientation), (1.0, 0.0, 0.0)))
@@ -212,7 +212,7 @@ def place_axes(
 
 
 def _unit(vector: Vec3) -> Vec3:
-    """The direction; a unit vector as it was written stays the same numbers."""
+    """The unit vector; one that is already normalised keeps its exact numbers."""
     length = norm(vector)
     return vector if abs(length - 1.0) < 1e-13 else scale(vector, 1.0 / length)
 
@@ -237,10 +237,10 @@ def _in_joint(vector: Vec3, expressed_in: str, joint: Joint, pose_of: PoseOf,
 
 
 def reverse_axes(joint: Joint) -> None:
-    """Turn the axes of a joint whose parent and child were exchanged.
+    """Reverse the axes of a joint whose parent and child were exchanged.
 
-    The position keeps its sign: what turned the child against the parent by an angle about the axis
-    turns the parent against the child by it about the opposite axis.
+    The position keeps its sign: a rotation of the child relative to the parent about an axis is the
+    same rotation of the parent relative to the child about the opposite axis.
     """
     for axis in (joint.axis, joint.axis2):
         if axis is not None:

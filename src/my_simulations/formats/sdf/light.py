@@ -14,7 +14,7 @@ TYPES = ("point", "directional", "spot")
 
 @dataclass
 class LightPlacement:
-    """A light that was read, and the frame its pose is given in ("" for the world)."""
+    """A light, and the frame that its pose is given in ("" for the world)."""
 
     light: Light
     relative_to: str = ""

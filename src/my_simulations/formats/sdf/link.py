@@ -15,7 +15,7 @@ from .sensor import read_sensor
 
 
 def relative_to(found: Found) -> str:
-    """The frame that the `<pose>` of an element names, "" for none."""
+    """The frame (`relative_to`) of the `<pose>` of an element; "" for none."""
     for pose in found.get("pose", ()):
         return pose.get("relative_to") or ""
     return ""
@@ -25,9 +25,9 @@ class LinkReader:
     """Reads the links of one model.
 
     Attributes:
-        elements: by id of what was made of them.
-        world: what the link that the file calls `world` is called, "" where there is none.
-        given_in: (thing with a pose, frame it is given in, link it belongs to, "" for none).
+        elements: elements by id of the object that was read from them.
+        world: name that a link called `world` was given; "" if there is none.
+        given_in: (object with a pose, frame of that pose, its link or "") for each named frame.
     """
 
     def __init__(self, source: Source, frames: FrameTree) -> None:
@@ -39,14 +39,14 @@ class LinkReader:
         self._taken: Set[str] = set()
 
     def read_all(self, elements: Sequence[Any], static: bool) -> List[Link]:
-        """The links of the model, each under a name of its own."""
+        """The links of the model, with unique names."""
         known = {element.get("name", "") for element in elements}
         return [self.read(element, static, known) for element in elements]
 
     def _name(self, element: Any, known: Set[str]) -> str:
-        """The link's name, another one where it is taken or means the world.
+        """The link's name, changed if it is not unique or is that of the world.
 
-        Gazebo keeps both of two links of one name, and joints find the first.
+        Of two links with one name Gazebo keeps both, and joints use the first.
         """
         name: str = element.get("name", "")
         if name == WORLD:
@@ -114,7 +114,7 @@ class LinkReader:
             self.given_in.append((thing, frame, link.name))
 
     def _distinct(self, kind: str, items: List[Any], link: Link) -> None:
-        """Give a suffix to names that are repeated, and a name to what has none."""
+        """Add a suffix to repeated names, and a name to items without one."""
         used: Set[str] = set()
         for item in items:
             wanted = item.name or f"{link.name}_{kind}"
@@ -132,7 +132,7 @@ class LinkReader:
 
 
 def free_name(wanted: str, taken: Container[str]) -> str:
-    """`wanted_1`, or the first such name that is not taken."""
+    """The first free name among `wanted_1`, `wanted_2`, ..."""
     count = 1
     while f"{wanted}_{count}" in taken:
         count += 1
@@ -140,5 +140,5 @@ def free_name(wanted: str, taken: Container[str]) -> str:
 
 
 def must_be_static(link: Link) -> bool:
-    """True for a link that collides as a terrain or a map, which cannot move (Gazebo behaviour)."""
+    """True for a link with a heightmap or image collision, which cannot move (Gazebo behaviour)."""
     return any(isinstance(one.geometry, (Heightmap, ImageMap)) for one in link.collisions)

@@ -1,4 +1,4 @@
-"""SDF models: links, joints, nested models, and the frames that place them."""
+"""SDF models: links, joints, nested models, and their frames."""
 from __future__ import annotations
 
 import enum
@@ -23,7 +23,7 @@ from .plugin import read_plugin
 
 ROOT = "__model__"
 DEEPEST = 50
-"""Models inside models; what the files of Gazebo and of robots have is 2 or 3."""
+"""Greatest depth of nested models; files of Gazebo and of robots have 2 or 3 levels."""
 
 
 def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides] = None,
@@ -31,12 +31,12 @@ def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides]
     """A model; faults that make it unusable are counted as fatal in the source's log.
 
     Args:
-        element: `<model>`, of a document of version 1.7 (see `sdf_versions`).
-        source: the file.
-        changes: by an `<include>`.
-        static: True when an outer model is static.
+        element: a `<model>` of SDF 1.7 (see `upgrade`).
+        source: its file.
+        changes: overrides of an `<include>`.
+        static: True if an outer model is static.
         outer: names of the models around it, outermost first.
-        alone: False where links of other models may be named by joints.
+        alone: False if joints may refer to links of other models.
     """
     return _ModelReader(
         element, source, changes or IncludeOverrides(), static, tuple(outer), alone
@@ -44,7 +44,7 @@ def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides]
 
 
 class _End(enum.Enum):
-    """Where the links of a joint are: in this model, perhaps in one around it, or nowhere."""
+    """Where the links of a joint are: in this model, possibly in an outer one, or nowhere."""
 
     HERE = 1
     ELSEWHERE = 2
@@ -122,12 +122,12 @@ class _ModelReader:
         probe = Link(element.get("name", ""))
         found = fill(probe, element, FRAME, self._source, [])
         attached = element.get("attached_to") or ""
-        # The frame of reference is what it is attached to, where the pose does not say.
+        # Without `relative_to` the pose is in the frame of `attached_to`.
         self._frames.add(probe.name, probe.pose, relative_to(found) or attached, element, attached)
         self._declared.append((probe.name, element))
 
     def _within_depth(self, elements: Sequence[Any], model: Model) -> Sequence[Any]:
-        """The models in this one, or none where it is `DEEPEST` levels down already."""
+        """The nested models; none, with an issue, at depth `DEEPEST`."""
         if len((*self._outer, model.name)) < DEEPEST:
             return elements
         for child in elements:
@@ -137,7 +137,7 @@ class _ModelReader:
 
     def _read_includes(self, elements: Sequence[Any], model: Model,
                        placement: ParsedModel) -> List[Tuple[Any, ParsedModel]]:
-        """The models that are included in this one; applies their flags to this one."""
+        """The included models; applies their flags to this model."""
         included: List[Tuple[Any, ParsedModel]] = []
         placement.flags = own_flags(model, self._element)
         for child in elements:
@@ -154,14 +154,14 @@ class _ModelReader:
         return included
 
     def _override_static(self, placement: ParsedModel) -> None:
-        """Apply the `<static>` of the include that brings this model, which has precedence."""
+        """Apply the `<static>` of this model's own include, which has precedence."""
         if self._changes.static is not None:
             placement.model.static = self._changes.static
             placement.flags = replace(placement.flags, static=self._changes.static)
 
     def _nested(self, elements: Sequence[Any], included: Sequence[Tuple[Any, ParsedModel]],
                 model: Model, static: bool) -> List[UnresolvedJoint]:
-        """Put models into this one; returns their joints that want links of this one."""
+        """Add nested models; returns their joints with links outside of them."""
         path = (*self._outer, model.name)
         waiting: List[UnresolvedJoint] = []
         for child in elements:
@@ -195,7 +195,7 @@ class _ModelReader:
         return [one.moved_out(inner.name) for one in placement.unresolved_joints]
 
     def _merge(self, placement: ParsedModel, element: Any, model: Model) -> None:
-        """Put what a model holds into this one, where it stands. Source: SDF spec 1.9, include."""
+        """Merge the contents of a model into this one. Source: SDF spec 1.9, include."""
         inner = placement.model
         proxy = f"_merged__{inner.name}__{ROOT}"
         self._frames.add(proxy, inner.pose, placement.relative_to, element)
@@ -216,7 +216,7 @@ class _ModelReader:
         model.extra += [xml for xml in inner.extra if not xml.startswith("<frame")]
 
     def _read_joints(self, elements: Sequence[Any]) -> List[UnresolvedJoint]:
-        """Those that Gazebo makes, too: of two with one name the first."""
+        """The joints; of two with one name the first, as in Gazebo."""
         joints: List[UnresolvedJoint] = []
         taken: Set[str] = set()
         for element in elements:
@@ -239,7 +239,7 @@ class _ModelReader:
         return joint.child if joint.child in self._frames and joint.child != WORLD else ROOT
 
     def _look_up(self, one: UnresolvedJoint, names: Set[str]) -> None:
-        """Names with the model's own scope in front, and those of a nested model's joint."""
+        """Find parent and child by their plain or scoped names."""
         joint = one.joint
         for role in ("parent", "child"):
             name = getattr(joint, role)
@@ -259,12 +259,12 @@ class _ModelReader:
         return found
 
     def _place(self, model: Model) -> None:
-        """Bring every pose given in a named frame to the frame the description uses."""
+        """Transform every pose in a named frame to the frame that the description uses."""
         for thing, frame, link in self._links.given_in:
             element = self._elements[id(thing)]
             pose = self._pose_of(frame, element)
             if pose is None:
-                continue  # as it is written
+                continue  # as written
             if link:
                 base = self._pose_of(link, element) or IDENTITY
                 pose = compose(inverse(base), compose(pose, thing.pose))
@@ -274,7 +274,7 @@ class _ModelReader:
             self._body_of(name, element)
 
     def _pose_of(self, frame: str, element: Any) -> Optional[Pose]:
-        """None, with an issue, for a frame without a pose: Gazebo takes what is written then."""
+        """The pose of a frame; None, with an issue, if unknown (the pose is used as written)."""
         try:
             return self._frames.pose(frame)
         except FrameError as fault:
@@ -291,7 +291,7 @@ class _ModelReader:
             return name
 
     def _place_joint(self, one: UnresolvedJoint, model: Model, names: Set[str]) -> "_End":
-        """Bring a joint to its child link's frame, where both its links are known."""
+        """Transform a joint to the frame of its child link, if both links are known."""
         joint, element = one.joint, one.element
         at: Optional[Pose] = IDENTITY
         if joint.child in self._frames or joint.child == WORLD:
@@ -313,7 +313,7 @@ class _ModelReader:
                                   closest(strangers[0], sorted(names)))
             return _End.NOWHERE
         if joint.child == WORLD and joint.parent in names:
-            # The description knows the world as a parent only.
+            # In the description the world can only be the parent.
             joint.parent, joint.child = WORLD, joint.parent
             joint.pose = self._from(joint.child, at or IDENTITY, element)
             place_axes(joint, one.found, self._source, self._pose_in(one), model.pose.orientation)
@@ -328,7 +328,7 @@ class _ModelReader:
         return compose(inverse(self._pose_of(frame, element) or IDENTITY), at)
 
     def _pose_in(self, one: UnresolvedJoint) -> Any:
-        """Poses by the names used where the joint was written, and by full names."""
+        """Returns frame poses by names as used in the joint's own model, or by full names."""
         def pose(name: str) -> Pose:
             scoped = one.scoped(name)
             return self._frames.pose(scoped if scoped in self._frames else name)
@@ -336,20 +336,20 @@ class _ModelReader:
         return pose
 
     def _put_by(self, frame: str, model: Model) -> None:
-        """The pose of the model is that of its placement frame. Source: SDF spec 1.8."""
+        """Set the model pose from the pose of its placement frame. Source: SDF spec 1.8."""
         frame = self._changes.placement_frame or frame
         if frame:
             model.pose = compose(model.pose,
                                  inverse(self._pose_of(frame, self._element) or IDENTITY))
 
     def _check(self, model: Model) -> None:
-        """The faults of the finished model, at the places they come from."""
+        """Report the faults of the complete model, located at their elements."""
         found = [*own_faults(model, self._outer_static),
                  *(fault for nested in model.models for fault in place_faults(nested))]
         for fault in found:
             element = self._elements.get(id(fault.subject))
             if element is None:
-                continue  # inside a nested model, which has said so itself
+                continue  # inside a nested model, which reported it
             self._source.log.add(
                 Issue(fault.severity, fault.code, fault.message, hint=fault.hint,
                       **self._source.where(element)),

@@ -39,6 +39,7 @@ from ..xml.values import (
     TEXT,
     VECTOR3,
 )
+from .world_tables import SURROUNDINGS
 
 FATAL, ERROR, WARNING = FaultLevel.FATAL, FaultLevel.ERROR, FaultLevel.WARNING
 
@@ -51,7 +52,7 @@ def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
 
 
 def _told(*names: str, since: str = "") -> Dict[str, Entry]:
-    """Kept, and it is said: whoever wrote them expects something to happen."""
+    """Elements that are kept with a note, because their authors expect an effect."""
     return {name: Kept(since, told=True) for name in names}
 
 
@@ -103,7 +104,7 @@ GEOMETRIES: Mapping[str, Table] = {
 
 _ODE_FRICTION = Group({
     "mu": Value("mu", FRICTION), "mu2": Value("mu2", FRICTION), "fdir1": Value("fdir1", VECTOR3),
-    "slip1": Value("slip1", FLOAT, use=KEPT), "slip2": Value("slip2", FLOAT, use=KEPT),
+    "slip1": Value("slip1", FLOAT), "slip2": Value("slip2", FLOAT),
 })
 _ODE_CONTACT = Group({
     **{name: Value(name, FLOAT) for name in ("kp", "kd", "max_vel")},
@@ -288,8 +289,6 @@ WORLD = Table("world", World, {
     "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
     "state": Part(), "joint": Part("1.10"),
     "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),
-    "gui": Part(use=SHOWN), "scene": Part(use=SHOWN), "actor": Part(use=SHOWN, told=True),
-    "road": Part(use=KEPT, told=True), "wind": Part(use=KEPT, told=True),
-    "atmosphere": Part(use=KEPT), "spherical_coordinates": Part(use=KEPT),
+    **SURROUNDINGS,
     **_told("audio"),
 }, known_attributes=("name",))

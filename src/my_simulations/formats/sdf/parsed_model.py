@@ -1,4 +1,4 @@
-"""A model that was read, with the frames and joints that its parent has to resolve."""
+"""A parsed model, with the frames and joints that its parent has to resolve."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from .model_flags import ModelFlags
 
 @dataclass
 class ParsedModel:
-    """A model that was read.
+    """A parsed model.
 
     Attributes:
         model: the model; its pose is in the frame `relative_to`.
@@ -31,7 +31,7 @@ class ParsedModel:
 
 
 def add_frames_inside(frames: FrameTree, placement: ParsedModel, element: Any) -> None:
-    """Add the frames inside a model to `frames`, which has the model's own, under scoped names."""
+    """Add the frames inside a model, by scoped names, to `frames`, which has its model frame."""
     model = placement.model
     if placement.frames is not None:
         frames.include(model.name, placement.frames, element)

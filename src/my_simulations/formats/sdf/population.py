@@ -1,8 +1,8 @@
-"""`<population>`: many copies of one model, placed by a rule.
+"""`<population>`: copies of one model, placed by a rule.
 
-Source: SDF spec 1.7, population, and Gazebo's placing: clones are named `<model>_clone_<i>` and
-stand upright. The draw depends on the population's name and the world's seed alone, so the same
-file gives the same world.
+Source: SDF spec 1.7, population, and Gazebo behaviour: clones are named `<model>_clone_<i>` and
+are upright. Random positions depend only on the population's name and the world's seed, so a file
+always gives the same world.
 """
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _ROUNDS = 20
 
 
 def read_population(element: Any, source: Source, seed: int) -> List[Model]:
-    """The models of a population, placed; none, with an error, where it says not enough."""
+    """The placed models of a population; none, with an error, if it is incomplete."""
     population = Population()
     fill(population, element, POPULATION, source, [])
     fatal = source.log.fatal
@@ -47,7 +47,7 @@ def read_population(element: Any, source: Source, seed: int) -> List[Model]:
 
 
 def _templates(element: Any, source: Source) -> List[Model]:
-    """The first model in it, written or included (libsdformat includes anywhere)."""
+    """The first model in the population, `<model>` or `<include>`."""
     for child in element.iterchildren("model", "include"):
         if child.tag == "model":
             return [read_model(child, source).model]
@@ -84,7 +84,7 @@ def _problem(p: Population) -> str:
 
 
 def positions(population: Population, draw: random.Random) -> List[Vec3]:
-    """Where the models stand, in the frame of the population."""
+    """Positions of the models (m) in the frame of the population."""
     if min(population.model_count, population.rows, population.cols) < 0:
         return []
     return _RULES[population.distribution](population, draw)
@@ -95,7 +95,7 @@ def _random(p: Population, draw: random.Random) -> List[Vec3]:
 
 
 def _point(p: Population, draw: random.Random) -> Vec3:
-    """One point of the region, every part of it as likely as any other."""
+    """A random point of the region, uniformly distributed."""
     if p.box is not None:
         x, y, z = (size * (draw.random() - 0.5) for size in p.box)
         return (x, y, z)
@@ -105,7 +105,7 @@ def _point(p: Population, draw: random.Random) -> Vec3:
 
 
 def _uniform(p: Population, draw: random.Random) -> List[Vec3]:
-    """Centres of as many clusters of a dense sample of the region."""
+    """Evenly spread points: the centres of clusters of a dense sample of the region."""
     import numpy as np
 
     if p.model_count == 0:
@@ -141,7 +141,7 @@ def _nearest(samples: Any, centres: Any) -> Any:
 
 
 def _lattice(box: Vec3) -> List[Vec3]:
-    """Points 0.1 m apart, further in a box that would hold too many."""
+    """Grid points 0.1 m apart, or further in a box that would have too many."""
     step = _LATTICE
     while math.prod(int(size / step) + 1 for size in box) > _SAMPLES:
         step *= 1.25

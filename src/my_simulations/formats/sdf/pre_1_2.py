@@ -1,6 +1,6 @@
-"""SDF 1.0 and 1.1, which kept values in attributes, as 1.2, which keeps them in elements.
+"""Upgrades SDF 1.0 and 1.1, with values in attributes, to 1.2, with values in elements.
 
-Source: the documents themselves, of 2011 and 2012; the format's own conversions begin later.
+Source: documents of 2011 and 2012; the format's own conversion rules begin later.
 """
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, Mapping
 _STAYS = ("name", "version", "type")
 _NOT_TYPED = ("solver", "fog")
 _TEXT = ("rgba", "angle", "link", "enabled")
-"""Attributes that are the text of their element."""
+"""Attributes that become the text of their element."""
 
 _TEXT_OF: Mapping[str, str] = {"gravity": "xyz", "direction": "xyz", "linear_velocity": "xyz"}
 _RENAMED: Mapping[str, str] = {"color": "diffuse"}
@@ -18,13 +18,13 @@ _BUILT_IN = "file://media/materials/scripts/gazebo.material"
 
 
 def values_to_elements(root: Any) -> None:
-    """Bring a document of version 1.0 or 1.1 to 1.2, in place."""
+    """Upgrade a document of version 1.0 or 1.1 to 1.2, in place."""
     for element in list(root):
         _convert(element)
 
 
 def includes_by_uri(root: Any) -> None:
-    """`<include filename="name.model"/>`, as it was before 1.3, names a model of the database."""
+    """Convert `<include filename="name.model"/>` (before 1.3) to the URI of a database model."""
     from lxml import etree
 
     for include in root.iter("include"):
@@ -42,7 +42,7 @@ def _convert(element: Any) -> None:
     for child in list(element):
         _convert(child)
     for name, value in list(element.items()):
-        # `save`, of a camera, has an attribute to this day.
+        # `save`, of a camera, still has an attribute in 1.7.
         if element.tag in ("include", "save") or (name == "pose" and element.tag == "origin") or (
                 name in _STAYS and element.tag not in _NOT_TYPED):
             continue
@@ -66,7 +66,7 @@ def _convert(element: Any) -> None:
 
 
 def _convert_inside(element: Any, parent: Any) -> None:
-    """What depends on where an element stands."""
+    """Conversions that depend on the parent of an element."""
     if parent.tag == "contact" and element.tag == "collision":
         element.text = element.attrib.pop("name", element.text)  # of a contact sensor
     if parent.tag == "material":

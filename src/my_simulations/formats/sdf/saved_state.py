@@ -1,4 +1,4 @@
-"""`<state>`: what had become of a world when it was saved. Source: SDF spec 1.7, state."""
+"""`<state>`: the state of a world when it was saved. Source: SDF spec 1.7, state."""
 from __future__ import annotations
 
 from typing import Any, List
@@ -13,7 +13,7 @@ from .world_tables import LIGHT_STATE, LINK_STATE, MODEL_STATE, STATE
 
 
 def read_state(element: Any, source: Source) -> SavedState:
-    """The state as it stands; `formats.state` applies it to the world."""
+    """The state as written; `state_applied.apply_state` applies it to the world."""
     state = SavedState()
     found = fill(state, element, STATE, source, [])
     for child in found.get("model", ()):
@@ -34,7 +34,7 @@ def _model(element: Any, source: Source) -> ModelState:
 
 
 def _into(state: ModelState, element: Any, scope: str, source: Source) -> None:
-    """Links and joints of a model and of those nested in it, under scoped names."""
+    """Add links and joints of a model and of its nested models, by scoped names."""
     own = state if not scope else ModelState("")
     found = fill(own, element, MODEL_STATE, source, [])
     for child in found.get("link", ()):

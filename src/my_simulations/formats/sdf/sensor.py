@@ -1,4 +1,4 @@
-"""SDF sensors, of links and of joints; their XML is kept by who holds them."""
+"""SDF sensors of links and joints; their XML is kept in `extra` of the link or joint."""
 from __future__ import annotations
 
 from typing import Any, List, Mapping, Sequence
@@ -10,13 +10,13 @@ from .plugin import read_plugin
 from .sensor_tables import BLOCKS, CAMERA, FIELDS, SENSOR
 
 ACTING = ("ray", "gpu_ray", "imu", "contact")
-"""Types for which there are plugins here; what else does nothing is said."""
+"""Sensor types that plugins implement; others are reported as not simulated."""
 
 
 def read_sensor(element: Any, source: Source) -> Sensor:
     """A sensor. A value that cannot be read is a warning, and its default is used.
 
-    A pose in a named frame is as it is written; who knows the frames moves it.
+    A pose in a named frame is as written; the model reader transforms it.
     """
     sensor = Sensor(element.get("name", ""), file=source.file, line=element.sourceline or 0)
     found = fill(sensor, element, SENSOR, source, [])
@@ -36,12 +36,12 @@ def read_sensor(element: Any, source: Source) -> Sensor:
 
 
 def kept_sensors(extra: Sequence[str], source: Source, lines: Mapping[str, int]) -> List[Sensor]:
-    """The sensors among XML that was kept, after it was changed.
+    """Read the sensors again from kept XML that was changed.
 
     Args:
-        extra: of a link or joint.
-        source: the file.
-        lines: of its `<sensor>` elements, by name.
+        extra: kept XML of a link or joint.
+        source: its file.
+        lines: line numbers of its `<sensor>` elements, by name.
     """
     return [read_sensor(_parsed(xml, lines), source) for xml in extra if xml.startswith("<sensor")]
 

@@ -1,4 +1,4 @@
-"""SDF's sensors as tables. Source: SDF specification 1.7, sensor."""
+"""Tables of SDF sensors. Source: SDF specification 1.7, sensor."""
 from __future__ import annotations
 
 from typing import Dict, Mapping
@@ -33,17 +33,17 @@ def _noise(part: str) -> Group:
     numbers: Dict[str, Entry] = {name: Value(name, FLOAT) for name in (
         "mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
         "dynamic_bias_correlation_time", "precision")}
-    # SDF 1.4 and robots of its time have the type as an element.
+    # SDF up to 1.4 has the type as an element.
     return Group({**numbers, "type": Value("type", TEXT)}, {"type": Value("type", TEXT)}, part=part)
 
 
 def _noisy(part: str) -> Group:
-    """A quantity that says nothing but its noise."""
+    """The entry of a measured quantity with a `<noise>` only."""
     return Group({"noise": _noise(part)})
 
 
-def _axes(prefix: str) -> Group:
-    return Group({axis: _noisy(f"{prefix}_{axis}") for axis in "xyz"})
+_AXES: Mapping[str, Entry] = {axis: _noisy(axis) for axis in "xyz"}
+"""A vector quantity, with a `<noise>` for each axis."""
 
 
 def _table(name: str, of: type, children: Mapping[str, Entry], **more: object) -> Table:
@@ -93,8 +93,8 @@ CONTACT = _table("contact", ContactSensor, {
 })
 
 IMU = _table("imu", Imu, {
-    "angular_velocity": _axes("angular_velocity"),
-    "linear_acceleration": _axes("linear_acceleration"),
+    "angular_velocity": Group(_AXES, part="angular_velocity"),
+    "linear_acceleration": Group(_AXES, part="linear_acceleration"),
     "orientation_reference_frame": Group({
         "localization": Value("localization", TEXT),
         "custom_rpy": Value("custom_rpy", VECTOR3), "grav_dir_x": Value("grav_dir_x", VECTOR3),
@@ -112,7 +112,7 @@ GPS = _table("gps", Gps, {
 
 FORCE_TORQUE = _table("force_torque", ForceTorque, {
     "frame": Value("frame", TEXT), "measure_direction": Value("measure_direction", TEXT),
-    "force": _axes("force"), "torque": _axes("torque"),
+    "force": Group(_AXES, part="force"), "torque": Group(_AXES, part="torque"),
 })
 
 SONAR = _table("sonar", Sonar, {
@@ -125,7 +125,7 @@ ALTIMETER = _table("altimeter", Altimeter, {
     "vertical_velocity": _noisy("vertical_velocity"),
 })
 
-MAGNETOMETER = _table("magnetometer", Magnetometer, {axis: _noisy(axis) for axis in "xyz"})
+MAGNETOMETER = _table("magnetometer", Magnetometer, _AXES)
 
 AIR_PRESSURE = _table("air_pressure", AirPressure, {
     "reference_altitude": Value("reference_altitude", FLOAT), "pressure": _noisy("pressure"),
@@ -147,10 +147,10 @@ BLOCKS: Mapping[str, Table] = {
     "magnetometer": MAGNETOMETER, "air_pressure": AIR_PRESSURE,
     "logical_camera": LOGICAL_CAMERA, "transceiver": TRANSCEIVER,
 }
-"""Tables of the blocks by tag; cameras, of which there may be several, apart."""
+"""Tables of the sensor blocks by tag; cameras, which may be repeated, are separate."""
 
 FIELDS: Mapping[str, str] = {"lidar": "ray", "navsat": "gps"}
-"""Fields of the blocks that are not called as their tag is."""
+"""Fields of the blocks whose name differs from the tag."""
 
 SENSOR = _table("sensor", Sensor, {
     "pose": Value("pose", POSE),

@@ -1,7 +1,7 @@
-"""A saved state, applied to the world it was saved from.
+"""Applies a saved state to the world it was saved from.
 
 Source: Gazebo behaviour. Insertions come first, then poses, scales and velocities, then deletions.
-Names that the world does not have are passed over.
+Unknown names are skipped.
 """
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from .state_scale import scaled
 
 
 def apply_state(world: World) -> World:
-    """The world as it was saved; the same world where it holds no state.
+    """The world in its saved state; the same world if it has no `<state>`.
 
-    A model without joints has its links moved. One with joints is moved by its canonical link, and
-    its joints get positions, since a joint is at 0 in the configuration of the description. The
-    result has no state any more.
+    The links of a model without joints are moved. A model with joints is moved by its canonical
+    link, and its joints get positions, because a joint is at 0 in the configuration of the
+    description. `World.state` of the result is None.
     """
     state = world.state
     if state is None:
@@ -47,7 +47,7 @@ def apply_state(world: World) -> World:
 
 
 def state_issues(world: World) -> List[Issue]:
-    """A warning for each name in the state that the world does not have, as in Gazebo."""
+    """A warning for each unknown name in the state, as in Gazebo."""
     state = world.state
     if state is None:
         return []
@@ -88,7 +88,7 @@ def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState])
 
 
 def _base_pose(flat: Model, poses: Dict[str, Pose], state: ModelState) -> Optional[Pose]:
-    """Where the model stands by its canonical link, which it moves with."""
+    """World pose of the model frame, from the pose of its canonical link."""
     name = flat.canonical_link or (flat.links[0].name if flat.links else "")
     for link in flat.links:
         if link.name == name and name in poses:
@@ -107,7 +107,7 @@ def _links_moved(model: Model, poses: Dict[str, Pose], above: Pose, scope: str =
 
 def _positions(joints: List[Joint], links: List[Link], poses: Dict[str, Pose],
                state: ModelState) -> Dict[str, float]:
-    """Of revolute, prismatic and like joints: from the links' poses, else from the angles."""
+    """Positions of the joints: from the link poses if possible, else from the saved angles."""
     at_zero = {link.name: link.pose for link in links}
     found: Dict[str, float] = {}
     for joint in joints:

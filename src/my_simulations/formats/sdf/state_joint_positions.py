@@ -1,4 +1,4 @@
-"""Where a joint stands, from where its links are."""
+"""Computes joint positions from link poses."""
 from __future__ import annotations
 
 import math
@@ -18,17 +18,17 @@ def joint_position(joint: Joint, at_zero: Mapping[str, Pose],
     Args:
         joint: revolute or prismatic.
         at_zero: poses of the links in the model, where every joint is at 0.
-        poses: poses of the links now, in one frame.
+        poses: present poses of the links, all in one frame.
 
     Returns:
-        None for other types, and where a pose is missing.
+        None for other joint types, and if a pose is missing.
     """
     if joint.axis is None or joint.type not in (*_HINGES, "prismatic") or joint.parent == WORLD:
         return None
     if joint.parent not in poses or joint.child not in poses or not (
             joint.parent in at_zero and joint.child in at_zero):
         return None
-    frame = joint.pose  # in the child
+    frame = joint.pose  # in the child link's frame
     before = compose(compose(inverse(at_zero[joint.parent]), at_zero[joint.child]), frame)
     now = compose(compose(inverse(poses[joint.parent]), poses[joint.child]), frame)
     axis = joint.axis.xyz
@@ -41,7 +41,7 @@ def joint_position(joint: Joint, at_zero: Mapping[str, Pose],
 
 
 def _within(angle: float, lower: float, upper: float) -> float:
-    """The same direction as an angle of -pi to pi, or a turn away where the limits ask for it."""
+    """The equivalent angle within the limits, else in -pi to pi."""
     angle = math.remainder(angle, 2.0 * math.pi)
     for turned in (angle, angle + 2.0 * math.pi, angle - 2.0 * math.pi):
         if lower <= turned <= upper:

@@ -1,4 +1,4 @@
-"""A model made larger or smaller, as the user's scale in a saved state says."""
+"""Applies the `<scale>` of a saved state to a model."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -27,8 +27,8 @@ _ONE: Vec3 = (1.0, 1.0, 1.0)
 def scaled(model: Model, factor: Vec3) -> Model:
     """The model with its shapes scaled along the axes of their own frames.
 
-    Shapes also move with the scale within their link; links do not, since a state gives their
-    poses. Mass and inertia stay (Gazebo behaviour).
+    Positions of shapes within their link are scaled, too; poses of links are not, because the state
+    holds them. Mass and inertia are unchanged (Gazebo behaviour).
     """
     if factor == _ONE:
         return model

@@ -1,6 +1,6 @@
-"""Older SDF documents, brought up to 1.7 one version at a time, in place.
+"""Upgrades older SDF documents to 1.7, one version at a time, in place.
 
-Source: the conversions of the SDF specification. The reader knows 1.7 only.
+Source: the conversion rules of the SDF specification. The reader supports 1.7 only.
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WORLD_AXES = "__world__"
 
 
 def upgrade(root: Any, source: Source) -> Any:
-    """The root of a document of any known version, as 1.7."""
+    """The root of a document of any known version, upgraded to 1.7."""
     version = _version(root, source)
     if version > NEWEST:
         source.warn(
@@ -73,7 +73,7 @@ def _to_1_5(root: Any) -> None:
     for axis in root.iter("axis", "axis2"):
         if axis.getparent().tag == "joint" and axis.find("use_parent_model_frame") is None:
             etree.SubElement(axis, "use_parent_model_frame").text = "true"
-    # Defaults that were others before 1.5.
+    # Defaults that differ before 1.5.
     if next(root.iter("collide_bitmask"), None) is not None:
         for collision in root.iter("collision"):
             if collision.find("geometry") is not None:
@@ -86,7 +86,7 @@ def _to_1_5(root: Any) -> None:
 
 
 def _default(element: Any, path: str, text: str) -> None:
-    """Write a value out where the document leaves it open."""
+    """Write a default into the document where it has no value."""
     from lxml import etree
 
     for tag in path.split("/"):
@@ -118,7 +118,7 @@ _NOISE = ("mean", "stddev", "bias_mean", "bias_stddev")
 
 
 def _imu_noise(imu: Any, noise: Any) -> None:
-    """One noise for all axes, as 1.6 has it: one for each."""
+    """Convert one noise for all axes to one for each (1.6)."""
     from lxml import etree
 
     for old, new in _IMU:
@@ -150,12 +150,12 @@ def _to_1_7(root: Any) -> None:
                 xyz = etree.SubElement(axis, "xyz")
                 xyz.text = "0 0 1"
             parent = axis.getparent().findtext("parent") or ""
-            # Gazebo takes such an axis in world coordinates when the parent is the world.
+            # If the parent is the world, Gazebo uses such an axis in the world frame.
             xyz.set("expressed_in", WORLD_AXES if parent.strip() == "world" else "__model__")
 
 
 def _from_1_9(root: Any, source: Source) -> None:
-    """Poses in degrees, or with a quaternion, as 1.7 writes them; others are left alone."""
+    """Convert poses in degrees or with a quaternion to the form of 1.7."""
     for pose in root.iter("pose"):
         if not pose.attrib:
             continue

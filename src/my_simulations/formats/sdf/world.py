@@ -1,4 +1,4 @@
-"""SDF worlds: models, lights, physics, and what is kept."""
+"""SDF worlds: models, lights, physics, and kept elements."""
 from __future__ import annotations
 
 import copy
@@ -32,7 +32,7 @@ from .world_scene import read_surroundings
 def read_world_element(element: Any, source: Source, seed: int = 0, profile: str = "") -> World:
     """A world; models with a fatal fault are skipped. Source: SDF spec 1.7, world.
 
-    `seed` and `profile` are as for `load.read_world`.
+    `seed` and `profile` as for `reading.read_world`.
     """
     world = World(element.get("name") or "default", file=source.file, seed=seed)
     found = fill(world, element, WORLD, source, world.extra)
@@ -114,7 +114,7 @@ class _Entities:
         return True
 
     def _declare_frames(self) -> None:
-        """Frames of the world, and those inside models where anything may name them."""
+        """Declare the frames of the world, and those inside models if referred to."""
         for element in self._found.get("frame", ()):
             probe = Link(element.get("name", ""))
             inside = fill(probe, element, FRAME, self._source, [])
@@ -126,7 +126,7 @@ class _Entities:
                 add_frames_inside(self._frames, placement, element)
 
     def _connect(self) -> None:
-        """Joints between models: the world keeps those whose links there are."""
+        """Connect the joints between models; the world keeps those whose links exist."""
         joints = self._found.get("joint", ())  # of SDF 1.10
         if not (self._pending or joints):
             return
@@ -152,7 +152,7 @@ class _Entities:
 
 
 def _read_physics(elements: Sequence[Any], world: World, source: Source, profile: str) -> None:
-    """The preset `profile`, else the first with default="true", else the first; others are kept."""
+    """Read the preset `profile`, else the default one, else the first; keep the others."""
     chosen = next((e for e in elements if _is_default(e)), elements[0] if elements else None)
     if profile:
         named = {e.get("name"): e for e in reversed(elements) if e.get("name")}
@@ -163,7 +163,7 @@ def _read_physics(elements: Sequence[Any], world: World, source: Source, profile
         chosen = named.get(profile, chosen)
     for element in elements:
         if element is not chosen:
-            # Only one is the default, so that writing and reading again chooses the same.
+            # Exactly one is the default, so that a saved world selects the same preset.
             world.extra.append(to_xml(_without_default(element)))
     if chosen is None:
         return

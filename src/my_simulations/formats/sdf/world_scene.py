@@ -1,61 +1,28 @@
-"""Surroundings and actors of a world: scene, GUI, wind, atmosphere, place, roads, actors."""
+"""Reads GUI, roads and actors of a world; `world_tables.SURROUNDINGS` has the rest."""
 from __future__ import annotations
 
-from typing import Any, List
+from typing import Any
 
-from ...description.actor import Actor, Animation, Trajectory, Waypoint
-from ...description.surroundings import Fog, GuiCamera, Road, Scene, Sky, SphericalCoordinates
+from ...description.actor import Actor
+from ...description.surroundings import GuiCamera, Road
 from ...description.world import World
 from ..xml.binding import Found, fill
 from ..xml.source import Source
 from .collision_visual import fill_material
 from .plugin import read_plugin
-from .world_tables import (
-    ACTOR,
-    ANIMATION,
-    ATMOSPHERE,
-    FOG,
-    GUI,
-    GUI_CAMERA,
-    ROAD,
-    SCENE,
-    SKY,
-    SPHERICAL,
-    TRAJECTORY,
-    WAYPOINT,
-    WIND,
-)
+from .world_tables import ACTOR, GUI, GUI_CAMERA, ROAD
 
 
 def read_surroundings(found: Found, world: World, source: Source) -> None:
-    """Fill the world's fields from `scene` to `roads`. Source: SDF spec 1.7, world."""
-    for element in found.get("scene", ()):
-        _read_scene(element, world.scene, source)
+    """Set the world's GUI, roads and actors. Source: SDF spec 1.7, world."""
     for element in found.get("gui", ()):
         inside = fill(world.gui, element, GUI, source, world.gui.extra)
         world.gui.plugins += [read_plugin(plugin, source) for plugin in inside.get("plugin", ())]
         for camera in inside.get("camera", ()):
             world.gui_camera = GuiCamera()
             fill(world.gui_camera, camera, GUI_CAMERA, source, world.gui_camera.extra)
-    for element in found.get("wind", ()):
-        fill(world.wind, element, WIND, source, world.wind.extra)
-    for element in found.get("atmosphere", ()):
-        fill(world.atmosphere, element, ATMOSPHERE, source, world.atmosphere.extra)
-    for element in found.get("spherical_coordinates", ()):
-        place = world.spherical_coordinates = SphericalCoordinates()
-        fill(place, element, SPHERICAL, source, place.extra)
     world.roads += [_read_road(element, source) for element in found.get("road", ())]
     world.actors += [read_actor(element, source) for element in found.get("actor", ())]
-
-
-def _read_scene(element: Any, scene: Scene, source: Source) -> None:
-    found = fill(scene, element, SCENE, source, scene.extra)
-    for child in found.get("sky", ()):
-        scene.sky = Sky()
-        fill(scene.sky, child, SKY, source, scene.sky.extra)
-    for child in found.get("fog", ()):
-        scene.fog = Fog()
-        fill(scene.fog, child, FOG, source, scene.fog.extra)
 
 
 def _read_road(element: Any, source: Source) -> Road:
@@ -66,26 +33,9 @@ def _read_road(element: Any, source: Source) -> Road:
 
 
 def read_actor(element: Any, source: Source) -> Actor:
-    """An actor with its path; none of it is simulated. Source: SDF spec 1.7, actor."""
+    """An actor with its trajectories; drawn, not simulated. Source: SDF spec 1.7, actor."""
     actor = Actor(element.get("name", ""), base_dir=source.base_dir)
     found = fill(actor, element, ACTOR, source, actor.extra)
     actor.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
-    for child in found.get("animation", ()):
-        animation = Animation(child.get("name", ""))
-        fill(animation, child, ANIMATION, source, animation.extra)
-        actor.animations.append(animation)
-    actor.trajectories = _read_trajectories(found.get("trajectory", []), source)
+    actor.trajectories.sort(key=lambda trajectory: trajectory.id)
     return actor
-
-
-def _read_trajectories(elements: List[Any], source: Source) -> List[Trajectory]:
-    trajectories: List[Trajectory] = []
-    for element in elements:
-        trajectory = Trajectory()
-        found = fill(trajectory, element, TRAJECTORY, source, trajectory.extra)
-        for child in found.get("waypoint", ()):
-            waypoint = Waypoint()
-            fill(waypoint, child, WAYPOINT, source, waypoint.extra)
-            trajectory.waypoints.append(waypoint)
-        trajectories.append(trajectory)
-    return sorted(trajectories, key=lambda trajectory: trajectory.id)

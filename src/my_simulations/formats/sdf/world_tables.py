@@ -1,4 +1,4 @@
-"""The elements of an SDF world besides models, as tables. Source: SDF specification, 1.2 to 1.7."""
+"""Tables of the elements of an SDF world besides models. Source: SDF specification, 1.2 to 1.7."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from ...description.surroundings import (
     Wind,
 )
 from ...geometry import IDENTITY, Pose, Twist, Vec3
-from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.binding import Entry, Group, Kept, Nested, Part, Table, Use, Value
 from ..xml.source import FaultLevel
 from ..xml.values import BOOL, COLOR, FLOAT, INT, POSE, SCALE, SECONDS, TEXT, VECTOR3, numbers
 
@@ -43,7 +43,8 @@ FOG = Table("fog", Fog, {
 SCENE = Table("scene", Scene, {
     "ambient": Value("ambient", COLOR), "background": Value("background", COLOR),
     "shadows": Value("shadows", BOOL), "grid": Value("grid", BOOL),
-    "origin_visual": Value("origin_visual", BOOL), "sky": Part(), "fog": Part(),
+    "origin_visual": Value("origin_visual", BOOL),
+    "sky": Nested("sky", SKY), "fog": Nested("fog", FOG, required=("type",)),
 }, level=WARNING, use=SHOWN)
 
 GUI = Table("gui", Gui, {
@@ -75,6 +76,17 @@ SPHERICAL = Table("spherical_coordinates", SphericalCoordinates, {
        for name in ("latitude_deg", "longitude_deg", "elevation", "heading_deg")},
 }, level=WARNING, use=KEPT)
 
+SURROUNDINGS: Mapping[str, Entry] = {
+    "gui": Part(use=SHOWN),
+    "scene": Nested("scene", SCENE, required=("ambient", "background", "shadows"), use=SHOWN),
+    "actor": Part(use=SHOWN, told=True), "road": Part(use=KEPT, told=True),
+    "wind": Nested("wind", WIND, required=("linear_velocity",), use=KEPT, told=True),
+    "atmosphere": Nested("atmosphere", ATMOSPHERE, required=("@type",), use=KEPT),
+    "spherical_coordinates": Nested("spherical_coordinates", SPHERICAL, required=(
+        "surface_model", "latitude_deg", "longitude_deg", "elevation", "heading_deg"), use=KEPT),
+}
+"""Children of `<world>` around its models, in the order in which they are written."""
+
 ROAD = Table("road", Road, {
     "width": Value("width", FLOAT), "point": Value("points", VECTOR3, repeated=True),
     "material": Part(use=SHOWN),
@@ -83,13 +95,15 @@ ROAD = Table("road", Road, {
 ANIMATION = Table("animation", Animation, {
     "filename": Value("filename", TEXT), "scale": Value("scale", FLOAT),
     "interpolate_x": Value("interpolate_x", BOOL),
-}, level=WARNING, known_attributes=("name",), use=KEPT)
+}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=KEPT)
 
 WAYPOINT = Table("waypoint", Waypoint, {
     "time": Value("time", FLOAT), "pose": Value("pose", POSE),
 }, level=WARNING, use=SHOWN)
 
-TRAJECTORY = Table("trajectory", Trajectory, {"waypoint": Part()}, attributes={
+TRAJECTORY = Table("trajectory", Trajectory, {
+    "waypoint": Nested("waypoints", WAYPOINT, required=("time", "pose")),
+}, attributes={
     "id": Value("id", INT), "type": Value("type", TEXT),
     "tension": Value("tension", FLOAT, use=KEPT),
 }, level=WARNING, use=SHOWN)
@@ -97,10 +111,11 @@ TRAJECTORY = Table("trajectory", Trajectory, {"waypoint": Part()}, attributes={
 ACTOR = Table("actor", Actor, {
     "pose": Value("pose", POSE),
     "skin": Group({"filename": Value("skin", TEXT), "scale": Value("skin_scale", FLOAT)}),
-    "animation": Part(),
+    "animation": Nested("animations", ANIMATION, required=("@name", "filename")),
     "script": Group({
         "loop": Value("loop", BOOL), "delay_start": Value("delay_start", FLOAT),
-        "auto_start": Value("auto_start", BOOL), "trajectory": Part(),
+        "auto_start": Value("auto_start", BOOL),
+        "trajectory": Nested("trajectories", TRAJECTORY, required=("@id", "@type")),
     }),
     "plugin": Part(use=KEPT),
     **{name: Kept() for name in ("link", "joint", "frame", "static", "origin", "enable_wind",
@@ -110,7 +125,7 @@ ACTOR = Table("actor", Actor, {
 
 @dataclass
 class Population:
-    """`<population>`: how often a model stands where."""
+    """`<population>`: number and distribution of copies of a model."""
 
     name: str = ""
     pose: Pose = IDENTITY

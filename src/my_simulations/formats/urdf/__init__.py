@@ -1,1 +1,1 @@
-"""URDF robots, read as Gazebo's converter reads them."""
+"""Reads URDF robots as Gazebo's converter does."""

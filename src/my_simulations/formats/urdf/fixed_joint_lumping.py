@@ -1,7 +1,7 @@
-"""Fixed joints of URDF: the child becomes part of the parent, mass and all.
+"""Fixed joint lumping: merges the child of a fixed joint into its parent.
 
-Source: the behaviour of Gazebo's converter. Clients address the links that remain, so which ones
-do, and the names of what was moved, are part of the interface.
+Source: Gazebo behaviour (sdformat's URDF converter). Clients address the remaining links by name,
+so the choice of links and the names of moved elements are part of the interface.
 """
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .kinematic_tree import LUMP, Body, Connection, parents_first
 
 
 def lump(root: Body) -> List[str]:
-    """Lump every body whose fixed joint is not kept; returns `<frame>`s that mark their places."""
+    """Lump every body whose fixed joint is not kept; returns `<frame>` elements at their poses."""
     frames: List[str] = []
     for body in parents_first(root):
         if body.up is not None and is_lumped(body.up):
@@ -28,19 +28,19 @@ def lump(root: Body) -> List[str]:
 
 
 def is_lumped(connection: Connection) -> bool:
-    """True for a fixed joint that goes; one to a root called `world` always stays."""
+    """True for a fixed joint that is lumped; one to a root called `world` is always kept."""
     parent = connection.parent
     from_world = parent.up is None and parent.link.name == WORLD
     return connection.joint.type == "fixed" and not connection.keep and not from_world
 
 
 def lumped_into(body: Body) -> Body:
-    """The body that `body` has become part of, itself where it stays."""
+    """The body that `body` was lumped into; `body` itself if it was not."""
     return body.into if body.into is not None else body
 
 
 def _move(child: Body, into: Body) -> None:
-    """Shapes and mass of `child`, to the end of those of `into`."""
+    """Append shapes and add the mass of `child` to those of `into`."""
     for stem, collision in child.collisions:
         collision.pose = compose(child.offset, collision.pose)
         into.collisions.append((LUMP + stem, collision))

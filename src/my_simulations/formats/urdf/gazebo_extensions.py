@@ -1,4 +1,4 @@
-"""`<gazebo>` in URDF: what SDF has and URDF lacks. Source: Gazebo's converter."""
+"""`<gazebo>` extensions of URDF. Source: Gazebo's converter."""
 from __future__ import annotations
 
 from collections import defaultdict
@@ -26,7 +26,7 @@ from .urdf_tables import (
 
 
 class Extensions:
-    """The `<gazebo>` elements of a robot, by what they refer to ("" for the model)."""
+    """The `<gazebo>` elements of a robot, by their reference ("" for the model)."""
 
     def __init__(self, elements: Sequence[Any], source: Source) -> None:
         self._source = source
@@ -37,12 +37,12 @@ class Extensions:
             for child in element:
                 value = child.get("value")
                 if value is not None and not (child.text or "").strip() and not len(child):
-                    child.text = value  # both spellings are in use
+                    child.text = value  # both spellings are used in robots
                     del child.attrib["value"]
             self._by_reference[element.get("reference") or ""].append(element)
 
     def to_model(self, model: Model) -> None:
-        """Static, plugins and what else belongs to the model; must come first."""
+        """Apply extensions of the model: static, plugins and others; call it first."""
         for block in self._by_reference.get("", ()):
             found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
             self.joints += found.get("joint", [])
@@ -50,19 +50,19 @@ class Extensions:
                               for child in found.get("plugin", ())]
 
     def to_link(self, body: Body) -> None:
-        """Settings of a link and of its own collisions and visuals, before any lumping."""
+        """Apply extensions of a link and of its collisions and visuals; call before lumping."""
         for block in self._blocks(body.link.name):
             for child in block:
                 self._to_link(child, body)
 
     def to_connection(self, connection: Connection) -> None:
-        """Settings of a joint."""
+        """Apply extensions of a joint."""
         for block in self._blocks(connection.joint.name):
             for child in block:
                 self._to_joint(child, connection)
 
     def report_unused(self) -> None:
-        """Warn about references to nothing."""
+        """Warn about references to unknown links and joints."""
         for reference, blocks in self._by_reference.items():
             if reference not in self._used:
                 self._source.warn("reference-unknown", f"there is no link and no joint"
@@ -77,7 +77,7 @@ class Extensions:
             self._keep(child, body)
 
     def _set_values(self, child: Any, body: Body) -> bool:
-        """Tags with one value."""
+        """Apply tags with a single value."""
         tag, link = child.tag, body.link
         if tag in GAZEBO_COLLISION:
             for _, collision in body.collisions:
@@ -94,7 +94,7 @@ class Extensions:
         return True
 
     def _merge(self, child: Any, body: Body) -> bool:
-        """Tags with SDF elements that go into what the link has."""
+        """Apply tags with SDF elements to the link's own elements."""
         tag, source = child.tag, self._source
         if tag == "collision":
             for _, collision in body.collisions:
@@ -173,7 +173,7 @@ def _nested(path: str, text: str) -> str:
 
 
 def moved(xml: str, offset: Pose) -> str:
-    """What a link keeps as XML, for the link it was lumped into: its pose is brought along."""
+    """Kept XML of a link for the link that it was lumped into, with its poses transformed."""
     from lxml import etree
 
     if not xml.startswith(_PLACED):
@@ -189,6 +189,6 @@ def moved(xml: str, offset: Pose) -> str:
         try:
             own = POSE.parse(pose.text)
         except ValueError:
-            return xml  # the sensor's own reader says what is wrong with it
+            return xml  # the sensor reader reports it
     pose.text = POSE.format(compose(offset, own))
     return to_xml(element)

@@ -1,4 +1,4 @@
-"""SDF's `<joint>` in a robot's `<gazebo>`: what URDF's tree cannot say, such as loops."""
+"""SDF `<joint>` in a robot's `<gazebo>`, for kinematic loops, which URDF cannot describe."""
 from __future__ import annotations
 
 from typing import Any, Dict, Optional
@@ -15,14 +15,14 @@ from .kinematic_tree import Body
 
 def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
                    poses: Dict[str, Pose], robot: str) -> Optional[Joint]:
-    """The joint, between the links that stand for the ones it names; None, with an issue.
+    """The joint, between the links after lumping; None, with an issue, if unusable.
 
     Args:
-        element: SDF `<joint>`, as of version 1.7.
-        source: the file.
+        element: SDF `<joint>` of version 1.7.
+        source: its file.
         bodies: links of the file by name.
-        poses: of all of them, in the model.
-        robot: the name of the model, which may stand before those of links.
+        poses: poses of the links in the model frame, by name.
+        robot: name of the model, which may scope the names of links.
     """
     joint, found = read_joint(element, source)
     if not is_complete(UnresolvedJoint(joint, found, element), source):
@@ -42,7 +42,7 @@ def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
         if name in bodies:
             setattr(joint, role, lumped_into(bodies[name]).link.name)
     turned = joint.child == WORLD
-    if turned:  # the description knows the world as a parent only
+    if turned:  # in the description the world can only be the parent
         joint.parent, joint.child = joint.child, joint.parent
     joint.pose = compose(inverse(poses.get(joint.child, IDENTITY)), at)
 

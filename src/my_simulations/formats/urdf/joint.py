@@ -1,4 +1,4 @@
-"""URDF joints: what connects two links, and how it may move."""
+"""URDF joints: type, links, axis, limits, mimic."""
 from __future__ import annotations
 
 from typing import Any, Dict, Optional
@@ -17,7 +17,7 @@ TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
 
 def read_connection(element: Any, source: Source, bodies: Dict[str, Body]) -> Optional[Connection]:
-    """A joint, entered at both its links; None, with an issue, where it connects nothing.
+    """A joint, added to both of its links; None, with an issue, if a link is missing.
 
     Source: URDF specification, joint; the joint frame is the child's link frame.
     """
@@ -47,7 +47,7 @@ def read_connection(element: Any, source: Source, bodies: Dict[str, Body]) -> Op
 
 
 def _follow(joint: Joint, element: Any, source: Source) -> None:
-    """q = multiplier q_joint + offset. Source: URDF specification, joint/mimic."""
+    """Read `<mimic>`: q = multiplier q_joint + offset. Source: URDF specification, joint/mimic."""
     mimic = Mimic("")
     fill(mimic, element, MIMIC, source, [])
     if not mimic.joint or joint.axis is None:
@@ -71,7 +71,7 @@ def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[
     if length < 1e-12:
         source.tolerate("joint-axis-zero", f"the axis of joint {joint.name!r} has no direction; the"
                         " x axis of the model is used, as by ODE", found["axis"][0])
-    # `turned_to` completes one without a direction, once it is known how the links stand.
+    # `turned_to` completes an axis without a direction when the link poses are known.
     axis = JointAxis(scale(given.xyz, 1.0 / length) if length >= 1e-12 else NOWHERE)
     limits = None
     for child in found.get("limit", ()):
@@ -92,11 +92,11 @@ NOWHERE = (0.0, 0.0, 0.0)
 
 
 def turned_to(axis: JointAxis, link: Quat) -> None:
-    """Give an axis without a direction the x axis of the model, as ODE does.
+    """Set the direction of an axis without one to the x axis of the model, as ODE does.
 
     Args:
-        axis: of a joint.
-        link: orientation of its child link in the model.
+        axis: the axis of a joint.
+        link: orientation of the joint's child link in the model.
     """
     if axis.xyz == NOWHERE:
         axis.xyz = rotate(conjugate(link), (1.0, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""A robot while it is read: bodies, what connects them, and what of them is left in the end."""
+"""The kinematic tree of a robot while it is read: bodies and connections."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -16,14 +16,14 @@ class Body:
     """A link of the file.
 
     Attributes:
-        link: what becomes of it; its collisions and visuals are put in at the end.
-        element: the element it comes from.
-        inertial: None where the file gives none.
-        collisions, visuals: with the stem of the name each will have.
-        up: what connects it with its parent, None for the root.
-        down: what connects it with its children, sorted by joint name.
-        into: the body it has become part of, itself not lumped; None where it stays.
-        offset: its frame in the body that stands for it.
+        link: the resulting link; its collisions and visuals are added at the end.
+        element: its `<link>`.
+        inertial: its inertial; None if the file has none.
+        collisions, visuals: shapes, each with the stem of its future name.
+        up: connection to the parent; None for the root.
+        down: connections to the children, sorted by joint name.
+        into: the body it was lumped into, which itself was not lumped; None if it is kept.
+        offset: pose of its link frame in the body it was lumped into.
     """
 
     link: Link
@@ -39,10 +39,10 @@ class Body:
 
 @dataclass
 class Connection:
-    """A joint of the file; `origin` is the child's frame in the parent's.
+    """A joint of the file; `origin` is the pose of the child link frame in the parent link frame.
 
-    `keep` is "fixed" for a fixed joint that stays one, "revolute" for one that stays as a locked
-    hinge, "" for one whose child is lumped into the parent.
+    `keep` is "fixed" for a fixed joint that is kept, "revolute" for one that becomes a locked
+    revolute joint, "" for one whose child is lumped into the parent.
     """
 
     joint: Joint
@@ -54,7 +54,7 @@ class Connection:
 
 
 def parents_first(root: Body) -> Iterator[Body]:
-    """The bodies below and with `root`, depth first, siblings by joint name."""
+    """`root` and the bodies below it, depth first, siblings by joint name."""
     waiting = [root]
     while waiting:
         body = waiting.pop()

@@ -24,12 +24,12 @@ from .urdf_tables import (
 )
 
 Palette = Dict[str, Material]
-"""Materials by name; a visual may name one that is defined elsewhere in the file."""
+"""Materials by name; a visual may refer to one that is defined elsewhere in the file."""
 
 
 def read_origin(elements: Sequence[Any], source: Source,
                 level: Optional[FaultLevel] = None) -> Pose:
-    """The pose of the first `<origin>`, identity where there is none."""
+    """The pose of the first `<origin>`; identity if there is none."""
     for element in elements:
         origin = Origin()
         fill(origin, element, ORIGIN, source, [], level)
@@ -104,7 +104,7 @@ def _geometry(elements: Sequence[Any], owner: Any, source: Source,
 
 
 def read_palette(elements: Sequence[Any], source: Source) -> Palette:
-    """The materials defined at the top of the file."""
+    """The materials defined at the top level of the file."""
     palette: Palette = {}
     for element in elements:
         read_material(element, source, palette)
@@ -112,9 +112,9 @@ def read_palette(elements: Sequence[Any], source: Source) -> Palette:
 
 
 def read_material(element: Any, source: Source, palette: Palette) -> Material:
-    """A material; one with a name and a content is remembered under its name.
+    """A material; one with a name and content is added to the palette.
 
-    Gazebo ignores URDF's colours; honouring them shows what the author meant.
+    Unlike Gazebo, which ignores colours of URDF, they are used.
     """
     paint = Paint()
     fill(paint, element, MATERIAL, source, [])

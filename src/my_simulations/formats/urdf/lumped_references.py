@@ -1,8 +1,8 @@
-"""What plugins and sensors of a robot call by name, after its fixed links became part of others.
+"""Updates names in plugins and sensors of a robot after fixed joint lumping.
 
-Source: Gazebo's converter: contact sensors name collisions; plugins name a `bodyName` or
-`frameName`, with an offset that grows by the way between the links; grippers, projectors and joints
-name links.
+Source: Gazebo's converter. Contact sensors refer to collisions; plugins to a `bodyName` or
+`frameName`, with an offset to which the transform between the links is added; grippers, projectors
+and joints to links.
 """
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _OFFSETS = (("xyzOffset", "rpyOffset"), ("xyzOffsets", "rpyOffsets"))
 
 @dataclass
 class Renamed:
-    """Names that changed: links that are part of others now, and collisions."""
+    """Changed names: of lumped links, and of collisions."""
 
     links: Dict[str, Body] = field(default_factory=dict)
     collisions: Dict[str, str] = field(default_factory=dict)
 
 
 def rename(model: Model, names: Renamed) -> None:
-    """Put the new names into everything the model keeps as XML."""
+    """Update the names in all kept XML of the model."""
     if not names.links and not names.collisions:
         return
     model.extra = [_in_xml(xml, names) for xml in model.extra]
@@ -87,7 +87,7 @@ def _standing(body: Body) -> str:
 
 
 def _move_offset(parent: Any, way: Pose) -> None:
-    """Set the offset beside a name, which was from the link that is gone."""
+    """Update the offset beside a name, which is relative to the lumped link."""
     from lxml import etree
 
     pair = next((pair for pair in _OFFSETS if any(parent.find(tag) is not None for tag in pair)),
@@ -97,7 +97,7 @@ def _move_offset(parent: Any, way: Pose) -> None:
         try:
             numbers.append(VECTOR3.parse(parent.findtext(tag) or "0 0 0"))
         except ValueError:
-            return  # the plugin itself says what is wrong with it
+            return  # the plugin reports it
     offset = compose(way, Pose(numbers[0], quat_from_rpy(*numbers[1])))
     for tag, value in zip(pair, (offset.position, rpy_from_quat(offset.orientation))):
         element = parent.find(tag)

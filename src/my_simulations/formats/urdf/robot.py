@@ -1,4 +1,4 @@
-"""URDF robots as models. Source: the URDF specification and the behaviour of Gazebo's converter."""
+"""Reads URDF robots as models. Source: the URDF specification and Gazebo's converter."""
 from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Union
@@ -26,9 +26,9 @@ from .urdf_tables import ROBOT
 def read_robot(element: Any, source: Source, changes: Optional[IncludeOverrides] = None) -> Model:
     """A robot; faults that make it unusable are counted as fatal in the source's log.
 
-    Links come depth first, siblings by joint name; the first is the canonical link. Fixed joints
-    are lumped, links without mass dropped with all below them. Link poses are in the model frame,
-    joint axes in the joint frame, which is the child's link frame.
+    Links are in depth-first order, siblings by joint name; the first is the canonical link. Fixed
+    joints are lumped; links without mass are dropped with all links below them. Link poses are in
+    the model frame, joint axes in the joint frame, which is the child's link frame.
     """
     return _RobotReader(element, source, changes or IncludeOverrides()).read()
 
@@ -46,7 +46,7 @@ class _RobotReader:
 
     def read(self) -> Model:
         source, model, changes = self._source, self._model, self._changes
-        # The model's own values are all in `<gazebo>`; a `static` attribute means nothing.
+        # Values of the model are all in `<gazebo>`; a `static` attribute has no effect.
         found = fill(model, self._element, ROBOT, source, [])
         extensions = Extensions(found.get("gazebo", ()), source)
         extensions.to_model(model)
@@ -82,7 +82,7 @@ class _RobotReader:
         return model
 
     def _read_sensors(self) -> None:
-        """From the XML that links and joints keep: it was moved and renamed by the lumping."""
+        """Read sensors from the kept XML of links and joints, after lumping has changed it."""
         lines = {element.get("name", ""): element.sourceline
                  for element in self._element.iter("sensor")}
         holders: List[Union[Link, Joint]] = [*self._model.links, *self._model.joints]
@@ -121,7 +121,7 @@ class _RobotReader:
             body.down.sort(key=lambda c: c.joint.name)
 
     def _is_only_parent(self, connection: Connection) -> bool:
-        """Of two joints with one child the last by name counts, as for urdfdom."""
+        """Whether the joint is used: of several with one child, the last by name (urdfdom)."""
         other = connection.child.up
         if other is None:
             return True
@@ -154,7 +154,7 @@ class _RobotReader:
         return None
 
     def _build(self, root: Body) -> Dict[str, Pose]:
-        """Put the links and joints together; returns where every link of the file is."""
+        """Assemble links and joints; returns the model-frame poses of all links of the file."""
         model = self._model
         frames = lump(root)
         dropped = self._dropped(root)
@@ -184,9 +184,9 @@ class _RobotReader:
         return poses
 
     def _dropped(self, root: Body) -> Dict[int, Body]:
-        """Bodies that cannot be simulated: without mass, or below one that is.
+        """Bodies that cannot be simulated: those without mass, and those below them.
 
-        A static model keeps them, since nothing of it moves.
+        A static model keeps them.
         """
         dropped: Dict[int, Body] = {}
         if self._model.static:
@@ -208,7 +208,7 @@ class _RobotReader:
         return dropped
 
     def _finish(self, body: Body) -> None:
-        """Give the link what was collected for it."""
+        """Add the collected collisions and visuals to the link."""
         link = body.link
         if body.inertial is not None:
             link.inertial = body.inertial
@@ -248,7 +248,7 @@ class _RobotReader:
         self._model.joints.append(joint)
 
     def _hand_over(self, body: Body) -> None:
-        """What else a lumped link had goes to the link it is part of; that one's own word wins."""
+        """Move other settings of a lumped link to its new link, whose settings take precedence."""
         link, to = body.link, lumped_into(body).link
         to.extra += [moved(xml, body.offset) for xml in link.extra]
         if to.self_collide is None:

@@ -34,7 +34,7 @@ TRANSMISSION = Table("transmission", Transmission, {
 
 
 def read_transmission(element: Any, source: Source) -> Transmission:
-    """A `<transmission>`, of today's form or, with its type as an attribute, of 2012."""
+    """A `<transmission>`, in the current form or that of 2012 (type as an attribute)."""
     found_in = Transmission(element.get("name", ""), file=source.file,
                             line=element.sourceline or 0)
     found = fill(found_in, element, TRANSMISSION, source, [])

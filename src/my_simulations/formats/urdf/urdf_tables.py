@@ -1,4 +1,4 @@
-"""URDF's elements, and Gazebo's extensions of them, as tables.
+"""Tables of URDF's elements and of Gazebo's extensions.
 
 Source: the URDF specification; for `<gazebo>`, what Gazebo's converter reads.
 """
@@ -34,7 +34,7 @@ def _kept(*names: str) -> Dict[str, Entry]:
 
 
 def _ignored(*names: str) -> Dict[str, Entry]:
-    """Known, but left out: a robot is written back as SDF, which has no place for them."""
+    """Elements that are known and not kept, because SDF, in which robots are saved, lacks them."""
     return {name: Kept(use=Use.IGNORED) for name in names}
 
 
@@ -48,7 +48,7 @@ class Origin:
 
 @dataclass
 class Ends:
-    """What a joint connects, and whether another one drives it."""
+    """Parent and child of a joint."""
 
     parent: str = ""
     child: str = ""
@@ -56,7 +56,7 @@ class Ends:
 
 @dataclass
 class Limits:
-    """`<limit>`: unlike in SDF, the bounds are 0 where they are not given."""
+    """`<limit>`; unlike in SDF, missing bounds are 0."""
 
     lower: float = 0.0
     upper: float = 0.0
@@ -66,7 +66,7 @@ class Limits:
 
 @dataclass
 class Axis:
-    """`<axis xyz>`; x where it is not given."""
+    """`<axis xyz>`; x by default."""
 
     xyz: Vec3 = (1.0, 0.0, 0.0)
 
@@ -125,7 +125,7 @@ GEOMETRIES: Mapping[str, Tuple[Table, Tuple[str, ...]]] = {
         "filename": Value("uri", TEXT), "scale": Value("scale", SCALE),
     }, strict=True), ("filename",)),
 }
-"""Tables of the shapes, and the attributes each must have."""
+"""Tables of the shapes, with their required attributes."""
 
 MATERIAL = Table("material", Paint, {
     "color": Group(attributes={"rgba": Value("color", COLOR)}),

@@ -1,8 +1,8 @@
-"""How an element of a file fills a dataclass, as data.
+"""Tables that bind the elements of a file to the fields of dataclasses.
 
-A table maps the children and attributes of an element to the fields they fill. The same tables
-say which names are known, since which version of the format, and with which default: that of the
-dataclass, so that it is written down once.
+A table maps the children and attributes of an element to the fields they fill. The tables also
+say which names are known and since which version of the format. Defaults are those of the
+dataclass, so each is defined once.
 """
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from .values import LIMIT, UNSET, Kind
 
 
 class Use(enum.Enum):
-    """What becomes of an element."""
+    """How an element is used."""
 
-    SIMULATED = "simulated"  # it acts
-    SHOWN = "shown"          # seen in the editor, without effect on motion
-    KEPT = "kept"            # read and written back, nothing else
-    IGNORED = "ignored"      # neither acts nor is written back
+    SIMULATED = "simulated"  # simulated
+    SHOWN = "shown"          # drawn in the editor, without effect on motion
+    KEPT = "kept"            # read and saved, without other effect
+    IGNORED = "ignored"      # neither simulated nor saved
 
 
 @dataclass(frozen=True)
 class Value:
-    """A child element (its text) or an attribute that holds one value.
+    """A child element (its text) or an attribute with a single value.
 
     Attributes:
-        field: the field it fills; of a list field, one entry.
-        kind: how its text is read.
-        level: what a text that cannot be read means; None for the table's own.
-        since: the version of the format that introduced it.
-        repeated: may stand more than once.
-        part: a field with the dataclass that `field` belongs to, "" for the table's own.
-        use: what becomes of it; None for the table's own.
+        field: name of the field it fills; a list field gets one entry.
+        kind: the kind of value, which parses and formats its text.
+        level: fault level of an unreadable text; None for that of the table.
+        since: version of the format that introduced it.
+        repeated: whether it may occur more than once.
+        part: name of the field with the dataclass that has `field`; "" for that of the table.
+        use: how it is used; None for that of the table.
     """
 
     field: str
@@ -50,9 +50,9 @@ class Value:
 
 @dataclass(frozen=True)
 class Group:
-    """A child element whose own children and attributes fill the same object.
+    """A child element whose children and attributes fill the same object.
 
-    `part` names a field with a dataclass that they fill instead.
+    `part`: name of a field with a dataclass that they fill instead.
     """
 
     children: Mapping[str, "Entry"] = field(default_factory=dict)
@@ -65,7 +65,10 @@ class Group:
 class Part:
     """A child element with a reader of its own.
 
-    `told`: that it is not simulated is said once for each kind. `kept`: its XML is kept besides.
+    Attributes:
+        since, use: see `Value`.
+        told: note once per kind that the element is not simulated.
+        kept: also keep its XML.
     """
 
     since: str = ""
@@ -75,10 +78,34 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Nested:
+    """A child element that fills a dataclass of its own, by its own table.
+
+    The dataclass has a list `extra` for the XML of unknown children.
+
+    Attributes:
+        field: field with the object, with None for no element, or with a list of objects.
+        table: the table of the element.
+        required: paths in the element that are written even with their default value.
+        since, use: see `Value`.
+        told: note once per kind that the element is not simulated.
+    """
+
+    field: str
+    table: "Table"
+    required: Tuple[str, ...] = ()
+    since: str = ""
+    use: Optional[Use] = None
+    told: bool = False
+
+
+@dataclass(frozen=True)
 class Kept:
     """A child element that is known and kept as XML, not simulated.
 
-    `told`: that it is not simulated is said once for each kind.
+    Attributes:
+        since, use: see `Value`.
+        told: note once per kind that the element is not simulated.
     """
 
     since: str = ""
@@ -86,21 +113,22 @@ class Kept:
     told: bool = False
 
 
-Entry = Union[Value, Group, Part, Kept]
+Entry = Union[Value, Group, Part, Nested, Kept]
 
 
 @dataclass(frozen=True)
 class Table:
-    """An element.
+    """The table of an element.
 
     Attributes:
         name: its tag.
-        of: the dataclass it fills.
+        of: dataclass that it fills.
         attributes, children: by name.
-        level: what a value that cannot be read means, where the value itself does not say.
-        known_attributes: names read elsewhere.
-        use: what becomes of what does not say itself.
-        strict: values are refused unless whole, as URDF's are; SDF's are read as Gazebo does.
+        level: fault level of unreadable values without a level of their own.
+        known_attributes: names of attributes that are read elsewhere.
+        use: use of entries without a use of their own.
+        strict: reject texts that are only partly a value (URDF); otherwise read them leniently, as
+            Gazebo does (SDF).
     """
 
     name: str
@@ -131,7 +159,7 @@ def _values(children: Mapping[str, Entry], attributes: Mapping[str, Value], of: 
 
 
 def default_of(of: Any, name: str) -> Any:
-    """The default of a dataclass's field; None where it has none."""
+    """The default of a field of a dataclass; None if it has none."""
     item = _fields_by_name(of).get(name)
     if item is None:
         raise AttributeError(f"{of.__name__} has no field {name}")
@@ -146,10 +174,10 @@ def _fields_by_name(of: Any) -> Dict[str, Any]:
 
 
 Found = Dict[str, List[Any]]
-"""Elements that have a reader of their own, by tag, in order."""
+"""Elements that have their own readers, by tag, in the order of the file."""
 
 BAD = "(bad)"
-"""In `Found`: the elements with a value that could not be read."""
+"""Key in `Found` of the elements with an unreadable value."""
 
 
 def fill(target: Any, element: Any, table: Table, source: Source, extra: List[str],
@@ -159,14 +187,14 @@ def fill(target: Any, element: Any, table: Table, source: Source, extra: List[st
     Args:
         target: an instance of the table's dataclass.
         element: lxml element.
-        table: what is known about it.
-        source: where faults go.
-        extra: takes the XML of children that are kept or unknown.
-        level: what a value that cannot be read means, instead of what the table says.
+        table: the table of the element.
+        source: receives faults.
+        extra: receives the XML of children that are kept or unknown.
+        level: fault level of unreadable values; None for that of the table.
 
     Returns:
-        the children that have a reader of their own, poses with attributes, and under `BAD` the
-        elements whose value could not be read.
+        The children that have their own readers, poses with attributes, and under `BAD` the
+        elements with an unreadable value.
     """
     found: Found = {}
     _Filler(table, source, extra, found, level).fill(
@@ -177,20 +205,20 @@ def fill(target: Any, element: Any, table: Table, source: Source, extra: List[st
 
 def set_value(target: Any, value: Value, text: str, element: Any, name: str, source: Source,
               level: FaultLevel, strict: bool = False) -> bool:
-    """Set one field from text; an empty or unset text changes nothing.
+    """Set a field from text; an empty or unset text changes nothing.
 
     Args:
         target: the object with the field.
-        value: which field, and how to read it.
-        text: what is read.
-        element: where it stands.
-        name: for the issue: the tag, or `@attribute`.
-        source: where faults go.
-        level: what a text that cannot be read means.
-        strict: whether a text that is not wholly a value cannot be read.
+        value: the field and its kind.
+        text: the text to read.
+        element: the element that has it, for issues.
+        name: the tag or `@attribute`, for issues.
+        source: receives faults.
+        level: fault level of an unreadable text.
+        strict: reject a text that is only partly a value.
 
     Returns:
-        False when the text could not be read; the field is as it was.
+        False if the text is unreadable; the field is unchanged.
     """
     text = text.strip()
     if not text or text == UNSET:
@@ -211,7 +239,8 @@ def set_value(target: Any, value: Value, text: str, element: Any, name: str, sou
 
 
 REFUSED, DEFAULT = object(), object()
-"""For a text that is no value, and for a value that cannot be used, so that its default is."""
+"""Results of `read_text` for an unreadable text, and for an unusable value that the default
+replaces."""
 
 
 def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, level: FaultLevel,
@@ -219,13 +248,13 @@ def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, l
     """The value of a text, `REFUSED` or `DEFAULT`.
 
     Args:
-        kind: how it is read.
-        text: the text.
-        shown: what the issue calls the element or attribute.
-        element: where it stands.
-        source: where faults go.
-        level: what a text that cannot be read means.
-        strict: whether a text that is not wholly a value cannot be read.
+        kind: kind of value.
+        text: the text to read.
+        shown: name of the element or attribute in issues.
+        element: the element that has it, for issues.
+        source: receives faults.
+        level: fault level of an unreadable text.
+        strict: reject a text that is only partly a value.
     """
     try:
         return kind.parse(text)
@@ -249,7 +278,7 @@ def read_text(kind: Kind, text: str, shown: str, element: Any, source: Source, l
 
 
 _MOST_UNKNOWN = 500
-"""Unknown names told one by one; a document with more is of another kind."""
+"""Most unknown names reported one by one; a document with more is of another kind."""
 
 
 class _Filler:
@@ -266,12 +295,7 @@ class _Filler:
     def fill(self, target: Any, element: Any, children: Mapping[str, Entry],
              attributes: Mapping[str, Value], more: Tuple[str, ...],
              wrap: Tuple[str, ...]) -> None:
-        for name, text in element.items():
-            known = attributes.get(name)
-            if known is not None:
-                self._set(target, known, text, element, f"@{name}")
-            elif name not in more and ":" not in name and name[0] != "{":
-                self._unknown(f"attribute {name}", name, element, [*attributes, *more])
+        self._attributes(target, element, attributes, more)
         seen: Set[str] = set()
         for child in element:
             tag = child.tag
@@ -289,10 +313,36 @@ class _Filler:
                 seen.add(tag)
                 inner = getattr(target, entry.part) if entry.part else target
                 self.fill(inner, child, entry.children, entry.attributes, (), (*wrap, tag))
+            elif isinstance(entry, Nested):
+                self._nested(target, child, entry, seen)
             elif entry is not None:
                 self._aside(child, entry, wrap)  # type: ignore[arg-type]
             elif isinstance(tag, str):
                 self._stranger(child, children, wrap)
+
+    def _attributes(self, target: Any, element: Any, attributes: Mapping[str, Value],
+                    more: Tuple[str, ...]) -> None:
+        for name, text in element.items():
+            known = attributes.get(name)
+            if known is not None:
+                self._set(target, known, text, element, f"@{name}")
+            elif name not in more and ":" not in name and name[0] != "{":
+                self._unknown(f"attribute {name}", name, element, [*attributes, *more])
+
+    def _nested(self, target: Any, child: Any, entry: Nested, seen: Set[str]) -> None:
+        """Fill the object of a child; adds its tag to `seen` if there can be one only."""
+        inner = getattr(target, entry.field)
+        repeated = isinstance(inner, list)
+        if inner is None or repeated:
+            inner = entry.table.of()
+        fill(inner, child, entry.table, self._source, inner.extra)
+        if repeated:
+            getattr(target, entry.field).append(inner)
+        else:
+            setattr(target, entry.field, inner)
+            seen.add(child.tag)
+        if entry.told:
+            self._source.tell_unused(child)
 
     def _stranger(self, child: Any, known: Mapping[str, Entry], wrap: Tuple[str, ...]) -> None:
         tag = child.tag
@@ -301,12 +351,12 @@ class _Filler:
             self._unknown(f"element <{tag}>", tag, child, list(known))
 
     def _repeated(self, child: Any, parent: Any) -> None:
-        """Gazebo asks for the first element of a name, and keeps the others unread."""
+        """Report a repeated element; Gazebo reads the first of a name only."""
         self._source.tolerate("element-repeated", f"<{child.tag}> is repeated in"
                               f" <{parent.tag}>; the first one is used", child)
 
     def _aside(self, child: Any, entry: Union[Part, Kept], wrap: Tuple[str, ...]) -> None:
-        """A child with a reader of its own, or one that is kept, or both."""
+        """Handle a child that has its own reader, or is kept, or both."""
         if isinstance(entry, Part):
             self._found.setdefault(child.tag, []).append(child)
         if isinstance(entry, Kept) or entry.kept:
@@ -338,7 +388,7 @@ class _Filler:
 
 
 def closest(name: str, known: List[str]) -> str:
-    """A hint with the known name most like `name`, or empty."""
+    """Hint with the known name most similar to `name`; "" if none is."""
     import difflib
 
     matches = difflib.get_close_matches(name, known, 1)

@@ -1,9 +1,9 @@
-"""Numbers as Gazebo takes them out of texts that are not quite numbers.
+"""Reads malformed numbers as Gazebo does.
 
-Source: libsdformat 9 (`Param::ValueFromStringImpl`). Single numbers go through `std::stod`,
-`std::stoi` and `std::stoul`, which read the beginning of a text and leave the rest; vectors, poses
-and colours through a C++ stream, which reads number by number wherever one ends. What neither can
-read raises ValueError: Gazebo refuses the whole document then.
+Source: libsdformat 9 (`Param::ValueFromStringImpl`). Single numbers are read by `std::stod`,
+`std::stoi` and `std::stoul`, which use the beginning of a text and ignore the rest; vectors, poses
+and colours by a C++ stream, which reads one number after the other, even without separators.
+A text that cannot be read raises ValueError: Gazebo rejects the whole document.
 """
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _LARGEST = 2 ** 32
 
 
 def stream_numbers(text: str, count: int) -> List[Optional[float]]:
-    """The first `count` numbers that a stream yields, None from where it fails on.
+    """The first `count` numbers that a C++ stream reads; None from the first failure on.
 
-    `6.0000006.000000` is two numbers, `-12.0.0` too; a comma, a word, `inf` and `nan` end it.
+    `6.0000006.000000` and `-12.0.0` are two numbers each; a comma, a word, `inf` or `nan` fails.
     """
     found: List[Optional[float]] = []
     at = 0
@@ -38,10 +38,10 @@ def stream_numbers(text: str, count: int) -> List[Optional[float]]:
 
 
 def leading_number(text: str) -> float:
-    """The number a text begins with, as `std::stod` reads it; it may be infinite or NaN.
+    """The number at the beginning of a text, as read by `std::stod`; it may be infinite or NaN.
 
     Raises:
-        ValueError: it begins with none.
+        ValueError: the text does not begin with a number.
     """
     text = text.strip()
     special = _SPECIAL.match(text)
@@ -60,10 +60,10 @@ def leading_number(text: str) -> float:
 
 
 def leading_integer(text: str) -> int:
-    """The whole number a text begins with, as `std::stoi` reads it.
+    """The integer at the beginning of a text, as read by `std::stoi`.
 
     Raises:
-        ValueError: it begins with none, or with one of more than 32 bits.
+        ValueError: the text does not begin with an integer of at most 32 bits.
     """
     text = text.strip()
     hexadecimal = _HEX_INTEGER.match(text)

@@ -1,8 +1,8 @@
-"""From bytes or text to an XML tree, leniently with mistakes and strictly with attacks.
+"""Parses XML: repairs common mistakes, and rejects documents that could exhaust the process.
 
-Real model files are often not well formed; Gazebo's reader is lax. What can be completed without
-guessing at content is read with a warning; what is cut off is an error. No entity is expanded, no
-DTD loaded, no network used, and depth is bounded.
+Many model files are not well formed, and Gazebo's reader is lenient. Documents that can be
+repaired without guessing content are read with a warning; truncated ones are errors. Entities are
+not expanded, DTDs not loaded, the network is not used, and the depth is limited.
 """
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _BOMS = (
     (b"\x00\x00\xfe\xff", "utf-32"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"),
 )
 LARGEST = 64 << 20
-"""Bytes of a document."""
+"""Largest size of a document, bytes."""
 
 _MOST_TAGS = 2000000
 _LONG_TAG = re.compile(rb"<[^<]{8000,}")
 
 
 def content(path: str) -> bytes:
-    """The bytes of a document's file; what is larger than `LARGEST` is not read.
+    """The content of a document's file, of at most `LARGEST` bytes.
 
     Raises:
         InputError: it is too large.
@@ -45,11 +45,11 @@ def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
 
     Args:
         text: the document; a `str` may carry any encoding declaration.
-        file: for the issues.
-        log: takes warnings about what had to be repaired.
+        file: name of the document in issues.
+        log: receives warnings about repairs.
 
     Raises:
-        InputError: nothing usable: empty, cut off, no element, entities, too deep.
+        InputError: unusable: empty, truncated, without an element, with entities, or too deep.
     """
     from lxml import etree
 
@@ -95,7 +95,7 @@ def _refuse_entities(data: bytes, file: str) -> None:
 
 
 def _refuse_masses(data: bytes, file: str) -> None:
-    """Documents that would fill the memory, or on which the parser would spend minutes."""
+    """Reject documents that would exhaust memory or take the parser minutes."""
     from .repair import MOST_ATTRIBUTES
 
     if data.count(b"<") > _MOST_TAGS:
@@ -109,7 +109,7 @@ def _refuse_masses(data: bytes, file: str) -> None:
 
 
 def _declaration_first(data: bytes) -> bytes:
-    """The XML declaration moved to the front; lines keep their numbers."""
+    """Move the XML declaration to the front; line numbers are kept."""
     if data[:5] == b"<?xml" or data[:2] in (b"\xff\xfe", b"\xfe\xff") or data[:1] == b"\0":
         return data
     start = 3 if data[:3] == b"\xef\xbb\xbf" else 0
@@ -154,7 +154,7 @@ def _decoded(data: bytes, was_text: bool, file: str, log: IssueCollector) -> str
 
 
 def _retyped(data: bytes, root: Any, file: str, log: IssueCollector) -> Any:
-    """The root of a well-formed document whose text may hold elements in typographic brackets."""
+    """The root of a well-formed document, after replacing typographic brackets if it has any."""
     from lxml import etree
 
     from .typography import is_suspicious
@@ -166,7 +166,7 @@ def _retyped(data: bytes, root: Any, file: str, log: IssueCollector) -> Any:
 
 
 def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
-    """A second attempt, over text with its tags balanced; raises InputError where cut off."""
+    """Parse again with balanced tags; raises InputError for a truncated document."""
     from lxml import etree
 
     from ...errors import warning
@@ -189,7 +189,7 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
             result.cut_off_line, hint="the end of the file is missing",
         )
     parser = _parser("utf-8", True)
-    # The declaration may name any encoding, or none that there is; the text is UTF-8 by now.
+    # The declaration may name another or an unknown encoding; the text is UTF-8 by now.
     plain = _DECLARATION.sub(_only_lines, result.text.encode("utf-8", "replace"), 1)
     try:
         root = etree.fromstring(plain.lstrip(b" \t\r"), parser)

@@ -1,8 +1,8 @@
-"""Closing tags that were forgotten.
+"""Inserts missing end tags and removes stray ones.
 
-An end tag that does not fit closes what is open inside the element it names; one that names no
-open element is dropped. libxml2's own recovery closes the innermost element whatever the end tag
-says, and so nests everything that follows one level too deep.
+A mismatched end tag closes all elements that are open inside the element it names; one that names
+no open element is removed. The recovery of libxml2 closes the innermost element regardless of the
+name, which nests everything that follows one level too deep.
 """
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NAME = re.compile(r"[A-Za-z_:À-￿][^\s/>\"'<=]*")
 _ATTRIBUTE = re.compile(r"""([A-Za-z_:][\w:.-]*)\s*=\s*("[^"]*"|'[^']*'|[^\s"'=]+)""")
 MAX_DEPTH = 200
 MOST_ATTRIBUTES = 1000
-"""The time the parser takes grows with their square."""
+"""Most repairs of a document: parsing time grows with their square."""
 
 _MAX_REPAIRS = 200
 _SKIP = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">"))
@@ -23,7 +23,7 @@ _SKIP = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">"))
 
 @dataclass(frozen=True)
 class Repair:
-    """One change of the text; `unclosed` tells a forgotten end tag from a stray one."""
+    """One change of the text; `unclosed` is True for a missing end tag, False for a stray one."""
 
     message: str
     line: int
@@ -33,15 +33,15 @@ class Repair:
 
 @dataclass
 class Balanced:
-    """A text whose tags pair.
+    """A text with matching tags.
 
     Attributes:
-        text: with end tags put in or taken out; its lines are those of the original.
-        elements: how many start tags it holds.
-        hopeless: why no repair was tried any more, "" where all was repaired.
-        repairs: what was changed.
-        cut_off: what is missing at the end of the text, "" where nothing is.
-        cut_off_line: where that began.
+        text: the repaired text; line numbers are those of the original.
+        elements: number of start tags.
+        hopeless: why repairing was given up; "" if it was not.
+        repairs: the changes.
+        cut_off: what is missing at the end of a truncated text; "" if it is complete.
+        cut_off_line: line where the incomplete part begins.
     """
 
     text: str = ""
@@ -53,7 +53,7 @@ class Balanced:
 
 
 def balanced(text: str) -> Balanced:
-    """`text` with its tags paired; linear in its length."""
+    """`text` with matching tags; takes linear time."""
     return _Balancer(text).run()
 
 
@@ -93,7 +93,7 @@ class _Balancer:
             self._repair("what follows the root element is ignored", after, unclosed=False)
 
     def _one(self, at: int) -> int:
-        """Handle the markup at `at`; the position behind it."""
+        """Handle the markup at position `at`; returns the position after it."""
         text = self._text
         for start, stop in _SKIP:
             if text.startswith(start, at):
@@ -106,7 +106,7 @@ class _Balancer:
             return self._end_tag(at)
         name = _NAME.match(text, at + 1)
         if name is None:
-            self._strays += 1  # libxml2 says so
+            self._strays += 1  # reported by libxml2
             if self._strays > _MAX_REPAIRS:
                 self._result.hopeless = f"more than {_MAX_REPAIRS} mistakes in its markup"
             return at + 1
@@ -134,7 +134,7 @@ class _Balancer:
         return end + 1
 
     def _quote(self, at: int, position: int, end: int) -> None:
-        """Quotes and blanks that attributes lack."""
+        """Insert missing quotes and spaces of attributes."""
         inside = self._text[position:end]
         found = list(_ATTRIBUTE.finditer(inside))
         if len(found) > MOST_ATTRIBUTES:
@@ -159,7 +159,7 @@ class _Balancer:
         self._repair(f"attribute {name} has no {lacking}", at, unclosed=False)
 
     def _tag_end(self, position: int) -> int:
-        """Where the `>` of a start tag is: the first one outside quotes."""
+        """Position of the `>` of a start tag: the first one outside quotes."""
         text = self._text
         first = text.find(">", position)
         while True:
@@ -169,7 +169,7 @@ class _Balancer:
             if stop.group() == ">":
                 return stop.start()
             closing = text.find(stop.group(), stop.end())
-            # A value holds no `<`; where one would, the quote was never closed.
+            # A value cannot contain `<`: its quote was not closed.
             if closing < 0 or "<" in text[stop.end():closing]:
                 return first
             position = closing + 1
@@ -188,7 +188,7 @@ class _Balancer:
         else:
             self._repair(f"</{name}> closes nothing", at, unclosed=False)
             self._parts.append(text[self._kept:at])
-            # Its line breaks stay, so that what follows keeps its line.
+            # Line breaks are kept, so that line numbers stay correct.
             self._parts.append("\n" * text.count("\n", at, end))
             self._kept = end + 1
         return end + 1

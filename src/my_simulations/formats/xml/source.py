@@ -1,4 +1,4 @@
-"""The file being read: where its elements lie, what was found wrong, how its URIs resolve."""
+"""The file being read: location of its elements, issues found, resolution of its URIs."""
 from __future__ import annotations
 
 import enum
@@ -11,34 +11,34 @@ from ...resources.resolver import Resolver
 from ..include_overrides import IncludeOverrides
 
 _MOST_PATHS = 1000
-"""Issues with an XPath; finding one takes as long as the element has siblings."""
+"""Most issues with an XPath: finding one takes time proportional to the number of siblings."""
 
 _LAST_LINE = 65535
-"""libxml2 counts no further; an element that seems to stand there may stand anywhere below."""
+"""Largest line number of libxml2; elements further down have this line number, too."""
 
 
 _ONLY_SHOWN = ("actor", "road")
-"""What the world editor draws and physics knows nothing of."""
+"""Elements that the world editor draws and that have no effect on motion."""
 _TOLD_APART_BY = {"sensor": "type", "plugin": "filename"}
-"""Attributes that make elements of one name different things."""
+"""Attributes that distinguish elements of the same name."""
 
 
 class FaultLevel(enum.Enum):
-    """What a broken value or element does to what it belongs to."""
+    """Effect of a faulty value or element on the entity that contains it."""
 
     FATAL = "fatal"      # an error; the whole model (or light) cannot be used
     ERROR = "error"      # an error; only the element is skipped
-    WARNING = "warning"  # Gazebo would go on as well
+    WARNING = "warning"  # a warning; Gazebo continues as well
 
 
 class IssueCollector:
-    """Issues of one reading, without exact repeats (a model may be included a thousand times).
+    """Issues of one document and its includes, without duplicates.
 
     Attributes:
-        fatal: how many of them make the entity they are in unusable.
-        includes: how many includes were followed.
-        told: kinds of elements of which it was said that they do nothing here.
-        unknown: how many unknown elements and attributes were met.
+        fatal: number of issues that make their entity unusable.
+        includes: number of includes followed.
+        told: kinds of elements that were already reported as not simulated.
+        unknown: number of unknown elements and attributes.
     """
 
     def __init__(self) -> None:
@@ -50,7 +50,7 @@ class IssueCollector:
         self._seen: Set[Issue] = set()
 
     def add(self, issue: Issue, fatal: bool = False) -> None:
-        """Note an issue; `fatal` ones are counted even when they repeat."""
+        """Add an issue; `fatal` ones are counted even if they repeat."""
         self.fatal += fatal
         if issue not in self._seen:
             self._seen.add(issue)
@@ -59,16 +59,16 @@ class IssueCollector:
 
 @dataclass
 class Source:
-    """One file (or text) in the course of being read.
+    """A file (or text) being read.
 
     Attributes:
         file: path, or a name for text from elsewhere.
-        base_dir: what relative URIs start from, "" where there is no file.
-        resolver: finds URIs.
+        base_dir: folder from which relative URIs start; "" if there is no file.
+        resolver: resolves URIs.
         read_robot: reads the `<robot>` of an included file (see `urdf.robot.read_robot`).
-        log: shared by all files of one reading.
+        log: receives issues; shared with included files.
         trail: files that are being included, outermost first.
-        parsed: roots of included files by path, shared by all files of one reading.
+        parsed: roots of included files by path; shared with included files.
     """
 
     file: str
@@ -95,24 +95,24 @@ class Source:
         self, level: FaultLevel, code: str, message: str, element: Optional[Any] = None,
         hint: str = ""
     ) -> None:
-        """Note a fault of `element`."""
+        """Add a fault of `element`."""
         severity = Severity.WARNING if level is FaultLevel.WARNING else Severity.ERROR
         issue = Issue(severity, code, message, hint=hint, **self.where(element))
         self.log.add(issue, fatal=level is FaultLevel.FATAL)
 
     def warn(self, code: str, message: str, element: Optional[Any] = None, hint: str = "") -> None:
-        """Note a fault that Gazebo, too, would only mention."""
+        """Add a warning about a fault that Gazebo tolerates, too."""
         self.report(FaultLevel.WARNING, code, message, element, hint)
 
     def tolerate(
         self, code: str, message: str, element: Optional[Any] = None, hint: str = ""
     ) -> None:
-        """Note a fault that was read as Gazebo reads it; the message says what was done instead."""
+        """Add a fault that was read as Gazebo reads it; the message says how."""
         self.log.add(Issue(Severity.WARNING, code, message, hint=hint, tolerated=True,
                            **self.where(element)))
 
     def tell_unused(self, element: Any) -> None:
-        """Say, once for each kind, that elements of this kind are kept and do nothing here."""
+        """Note once per kind that elements of this kind are saved but not simulated."""
         told_apart_by = _TOLD_APART_BY.get(element.tag)
         which = (element.get(told_apart_by) or "") if told_apart_by else ""
         kind = f"{element.tag} {which}".strip()

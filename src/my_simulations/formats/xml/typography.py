@@ -1,7 +1,7 @@
-"""What word processors and PDF viewers make of markup, turned back into markup.
+"""Replaces typographic characters that word processors and PDF viewers put into XML.
 
-A listing that is copied from a document often has dashes, quotes and angle brackets that no XML
-reader takes for its own.
+Listings copied from documents often contain dashes, quotes and angle brackets that XML does not
+accept.
 """
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _QUOTED = re.compile("(=\\s*)[“”„‟″]([^“”„‟″<>\"]*)[“”�
 
 
 def is_suspicious(text: str) -> bool:
-    """Whether a text that is well formed has angle brackets of a kind that is not read."""
+    """Whether a well-formed text contains typographic angle brackets."""
     return "‹" in text and _OPENING.search(text) is not None
 
 
 def retyped(text: str) -> Tuple[str, List[Repair]]:
-    """The text as it was typed at first, on the same lines, and what was changed of it."""
+    """The text with plain characters, on the same lines, and a description of the changes."""
     repairs: List[Repair] = []
     if is_suspicious(text):
         text = _changed(text, _BRACKET, lambda found: "<" if found.group() == "‹" else ">",

@@ -1,7 +1,7 @@
-"""Kinds of values in SDF and URDF text: one class each, reading and writing together.
+"""Kinds of values in SDF and URDF: one class for each, with its parser and formatter.
 
-`parse` raises ValueError with a phrase that says what was expected and what was found;
-`parse_leniently` reads such a text as Gazebo does, and raises ValueError where Gazebo rejects it.
+`parse` raises ValueError with a phrase that says what was expected and found. `parse_leniently`
+reads such a text as Gazebo does, and raises ValueError if Gazebo rejects it.
 """
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class Kind(Protocol):
     """A kind of value."""
 
     def parse(self, text: str) -> Any:
-        """The value of `text`; ValueError where it is none."""
+        """The value of `text`. Raises ValueError."""
 
     def format(self, value: Any) -> str:
         """Text that `parse` reads as the same value."""
 
     def parse_leniently(self, text: str) -> Any:
-        """What Gazebo makes of a text that `parse` refuses; ValueError where it refuses it too."""
+        """The value that Gazebo reads from a text that `parse` rejects. Raises ValueError."""
 
 
 def numbers(text: str, count: int) -> Tuple[float, ...]:
@@ -49,7 +49,7 @@ def number(text: str) -> float:
 def any_number(text: str) -> float:
     """A number, which may be infinite or NaN."""
     try:
-        if "_" in text:  # Python's own spelling of long numbers, nobody else's
+        if "_" in text:  # digit separators of Python, which no format allows
             raise ValueError
         return float(text)
     except ValueError:
@@ -67,7 +67,7 @@ def _formatted(*values: float) -> str:
 
 
 def _whole(text: str, count: int) -> Tuple[float, ...]:
-    """All the numbers of a vector, or zeros: Gazebo's vectors are read whole or not at all."""
+    """All numbers of a vector, or zeros: Gazebo reads vectors completely or not at all."""
     return _all_or_zeros(stream_numbers(text, count))
 
 
@@ -96,7 +96,7 @@ class Bool:
 
 
 class Negated(Bool):
-    """A truth written the other way round."""
+    """A boolean with inverted meaning."""
 
     def parse(self, text: str) -> bool:
         return not super().parse(text)
@@ -123,7 +123,7 @@ _SPELT_OUT = {"true": "1", "false": "0"}
 
 
 class Friction(Float):
-    """A friction coefficient; below 0 it stands for one without bound (Gazebo behaviour)."""
+    """A friction coefficient; negative values mean unbounded friction (Gazebo behaviour)."""
 
     _UNBOUNDED = 1e6
 
@@ -154,7 +154,7 @@ class Limit:
 
 
 class Int:
-    """A whole number; `10.0` and `0x10` are taken as well."""
+    """An integer; `10.0` and `0x10` are accepted as well."""
 
     def parse(self, text: str) -> int:
         try:
@@ -180,7 +180,7 @@ class Int:
 
 
 class Text:
-    """Words, without blanks around them."""
+    """A text without leading and trailing white space."""
 
     def parse(self, text: str) -> str:
         return text.strip()
@@ -209,7 +209,7 @@ class Vector2:
 
 
 class PlaneSize(Vector2):
-    """Two numbers; a third, which some files give, is skipped (Gazebo behaviour)."""
+    """Two numbers; a third is ignored (Gazebo behaviour)."""
 
     def parse(self, text: str) -> Tuple[float, float]:
         parts = text.split()
@@ -233,7 +233,7 @@ class Vector3:
 
 
 class UniformScale(Vector3):
-    """Three numbers, or one that counts for all axes."""
+    """Three numbers, or one for all axes."""
 
     def parse(self, text: str) -> Vec3:
         if len(text.split()) == 1:
@@ -245,7 +245,7 @@ class UniformScale(Vector3):
 class Color:
     """Red, green, blue and, where given, alpha (else 1), each 0..1.
 
-    What is above 1 counts as of 255, what is below 0 as 0 (Gazebo behaviour).
+    Values above 1 are divided by 255, negative ones are 0 (Gazebo behaviour).
     """
 
     def parse(self, text: str) -> Tuple[float, float, float, float]:
@@ -294,7 +294,7 @@ class PoseKind:
         return _formatted(*value.position, *rpy_from_quat(value.orientation))
 
     def parse_leniently(self, text: str) -> Pose:
-        """Position and rotation are each taken whole or not at all (libignition-math 6)."""
+        """Position and rotation are each read completely or not at all (libignition-math 6)."""
         found = stream_numbers(text, 6)
         position, angles = _all_or_zeros(found[:3]), _all_or_zeros(found[3:])
         return pose_from_xyzrpy(*position, *angles)

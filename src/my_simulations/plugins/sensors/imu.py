@@ -112,7 +112,7 @@ class SensorImu(_Imu):
         if p.flag("initialOrientationAsReference", False):
             self._reference = compose(self._link.pose, self._mount).orientation
         self._block: Optional[ImuBlock] = context.sensor.imu
-        self._axes = [SampledNoise(context, getattr(self._block, f"{kind}_{axis}"),
+        self._axes = [SampledNoise(context, getattr(getattr(self._block, kind), axis),
                                    f"{kind}/{axis}")
                       for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"
                       ] if self._block is not None else []

@@ -1,4 +1,4 @@
-"""A model's archive, unpacked as if whoever packed it were an enemy."""
+"""Unpacks archives of models from untrusted sources."""
 from __future__ import annotations
 
 import json
@@ -18,29 +18,29 @@ _CONFIGS = ("model.config", "manifest.xml")
 
 
 class ArchiveError(ResourceError):
-    """An archive that is broken, too large, or reaches out of its folder."""
+    """An archive that is damaged, too large, or writes outside of its folder."""
 
 
 def unpack(kind: str, archive: str, folder: str, name: str, limits: Limits, until: float) -> str:
     """Unpack `model.tar.gz`, or the zip file of a Fuel server.
 
-    Only folders and plain files are made; any other kind of entry, an absolute path, `..`, and
-    links are refused with the whole archive. Owners, times and special modes of the archive are
-    not taken over. It is read by another process, which may use 256 MB and the time that is left.
+    Only folders and regular files are created; an archive with any other kind of entry, an absolute
+    path, `..` or a link is rejected. Owners, times and special modes are not restored. The archive
+    is read by another process, limited to 256 MB and the remaining time.
 
     Args:
         kind: `tar` (gzipped) or `zip`.
         archive: path of the file.
-        folder: where to; it is made.
-        name: the only folder that the archive may hold at its top; "" for any.
-        limits: of files and bytes.
+        folder: destination, which is created.
+        name: the only top-level folder that the archive may contain; "" for any.
+        limits: limits of files and bytes.
         until: `time.monotonic()` at which to give up.
 
     Returns:
-        The path of `folder/name`, which holds a model's config.
+        The path of `folder/name`, which contains a model's config.
 
     Raises:
-        ArchiveFault: nothing of it is to be used.
+        ArchiveError: the archive is rejected.
     """
     os.makedirs(folder)
     left = max(0.01, until - time.monotonic())
@@ -63,12 +63,12 @@ def unpack(kind: str, archive: str, folder: str, name: str, limits: Limits, unti
 
 
 def install(place: str, make: Callable[[str], str]) -> None:
-    """Put a folder at `place` as a whole or not at all; one that another process put there wins.
+    """Create a folder atomically; if another process creates it meanwhile, that one is kept.
 
     Args:
-        place: the folder to be.
-        make: makes the folder's content somewhere below a scratch folder it is given, on the same
-            disk, and returns where.
+        place: path of the new folder.
+        make: creates the content below the scratch folder that it is given, on the same disk, and
+            returns its path.
     """
     parent, name = os.path.split(place)
     os.makedirs(parent, exist_ok=True)

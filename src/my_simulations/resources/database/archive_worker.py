@@ -1,8 +1,8 @@
-"""Unpacks one archive in a process of its own; the file is run, not imported (`-I -S`).
+"""Unpacks an archive in a process of its own; this file is run, not imported (`-I -S`).
 
-An archive may make whoever reads it use any amount of memory and time before a single byte comes
-out (headers of tar, the directory of zip). So it is read here, under limits that the kernel keeps,
-and the process that wants the files only waits.
+A malicious archive can make its reader use any amount of memory and time before it yields a byte
+(headers of tar, the directory of zip). Therefore it is read here, under limits of the kernel, while
+the calling process waits.
 """
 import json
 import os
@@ -18,15 +18,15 @@ MEMORY = 256 << 20
 _CHUNK = 1 << 16
 
 Entry = Tuple[str, str, int, Any]
-"""Name, kind (`file`, `folder`, `other`), size by the header, and what opens it."""
+"""Name, kind (`file`, `folder`, `other`), size in the header, and a function that opens it."""
 
 
 class ArchiveRefusedError(Exception):
-    """The archive is broken, too large, or reaches out of its folder."""
+    """The archive is damaged, too large, or writes outside of its folder."""
 
 
 class _Count:
-    """What has come out so far, against what may."""
+    """Counts entries and bytes, and raises when a limit is exceeded."""
 
     def __init__(self, files: int, size: int) -> None:
         self._most_files, self._most_bytes = files, size
@@ -47,18 +47,18 @@ class _Count:
 
 
 def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: int) -> None:
-    """Make the folders and plain files of an archive below `folder`.
+    """Create the folders and regular files of an archive below `folder`.
 
     Args:
         kind: `tar` (gzipped) or `zip`.
         archive: path of the file.
-        folder: where to; it is there and empty.
-        name: the only folder that the archive may hold at its top; "" for any.
-        files: at most so many entries.
-        size: at most so many bytes in all.
+        folder: destination, an existing empty folder.
+        name: the only top-level folder that the archive may contain; "" for any.
+        files: largest number of entries.
+        size: largest number of bytes in total.
 
     Raises:
-        ArchiveRefusedError: nothing of it is to be used.
+        ArchiveRefusedError: the archive is rejected.
     """
     count = _Count(files, size)
     if kind == "zip":
@@ -76,7 +76,7 @@ def _of_tar(packed: tarfile.TarFile) -> Iterator[Entry]:
     for member in packed:
         kind = "folder" if member.isdir() else "file" if member.isreg() else "other"
         yield member.name, kind, member.size, lambda m=member: packed.extractfile(m)
-        # tarfile remembers every member, headers and all.
+        # tarfile keeps every member in memory, with its headers.
         packed.members = []  # type: ignore[attr-defined]
 
 
@@ -97,7 +97,7 @@ def _one(entry: Entry, folder: str, name: str, count: _Count) -> None:
 
 
 def _safe_path(path: str, kind: str, folder: str, name: str) -> Optional[str]:
-    """Where a file goes; None for a folder, which is made at once."""
+    """Destination of a file; None for a folder, which is created here."""
     parts = [part for part in path.split("/") if part not in ("", ".")]
     if path.startswith("/") or ".." in parts or "\0" in path or "\\" in path:
         raise ArchiveRefusedError(f"the archive contains a path outside its folder: {path!r}")
@@ -126,7 +126,7 @@ def _write(stream: Optional[IO[bytes]], path: str, target: str, count: _Count) -
 
 
 def _read_to_end(archive: str, largest: int) -> None:
-    """gzip's checksum stands at the very end, which tar need not reach."""
+    """Read to the end of the gzip stream, where its checksum is; tar may stop before."""
     import gzip
 
     size = 0
@@ -150,7 +150,7 @@ def _limit(memory: int, seconds: int, size: int) -> None:
 
 
 def main(argv: List[str]) -> int:
-    """Unpack as the JSON object of the only argument says; a fault is printed, with status 1."""
+    """Unpack with the arguments in a JSON object; prints a fault and returns status 1."""
     task = json.loads(argv[1])
     _limit(MEMORY, int(task.pop("seconds")) + 1, int(task["size"]) + _CHUNK)
     try:
@@ -163,7 +163,7 @@ def main(argv: List[str]) -> int:
             NotImplementedError, RuntimeError, KeyError, IndexError) as fault:
         said = f"the archive is broken: {fault}"
     except OSError as fault:
-        # gzip says so of a wrong checksum; a full disk has a number.
+        # gzip raises it, without errno, for a wrong checksum; a full disk has an errno.
         said = fault.strerror or f"the archive is broken: {fault}"
     else:
         return 0

@@ -1,4 +1,4 @@
-"""Downloads as notes for the user, one a second."""
+"""Reports the progress of downloads, once a second."""
 from __future__ import annotations
 
 import time
@@ -10,7 +10,7 @@ _EVERY_S = 1.0
 
 
 class DownloadNotes:
-    """A `resolver.Progress` that says how far a download is."""
+    """A `model_provider.Progress` that logs the progress of a download."""
 
     def __init__(self, log: Callable[[Issue], None]) -> None:
         self._log = log
@@ -18,7 +18,7 @@ class DownloadNotes:
         self._name = ""
 
     def __call__(self, name: str, done: int, expected: int) -> None:
-        """So many bytes of a model have come, of `expected` (0: not known)."""
+        """`done` bytes of a model have been received, of `expected` (0 if unknown)."""
         now = time.monotonic()
         if name == self._name and now < self._next and done != expected:
             return

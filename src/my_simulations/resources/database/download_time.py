@@ -1,4 +1,4 @@
-"""What sources of missing models have in common: one deadline a world, and faults told once."""
+"""Base of model providers: one deadline for each world, and each fault reported once."""
 from __future__ import annotations
 
 import time
@@ -11,12 +11,12 @@ WORLD_SECONDS = 10.0
 
 
 class DownloadTime:
-    """A source of models that are downloaded.
+    """A provider that downloads models.
 
     Args:
-        progress: hears how far a download is.
-        seconds: for all downloads in all, from the first one on (wall time).
-        limits: of sizes.
+        progress: called with the progress of a download.
+        seconds: total wall time for all downloads of a world, from the first one on.
+        limits: size limits.
     """
 
     def __init__(self, progress: Optional[Progress] = None, seconds: float = WORLD_SECONDS,
@@ -28,12 +28,12 @@ class DownloadTime:
         self._failed: Dict[str, str] = {}
 
     def begin(self) -> None:
-        """A new world: the deadline starts anew, and what failed may be tried again."""
+        """Start a new world: the deadline starts again, and failed downloads may be tried again."""
         self._deadline = None
         self._failed.clear()
 
     def give(self, seconds: float) -> None:
-        """Let downloads take so long from the next `begin` on."""
+        """Set the total time of downloads (s) from the next `begin` on."""
         self._seconds = seconds
 
     def until(self) -> float:
@@ -42,7 +42,7 @@ class DownloadTime:
         return self._deadline
 
     def once(self, name: str, source: str, download: Callable[[], None]) -> None:
-        """Download, unless that has failed for this world. Raises ModelNotProvidedError."""
+        """Download a model, unless that has failed for this world. Raises ModelNotProvidedError."""
         from .archive import ArchiveError
         from .http_download import HttpError
 

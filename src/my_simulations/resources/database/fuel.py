@@ -1,8 +1,8 @@
-"""Models of a Fuel server: the cache that Gazebo's tools keep, and downloads into it.
+"""Models of Fuel servers: the caches of Gazebo's tools, and downloads into them.
 
-A model lies in `CACHE/HOST/OWNER/models/NAME/VERSION/`. Caches are `~/.ignition/fuel` (or what
-IGN_FUEL_CACHE_PATH names) and `~/.gz/fuel` (GZ_FUEL_CACHE_PATH). A server that is neither a known
-one nor named by `config.yaml` in a cache is never asked. Source: Ignition Fuel Tools 4.
+A model is in `CACHE/HOST/OWNER/models/NAME/VERSION/`. Caches are `~/.ignition/fuel` (or
+IGN_FUEL_CACHE_PATH) and `~/.gz/fuel` (GZ_FUEL_CACHE_PATH). Only known servers, and those in
+`config.yaml` of a cache, are contacted. Source: Ignition Fuel Tools 4.
 """
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 _SERVER = re.compile(r"^\s*(?:-\s*)?url:\s*[\"']?(https?://[^\s\"'/]+)/*[\"']?\s*(?:#.*)?$",
                      re.MULTILINE)
 _URI = re.compile(rb"(<(?:uri|filename|\w+_map)>\s*)model://[^/<]+/([^<]*[^<\s])")
-_INCLUDE = re.compile(rb"(<include\b.*?</include>)", re.DOTALL)  # names other models
+_INCLUDE = re.compile(rb"(<include\b.*?</include>)", re.DOTALL)  # may refer to other models
 _LARGEST_CONFIG = 1 << 16
 _CONFIG = "model.config"
 
 
 @dataclass(frozen=True)
 class CachedModel:
-    """A model in a cache, in its newest version there.
+    """The newest version of a model in a cache.
 
     Attributes:
-        uri: its address, without a version.
-        name: as its folder is called.
-        folder: where it lies.
+        uri: its address without a version.
+        name: name of its folder.
+        folder: path of its folder.
     """
 
     uri: str
@@ -45,11 +45,11 @@ class FuelModels:
     """Finds models in the caches, and downloads what no cache holds.
 
     Args:
-        caches: folders, best first; downloads go to the first.
-        servers: scheme and host of those that may be asked.
-        progress: hears how far a download is.
-        seconds: for all downloads in all, from the first one on (wall time); None for the same as
-            the model database has.
+        caches: cache folders, in search order; downloads are stored in the first.
+        servers: scheme and host of the servers that may be contacted.
+        progress: called with the progress of a download.
+        seconds: total wall time for all downloads of a world, from the first one on; None for that
+            of the model database.
     """
 
     def __init__(self, caches: Sequence[str], servers: Sequence[str],
@@ -72,25 +72,25 @@ class FuelModels:
         return cls(caches, servers, progress)
 
     def begin(self) -> None:
-        """A new document is being read: what could not be downloaded may be tried again."""
+        """Start reading a new document: failed downloads may be tried again."""
         if self._time is not None:
             self._time.begin()
 
     def give(self, seconds: float) -> None:
-        """Let downloads take so long from the next `begin` on."""
+        """Set the total time of downloads (s) from the next `begin` on."""
         self._seconds = seconds
         if self._time is not None:
             self._time.give(seconds)
 
     def folders(self) -> List[str]:
-        """The caches that are there."""
+        """The existing caches."""
         return [cache for cache in self.caches if os.path.isdir(cache)]
 
     def path(self, uri: FuelUri) -> str:
-        """The folder of a model, or a file of it, downloaded when no cache holds the model.
+        """The folder of a model, or a file in it; downloads the model if no cache has it.
 
         Raises:
-            ModelNotProvidedError: the model cannot be had now, or has no such file.
+            ModelNotProvidedError: the model cannot be downloaded now, or has no such file.
         """
         folder = self.cached(uri) or self._download(uri)
         path = os.path.join(folder, uri.inside) if uri.inside else folder
@@ -99,7 +99,7 @@ class FuelModels:
         return path
 
     def cached(self, uri: FuelUri) -> Optional[str]:
-        """The folder of a model in a cache, None where none holds it (in that version)."""
+        """The folder of a model in a cache; None if no cache has it (in that version)."""
         hosts = [uri.host, *(host for host in KNOWN_HOSTS if uri.host in KNOWN_HOSTS)]
         for cache in self.caches:
             for host in dict.fromkeys(hosts):
@@ -110,10 +110,10 @@ class FuelModels:
         return None
 
     def beside(self, base_dir: str, rest: str) -> List[str]:
-        """Where `model://NAME/…` in a file of a cached model may lie: in that model itself.
+        """Candidate path of `model://NAME/…` in a file of a cached model: in that model itself.
 
-        Gazebo's tools write such addresses anew when they unpack a model, and take no notice of
-        the name; a cache that something else filled holds them as they were.
+        Gazebo's tools rewrite such URIs when they unpack a model, whatever the name; caches that
+        were filled by other means contain the original ones.
         """
         for cache in self.caches:
             inside = os.path.relpath(base_dir, cache).split(os.sep) if base_dir else []
@@ -123,7 +123,7 @@ class FuelModels:
         return []
 
     def models(self) -> List[CachedModel]:
-        """What the caches hold, each model once, in its newest version."""
+        """The models in the caches, each once, in its newest version."""
         found: Dict[str, CachedModel] = {}
         for cache in self.caches:
             for host in _folders(cache):
@@ -159,7 +159,7 @@ class FuelModels:
 
 
 class _Downloads:
-    """The part of it that needs a network; its modules are loaded with the first download."""
+    """Downloads models; its modules are imported with the first download."""
 
     def __init__(self, cache: str, progress: Optional[Progress],
                  seconds: Optional[float]) -> None:
@@ -170,7 +170,7 @@ class _Downloads:
         self.begin, self.give = self._time.begin, self._time.give
 
     def download(self, uri: FuelUri) -> None:
-        """Put a model into the cache. Raises ModelNotProvidedError."""
+        """Download a model into the cache. Raises ModelNotProvidedError."""
         self._time.once(uri.archive, uri.server, lambda: self._fetched(uri))
 
     def _fetched(self, uri: FuelUri) -> None:
@@ -199,7 +199,7 @@ class _Downloads:
 
 
 def _told_version(headers: "Message[str, str]") -> int:
-    """The version that the server says it sent; 1 where it says none (Gazebo behaviour)."""
+    """The version in the response headers; 1 if there is none (Gazebo behaviour)."""
     for name in ("X-Ign-Resource-Version", "X-Gz-Resource-Version"):
         text = headers.get(name) or ""
         if text.isdigit() and 0 < int(text) < 10 ** 9:
@@ -208,7 +208,7 @@ def _told_version(headers: "Message[str, str]") -> int:
 
 
 def _with_own_addresses(folder: str, uri: FuelUri) -> str:
-    """Name files of the model by their address on the server, as Gazebo's tools do and expect."""
+    """Rewrite references to the model's own files as Fuel URIs, as Gazebo's tools do."""
     files = (f"{uri.server}/{API}/{quote(uri.owner)}/models/{quote(uri.name)}/{uri.version}"
              "/files/")
 
@@ -239,7 +239,7 @@ def _configured(path: str) -> List[str]:
 
 
 def _child(folder: str, *names: str) -> Optional[str]:
-    """A folder below, its names in any letter case; None where there is none."""
+    """A subfolder, ignoring the letter case of names; None if there is none."""
     for name in names:
         exact = os.path.join(folder, name.lower())
         if not os.path.isdir(exact):
@@ -252,7 +252,7 @@ def _child(folder: str, *names: str) -> Optional[str]:
 
 
 def _version(model: str, version: int) -> Optional[str]:
-    """The folder of a version (0: the newest) that holds a model's config; None for none."""
+    """The folder of a version (0: the newest) with a model's config; None if there is none."""
     numbers = [int(name) for name in _folders(model) if name.isdigit()]
     for number in sorted(numbers, reverse=True):
         folder = os.path.join(model, str(number))

@@ -1,8 +1,8 @@
-"""Addresses of models and their files on a Fuel server.
+"""Fuel URIs of models and their files.
 
 `https://HOST/1.0/OWNER/models/NAME`, with `/VERSION` (a number or `tip`) and, for a file of the
-model, `/files/PATH` behind it. The API version may be missing; letter case does not count in owner
-and name, and a blank may be written `%20`. Source: Ignition Fuel Tools 4, which Gazebo 11 uses.
+model, `/files/PATH` appended. The API version may be missing; owner and name ignore letter case,
+and a space may be written `%20`. Source: Ignition Fuel Tools 4, which Gazebo 11 uses.
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Optional, Tuple
 from urllib.parse import quote, unquote
 
 KNOWN_HOSTS: Tuple[str, ...] = ("fuel.gazebosim.org", "fuel.ignitionrobotics.org")
-"""Two names of one server; what one's cache holds is right for the other."""
+"""Two names of one server, whose caches are equivalent."""
 
 API = "1.0"
 
@@ -28,11 +28,11 @@ class FuelUri:
     """A model on a Fuel server, or a file of it.
 
     Attributes:
-        server: scheme and host, with a port where one is given.
-        owner: who published it.
-        name: of the model.
-        version: 0 for the newest.
-        inside: path of a file below the model's folder, "" for the model itself.
+        server: scheme and host, with the port if given.
+        owner: publisher of the model.
+        name: name of the model.
+        version: version; 0 for the newest.
+        inside: path of a file in the model's folder; "" for the model itself.
     """
 
     server: str
@@ -43,27 +43,27 @@ class FuelUri:
 
     @property
     def host(self) -> str:
-        """As the cache names its folder."""
+        """Name of the server's folder in a cache."""
         return self.server.partition("://")[2]
 
     @property
     def model(self) -> str:
-        """The address of the model, whatever its version."""
+        """The address of the model without a version."""
         return f"{self.server}/{API}/{quote(self.owner)}/models/{quote(self.name)}"
 
     @property
     def archive(self) -> str:
-        """Where its zip file is had."""
+        """The address of its zip file."""
         return f"{self.model}/{self.version or 'tip'}/{quote(self.name)}.zip"
 
 
 def is_web_address(uri: str) -> bool:
-    """Whether a URI is one of http."""
+    """Whether a URI is an http or https address."""
     return uri.lower().startswith(("http://", "https://"))
 
 
 def fuel_uri(uri: str) -> Optional[FuelUri]:
-    """What a URI names on a Fuel server; None for one that is no such address."""
+    """Parse the URI of a Fuel server; None for other URIs."""
     found = _ADDRESS.match(uri.strip())
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""Downloads with a deadline for the whole, a largest size, and every check the answer allows."""
+"""Downloads files with a total deadline, a size limit and checks of integrity."""
 from __future__ import annotations
 
 import base64
@@ -22,7 +22,7 @@ _MD5 = re.compile(r'"?([0-9a-f]{32})"?\Z')
 
 @dataclass(frozen=True)
 class Limits:
-    """Sizes in bytes of the list of models, an archive, what is in it; and how many files."""
+    """Limits of a database: bytes of the model list, of an archive and of its content; files."""
 
     list_bytes: int = 16 << 20
     archive_bytes: int = 512 << 20
@@ -31,7 +31,7 @@ class Limits:
 
 
 class HttpError(ResourceError):
-    """A download that failed. `missing`: the server says there is no such thing."""
+    """A download that failed. `missing`: the server does not have the file."""
 
     def __init__(self, message: str, missing: bool = False) -> None:
         super().__init__(message)
@@ -40,20 +40,20 @@ class HttpError(ResourceError):
 
 def fetch(url: str, into: IO[bytes], largest: int, until: float,
           progress: Optional[Callable[[int, int], None]] = None) -> "Message[str, str]":
-    """Download a file; what fails on the way is tried up to four times (Gazebo behaviour).
+    """Download a file; failed transfers are tried up to four times (Gazebo behaviour).
 
     Args:
         url: http or https.
-        into: a seekable stream; rewritten from its start by each try.
-        largest: bytes.
+        into: a seekable stream; each try writes it from its start.
+        largest: largest size, bytes.
         until: `time.monotonic()` at which to give up.
-        progress: hears bytes so far, and those expected, 0 where not known.
+        progress: called with the bytes received and expected (0 if unknown).
 
     Returns:
-        The headers of the answer.
+        The headers of the response.
 
     Raises:
-        HttpError: not had; what it would have been is not in `into` as a whole.
+        HttpError: the download failed; `into` is incomplete.
     """
     if not url.startswith(("http://", "https://")):
         raise HttpError(f"{url} is not an HTTP URL")
@@ -75,7 +75,7 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
 
 
 class _DamagedDownloadError(ResourceError):
-    """What came is not what was sent."""
+    """The received content does not match its checksum or length."""
 
 
 def _once(url: str, into: IO[bytes], largest: int, until: float,
@@ -109,8 +109,8 @@ def _check(headers: Any, expected: int, done: int, sums: Any) -> None:
     given = headers.get("Content-MD5")
     if given and base64.b64encode(sums.digest()).decode() != given.strip():
         raise _DamagedDownloadError("wrong checksum (Content-MD5)")
-    # Object stores give the MD5 as ETag; any other ETag says nothing of the content. Where it has
-    # the form of one and differs, the answer's own Content-MD5 counts.
+    # Object stores send the MD5 as ETag; other ETags are unrelated to the content. If an ETag has
+    # the form of an MD5 and differs, Content-MD5 decides.
     tag = _MD5.match((headers.get("ETag") or "").strip())
     if tag and not given and tag.group(1) != sums.hexdigest():
         raise _DamagedDownloadError("wrong checksum (ETag)")

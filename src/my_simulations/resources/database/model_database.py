@@ -1,9 +1,8 @@
-"""Models from the database named by GAZEBO_MODEL_DATABASE_URI, once, into ~/.gazebo/models.
+"""Downloads models from the database in GAZEBO_MODEL_DATABASE_URI into ~/.gazebo/models.
 
-Layout of the database, as Gazebo's: `database.config` (older: `manifest.xml`) lists the models;
-each has `NAME/model.config` and `NAME/model.tar.gz`, which holds a folder `NAME`. An empty or
-unset variable means that no network is used at all. A world never waits long: all its downloads
-share one deadline.
+Layout of the database (Gazebo's): `database.config` (older: `manifest.xml`) lists the models; each
+has `NAME/model.config` and `NAME/model.tar.gz`, which contains a folder `NAME`. If the variable is
+empty or unset, the network is not used. All downloads of a world share one deadline.
 """
 from __future__ import annotations
 
@@ -24,11 +23,11 @@ _MOST_DEPENDENCIES = 100
 
 
 class ModelDatabase(DownloadTime):
-    """Downloads models that are missing.
+    """Downloads missing models.
 
     Args:
-        uri: of the database; "" for none.
-        folder: where models go, `NAME/` each.
+        uri: address of the database; "" for none.
+        folder: destination, in which each model gets a folder `NAME`.
         progress: hears how far a download is.
         seconds: for all downloads in all, from the first one on (wall time).
         limits: of sizes.
@@ -43,32 +42,32 @@ class ModelDatabase(DownloadTime):
 
     @classmethod
     def from_environment(cls, progress: Optional[Progress] = None) -> Optional["ModelDatabase"]:
-        """The database of the variable; None where it is unset or empty."""
+        """The database of the variable; None if it is unset or empty."""
         uri = os.environ.get(DATABASE, "").strip()
         if not uri:
             return None
         return cls(uri, os.path.expanduser("~/.gazebo/models"), progress)
 
     def begin(self) -> None:
-        """A new world: the deadline starts anew, and what failed may be tried again."""
+        """Start a new world: the deadline starts again, and failed downloads may be tried again."""
         super().begin()
         self._listed = None
 
     def names(self) -> Set[str]:
-        """What the database lists. Raises ModelNotProvidedError."""
+        """Names of the models in the database. Raises ModelNotProvidedError."""
         try:
             return set(self._names())
         except (HttpError, OSError) as fault:
             raise ModelNotProvidedError(f"{self.uri}: {fault}") from fault
 
     def provide(self, name: str) -> str:
-        """The folder of a model, downloaded with what it depends on when it is not there.
+        """The folder of a model, which is downloaded with its dependencies if missing.
 
-        A dependency that cannot be had leaves the model usable; it is found missing where it is
-        used.
+        If a dependency cannot be downloaded, the model is still usable; the missing model is
+        reported where it is used.
 
         Raises:
-            ModelNotProvidedError: the model cannot be had now.
+            ModelNotProvidedError: the model cannot be downloaded now.
         """
         path = self._one(name)
         waiting, seen = _dependencies(path), {name}
@@ -80,7 +79,7 @@ class ModelDatabase(DownloadTime):
             try:
                 waiting += _dependencies(self._one(other))
             except ModelNotProvidedError:
-                continue  # remembered: whoever asks for it is told why
+                continue  # kept, to be reported where the model is used
         return path
 
     def _one(self, name: str) -> str:
@@ -107,7 +106,7 @@ class ModelDatabase(DownloadTime):
         install(path, make)
 
     def _names(self) -> Set[str]:
-        """What the database lists; asked once."""
+        """Names of the models in the database; requested once."""
         if self._listed is None:
             from io import BytesIO
 
@@ -146,7 +145,7 @@ def _uris(text: bytes) -> Set[str]:
 
 
 def _dependencies(folder: str) -> List[str]:
-    """Names in `<depend>` of a model's config; [] where it says nothing that can be read."""
+    """Names in `<depend>` of a model's config; [] if it is unreadable."""
     from lxml import etree
 
     for config in ("model.config", "manifest.xml"):

@@ -1,1 +1,1 @@
-"""From the command line to a running node, and to its end."""
+"""Start and shutdown of the server process."""

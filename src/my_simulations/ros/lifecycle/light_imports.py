@@ -7,9 +7,9 @@ import sys
 def import_genpy() -> None:
     """Import ROS's message library without NumPy, which is optional for it.
 
-    NumPy would cost the node 14 MB and 40 ms; without it only NumPy types in message fields are
-    not supported, which the node never sends. Call this before any other import of ROS or NumPy,
-    while there is one thread.
+    NumPy takes 14 MB and 40 ms; without it only NumPy types in message fields are not supported,
+    which the node never sends. Call this before any other import of ROS or NumPy, while there is
+    one thread.
     """
     if "numpy" in sys.modules or "genpy" in sys.modules:
         return

@@ -40,6 +40,8 @@ CLOCK_QUEUE = 1000
 OK, FAILED = 0, 1
 
 Say = Callable[[str], None]
+MakeNode = Callable[..., Any]
+"""Creates the `ros.node.Node` with its arguments; imports it, which takes start-up time."""
 
 
 class WorldLoader:
@@ -108,7 +110,7 @@ class Server:
     """Runs the node until a signal, a shutdown request or an error."""
 
     def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say,
-                 engines: EngineSupply, profile: StartProfile,
+                 engines: EngineSupply, profile: StartProfile, make_node: MakeNode,
                  start_editor: "Optional[StartEditor]" = None, gui: bool = False,
                  start_recording: "Optional[StartRecording]" = None) -> None:
         """Continue a start whose engine process is already starting.
@@ -119,6 +121,7 @@ class Server:
             say: prints a line while rospy cannot log yet.
             engines: supplies the engine.
             profile: records the phases of the start.
+            make_node: creates the node, once rospy is initialised and the world is loaded.
             start_editor: starts the world editor; None for no editor.
             gui: start the editor with the node, whatever the parameter `~gui` says.
             start_recording: starts the state log of the options.
@@ -129,6 +132,7 @@ class Server:
         self._editor_launcher: "Optional[EditorLauncher]" = None
         self._options, self._argv, self._say = options, list(argv), say
         self._engines, self._profile = engines, profile
+        self._make_node = make_node
         self._launch = Launch.of(argv)
         self._ended = threading.Event()
         self._settled = threading.Event()
@@ -249,13 +253,12 @@ class Server:
     def _start_node(self, loader: WorldLoader) -> Any:
         import rospy
 
-        from ..node import Node
-
         rospy.loginfo("the world file is %s", loader.simulator.world.file)
         launcher = self._make_editor_launcher(loader)
-        node = Node(loader.simulator, loader.resolver, self._clock,
-                    None if launcher is None else launcher.open, self._master,
-                    (lambda: None) if launcher is None else launcher.announce, self._launch)
+        node = self._make_node(
+            loader.simulator, loader.resolver, self._clock,
+            None if launcher is None else launcher.open, self._master,
+            (lambda: None) if launcher is None else launcher.announce, self._launch)
         if launcher is not None:
             launcher.topics = node.topic_graph
         node.advertise()
@@ -297,9 +300,9 @@ class Server:
         return self._editor_launcher
 
     def _refuse(self, fault: InputError) -> int:
-        from ..node import fail
+        from ..issue_logging import log_fatal
 
-        fail([str(issue) for issue in fault.issues] or [str(fault)])
+        log_fatal([str(issue) for issue in fault.issues] or [str(fault)])
         return FAILED
 
     def _end(self, node: Any, loader: WorldLoader) -> None:

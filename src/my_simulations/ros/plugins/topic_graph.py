@@ -8,7 +8,6 @@ import rospy
 
 from ...geometry import IDENTITY, Pose, compose
 from ...plugins.graph import TopicUse
-from ..lifecycle import master_api
 from .ros_graph import RosGraph
 
 _CAMERAS = frozenset(("camera", "depth", "rgbd", "multicamera", "wideanglecamera"))
@@ -65,19 +64,17 @@ class TopicGraph(RosGraph):
 
     Args:
         uses: the topics of all plugins.
-        master: URI of the master.
+        ask: calls a method of the master's API; returns the value. Raises OSError.
     """
 
-    def __init__(self, uses: Callable[[], Iterable[TopicUse]], master: str) -> None:
+    def __init__(self, uses: Callable[[], Iterable[TopicUse]], ask: Callable[[str], Any]) -> None:
         super().__init__()
-        self._uses, self._master = uses, master
+        self._uses, self._ask = uses, ask
 
     def topics(self) -> List[ListedTopic]:
         """All topics that somebody publishes or hears. Raises OSError."""
-        caller = rospy.get_name()
-        state: Any = master_api.call(self._master, "getSystemState", caller) or ([], [], [])
-        kinds: Dict[str, str] = dict(
-            master_api.call(self._master, "getTopicTypes", caller) or ())
+        state: Any = self._ask("getSystemState") or ([], [], [])
+        kinds: Dict[str, str] = dict(self._ask("getTopicTypes") or ())
         return listed(state, kinds, self._uses(), rospy.resolve_name)
 
     def hear(self, name: str, kind: str, call: Callable[[Any], None]) -> Heard:

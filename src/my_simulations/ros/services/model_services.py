@@ -43,10 +43,10 @@ class ModelServices:
 
         Args:
             simulator: the world.
-            resolver: finds what models name.
-            log: hears of faults.
-            launcher: process id of the roslaunch that started the simulator, 0 for none.
-            changed: called after a model has come or gone, before that is answered.
+            resolver: resolves URIs in models.
+            log: receives issues.
+            launcher: process id of the roslaunch that started the simulator; 0 for none.
+            changed: called after a model was spawned or deleted, before the response.
         """
         self._launcher = launcher
         self._changed = changed
@@ -161,7 +161,7 @@ class ModelServices:
         return "Successfully spawned entity" + (f" ({counted}, see log)" if warned else "")
 
     def _is_the_worlds(self, name: str) -> bool:
-        """Whether the world file contains a model of that name, which still exists."""
+        """Whether the world file contains a model of that name that still exists."""
         return self._simulator.models.has(name) and any(
             model.name == name for model in self._simulator.world.models)
 

@@ -96,7 +96,7 @@ def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
     gravity: Vec3 = tuple(  # type: ignore[assignment]
         between(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
                 f"gravity.{axis}", "m/s^2") for axis in "xyz")
-    # What is not changed is not judged: a world file may hold other numbers.
+    # Unchanged values are not checked: a world file may have values out of range.
     ode: Dict[str, Any] = {parameter.ode: parameter.checked(values[parameter.name])
                            for parameter in ODE if parameter.name in values}
     physics = simulator.physics.settings

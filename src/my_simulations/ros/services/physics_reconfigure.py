@@ -1,7 +1,7 @@
 """The dynamic_reconfigure server of the physics settings.
 
-Debian's `dynamic_reconfigure` brings the messages; its own server class asks the parameter server
-thirty times at the start and answers bad requests with a torn connection.
+Debian's `dynamic_reconfigure` provides the messages; its own server class calls the parameter
+server thirty times at the start and closes the connection on invalid requests.
 """
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Options, name and namespace of a spawn request.
 
-The description is changed, never the text: no number is rounded and no comment can be in the way.
+The description is changed, not the text, so no number is rounded and comments do not matter.
 """
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ def options_of_attributes(attributes: Mapping[str, str]) -> SpawnOptions:
 
 
 def checked_name(name: str) -> str:
-    """The name itself.
+    """The name, checked.
 
     Raises:
-        CommandError: no model can have it.
+        CommandError: invalid as the name of a model.
     """
     if not name.strip():
         raise CommandError("model_name is empty")
@@ -57,7 +57,7 @@ def checked_name(name: str) -> str:
 
 
 def named(model: Model, name: str, namespace: str) -> Model:
-    """The model under the request's name, its plugins told their namespace where they lack one."""
+    """The model with the requested name; plugins without a namespace get that of the request."""
     renamed = replace(model, name=name)
     return with_namespace(renamed, namespace) if namespace else renamed
 
@@ -89,9 +89,9 @@ def _extra(texts: List[str], namespace: str) -> List[str]:
 
 
 def _injected(xml: str, namespace: str) -> str:
-    """The element `xml` with the namespace in every `<plugin>` of it that has none.
+    """The element `xml` with the namespace added to every `<plugin>` without one.
 
-    What cannot be parsed by itself (a prefix that is declared nowhere) stays as it is.
+    XML that cannot be parsed by itself (an undeclared prefix) is unchanged.
     """
     import xml.etree.ElementTree as ElementTree
 

@@ -1,1 +1,1 @@
-"""Published topics, and the threads behind them."""
+"""Published topics and their threads."""

@@ -1,1 +1,1 @@
-"""Descriptions as SDF 1.7 text, by the tables that read it."""
+"""Writes descriptions as SDF 1.7, by the readers' tables."""

@@ -1,8 +1,8 @@
-"""SDF 1.7 text of a description, by the tables that read it.
+"""Writes a description as SDF 1.7, by the readers' tables.
 
-Only what differs from the format's defaults is written, besides what the format requires. Numbers
-are the shortest text that reads back as the same double. What was kept as XML goes back to where
-it stood. The same description gives the same bytes. Source: SDF specification 1.7.
+Values equal to the format's defaults are omitted unless required. Numbers are written as the
+shortest text that reads back as the same double. Kept XML returns to its original place. Equal
+descriptions give equal bytes. Source: SDF specification 1.7.
 """
 from __future__ import annotations
 
@@ -36,13 +36,9 @@ from .material_element import write_material
 from .state_element import write_state
 from .surroundings_elements import (
     write_actor,
-    write_atmosphere,
     write_gui,
     write_plugins,
     write_road,
-    write_scene,
-    write_spherical_coordinates,
-    write_wind,
 )
 from .xml_text import document, write_value
 
@@ -50,8 +46,8 @@ VERSION = "1.7"
 _OLDER = "1.6"
 
 IsPlainInclude = Callable[[Model], Optional[Model]]
-"""From a model that came from an `<include>` to what its URI brings now; None where it cannot be
-said. A model that equals it, but for name, pose, static and more plugins, is an include still."""
+"""Returns the model that the URI of an included model refers to now; None if unknown. A model that
+differs from it only in name, pose, static and added plugins is written as an `<include>`."""
 
 
 def write_world(world: World, state: Optional[SavedState] = None,
@@ -59,10 +55,10 @@ def write_world(world: World, state: Optional[SavedState] = None,
     """A whole document with one world.
 
     Args:
-        world: what is written.
+        world: the description.
         state: a `<state>` to add.
-        included: asked for each model that came from an include, to write it as one again; None
-            writes every model in full.
+        included: called for each included model, to write it as an `<include>` if possible; None
+            writes all models in full.
 
     Returns:
         UTF-8 text with an XML declaration.
@@ -74,8 +70,8 @@ def write_world(world: World, state: Optional[SavedState] = None,
 def write_entity(entity: Union[Model, Light]) -> bytes:
     """A whole document with one model or light, in full; UTF-8, with an XML declaration.
 
-    `formats.load.read_entity` reads it as an equal object; relative URIs have become paths, so that
-    the text means the same wherever it is put.
+    `reading.read_entity` reads it as an equal object. Relative URIs are written as absolute paths,
+    so that the document does not depend on its location.
     """
     writer = _Writer(None)
     if isinstance(entity, Light):
@@ -84,10 +80,10 @@ def write_entity(entity: Union[Model, Light]) -> bytes:
 
 
 def _version(models: Iterable[Model]) -> str:
-    """The newest version that allows the names in use.
+    """The newest SDF version that allows the names in the models.
 
-    From 1.7 on a joint may not be called as a link beside it is; what is written means the same in
-    1.6, where joint axes are in the joint frame, too.
+    From 1.7 on a joint and a link of one model cannot have the same name. The written elements have
+    the same meaning in 1.6, where joint axes are in the joint frame, too.
     """
     return _OLDER if any(_has_namesakes(model) for model in models) else VERSION
 
@@ -99,13 +95,13 @@ def _has_namesakes(model: Model) -> bool:
 
 
 class _Writer:
-    """Writes elements below lxml elements, one method for each element with a reader of its own."""
+    """Writes elements below lxml elements; one method for each element with its own reader."""
 
     def __init__(self, included: Optional[IsPlainInclude]) -> None:
         self._included = included
 
     def world(self, parent: Any, world: World, state: Optional[SavedState]) -> None:
-        """`<world>`; `state` replaces one that was read."""
+        """`<world>`; `state` replaces a `<state>` that was read."""
         element = _element(parent, "world", world)
         fill_element(element, world, WORLD, {
             "physics": lambda at: self.physics(at, world.physics),
@@ -114,13 +110,8 @@ class _Writer:
             "plugin": lambda at: write_plugins(at, world.plugins, WORLD),
             "joint": lambda at: write_each(self.joint, at, world.joints),
             "gui": lambda at: write_gui(at, world.gui, world.gui_camera),
-            "scene": lambda at: write_scene(at, world.scene),
             "actor": lambda at: write_each(write_actor, at, world.actors),
             "road": lambda at: write_each(write_road, at, world.roads),
-            "wind": lambda at: write_wind(at, world.wind),
-            "atmosphere": lambda at: write_atmosphere(at, world.atmosphere),
-            "spherical_coordinates":
-                lambda at: write_spherical_coordinates(at, world.spherical_coordinates),
         }, world.extra, required=("gravity",))
         state = state or world.state
         if state is not None:
@@ -139,7 +130,7 @@ class _Writer:
         fill_element(element, light, LIGHT, {}, light.extra, required=("@type",))
 
     def model_or_include(self, parent: Any, model: Model) -> None:
-        """`<model>`, or the `<include>` that brings it."""
+        """`<model>`, or the `<include>` of an unchanged included model."""
         bare = self._included(model) if self._included is not None and model.uri else None
         added = _added_plugins(model, bare) if bare is not None else None
         if bare is None or added is None:
@@ -173,7 +164,7 @@ class _Writer:
         }, link.extra)
 
     def inertial(self, parent: Any, link: Link) -> None:
-        """`<inertial>`; left out where it is that of a link without one."""
+        """`<inertial>`; omitted if it has default values."""
         from lxml import etree
 
         element = etree.SubElement(parent, "inertial")
@@ -215,7 +206,7 @@ class _Writer:
             }, [])
 
     def mimic(self, parent: Any, mimic: Optional[Mimic]) -> None:
-        """`<mimic>` (SDF 1.11; older readers pass over it)."""
+        """`<mimic>` (SDF 1.11; older readers ignore it)."""
         from lxml import etree
 
         if mimic is not None:
@@ -234,12 +225,12 @@ def _element(parent: Any, tag: str, named: Any) -> Any:
 
 
 def _direction(xyz: Vec3) -> Vec3:
-    """A unit vector that stays the same text when it is read and made a unit vector again."""
+    """A unit vector that keeps its text when it is read and normalised again."""
     return (round(xyz[0], 14), round(xyz[1], 14), round(xyz[2], 14))
 
 
 def _added_plugins(model: Model, bare: Model) -> Optional[List[PluginSpec]]:
-    """The plugins an include adds to what it brings; None where more than that was changed."""
+    """The plugins that an include adds to its model; None if more than that differs."""
     kept = model.plugins[:len(bare.plugins)]
     as_bare = replace(model, name=bare.name, pose=bare.pose, static=bare.static, uri=bare.uri,
                       plugins=kept)

@@ -1,13 +1,13 @@
-"""The fields of an object as children and attributes of an element, by the table of the reader."""
+"""Writes the fields of an object as children and attributes, by the reader's table."""
 from __future__ import annotations
 
 from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Set, Tuple
 
-from ...xml.binding import Entry, Group, Kept, Part, Table, Value, default_of
+from ...xml.binding import Entry, Group, Kept, Nested, Part, Table, Value, default_of
 from .xml_text import append_fragment, write_value
 
 WriteParts = Mapping[str, Callable[[Any], object]]
-"""By path from the element: writes the children that have a reader of their own."""
+"""Writers of the children that have their own readers, by path from the element."""
 
 
 def fill_element(element: Any, source: Any, table: Table, parts: WriteParts,
@@ -16,14 +16,13 @@ def fill_element(element: Any, source: Any, table: Table, parts: WriteParts,
     """Write the fields of an object as children and attributes, as its table reads them.
 
     Args:
-        element: where to.
+        element: the element to fill.
         source: an object of the table's dataclass.
-        table: what is known about it.
-        parts: writers of children that have readers of their own; a tag without one is read
-            elsewhere and has nothing to be written.
-        extra: XML that was kept.
-        required: paths written even where they hold the default.
-        leave_out: paths never written.
+        table: the table of the element.
+        parts: writers of children that have their own readers; a tag without a writer is skipped.
+        extra: kept XML to add.
+        required: paths that are written even with their default value.
+        leave_out: paths that are never written.
     """
     _Filler(parts, required, leave_out).fill(element, source, table.of, table.children,
                                              table.attributes, "")
@@ -37,13 +36,25 @@ def write_each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[A
         write(parent, item)
 
 
+def _write_nested(parent: Any, source: Any, of: Any, tag: str, entry: Nested) -> None:
+    """Write the objects of a nested element, unless they are the default."""
+    from lxml import etree
+
+    value = getattr(source, entry.field)
+    if value == default_of(of, entry.field):
+        return
+    for item in value if isinstance(value, list) else [value]:
+        fill_element(etree.SubElement(parent, tag), item, entry.table, {}, item.extra,
+                     entry.required)
+
+
 class _Filler:
     def __init__(self, parts: WriteParts, required: Tuple[str, ...],
                  leave_out: Tuple[str, ...]) -> None:
         self._parts = parts
         self._required = required
         self._leave_out = leave_out
-        # Old and new names of one thing stand side by side in a table; the first is written.
+        # A table may hold an old and a new name of one field; the first is written.
         self._written: Set[Tuple[int, str]] = set()
 
     def fill(self, element: Any, source: Any, of: Any, children: Mapping[str, Entry],
@@ -58,6 +69,8 @@ class _Filler:
                 self._value(element, source, of, name, entry, here)
             elif isinstance(entry, Group):
                 self._group(element, source, of, name, entry, here)
+            elif isinstance(entry, Nested):
+                _write_nested(element, source, of, name, entry)
             elif isinstance(entry, Part) and here in self._parts:
                 self._parts[here](element)
             else:
@@ -85,7 +98,7 @@ class _Filler:
             write_value(element, name, value.kind, text=text)
 
     def _text(self, value: Value, source: Any, of: Any, path: str) -> Optional[str]:
-        """The text of a value that must be written, else None."""
+        """The text of a value; None if it need not be written."""
         if path in self._leave_out or not self._first(value, source):
             return None
         if value.part:

@@ -12,10 +12,10 @@ from .xml_text import write_value
 
 
 def write_geometry(parent: Any, geometry: Geometry) -> None:
-    """`<geometry>` with one shape; its sizes are always written.
+    """`<geometry>` with one shape, sizes included even if they are the defaults.
 
-    A relative URI, which means nothing outside of its own file, is replaced by the path it
-    resolved to; `model://`, `package://` and `file://` stay (Gazebo behaviour).
+    A relative URI, which is valid in its own file only, is replaced by the absolute path it
+    resolved to; `model://`, `package://` and `file://` URIs are kept (Gazebo behaviour).
     """
     from lxml import etree
 
@@ -42,7 +42,7 @@ def tables_by_shape() -> Dict[Any, Table]:
 
 
 def uri_of(geometry: Any) -> str:
-    """The URI that means the same wherever the file lies."""
+    """A URI that does not depend on the location of the file."""
     uri: str = geometry.uri
     if "://" in uri or not geometry.path:
         return uri

@@ -12,7 +12,7 @@ from .xml_text import write_value
 
 
 def write_material(parent: Any, material: Optional[Material]) -> None:
-    """`<material>`; a script without a `<uri>` gets that of Gazebo's own materials."""
+    """`<material>`; a script without a `<uri>` gets the URI of Gazebo's own materials."""
     from lxml import etree
 
     if material is None:

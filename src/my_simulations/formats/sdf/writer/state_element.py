@@ -1,4 +1,4 @@
-"""`<state>`: where everything is at one moment of a run. Source: SDF specification 1.7, state."""
+"""`<state>`: poses and velocities at one time. Source: SDF specification 1.7, state."""
 from __future__ import annotations
 
 from typing import Any, Callable, Dict, Sequence
@@ -17,10 +17,14 @@ def write_state(parent: Any, state: SavedState, write_model: Callable[[Any, Mode
                 write_light: Callable[[Any, Light], None]) -> None:
     """`<state>`.
 
-    `write_model` and `write_light` write an inserted model or light below an element.
+    Times of 0 are omitted, except sim time. Links and joints of nested models are in elements of
+    their own. Velocities are six numbers: linear (m/s), then angular (rad/s), in world axes.
 
-    Times that are 0 are not written, except sim time. Links and joints of nested models stand in
-    elements of their own; velocities are six plain numbers, linear then angular, in world axes.
+    Args:
+        parent: receives the element.
+        state: the state.
+        write_model: writes an inserted model below an element.
+        write_light: writes an inserted light below an element.
     """
     from lxml import etree
 
@@ -68,13 +72,13 @@ def _write_model(parent: Any, model: ModelState) -> None:
 
 
 class _Nested:
-    """The elements of a model and of those nested in it, made as they are asked for."""
+    """The elements of a model and of its nested models, created on first use."""
 
     def __init__(self, element: Any) -> None:
         self._elements: Dict[str, Any] = {"": element}
 
     def holder(self, name: str) -> "tuple[Any, str]":
-        """The element for what is called `name` within the model, and its plain name."""
+        """The element that holds the link or joint `name` of the model, and its plain name."""
         scope, _, plain = name.rpartition(SCOPE)
         return self._model(scope), plain
 

@@ -1,11 +1,12 @@
-"""XML of written SDF: values, kept fragments put back where they stood, and the whole document."""
+"""XML of written SDF: values, kept fragments at their original place, and the document."""
 from __future__ import annotations
 
+import functools
 import math
 import re
 from typing import Any, Callable, Dict, List, Mapping, Optional
 
-from ....geometry import Pose, Vec3, quat_from_rpy, rpy_from_quat
+from ....geometry import Pose, Quat, Vec3, quat_from_rpy, rpy_from_quat
 from ...xml.binding import Entry, Group, Kept, Part, Table
 from ...xml.values import Kind, PoseKind
 
@@ -27,22 +28,29 @@ def write_value(parent: Any, tag: str, kind: Kind, value: Any = None,
 
 
 def stable_pose_text(pose: Pose) -> str:
-    """The text of a pose whose angles, read and written again, stay what they are.
+    """The text of a pose that does not change when it is read and written again.
 
-    From angles to a quaternion and back the last digits are noise, so that they are rounded to
-    1e-14 rad: 0.4 stays 0.4, and saving what was loaded gives the same text.
+    The conversion of angles to a quaternion and back changes their last digits, so angles are
+    rounded to 1e-14 rad: 0.4 stays 0.4, and saving a loaded world gives the same text.
     """
-    angles = _rounded(rpy_from_quat(pose.orientation))
+    x, y, z, w = (value + 0.0 for value in pose.orientation)  # -0.0 becomes 0.0
+    return " ".join(_plain(value) for value in (*pose.position, *_stable_rpy((x, y, z, w))))
+
+
+@functools.lru_cache(maxsize=1024)
+def _stable_rpy(orientation: Quat) -> Vec3:
+    """Roll, pitch and yaw (rad) that stay the same when they are read and written again."""
+    angles = _rounded(rpy_from_quat(orientation))
     if _read_again(angles) != angles:
         angles = _rounded(_locked(angles))
     seen: List[Vec3] = []
-    # Near a pitch of 90 degrees the noise is larger; it comes to rest after a few turns.
+    # Near a pitch of 90 degrees the error is larger; it converges after a few conversions.
     while angles not in seen and len(seen) < _MOST_ROUNDS:
         seen.append(angles)
         angles = _read_again(angles)
     if angles in seen:
         angles = min(seen[seen.index(angles):])
-    return " ".join(_plain(value) for value in (*pose.position, *angles))
+    return angles
 
 
 def _read_again(angles: Vec3) -> Vec3:
@@ -50,9 +58,9 @@ def _read_again(angles: Vec3) -> Vec3:
 
 
 def _locked(angles: Vec3) -> Vec3:
-    """Within 2e-9 rad of a pitch of 90 degrees, exactly there and without a roll.
+    """Angles within 2e-9 rad of a pitch of 90 degrees, set to exactly that, with roll 0.
 
-    There yaw and roll are told apart by the noise alone, which would never come to rest.
+    There only rounding errors separate yaw and roll, which would never converge.
     """
     roll, pitch, yaw = angles
     if math.cos(pitch) > 2e-9:
@@ -62,7 +70,7 @@ def _locked(angles: Vec3) -> Vec3:
 
 
 def _rounded(angles: Vec3) -> Vec3:
-    """To 1e-14 rad; roll and yaw to less near a pitch of 90 degrees, where they share the noise."""
+    """Angles rounded to 1e-14 rad; roll and yaw more coarsely near a pitch of 90 degrees."""
     lost = -math.log10(max(math.cos(angles[1]), 1e-5))
     digits = 14 - math.floor(lost)
     return (round(angles[0], digits), round(angles[1], 14), round(angles[2], digits))
@@ -73,10 +81,10 @@ def _plain(value: float) -> str:
 
 
 def append_fragment(element: Any, xml: str, table: Table) -> None:
-    """Put a fragment that was kept back below `element`.
+    """Add a kept fragment below `element`, at its original place.
 
-    A fragment that stood deeper is wrapped in the tags of its parents: each is found again, or
-    made, as long as the table reads it in parts.
+    A fragment from deeper down is wrapped in the tags of its parents, which are found or created as
+    long as the table reads them in parts.
     """
     _merge(element, parsed_fragment(xml), table.children)
 
@@ -106,7 +114,7 @@ def _part_children(tag: str) -> Optional[Mapping[str, Entry]]:
 
 
 def _is_kept(fragment: Any, children: Mapping[str, Entry]) -> bool:
-    """Whether a fragment's innermost part is something that is only kept."""
+    """Whether the innermost element of a fragment is one that the table keeps as XML."""
     entry = children.get(fragment.tag)
     if isinstance(entry, Group) and not fragment.attrib and len(fragment) == 1:
         return _is_kept(fragment[0], entry.children)
@@ -114,7 +122,7 @@ def _is_kept(fragment: Any, children: Mapping[str, Entry]) -> bool:
 
 
 def parsed_fragment(xml: str) -> Any:
-    """A fragment as an element, without the blanks between tags; undeclared prefixes declared."""
+    """A fragment as an element, without white space between tags, its prefixes declared."""
     from lxml import etree
 
     missing = sorted(set(_PREFIX.findall(xml)) - set(_DECLARED.findall(xml)) - {"xml", "xmlns"})

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import Callable, Dict, Iterable, List, Optional, Tuple
 
 from ..errors import InputError, error
-from ..objects.object_document import read_document, root_tag
-from ..objects.object_list import PlacedObject
-from ..objects.selection import closest
 from ..resources.package_files import PACKAGE, file_in_package, own_directory
 from ..resources.ros_packages import PackageIndex
+from .object_document import read_document, root_tag
+from .object_list import PlacedObject
+from .selection import closest
 
 # An empty entry is the current folder, where a file xacro.py would hide the module.
 _RUN_XACRO = ("import sys; sys.path[:] = [p for p in sys.path if p]; "

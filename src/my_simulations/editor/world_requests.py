@@ -5,20 +5,20 @@ import secrets
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Dict, List
 
-from ... import __version__
-from ...errors import CommandError, Issue
-from ...resources.resolver import Resolver
-from ...simulator.history import History
-from ...simulator.simulator import Simulator
-from ..editing.drags import Drags
-from ..editing.edit_requests import Edits
-from ..library.autosave import Autosave
-from ..library.world_files import WorldFiles
-from ..scene.plain_json import pose_of
-from .browser_client import Client
-from .error_messages import EditRefusedError
-from .hub import Hub
-from .web_socket import Route
+from .. import __version__
+from ..errors import CommandError, Issue
+from ..resources.resolver import Resolver
+from ..simulator.history import History
+from ..simulator.simulator import Simulator
+from .editing.drags import Drags
+from .editing.edit_requests import Edits
+from .library.autosave import Autosave
+from .library.world_files import WorldFiles
+from .scene.plain_json import pose_of
+from .transport.browser_client import Client
+from .transport.error_messages import EditRefusedError
+from .transport.hub import Hub
+from .transport.web_socket import Route
 
 _MOST_STEPS = 100000
 _LISTED = 200

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, List, Protocol
 
-from ...geometry import Pose
+from ..geometry import Pose
 
 
 class ListedTopic(Protocol):

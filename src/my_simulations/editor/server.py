@@ -11,12 +11,12 @@ from typing import Optional
 
 from aiohttp import web
 
-from ...errors import CommandError, Issue
-from ...resources.resolver import Resolver
-from ...simulator.simulator import Simulator
-from ..assembly import Assembly
-from ..editor_options import DEFAULT_PORT, EditorOptions
-from .access_guard import Guard
+from ..errors import CommandError, Issue
+from ..resources.resolver import Resolver
+from ..simulator.simulator import Simulator
+from .assembly import Assembly
+from .editor_options import DEFAULT_PORT, EditorOptions
+from .transport.access_guard import Guard
 
 _START_S = 10.0
 _END_S = 3.0

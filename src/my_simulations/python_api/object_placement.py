@@ -1,0 +1,88 @@
+"""Objects of a list, put into an open world."""
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from typing import Dict, List, Sequence, Tuple
+
+from ..description.model import Model
+from ..errors import InputError, Issue, error
+from ..formats.mesh.loading import collision_meshes
+from ..formats.reading import read_entity
+from ..geometry import Pose, compose, quat_from_rpy
+from ..objects.object_documents import Documents, package_finder
+from ..objects.object_list import PlacedObject, parse_objects
+from ..objects.selection import parse_groups, select
+from ..objects.yaml_source import read_yaml
+from ..resources.package_files import PACKAGE, own_directory
+from ..resources.resolver import Resolver
+from ..simulator.simulator import Simulator
+
+_XACRO_SECONDS = 60.0
+_GROUPS = "object_groups.yaml"
+
+
+def place_objects(simulator: Simulator, resolver: Resolver, names: Sequence[str], file: str,
+                  world: str) -> List[Issue]:
+    """Spawn objects of a list at their places.
+
+    Args:
+        simulator: the world.
+        resolver: finds what their documents name.
+        names: objects and groups of the list.
+        file: the list; "" for that of the world in this package.
+        world: name or file of the world.
+
+    Returns:
+        Faults and advice; an object with an error among them is not there.
+
+    Raises:
+        InputError: there is no such list, or it cannot be read.
+    """
+    if not names:
+        return []
+    file = file or _list_of(world)
+    tree, source, issues = read_yaml(file, "/objects")
+    listing = parse_objects(tree, source, PACKAGE)
+    groups, more = _groups_beside(file)
+    selection = select(names, listing, groups)
+    issues = [*issues, *more, *selection.issues]
+    with Documents(selection.objects, package_finder(), _XACRO_SECONDS) as documents:
+        for placed in selection.objects:
+            try:
+                issues += _place(simulator, resolver, placed, documents)
+            except InputError as fault:
+                issues += fault.issues
+    return issues
+
+
+def _place(simulator: Simulator, resolver: Resolver, placed: PlacedObject,
+           documents: Documents) -> List[Issue]:
+    document = documents.of(placed)
+    entity, issues = read_entity(document.xml, resolver, document.origin)
+    if not isinstance(entity, Model):
+        return [*issues, error("object-not-a-model", f"{placed.name} is a light, not a model",
+                               file=document.path)]
+    meshes, faults = collision_meshes(entity)
+    model = replace(entity, name=placed.name)
+    pose = Pose(placed.position, quat_from_rpy(*placed.rpy))
+    simulator.models.spawn(model, compose(pose, model.pose), meshes=meshes)
+    return [*issues, *faults]
+
+
+def _list_of(world: str) -> str:
+    name = os.path.splitext(os.path.basename(world))[0]
+    file = os.path.join(own_directory(), "config", name, "object_locations.yaml")
+    if not os.path.isfile(file):
+        raise InputError([error("object-list-missing", f"world '{name}' has no object list",
+                                file=file, hint="name one with object_list")])
+    return file
+
+
+def _groups_beside(file: str) -> Tuple[Dict[str, List[str]], List[Issue]]:
+    groups = os.path.join(os.path.dirname(file), _GROUPS)
+    if not os.path.isfile(groups):
+        return {}, []
+    tree, source, issues = read_yaml(groups, "/object_groups")
+    found, more = parse_groups(tree, source)
+    return found, [*issues, *more]

@@ -1,0 +1,332 @@
+"""A world that a Python program opens, steps and closes."""
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from types import TracebackType
+from typing import Callable, List, Optional, Sequence, Tuple, Type
+
+from ..description.model import Model
+from ..engine.api import Engine
+from ..engine.process_engine import ProcessEngine
+from ..errors import CommandError, EngineLostError, InputError, Issue, error, errors_of
+from ..formats.mesh.loading import collision_meshes
+from ..formats.reading import Entity, Text, read_entity
+from ..geometry import ZERO3, Twist, Vec3, compose
+from ..resources.resolver import Resolver
+from ..simulator.saving import save_world
+from ..simulator.simulator import Simulator
+from ..simulator.world_loading import load_world
+from .object_placement import place_objects
+from .readings import (
+    ContactReading,
+    JointReadings,
+    Readings,
+    SavedState,
+    contact_reading,
+    joint_readings,
+    link_readings,
+    model_readings,
+    pose_of,
+)
+
+Log = Callable[[Issue], None]
+
+_MOST_STEPS = 1_000_000
+_LOST = ("engine-died", "engine-lost", "engine-stalled")
+
+
+def open_world(world: str = "worlds/empty.world", *, seed: int = 0, profile: str = "",
+               objects: Sequence[str] = (), object_list: str = "",
+               resolver: Optional[Resolver] = None, log: Optional[Log] = None,
+               engine: Callable[[], Engine] = ProcessEngine) -> OpenWorld:
+    """Open a world; it stands at its start until `OpenWorld.step` is called.
+
+    Args:
+        world: a world file, as `roslaunch gazebo_ros empty_world.launch world_name:=` takes it.
+        seed: seed of what the file places at random.
+        profile: name of the physics preset of the file; "" for its default.
+        objects: names, and groups, of the object list to spawn.
+        object_list: the YAML file of objects; "" for config/WORLD/object_locations.yaml of this
+            package, WORLD being the name of the world's file.
+        resolver: finds what URIs name; None for Gazebo's variables, our models and ROS packages.
+        log: hears of every issue; they are in `OpenWorld.issues`, too.
+        engine: makes the engine, which is a process of its own.
+
+    Raises:
+        InputError: the world, or one of the objects, cannot be used.
+        CommandError: the engine cannot be started.
+    """
+    return OpenWorld(world, seed=seed, profile=profile, objects=objects, object_list=object_list,
+                     resolver=resolver, log=log, engine=engine)
+
+
+class OpenWorld:
+    """An open world, for one thread; use it as a context manager, or call `close`.
+
+    Names are Gazebo's: `model`, `model::link`, `model::joint`; link and joint names may stand
+    alone where they are unique. Positions are in m, angles in rad, in the world frame. A pose is
+    given as 3 numbers (x y z), 6 (x y z roll pitch yaw) or 7 (x y z and a quaternion x y z w).
+
+    Every method raises CommandError for a name that does not exist or a request that the engine
+    refuses, and EngineLostError when the engine died: the world has lost its state then, and
+    `reset` opens it anew.
+
+    Attributes:
+        issues: faults and advice found so far, in order.
+        simulator: the simulator, which can do more (see doc/architecture.md).
+    """
+
+    def __init__(self, world: str, *, seed: int, profile: str, objects: Sequence[str],
+                 object_list: str, resolver: Optional[Resolver], log: Optional[Log],
+                 engine: Callable[[], Engine]) -> None:
+        """See `open_world`."""
+        self.issues: List[Issue] = []
+        self._listener = log
+        self._lost: Optional[str] = None  # how the engine was lost
+        self._furnished = 0  # the revision of the models when the world was opened
+        self._name, self._seed, self._profile = world, seed, profile
+        self._objects, self._object_list = tuple(objects), object_list
+        self._resolver = resolver or Resolver.from_environment()
+        loaded = load_world(world, self._resolver, self._log, seed=seed, profile=profile)
+        self.simulator = Simulator(loaded.world, engine_factory=engine, paused=True, log=self._log,
+                                   meshes=loaded.meshes)
+        try:
+            self.simulator.start()
+            self._furnish()
+        except BaseException:
+            self.simulator.close()
+            raise
+
+    def __enter__(self) -> OpenWorld:
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], fault: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the engine. Nothing else may be called afterwards."""
+        self.simulator.close()
+
+    # -- time --------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Sim time in s."""
+        return self.simulator.clock.sim_ns * 1e-9
+
+    @property
+    def step_size(self) -> float:
+        """Sim time of one step in s."""
+        return self.simulator.physics.settings.max_step_size
+
+    def step(self, steps: int = 1) -> None:
+        """Make steps, as fast as possible; at most a million at a time."""
+        if not 0 <= steps <= _MOST_STEPS:
+            raise CommandError(f"steps must be between 0 and {_MOST_STEPS}, is {steps}")
+        self._refuse_lost()
+        if steps:
+            try:
+                self.simulator.clock.advance(steps)
+            except EngineLostError as fault:
+                self._lost = self._lost or str(fault)
+        self._refuse_lost()
+
+    def reset(self, seed: Optional[int] = None) -> None:
+        """Open the world anew, with another seed if one is given.
+
+        What follows repeats bit for bit what followed `open_world` with the same seed.
+        """
+        again = self._seed if seed is None else seed
+        unchanged = self.simulator.models.revision == self._furnished and self._lost is None
+        if again == self._seed and unchanged:
+            self.simulator.resets.reset_simulation()
+        else:
+            self._seed, self._lost = again, None
+            loaded = load_world(self._name, self._resolver, self._log, seed=again,
+                                profile=self._profile)
+            self.simulator.load_world(loaded.world, loaded.meshes)
+            self._furnish()
+        self._furnished = self.simulator.models.revision
+
+    # -- reading -----------------------------------------------------------------------------------
+
+    @property
+    def names(self) -> List[str]:
+        """Names of the models, in the order in which they were loaded."""
+        return self.simulator.models.names()
+
+    def states(self) -> Readings:
+        """Where the models are, and how they move."""
+        self._refuse_lost()
+        return model_readings(*self.simulator.states.latest())
+
+    def links(self) -> Readings:
+        """Where all links are, and how they move."""
+        self._refuse_lost()
+        return link_readings(*self.simulator.states.latest())
+
+    def joints(self) -> JointReadings:
+        """Positions and rates of all joint axes."""
+        self._refuse_lost()
+        return joint_readings(*self.simulator.states.latest())
+
+    def contacts(self) -> List[ContactReading]:
+        """The contact points of the last step."""
+        self._refuse_lost()
+        return [contact_reading(*found) for found in self.simulator.states.contacts()]
+
+    def description(self, name: str) -> Model:
+        """The description of a model, with all links and joints."""
+        return self.simulator.models.get(name)
+
+    # -- changing ----------------------------------------------------------------------------------
+
+    def spawn(self, document: Text, name: Optional[str] = None,
+              pose: Sequence[float] = ZERO3) -> str:
+        """Put a model into the world; returns its name.
+
+        Args:
+            document: path of a URDF or SDF file, or its text.
+            name: in the world; None for the document's own.
+            pose: of the model; a pose of the document's own comes on top, as in Gazebo.
+
+        Raises:
+            InputError: the document has no usable model.
+        """
+        entity, issues = self._read(document)
+        if not isinstance(entity, Model):
+            raise InputError([error("object-not-a-model",
+                                    f"{entity.name} is a light, not a model")])
+        model = entity if name is None else replace(entity, name=name)
+        meshes, faults = collision_meshes(model)
+        self._judge([*issues, *faults])
+        self.simulator.models.spawn(model, compose(pose_of(pose), model.pose), meshes=meshes)
+        return model.name
+
+    def remove(self, name: str) -> None:
+        """Take a model out of the world."""
+        self.simulator.models.delete(name)
+
+    def set_pose(self, name: str, pose: Sequence[float], twist: Optional[Sequence[float]] = None
+                 ) -> None:
+        """Move a model, or a link of one (`model::link`).
+
+        Args:
+            name: of the model or link.
+            pose: of its frame.
+            twist: m/s and rad/s (vx vy vz wx wy wz) that it then has; None for at rest.
+        """
+        speed = Twist() if twist is None else _twist(twist)
+        states = self.simulator.states
+        if self.simulator.models.has(name):
+            states.set_model_state(name, pose_of(pose), speed)
+        else:
+            states.set_link_state(name, pose_of(pose), speed)
+
+    def apply_wrench(self, link: str, force: Sequence[float] = ZERO3,
+                     torque: Sequence[float] = ZERO3, *, duration: Optional[float] = None,
+                     frame: str = "", point: Sequence[float] = ZERO3) -> None:
+        """Push and turn a link from the next step on.
+
+        Args:
+            link: the link.
+            force: N, at the centre of mass unless `point` says where else.
+            torque: N m.
+            duration: s of sim time; None for until the world is reset.
+            frame: model or link along whose axes all is given, and with which it turns then; ""
+                for the world.
+            point: m from the centre of mass, or from the frame's origin where one is given.
+        """
+        self.simulator.wrenches.apply_wrench(
+            link, _vector(force, "force"), _vector(torque, "torque"), frame=frame,
+            point=_vector(point, "point"), duration_ns=_nanoseconds(duration))
+
+    def apply_effort(self, joint: str, effort: float, *, duration: Optional[float] = None) -> None:
+        """Drive a joint axis by a torque (N m) or force (N) from the next step on.
+
+        Args:
+            joint: the joint.
+            effort: adds to others on the same axis.
+            duration: s of sim time; None for until the world is reset.
+        """
+        self.simulator.wrenches.apply_effort(joint, float(effort),
+                                             duration_ns=_nanoseconds(duration))
+
+    # -- keeping -----------------------------------------------------------------------------------
+
+    def save(self) -> SavedState:
+        """Keep the states of all models; see `SavedState` for what that is."""
+        self._refuse_lost()
+        return SavedState(self.time, self.simulator.states.capture())
+
+    def restore(self, saved: SavedState) -> None:
+        """Put time and all models that still exist back to where they were."""
+        self._refuse_lost()
+        self.simulator.states.restore(saved.state)
+
+    def save_world(self, path: str, *, overwrite: bool = False, state: bool = False) -> str:
+        """Write the world to a .world file; returns its absolute path.
+
+        Args:
+            path: where to.
+            overwrite: replace a file of that name.
+            state: with sim time and velocities.
+        """
+        target = os.path.abspath(os.path.expanduser(path))
+        return save_world(self.simulator, target, roots=[os.path.dirname(target)],
+                          resolver=self._resolver, overwrite=overwrite, state=state)
+
+    # -- helpers -----------------------------------------------------------------------------------
+
+    def _furnish(self) -> None:
+        self._judge(place_objects(self.simulator, self._resolver, self._objects,
+                                  self._object_list, self._name))
+        self._furnished = self.simulator.models.revision
+
+    def _read(self, document: Text) -> Tuple[Entity, List[Issue]]:
+        if isinstance(document, str) and "<" not in document:
+            path = os.path.expanduser(document)
+            try:
+                with open(path, "rb") as stream:
+                    content = stream.read()
+            except OSError as fault:
+                raise InputError([error("object-unreadable", f"cannot read: {fault.strerror}",
+                                        file=path)]) from fault
+            return read_entity(content, self._resolver, path)
+        return read_entity(document, self._resolver)
+
+    def _judge(self, issues: Sequence[Issue]) -> None:
+        for issue in issues:
+            self._log(issue)
+        if errors_of(issues):
+            raise InputError(issues)
+
+    def _log(self, issue: Issue) -> None:
+        self.issues.append(issue)
+        if issue.code in _LOST and self._lost is None:
+            self._lost = issue.message
+        if self._listener is not None:
+            self._listener(issue)
+
+    def _refuse_lost(self) -> None:
+        if self._lost is not None:
+            raise EngineLostError(f"the world has lost its state, call reset: {self._lost}")
+
+
+def _vector(values: Sequence[float], what: str) -> Vec3:
+    numbers = [float(value) for value in values]
+    if len(numbers) != 3:
+        raise CommandError(f"{what} has 3 numbers, not {len(numbers)}")
+    return numbers[0], numbers[1], numbers[2]
+
+
+def _twist(values: Sequence[float]) -> Twist:
+    if len(values) != 6:
+        raise CommandError(f"a twist has 6 numbers, not {len(values)}")
+    return Twist(_vector(values[:3], "linear"), _vector(values[3:], "angular"))
+
+
+def _nanoseconds(duration: Optional[float]) -> int:
+    return -1 if duration is None else max(0, round(duration * 1e9))

@@ -1,0 +1,199 @@
+"""What is read from a world, as NumPy arrays whose rows have names."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterator, Mapping, Sequence, Tuple
+
+import numpy as np
+
+from ..engine.commands import Contact
+from ..engine.ring import LINK_WIDTH, Snapshot
+from ..errors import CommandError
+from ..geometry import IDENTITY, Pose, Twist, normalised, pose_from_xyzrpy
+from ..simulator.registry import Entity
+from ..simulator.world_state import WorldState
+
+POSE_WIDTH, TWIST_WIDTH = 7, 6
+
+
+class NamedRows(Mapping[str, np.ndarray]):
+    """Rows of an array by name, as views: `rows["robo::base_link"]`.
+
+    Attributes:
+        names: in the order of the rows.
+        array: shape (names, width), or (names,) where a row is one number.
+    """
+
+    def __init__(self, names: Sequence[str], array: np.ndarray) -> None:
+        self.names: Tuple[str, ...] = tuple(names)
+        self.array = array
+        self._rows: Dict[str, int] = {name: row for row, name in enumerate(self.names)}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.array[self._rows[name]]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f"NamedRows({dict(self)!r})"
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Where models or links are, and how they move, at one time.
+
+    The arrays are copies of that time: later steps do not change them.
+
+    Attributes:
+        time: sim time in s.
+        pose: rows (x, y, z, qx, qy, qz, qw): metres and a unit quaternion, of the model's or
+            link's frame in the world frame.
+        twist: rows (vx, vy, vz, wx, wy, wz): m/s at the frame's origin and rad/s, along the axes
+            of the world. That of a model is that of its canonical link.
+    """
+
+    time: float
+    pose: NamedRows
+    twist: NamedRows
+
+    @property
+    def names(self) -> Tuple[str, ...]:
+        """The models, or the links as `model::link`, in the order of the rows."""
+        return self.pose.names
+
+
+@dataclass(frozen=True)
+class JointReadings:
+    """Positions and rates of all joint axes at one time.
+
+    Attributes:
+        time: sim time in s.
+        position: rad of a revolute axis, m of a prismatic one, by `model::joint`; the axes of a
+            joint with several are `model::joint[0]` and so on.
+        rate: rad/s or m/s.
+    """
+
+    time: float
+    position: NamedRows
+    rate: NamedRows
+
+    @property
+    def names(self) -> Tuple[str, ...]:
+        """The axes, in the order of the rows."""
+        return self.position.names
+
+
+@dataclass(frozen=True)
+class ContactReading:
+    """One contact point of the last step.
+
+    Attributes:
+        links: the scoped names of both links.
+        position: (3,) m, world frame, on the second link.
+        normal: (3,) unit vector along which the first link is pushed, world frame.
+        depth: m, how far the links overlap; negative while apart.
+        force: N along the normal.
+        friction: (3,) N across the normal, on the first link, world frame.
+    """
+
+    links: Tuple[str, str]
+    position: np.ndarray
+    normal: np.ndarray
+    depth: float
+    force: float
+    friction: np.ndarray
+
+
+@dataclass(frozen=True)
+class SavedState:
+    """What `OpenWorld.save` keeps.
+
+    Kept: sim time, and of each model that exists the pose, the twists of its links, and the
+    positions and rates of its joint axes. Not kept: contact forces that the solver starts from,
+    which bodies sleep, wrenches and efforts that act for a time, and descriptions. So what follows
+    a `restore` is equal from one restore to the next, and close to what followed the `save`;
+    `OpenWorld.reset` repeats the whole run bit for bit.
+
+    Attributes:
+        time: sim time in s.
+    """
+
+    time: float
+    state: WorldState
+
+
+def model_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
+    """Poses and twists of the models of a snapshot."""
+    pose = np.empty((len(entities), POSE_WIDTH))
+    twist = np.zeros((len(entities), TWIST_WIDTH))
+    links = _link_table(snapshot)
+    for row, entity in enumerate(entities):
+        if entity.link_names and entity.link_from_model == IDENTITY:
+            whole = links[entity.canonical_row]
+            pose[row], twist[row] = whole[:POSE_WIDTH], whole[POSE_WIDTH:]
+        else:
+            at, moving = entity.state(snapshot)
+            pose[row], twist[row] = pose_row(at), twist_row(moving)
+    names = [entity.model.name for entity in entities]
+    return Readings(snapshot.sim_ns * 1e-9, NamedRows(names, pose), NamedRows(names, twist))
+
+
+def link_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
+    """Poses and twists of all links of a snapshot."""
+    names = [f"{entity.model.name}::{link}" for entity in entities for link in entity.link_names]
+    rows = [entity.first_link_row + n for entity in entities
+            for n in range(len(entity.link_names))]
+    table = _link_table(snapshot)[rows]
+    return Readings(snapshot.sim_ns * 1e-9, NamedRows(names, table[:, :POSE_WIDTH]),
+                    NamedRows(names, table[:, POSE_WIDTH:]))
+
+
+def joint_readings(entities: Sequence[Entity], snapshot: Snapshot) -> JointReadings:
+    """Positions and rates of all joint axes of a snapshot."""
+    names = [f"{entity.model.name}::{joint}" for entity in entities for joint in entity.joint_names]
+    values = np.array([snapshot.joint(entity.first_joint_row + n) for entity in entities
+                       for n in range(len(entity.joint_names))]).reshape(-1, 2)
+    return JointReadings(snapshot.sim_ns * 1e-9, NamedRows(names, values[:, 0]),
+                         NamedRows(names, values[:, 1]))
+
+
+def contact_reading(first: str, second: str, contact: Contact) -> ContactReading:
+    """A contact between two links with their scoped names."""
+    return ContactReading((first, second), np.array(contact.position), np.array(contact.normal),
+                          contact.depth, contact.force, np.array(contact.friction))
+
+
+def pose_of(values: Sequence[float]) -> Pose:
+    """A pose from 3 (position), 6 (x y z roll pitch yaw, as in SDF) or 7 numbers (see `Readings`).
+
+    Raises:
+        CommandError: another number of values.
+    """
+    numbers = [float(value) for value in values]
+    if len(numbers) == 3:
+        return Pose((numbers[0], numbers[1], numbers[2]))
+    if len(numbers) == 6:
+        return pose_from_xyzrpy(*numbers)
+    if len(numbers) == POSE_WIDTH:
+        return Pose((numbers[0], numbers[1], numbers[2]),
+                    normalised((numbers[3], numbers[4], numbers[5], numbers[6])))
+    raise CommandError(f"a pose has 3 numbers (x y z), 6 (x y z roll pitch yaw) or 7 (x y z and a "
+                       f"quaternion x y z w), not {len(numbers)}")
+
+
+def pose_row(pose: Pose) -> Tuple[float, ...]:
+    """A pose as a row of `Readings.pose`."""
+    return (*pose.position, *pose.orientation)
+
+
+def twist_row(twist: Twist) -> Tuple[float, ...]:
+    """A twist as a row of `Readings.twist`."""
+    return (*twist.linear, *twist.angular)
+
+
+def _link_table(snapshot: Snapshot) -> np.ndarray:
+    return np.array(snapshot.links, dtype=float).reshape(-1, LINK_WIDTH)

@@ -1,0 +1,40 @@
+"""Allocation of rows in the tables of the ring."""
+from __future__ import annotations
+
+from typing import List, Optional, Tuple
+
+
+class RowAllocator:
+    """Allocates contiguous rows of a table, first fit. Not thread safe: its owner locks.
+
+    Args:
+        size: number of rows.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._free: List[Tuple[int, int]] = [(0, size)]
+
+    def take(self, count: int) -> Optional[int]:
+        """The first of `count` contiguous free rows; None if there are none."""
+        if count == 0:
+            return 0
+        for n, (start, length) in enumerate(self._free):
+            if length >= count:
+                rest = (start + count, length - count)
+                self._free[n:n + 1] = [rest] if rest[1] else []
+                return start
+        return None
+
+    def give(self, start: int, count: int) -> None:
+        """Free `count` rows from `start` on."""
+        if count == 0:
+            return
+        self._free.append((start, count))
+        self._free.sort()
+        merged: List[Tuple[int, int]] = []
+        for at, length in self._free:
+            if merged and merged[-1][0] + merged[-1][1] == at:
+                merged[-1] = (merged[-1][0], merged[-1][1] + length)
+            else:
+                merged.append((at, length))
+        self._free = merged

@@ -1,0 +1,34 @@
+"""The example programs run, and show what they say they show."""
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def example(name):
+    return runpy.run_path(str(EXAMPLES / name), run_name="example")
+
+
+def test_an_object_that_is_dropped_comes_to_rest(capsys, monkeypatch):
+    monkeypatch.setattr("sys.argv", ["drop_test.py"])
+    example("drop_test.py")["main"]()
+    name, rise, unit = capsys.readouterr().out.split()[:3]
+    assert (name, unit) == ("MY_OBJECT:", "mm") and abs(float(rise)) < 100.0
+
+
+def test_boxes_slide_as_far_as_their_friction_lets_them(capsys):
+    example("parameter_sweep.py")["main"]()
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()[1:]]
+    assert [float(row[0]) for row in rows] == [0.2, 0.4, 0.6, 0.8]
+    for row in rows:
+        assert float(row[1]) == pytest.approx(float(row[3]), rel=0.01)
+
+
+def test_a_grip_holds_from_the_force_on_that_carries_the_weight():
+    lifts = example("grasp.py")["lifts"]
+    assert not lifts(4.0)
+    assert lifts(6.0)

@@ -1,0 +1,199 @@
+"""A world that a Python program opens, without ROS."""
+from __future__ import annotations
+
+import math
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import my_simulations
+from my_simulations.errors import CommandError, EngineLostError, InputError
+from my_simulations.python_api.readings import pose_of
+
+ROOT = Path(__file__).resolve().parents[2]
+LIST = str(ROOT / "config/test/object_locations.yaml")
+BALL = """<sdf version="1.7"><model name="ball"><link name="link">
+<inertial><mass>2</mass></inertial>
+<collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
+</link></model></sdf>"""
+PENDULUM = """<sdf version="1.7"><model name="pendulum"><link name="rod">
+<pose>0 0 1 0 0 0</pose><inertial><pose>0 0 -0.5 0 0 0</pose><mass>1</mass>
+<inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial></link>
+<joint name="pin" type="revolute"><parent>world</parent><child>rod</child>
+<axis><xyz>0 1 0</xyz></axis></joint></model></sdf>"""
+
+
+@pytest.fixture
+def world():
+    with my_simulations.open_world() as opened:
+        yield opened
+
+
+def test_a_ball_falls_as_far_as_it_should(world):
+    assert world.spawn(BALL, pose=[1, 2, 5]) == "ball"
+    world.step(500)
+    assert world.time == pytest.approx(0.5)
+    states = world.states()
+    fallen = 9.8 * 0.5 * world.step_size * 500 * (0.5 + world.step_size)  # semi-implicit Euler
+    assert states.pose["ball"] == pytest.approx([1, 2, 5 - fallen, 0, 0, 0, 1], abs=1e-9)
+    assert states.twist["ball"] == pytest.approx([0, 0, -4.9, 0, 0, 0], abs=1e-9)
+    assert states.names == tuple(world.names) == states.pose.names
+
+
+def test_readings_are_of_their_time(world):
+    world.spawn(BALL, pose=[0, 0, 5])
+    before = world.states()
+    world.step(10)
+    assert before.time == 0.0 and before.pose["ball"][2] == 5.0
+    assert world.states().pose["ball"][2] < 5.0
+
+
+def test_links_joints_and_contacts_are_named(world):
+    world.spawn(PENDULUM)
+    world.spawn(BALL, "other", [1, 0, 0.1])
+    assert "pendulum::rod" in world.links().names
+    assert world.joints().position["pendulum::pin"] == 0.0
+    world.step(200)
+    (contact,) = world.contacts()
+    assert set(contact.links) == {"other::link", "ground_plane::link"}
+    assert contact.force == pytest.approx(2 * 9.8, rel=1e-2)
+    assert abs(contact.normal[2]) == pytest.approx(1.0)
+
+
+def test_wrenches_and_efforts_act_for_their_time(world):
+    world.spawn(BALL, pose=[0, 0, 5])
+    world.spawn(PENDULUM, pose=[3, 0, 0])
+    world.apply_wrench("ball::link", force=[4, 0, 0], duration=0.1)
+    world.apply_effort("pendulum::pin", 0.5, duration=0.1)
+    world.step(300)
+    assert world.states().twist["ball"][0] == pytest.approx(0.2, rel=1e-6)  # F t / m
+    assert world.joints().position["pendulum::pin"] > 0.0
+
+
+def test_reset_repeats_bit_for_bit_and_brings_back_what_was_removed():
+    with my_simulations.open_world(objects=["MY_OBJECT", "crate"], object_list=LIST) as world:
+        def run():
+            world.apply_wrench("MY_OBJECT::" + world.description("MY_OBJECT").links[0].name,
+                               force=[30, 5, 0], duration=0.2)
+            world.step(400)
+            return world.links().pose.array.tobytes()
+
+        first = run()
+        world.reset()
+        assert world.time == 0.0 and run() == first
+        world.remove("crate")
+        world.spawn(BALL, pose=[0, 0, 1])
+        world.reset()
+        assert "crate" in world.names and "ball" not in world.names
+        assert run() == first
+
+
+def test_reset_repeats_a_room_with_a_stack_bit_for_bit():
+    with my_simulations.open_world("lab_room.world") as world:
+        runs = []
+        for _again in range(3):
+            world.step(1000)
+            runs.append(world.links().pose.array.tobytes())
+            world.reset()
+        assert runs[0] == runs[1] == runs[2]
+
+
+def test_another_seed_places_a_population_elsewhere(tmp_path):
+    path = tmp_path / "many.world"
+    path.write_text(
+        "<sdf version='1.6'><world name='w'><population name='p'><model name='b'><link name='l'/>"
+        "</model><model_count>3</model_count><distribution><type>random</type></distribution>"
+        "<box><size>5 5 1</size></box></population></world></sdf>")
+    with my_simulations.open_world(str(path), seed=1) as world:
+        first = world.states().pose.array
+        world.reset(seed=2)
+        assert not np.allclose(world.states().pose.array, first)
+        world.reset(seed=1)
+        assert np.array_equal(world.states().pose.array, first)
+
+
+def test_restore_repeats_from_what_was_saved(world):
+    world.spawn(BALL, pose=[0, 0, 0.4])
+    world.step(100)
+    saved = world.save()
+    world.step(300)
+    runs = []
+    for _again in range(2):
+        world.restore(saved)
+        assert world.time == saved.time == pytest.approx(0.1)
+        world.step(300)
+        runs.append(world.links().pose.array.tobytes())
+    assert runs[0] == runs[1]
+
+
+def test_a_model_and_a_link_are_moved(world):
+    world.spawn(BALL)
+    world.set_pose("ball", [1, 2, 3, 0, 0, math.pi / 2], twist=[0, 0, 1, 0, 0, 0])
+    assert world.states().pose["ball"] == pytest.approx([1, 2, 3, 0, 0, 0.5 ** 0.5, 0.5 ** 0.5])
+    assert world.states().twist["ball"][2] == pytest.approx(1.0)
+    world.set_pose("ball::link", [0, 0, 1])
+    assert world.links().pose["ball::link"][2] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("pose", "count"), [([1, 2], 2), ([0] * 8, 8), ([], 0)])
+def test_a_pose_of_another_length_is_refused(pose, count):
+    with pytest.raises(CommandError, match=f"not {count}"):
+        pose_of(pose)
+
+
+def test_faults_are_told_and_nothing_is_lost(world, tmp_path):
+    with pytest.raises(CommandError, match="nothing"):
+        world.remove("nothing")
+    with pytest.raises(CommandError, match="steps"):
+        world.step(-1)
+    with pytest.raises(InputError) as told:
+        world.spawn("<sdf version='1.7'><model name='m'><link/></model></sdf>")
+    assert told.value.first.line == 1
+    missing = str(tmp_path / "none.sdf")
+    with pytest.raises(InputError, match="none.sdf"):
+        world.spawn(missing)
+    assert world.names == ["ground_plane"]
+
+
+def test_an_unknown_object_names_those_that_there_are():
+    with pytest.raises(InputError, match="MY_OBJECT"):
+        my_simulations.open_world(objects=["MY_OBJEKT"], object_list=LIST)
+
+
+def test_a_world_that_was_saved_opens_again(world, tmp_path):
+    world.spawn(BALL, pose=[1, 0, 2])
+    path = world.save_world(str(tmp_path / "kept.world"))
+    with my_simulations.open_world(path) as again:
+        assert again.states().pose["ball"] == pytest.approx([1, 0, 2, 0, 0, 0, 1])
+
+
+def test_a_lost_engine_ends_the_run_and_reset_opens_it_anew(world):
+    world.spawn(BALL, pose=[0, 0, 1])
+    world.step(100)
+    os.kill(world.simulator.engine_pid, signal.SIGKILL)
+    with pytest.raises(EngineLostError, match="reset"):
+        for _step in range(100):
+            world.step(10)
+    with pytest.raises(EngineLostError):
+        world.states()
+    world.reset()
+    assert world.time == 0.0 and world.names == ["ground_plane"]
+    world.step(10)
+
+
+def test_it_needs_no_ros():
+    script = ("import sys\n"
+              "for name in ('rospy', 'rospkg', 'genpy', 'catkin_pkg'): sys.modules[name] = None\n"
+              "import my_simulations\n"
+              "with my_simulations.open_world() as world:\n"
+              "    world.step(10)\n"
+              "    print(world.names)\n")
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True,
+                          timeout=120, env={"PATH": os.environ["PATH"], "HOME": os.environ["HOME"],
+                                            "PYTHONPATH": str(ROOT / "src")})
+    assert done.stdout == "['ground_plane']\n", done.stderr

@@ -1,0 +1,81 @@
+# shellcheck shell=bash
+# PyBullet from its sources, where the package index has no wheel of it for this interpreter or this
+# processor. The wheel that is made stays in the user's cache: no other workspace compiles again.
+
+# Of one core; the sources were compiled in 180 to 320 s of processor time on two machines.
+PYBULLET_SECONDS=320
+
+# pybullet_wheels: the folder of the wheels that were compiled here.
+pybullet_wheels() { printf '%s' "${XDG_CACHE_HOME:-$HOME/.cache}/my_simulations/wheels"; }
+
+# pybullet_lacks_wheel NAME: whether that is why the part NAME of this step, an installation by pip,
+# has failed.
+pybullet_lacks_wheel() {
+  grep -q 'No matching distribution found for pybullet==' "$LOGS/$1.log"
+}
+
+# build_pybullet: compile the pinned source, whose hash is checked, and keep the wheel.
+build_pybullet() {
+  local pin work sources minutes
+  pin=$(packages_of "$CLONE/tools/lib/pybullet-source.txt" | sed 's/ .*//')
+  minutes=$(((PYBULLET_SECONDS / $(nproc) + 59) / 60))
+  say "there is no wheel of ${pin/==/ } for $("$PYTHON" --version) on $(uname -m): compiling it, \
+about $minutes minutes; this user's next workspace will find it in $(pybullet_wheels)"
+  install_compiler
+  work="$OWN/pybullet"
+  rm -rf -- "$work"
+  mkdir -p -- "$work" "$(pybullet_wheels)" || stop "the wheel cannot be kept." \
+    "Make $(pybullet_wheels) writable, or set XDG_CACHE_HOME to a folder that is."
+  logged pybullet-tools "Is there a network? Then run $COMMAND again." \
+    "$VENV/bin/python3" -m pip install --no-input --disable-pip-version-check \
+    --target "$work/tools" -r "$CLONE/tools/lib/pybullet-tools.txt"
+  logged pybullet-source "Is there a network? Then run $COMMAND again." \
+    env PYTHONPATH="$work/tools" "$VENV/bin/python3" -m pip download --no-input \
+    --disable-pip-version-check --no-deps --no-build-isolation --no-binary pybullet \
+    --require-hashes -d "$work" -r "$CLONE/tools/lib/pybullet-source.txt"
+  logged pybullet-unpack "Is there room on the disk (df -h)? It takes 1 GB." \
+    tar -xzf "$work"/pybullet-*.tar.gz -C "$work" --strip-components=1 --one-top-level=source
+  # The plugin that draws by EGL is a second module of 56 files; cameras here draw without it.
+  sed -i "/EGL_CXX_FLAGS += '-DBT_USE_EGL '/s/EGL_CXX_FLAGS.*/pass/" "$work/source/setup.py"
+  sources=$(sed '/^egl_renderer_sources/,/^$/d' "$work/source/setup.py" |
+    grep -c '\["[^"]*\.c\(pp\)\?"\]')
+  logged pybullet-compile "The compiler says why; 1 GB of memory and of disk are needed." \
+    compile_pybullet "$work" "$sources"
+  mv -- "$work"/wheel/*.whl "$(pybullet_wheels)/"
+  rm -rf -- "$work"
+}
+
+# install_compiler: what compiles, where it is not there. Debian 13 has the headers of NumPy in a
+# package of their own, Debian 12 has none of that name.
+install_compiler() {
+  local wanted missing
+  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-compile.txt")
+  ! apt-cache show python3-numpy-dev >/dev/null 2>&1 || wanted+=(python3-numpy-dev)
+  mapfile -t missing < <(missing_packages "${wanted[@]}")
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  may_install || stop "PyBullet must be compiled, ${#missing[@]} system packages are missing for \
+that, and there is neither root nor sudo." \
+    "As root: apt-get install --no-install-recommends ${missing[*]}"
+  apt_install -compile "Is there a network, and room on the disk (df -h)? Then run $COMMAND again." \
+    "${missing[@]}"
+}
+
+# compile_pybullet FOLDER SOURCES: a wheel in FOLDER/wheel; says how many of the SOURCES are done.
+compile_pybullet() {
+  # No debug information: half of the time and nine tenths of the size. GCC 14 refuses the pointers
+  # that pybullet.c hands to NumPy without the other option.
+  local flags="-g0 -Wno-incompatible-pointer-types" line count=0
+  (
+    cd -- "$1/source"
+    CFLAGS="$flags" CXXFLAGS=-g0 PYTHONPATH="$1/tools" PYTHONUNBUFFERED=1 \
+      "$VENV/bin/python3" setup.py -v bdist_wheel -d "$1/wheel" 2>&1
+  ) | while IFS= read -r line; do
+    case $line in
+      *' -c '*)
+        count=$((count + 1))
+        line=${line#* -c }
+        line="compiling $count of about $2: ${line%% *}" ;;
+    esac
+    printf '%s\n' "$line"
+  done
+}
