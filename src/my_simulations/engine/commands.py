@@ -188,6 +188,13 @@ class ConnectModels(Command):
 
 
 @dataclass(frozen=True)
+class DisconnectModels(Command):
+    """Take away the joints of these names that `ConnectModels` made; others are ignored."""
+
+    names: Tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class RemoveModel(Command):
     """Remove a model; bodies that rested on it wake up."""
 

@@ -14,6 +14,7 @@ from .commands import (
     ClearTimedForces,
     Command,
     ConnectModels,
+    DisconnectModels,
     JointMotor,
     JointWrench,
     LinkState,
@@ -50,6 +51,7 @@ class KinematicBackend:
         self.models: Dict[int, Tuple[Model, int, int, bool]] = {}
         self.timed_forces: Dict[int, object] = {}
         self.held: Tuple[int, ...] = ()
+        self.connected: Dict[str, ConnectModels] = {}
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
         self.wheel_slips: Dict[int, WheelSlip] = {}
@@ -72,9 +74,10 @@ class KinematicBackend:
             SetWheelSlips: lambda c: self.wheel_slips.update(
                 {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
+            ConnectModels: lambda c: self.connected.update({c.joint.name: c}),
+            DisconnectModels: lambda c: [self.connected.pop(name, None) for name in c.names],
             ReadJointWrenches: lambda command: tuple(
                 self.joint_wrenches.get(key) for key in command.joints),
-            ConnectModels: lambda _: None,
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
             ),
@@ -194,6 +197,10 @@ class KinematicBackend:
             del self.links[first_link + n]
         for n in range(len(axis_rows(model))):
             del self.joints[first_joint + n]
+        for name, joint in list(self.connected.items()):
+            if {joint.parent_row, joint.child_row} & set(range(first_link,
+                                                               first_link + len(model.links))):
+                del self.connected[name]
 
     def _set_model(self, command: SetModelState) -> None:
         if command.model_id not in self.models:

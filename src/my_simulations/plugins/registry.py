@@ -21,9 +21,27 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_diff_drive.so": "drive.diff_drive:DiffDrive",
     "libgazebo_ros_skid_steer_drive.so": "drive.skid_steer_drive:SkidSteerDrive",
     "libgazebo_ros_planar_move.so": "drive.planar_move:PlanarMove",
+    "libgazebo_ros_tricycle_drive.so": "drive.tricycle_drive:TricycleDrive",
+    "libgazebo_ros_wheel_slip.so": "drive.wheel_slip:WheelSlip",
+    "libWheelSlipPlugin.so": "drive.wheel_slip:WheelSlip",
+    "libgazebo_ros_force_based_move.so": "drive.force_based_move:ForceBasedMove",
+    "librobotnik_force_based_move.so": "drive.force_based_move:ForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
     "libgazebo_ros_force.so": "state.force:Force",
+    "libgazebo_ros_joint_pose_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
+    "libgazebo_ros_joint_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
+    "libgazebo_ros_ft_sensor.so": "state.ft_sensor:FtSensor",
+    "libgazebo_ros_hand_of_god.so": "state.hand_of_god:HandOfGod",
+    "libroboticsgroup_gazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
+    "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
+    "libgazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
+    "libInitialVelocityPlugin.so": "state.initial_velocity:InitialVelocity",
+    "libgazebo_ros_vacuum_gripper.so": "gripping.vacuum_gripper:VacuumGripper",
+    "libgazebo_grasp_fix.so": "gripping.grasp_fix:GraspFix",
+    "libgazebo_ros_link_attacher.so": "gripping.link_attacher:LinkAttacher",
+    "libLiftDragPlugin.so": "world.lift_drag:LiftDrag",
+    "libBuoyancyPlugin.so": "world.buoyancy:Buoyancy",
     "libgazebo_ros_laser.so": "sensors.laser:Laser",
     "libgazebo_ros_gpu_laser.so": "sensors.laser:Laser",
     "libgazebo_ros_range.so": "sensors.range:Range",
@@ -34,8 +52,11 @@ BUILT_IN: Mapping[str, str] = {
 """Classes in this package, by library."""
 
 PROVIDED = ("libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so",
-            "libgazebo_ros_init.so", "libgazebo_ros_factory.so")
-"""What these libraries do, the simulator itself does."""
+            "libgazebo_ros_init.so", "libgazebo_ros_factory.so",
+            "libroboticsgroup_gazebo_disable_link_plugin.so",
+            "libroboticsgroup_upatras_gazebo_disable_link_plugin.so",
+            "libgazebo_ros_template.so")
+"""What these libraries do, the simulator itself does, or it is nothing here."""
 
 _EXPORT = re.compile(r"<my_simulations\b([^>]*)>")
 _ATTRIBUTE = re.compile(r"""(plugin|library)\s*=\s*["']([^"']*)["']""")

@@ -5,18 +5,21 @@ import threading
 from collections import deque
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
+from dataclasses import replace
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
+from ..description.model import Inertial, Mimic, Model
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
-from ..engine.commands import FOREVER, JointMotor, PlanarVelocity, TimedWrench
-from ..errors import Issue, Severity
-from ..geometry import IDENTITY, Pose, Twist, Vec3, compose
+from ..engine.commands import JointMotor, JointWrench, PlanarVelocity, WheelSlip
+from ..errors import CommandError, Issue, Severity
+from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import RayFan, RayReturns, SensingError
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
+from ..simulator.wrenches import first_step
 from .context import PluginError
 from .eyes import Eyes
 from .graph import Closing, Graph, MissingTypeError, Topic, TopicUse, TransformOf
@@ -25,15 +28,36 @@ from .parameters import Parameters
 Report = Callable[[Issue], None]
 
 _SCAN_S = 10.0  # of wall time, for rays
+_LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
 
 
 class Appointment:
-    """Something that is called at a rate."""
+    """Something that is called at a rate, or once.
 
-    def __init__(self, hertz: float, call: Callable[[], None]) -> None:
-        self.rate = Rate(hertz)
+    Attributes:
+        call: what is called.
+        next: the step at which that is due.
+        single: whether it is over then.
+    """
+
+    def __init__(self, owner: "List[Appointment]", rate: Optional[Rate],
+                 call: Callable[[], None], ns: int = 0) -> None:
+        self._owner, self._rate, self._ns = owner, rate, ns
         self.call = call
         self.next = 0
+        self.single = rate is None
+
+    def set_next(self, moment: Moment) -> None:
+        """The first time after a moment."""
+        if self._rate is not None:
+            self.next = self._rate.after(moment.step, moment.clock)
+        else:
+            self.next = max(moment.step + 1, first_step(moment.clock, self._ns))
+
+    def end(self) -> None:
+        """Never again."""
+        if self in self._owner:
+            self._owner.remove(self)
 
 
 class SimulatedLink:
@@ -43,6 +67,7 @@ class SimulatedLink:
         self.name = name
         self._context = context
         self.row = -1
+        self.inertial = Inertial()
 
     @property
     def pose(self) -> Pose:
@@ -102,17 +127,19 @@ class SimulatedContext:
 
     Attributes:
         appointments: when the plugin wants to be called.
-        motors, planar: what it has ordered since they were last taken.
+        motors, planar, pushes: what it has ordered since they were last taken.
+        push_ids: the wrenches that act now, by link.
         outbox, transforms: what it has published since they were last taken.
         inbox: what has come for it: functions to be called.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
                  scope: str, report: Report, wake: Callable[[], None],
-                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "") -> None:
+                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 sensor_joint: str = "") -> None:
         self.simulator = simulator
         self.model = entity.model.name
-        self.sensor, self.sensor_link = sensor, sensor_link
+        self.sensor, self.sensor_link, self.sensor_joint = sensor, sensor_link, sensor_joint
         self.spec = spec
         self._graph, self._scope, self._report, self._wake = graph, scope, report, wake
         self.parameters = Parameters(spec.xml, self.warn)
@@ -128,7 +155,11 @@ class SimulatedContext:
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
         self._scan_fault = ""
-        self._pushes: Dict[str, List[int]] = {}
+        self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
+        self.push_ids: Dict[str, int] = {}
+        self._closed = threading.Event()
+        self._attached: List[str] = []
+        self._held = False
         self._eyes = eyes
         self._scan: "Optional[Tuple[Future[RayReturns], Callable[[RayReturns, int], None], int]]" \
             = None
@@ -142,7 +173,7 @@ class SimulatedContext:
         """The model has other rows, or another name, now. Raises PluginError for what is gone."""
         self.entity, self.model = entity, entity.model.name
         for link in self._links.values():
-            link.row = self._link_row(link.name)
+            self._find(link)
         self.motors = {}
         for joint in self._joints.values():
             joint.row = self._axis_row(joint.spec_name)
@@ -158,6 +189,7 @@ class SimulatedContext:
         self._open.clear()
         self._topics.clear()
         self.appointments.clear()
+        self._closed.set()
 
     def stop(self) -> None:
         """Switch off what the plugin drives, in a world that still has the model."""
@@ -166,8 +198,18 @@ class SimulatedContext:
                 joint.drive(0.0, 0.0)
         if self.level is not None:
             self.simulator.drives.stop(self.entity)
-        for link in list(self._pushes):
-            self.simulator.wrenches.remove(self._pushes.pop(link))
+        if self._held:
+            self.hold(False)
+        self.let_go()
+
+    def let_go(self) -> None:
+        """Detach what the plugin has attached, and push nothing any more."""
+        self.pushes = {}
+        if self.push_ids:
+            self.simulator.wrenches.remove(list(self.push_ids.values()))
+        self.push_ids = {}
+        for name in list(self._attached):
+            self.detach(name)
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -181,9 +223,19 @@ class SimulatedContext:
         """Of the simulation, s."""
         return self.simulator.physics.settings.max_step_size
 
-    def every(self, hertz: float, call: Callable[[], None]) -> None:
+    def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
         """Be called at a rate."""
-        self.appointments.append(Appointment(hertz, call))
+        return self._appointed(Appointment(self.appointments, Rate(hertz), call))
+
+    def once(self, ns: int, call: Callable[[], None]) -> Appointment:
+        """Be called once."""
+        return self._appointed(Appointment(self.appointments, None, call, ns))
+
+    def _appointed(self, made: Appointment) -> Appointment:
+        if self.moment is not None:
+            made.set_next(self.moment)
+        self.appointments.append(made)
+        return made
 
     # -- the model -------------------------------------------------------------------------------
 
@@ -215,21 +267,34 @@ class SimulatedContext:
         """A link of the model."""
         if name not in self._links:
             link = SimulatedLink(self, name)
-            link.row = self._link_row(name)
+            self._find(link)
             self._links[name] = link
         return self._links[name]
+
+    def _find(self, link: SimulatedLink) -> None:
+        link.row = self._link_row(link.name)
+        link.inertial = self.entity.model.links[link.row - self.entity.first_link_row].inertial
 
     def joint(self, name: str) -> SimulatedJoint:
         """A joint of the model that moves."""
         if name not in self._joints:
-            known = {joint.name: joint for joint in self.entity.model.joints}
-            spec = known.get(self._scope + name) or known.get(name)
-            if spec is None:
-                raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+            spec = self._joint_spec(name)
             joint = SimulatedJoint(self, spec, name)
             joint.row = self._axis_row(spec.name)
             self._joints[name] = joint
         return self._joints[name]
+
+    def _joint_spec(self, name: str) -> JointSpec:
+        known = {joint.name: joint for joint in self.entity.model.joints}
+        spec = known.get(self._scope + name) or known.get(name)
+        if spec is None:
+            raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+        return spec
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a joint transmitted in the last step."""
+        spec = self._joint_spec(name)
+        return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
 
     def _link_row(self, name: str) -> int:
         names = self.entity.link_names
@@ -248,15 +313,76 @@ class SimulatedContext:
         """Move level from now on."""
         self.planar = self.level = PlanarVelocity(self.entity.model_id, x, y, yaw_rate)
 
+    @property
+    def description(self) -> Model:
+        """The flattened description."""
+        return self.entity.model
+
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
-        wrenches, row = self.simulator.wrenches, self._link_row(link)
-        old = self._pushes.pop(link, [])
-        if any((*force, *torque)):
-            self._pushes[link] = wrenches.add(
-                [TimedWrench(0, row, 0, FOREVER, force, torque)], whole=True)
-        if old:
-            wrenches.remove(old)
+        if "::" not in link or self._owns(link):
+            row = self._link_row(link)
+            link = f"{self.model}::{self.entity.link_names[row - self.entity.first_link_row]}"
+        self.pushes[link] = (force, torque)
+
+    def _owns(self, link: str) -> bool:
+        return link in self.entity.link_names or self._scope + link in self.entity.link_names
+
+    def move(self, pose: Pose, twist: Twist = STILL) -> None:
+        """Put the model somewhere."""
+        self.simulator.states.set_model_state(self.model, pose, twist)
+
+    def hold(self, held: bool) -> None:
+        """Keep the model where it is put."""
+        self._held = held
+        self.simulator.models.hold(self.model, held)
+
+    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+             longitudinal: float) -> None:
+        """Let a wheel slip."""
+        self.simulator.drives.set_wheel_slips([WheelSlip(
+            self._link_row(link), self._axis_row(self._joint_spec(joint).name), radius,
+            normal_force, lateral, longitudinal)])
+
+    def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
+        """Have a joint follow another one."""
+        (joint, ahead) = self.joint(follower), self.joint(leader)
+        spec = next(one for one in self.entity.model.joints if one.name == joint.spec_name)
+        wanted = Mimic(ahead.spec_name, multiplier, offset)
+        if spec.axis is None or spec.axis.mimic == wanted:
+            return
+        self.simulator.joints.edit(f"{self.model}::{spec.name}", replace(
+            spec, axis=replace(spec.axis, mimic=wanted)))
+
+    # -- other models ----------------------------------------------------------------------------
+
+    def model_link(self, scoped: str) -> SimulatedLink:
+        """A link of any model."""
+        found = self.simulator.models.link_place(scoped)
+        if found is None:
+            raise PluginError(f"there is no link '{scoped}'")
+        link = SimulatedLink(self, scoped)
+        link.row, link.inertial = found
+        return link
+
+    def models(self) -> Dict[str, Model]:
+        """All models."""
+        return {entity.model.name: entity.model
+                for entity in self.simulator.models.inventory()[1]}
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Fix a link to another."""
+        try:
+            self.simulator.models.attach(name, parent, child)
+        except CommandError as fault:
+            raise PluginError(str(fault)) from fault
+        if name not in self._attached:
+            self._attached.append(name)
+
+    def detach(self, name: str) -> bool:
+        """Let go."""
+        self._attached = [one for one in self._attached if one != name]
+        return self.simulator.models.detach(name)
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Move joints at once."""
@@ -361,15 +487,25 @@ class SimulatedContext:
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
 
+            fault: List[str] = []
+
             def answer() -> None:
                 try:
                     call(request, response)
+                except Exception as raised:  # the caller hears of it as well
+                    fault.append(str(raised))
+                    raise
                 finally:
                     done.set()
 
             self.inbox.append(answer)
             self._wake()
-            done.wait()
+            while not done.wait(_LOOK_S):
+                if self._closed.is_set():
+                    fault.append("the plugin has ended")
+                    break
+            if fault:
+                raise PluginError(fault[0])
 
         try:
             self._open.append(self._graph.serve(self._name(name), kind, asked))

@@ -11,7 +11,9 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
+from ..description.model import Inertial, Model
 from ..description.sensor import Sensor
+from ..engine.commands import JointWrench
 from ..engine.ring import Clock
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
 from ..simulator.appointments import Rate
@@ -39,6 +41,7 @@ class FakeLink:
 
     def __init__(self, name: str) -> None:
         self.name, self.pose, self.twist = name, IDENTITY, STILL
+        self.inertial = Inertial()
 
 
 class FakeJoint:
@@ -66,6 +69,25 @@ class _Topic:
         self._messages.append(message)
 
 
+class _Call:
+    def __init__(self, owner: "List[_Call]", call: Callable[[], None], rate: Optional[Rate],
+                 ns: int = 0) -> None:
+        self._owner, self._rate, self._ns = owner, rate, ns
+        self.call = call
+
+    def is_due(self, step: int, now_ns: int, clock: Clock) -> bool:
+        if self._rate is not None:
+            return self._rate.is_at(step, clock)
+        if now_ns < self._ns:
+            return False
+        self.end()
+        return True
+
+    def end(self) -> None:
+        if self in self._owner:
+            self._owner.remove(self)
+
+
 class FakeContext:
     """A `Context` for tests.
 
@@ -79,14 +101,23 @@ class FakeContext:
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
         touching: the contacts.
+        wrenches: what joints transmit.
+        held: whether the model is held.
+        slips: (joint, radius, normal force, lateral, longitudinal) of wheels.
+        followers: (leader, multiplier, offset) of joints that mimic others.
+        others: descriptions of the models in the world.
+        attached: (parent, child) by the name of the joint.
+        description: of the model.
         ros_parameters: what `search_parameter` finds.
     """
 
     def __init__(self, xml: str = "<plugin/>", *, model: str = "robot",
                  joints: Sequence[str] = (), links: Optional[Sequence[str]] = None,
-                 sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 sensor: Optional[Sensor] = None, sensor_link: str = "", sensor_joint: str = "",
                  step_size: float = 0.001) -> None:
-        self.model, self.sensor, self.sensor_link = model, sensor, sensor_link
+        self.model, self.sensor = model, sensor
+        self.sensor_link, self.sensor_joint = sensor_link, sensor_joint
+        self.wrenches: Dict[str, JointWrench] = {}
         self.said: List[str] = []
         self.parameters = Parameters(xml, self.said.append)
         self.joints = {name: FakeJoint(name) for name in joints}
@@ -102,13 +133,19 @@ class FakeContext:
         self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
+        self.held = False
+        self.slips: Dict[str, Tuple[Any, ...]] = {}
+        self.followers: Dict[str, Tuple[str, float, float]] = {}
+        self.others: Dict[str, Model] = {}
+        self.attached: Dict[str, Tuple[str, str]] = {}
+        self.description = Model(model)
         self.ros_parameters: Dict[str, Any] = {}
         self.returns: Any = None
         self.fans: List[Any] = []
         self._namespace = ""
         self._heard: Dict[str, Callable[[Any], None]] = {}
         self.services: Dict[str, Callable[[Any, Any], None]] = {}
-        self._calls: List[Tuple[Rate, Callable[[], None]]] = []
+        self._calls: List[_Call] = []
 
     # -- what a test does --------------------------------------------------------------------------
 
@@ -121,9 +158,9 @@ class FakeContext:
                     joint.velocity = joint.motor[0]
                     joint.position += joint.velocity * self.step_size
             self.step += 1
-            for rate, call in self._calls:
-                if rate.is_at(self.step, clock):
-                    call()
+            for one in list(self._calls):
+                if one in self._calls and one.is_due(self.step, self.now_ns, clock):
+                    one.call()
 
     def hear(self, topic: str, **fields: Any) -> None:
         """Have a message arrive; dictionaries are messages in it."""
@@ -136,9 +173,15 @@ class FakeContext:
         """Sim time."""
         return round(self.step * self.step_size * 1e9)
 
-    def every(self, hertz: float, call: Callable[[], None]) -> None:
+    def every(self, hertz: float, call: Callable[[], None]) -> Any:
         """Be called at a rate."""
-        self._calls.append((Rate(hertz), call))
+        self._calls.append(_Call(self._calls, call, Rate(hertz)))
+        return self._calls[-1]
+
+    def once(self, ns: int, call: Callable[[], None]) -> Any:
+        """Be called once."""
+        self._calls.append(_Call(self._calls, call, None, ns))
+        return self._calls[-1]
 
     def link(self, name: str) -> FakeLink:
         """A link."""
@@ -160,6 +203,39 @@ class FakeContext:
         """Noted."""
         self.pushes[link] = (force, torque)
 
+    def move(self, pose: Pose, twist: Twist = STILL) -> None:
+        """The model jumps."""
+        self.pose, self.twist = pose, twist
+
+    def hold(self, held: bool) -> None:
+        """Noted."""
+        self.held = held
+
+    def slip(self, link: str, joint: str, *values: float) -> None:
+        """Noted."""
+        self.slips[link] = (joint, *values)
+
+    def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
+        """Noted."""
+        self.joint(follower), self.joint(leader)
+        self.followers[follower] = (leader, multiplier, offset)
+
+    def model_link(self, scoped: str) -> FakeLink:
+        """A link by its scoped name."""
+        return self.links.setdefault(scoped, FakeLink(scoped))
+
+    def models(self) -> Dict[str, Model]:
+        """What a test says."""
+        return self.others
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Noted."""
+        self.attached[name] = (parent, child)
+
+    def detach(self, name: str) -> bool:
+        """Noted."""
+        return self.attached.pop(name, None) is not None
+
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Joints jump."""
         for name, value in positions.items():
@@ -169,6 +245,10 @@ class FakeContext:
         """Rays meet what a test says (`returns`)."""
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a test says."""
+        return self.wrenches.get(name)
 
     def contacts(self) -> List[Any]:
         """What a test says."""

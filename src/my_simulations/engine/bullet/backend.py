@@ -16,6 +16,7 @@ from ..commands import (
     ClearTimedForces,
     Command,
     ConnectModels,
+    DisconnectModels,
     LoadModel,
     ModelState,
     PhysicsSettings,
@@ -112,6 +113,7 @@ class BulletBackend:
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,
             ConnectModels: self._connect,
+            DisconnectModels: self._disconnect,
             SetMotors: lambda command: self._motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
             ReadContacts: lambda command: read_contacts(
@@ -322,6 +324,9 @@ class BulletBackend:
         self._ties.connect(command, self._rows)
         self._waker.around([self._rows[row][0] for row in (command.child_row, command.parent_row)
                             if row >= 0])
+
+    def _disconnect(self, command: DisconnectModels) -> None:
+        self._waker.around(self._ties.disconnect(command.names))
 
     def _clear(self, _: Clear) -> None:
         self._put_off = None
