@@ -34,12 +34,14 @@ class Drive:
                              paused=True, log=lambda issue: None)
         self.sim.start()
         self.graph = Graph()
+        self.graph.ignored |= {"scan", "camera/image_raw", "camera/image_raw/compressed"}
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(), lambda issue: None)
         self.host.start()
         self.sim.clock.advance(200)
 
     def go(self, forward, turn, seconds):
-        """Command, and settle: the command is heard by the host before time goes on."""
+        """Command, and settle: it is heard between the step that time stands at and the next."""
+        self.odometry()
         self.graph.heard["cmd_vel"](Message(linear={"x": forward}, angular={"z": turn}))
         deadline = time.monotonic() + 10.0
         while any(one.context.inbox for one in self.host._all()):

@@ -90,9 +90,36 @@ def check(file: str, resolver: Resolver) -> Tuple[Optional[Loaded], List[Issue]]
     """The content of a file, None if it is unusable, and all issues found in it."""
     try:
         path, text = _document(file)
-        return read_any(text, resolver, path)
+        loaded, issues = read_any(text, resolver, path)
     except InputError as fault:
         return None, fault.issues
+    return loaded, [*issues, *unknown_plugins(loaded)]
+
+
+def unknown_plugins(loaded: Loaded) -> List[Issue]:
+    """Plugins of models and sensors that nobody brings, each library once."""
+    models = [flattened(model) for model in _models(loaded)]
+    if not any(_with_plugins(model) for model in models):
+        return []
+    from ..plugins.host import plugins_of
+    from ..plugins.registry import PluginRegistry, library_name
+    from ..resources.ros_packages import PackageIndex
+
+    registry, told, found = PluginRegistry(folders=PackageIndex().folders), set(), []
+    for one in (plugin for model in models for plugin in plugins_of(model)):
+        name = library_name(one.spec.filename)
+        if name not in told and not registry.knows(one.spec.filename):
+            told.add(name)
+            found.append(Issue(
+                Severity.NOTE, "not-simulated", f"<plugin {one.spec.name}> does nothing: there is"
+                f" none for {name or 'a library without a name'}", one.spec.file, one.spec.line,
+                hint="a package can bring one: see doc/plugins.md"))
+    return found
+
+
+def _with_plugins(model: Model) -> bool:
+    return bool(_plugins(model)) or any(
+        sensor.plugins for link in model.links for sensor in link.sensors)
 
 
 def _document(file: str) -> Tuple[str, Union[str, bytes]]:

@@ -80,6 +80,9 @@ class Graph(Protocol):
         Raises MissingTypeError.
         """
 
+    def parameter(self, namespace: str, name: str, default: Any) -> Any:
+        """A parameter of a namespace."""
+
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
         """A parameter of a namespace or of the next one above that has it."""
 

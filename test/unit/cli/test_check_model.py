@@ -201,3 +201,18 @@ def test_the_strict_count_what_is_tolerated_as_an_error(capsys):
     assert main(["check_model", "--json", path]) == 0
     (issue,) = json.loads(capsys.readouterr().out)["issues"]
     assert issue["tolerated"] and issue["severity"] == "warning"
+
+
+def test_plugins_that_nobody_brings_are_named_once(tmp_path):
+    path = tmp_path / "robot.sdf"
+    plugins = "".join(f'<plugin name="{name}" filename="{name}.so"/>\n' for name in (
+        "libmystery", "libgazebo_ros_p3d", "libmystery"))
+    camera = ('<sensor name="s" type="camera"><camera/>'
+              '<plugin name="c" filename="libgazebo_ros_camera.so"/>'
+              '<plugin name="u" filename="libunseen.so"/></sensor>')
+    path.write_text(sdf('<model name="m"><static>1</static>\n'
+                        f'<link name="l">{camera}</link>\n{plugins}</model>'))
+    found = [(issue.severity, issue.line, issue.message.rpartition(" ")[2])
+             for issue in check(str(path), Resolver())[1] if "plugin" in issue.message]
+    assert sorted(found, key=lambda one: one[2]) == [
+        (Severity.NOTE, 3, "libmystery.so"), (Severity.NOTE, 2, "libunseen.so")]

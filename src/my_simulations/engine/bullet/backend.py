@@ -22,6 +22,7 @@ from ..commands import (
     PhysicsSettings,
     PinModels,
     ReadContacts,
+    ReadEfforts,
     ReadJointWrenches,
     RemoveModel,
     Restart,
@@ -31,6 +32,7 @@ from ..commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
     SetWheelSlips,
 )
 from ..ring import JOINTS, LINKS
@@ -120,6 +122,9 @@ class BulletBackend:
                 self._bodies, command.limit, self._sliding.friction, self._forces.slip.friction),
             SetWheelSlips: self._set_wheel_slips,
             ReadJointWrenches: self._wrenches.read,
+            SetServos: lambda command: self._forces.servos.set(
+                command.servos, self._settings.step_size),
+            ReadEfforts: lambda command: self._forces.servos.efforts(command.rows),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
         }
@@ -358,6 +363,7 @@ class BulletBackend:
     def _set_up_axes(self, body: Body, model: Model) -> None:
         joint_axes.set_up(body, model, self._forces, self._settings.step_size)
         self._motors.set_up(body, model)
+        self._forces.servos.set_up(body, model, self._settings.step_size)
 
     def _set_wheel_slips(self, command: SetWheelSlips) -> None:
         for wheel in command.wheels:

@@ -14,6 +14,7 @@ from .bodies import Axis, Body, Part
 from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
+from .joint_servos import JointServos
 from .link_states import place
 from .step_helper import FAR
 
@@ -41,6 +42,7 @@ class Forces:
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
+        self.servos = JointServos(self._axes, wake)
         self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:
@@ -70,12 +72,14 @@ class Forces:
         self._placed.add(body.uid)
         if body.uid in self._implicit:
             self._implicit[body.uid].disturbed()
+        self.servos.disturbed(body)
 
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
         self.slip.forget(body)
         self._implicit.pop(body.uid, None)
+        self.servos.forget(body)
         for part in body.parts:
             self._parts.pop(part.row, None)
             self._weightless.pop(part.row, None)
@@ -118,6 +122,7 @@ class Forces:
         self._placed.clear()
         if ended:
             self._tell_loops()
+        self.servos.clear()
 
     @property
     def wrenched_links(self) -> Set[int]:
@@ -145,7 +150,8 @@ class Forces:
     def due(self, step: int) -> int:
         """Each step while something acts anew in it, or was put somewhere before it."""
         return step if (self._timed or self._weightless or self._implicit
-                        or self._placed or not self.slip.idle) else FAR
+                        or self._placed or not self.slip.idle
+                        or not self.servos.idle) else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Forget who was put somewhere before the step."""
@@ -161,6 +167,8 @@ class Forces:
                     self._apply_wrench(force, dt)
                 else:
                     efforts[force.row] = efforts.get(force.row, 0.0) + self._limited(force, dt)
+        if not self.servos.idle:
+            self.servos.add_to(efforts, step)
         for implicit in self._implicit.values():
             implicit.add_to(efforts)
         for row, effort in efforts.items():

@@ -5,6 +5,7 @@ from typing import Any, Dict, List, Tuple
 
 import numpy as np
 
+from .sky import linear
 from .surfaces import Piece, Surface
 
 _INSTANCE = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
@@ -15,11 +16,13 @@ class Batch:
 
     Attributes:
         owners: name of the model of each instance.
+        uniforms: of its surface.
         rows: link row of each; local: (n, 4, 4) link from shape.
     """
 
     def __init__(self, context: Any, programs: Dict[str, Any], piece: Piece, shadows: bool) -> None:
         self.surface: Surface = piece.surface
+        self.uniforms = _uniforms(piece.surface)
         self.casts_shadow = shadows and piece.surface.opacity >= 1.0
         places = piece.rows[:, :3].astype(np.float64)
         low, high = places.min(axis=0), places.max(axis=0)
@@ -85,6 +88,13 @@ class Batch:
         self._release_arrays()
         self._vertices.release()
         self._index.release()
+
+
+def _uniforms(surface: Surface) -> Dict[str, Tuple[float, ...]]:
+    """What a surface says to its program."""
+    return {"diffuse": (*(linear(surface.diffuse) * surface.brightness), surface.opacity),
+            "specular": tuple(linear(surface.specular)),
+            "emissive": tuple(linear(surface.emissive)), "repeats": surface.repeats}
 
 
 def _inputs(program: Any, names: Tuple[str, ...], widths: Tuple[int, ...], kind: str,

@@ -30,7 +30,7 @@ def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
                               np.arange(spec.height, dtype=float))
     x_seen, y_seen = (column - middle[0]) / f, (row - middle[1]) / f
     if lens.crop:
-        share = _crop(lens, spec, f)
+        share = crop_share(spec)
         x_seen, y_seen = x_seen * share, y_seen * share
     x, y = x_seen.copy(), y_seen.copy()
     for _ in range(_ROUNDS):
@@ -43,8 +43,9 @@ def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
     return x * f + middle[0], y * f + middle[1]
 
 
-def _crop(lens: Distortion, spec: CameraSpec, f: float) -> float:
+def crop_share(spec: CameraSpec) -> float:
     """How much smaller the part is that a barrel distortion fills."""
+    lens, f = spec.distortion or Distortion(), spec.focal_length
     if lens.k1 >= 0.0:
         return 1.0
     x = np.array([spec.width / 2 / f])
