@@ -206,6 +206,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("mesh-not-finite", ERROR, "The mesh has NaN or infinite vertices.", "Export it again."),
         ("mesh-size-odd", WARNING, "The mesh is very large or small, as if in another unit.",
          "Scale it to metres."),
+        ("mesh-open", WARNING, "An imported mesh is not closed; its inertia is that of its hull.",
+         "Close the mesh, or set mass and inertia."),
         ("mesh-flat", WARNING, "The mesh has no volume; it collides as a thin solid.",
          "Give it thickness, or use a box."),
         ("mesh-not-decomposed", WARNING, "The mesh could not be divided into convex parts; it "

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Callable, List, Optional, Tuple
 
 from ..errors import Issue
+from .topic_source import TopicSource
 
 DEFAULT_PORT = 11346
 """Beside Gazebo's master port, 11345."""
@@ -38,6 +39,7 @@ class EditorOptions:
         cache_dir: keeps autosaves and thumbnails.
         data_dir: keeps state logs.
         more_logs: state logs that lie elsewhere.
+        topics: the ROS topics; None in a world without ROS.
         check_outgoing: hold what is sent to the protocol too (tests).
     """
 
@@ -52,6 +54,7 @@ class EditorOptions:
     cache_dir: str = field(default_factory=lambda: cache_folder())
     data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
     more_logs: Tuple[str, ...] = ()
+    topics: Optional[TopicSource] = None
     check_outgoing: bool = False
 
 

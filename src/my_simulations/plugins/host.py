@@ -22,7 +22,7 @@ from ..simulator.simulator import Simulator
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
-from .graph import Graph
+from .graph import Graph, TopicUse
 from .message_maker import Later, MessageMaker
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import Found, Running, plugins_of
@@ -98,6 +98,11 @@ class PluginHost:
         self.wake()
         if self._thread.is_alive():
             self._thread.join(_END_S)
+
+    def topic_uses(self) -> List[TopicUse]:
+        """The topics of all plugins; from any thread."""
+        return [use for _, all_running in list(self._models.values())
+                for running in list(all_running) for use in running.context.topic_uses()]
 
     # -- the thread --------------------------------------------------------------------------------
 

@@ -22,7 +22,7 @@ from ..simulator.simulator import Simulator
 from ..simulator.wrenches import first_step
 from .context import PluginError, View
 from .eyes import Eyes
-from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .graph import Closing, Graph, MissingTypeError, Topic, TopicUse, TransformOf
 from .message_maker import Later
 from .parameters import Parameters
 from .sensing_requests import SensingRequests
@@ -197,6 +197,7 @@ class SimulatedContext:
         self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
         self._namespace = ""
         self.opened: List[Closing] = []
+        self._topics: List[Tuple[str, str, bool]] = []
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -220,6 +221,7 @@ class SimulatedContext:
         for one in self.opened:
             one.close()
         self.opened.clear()
+        self._topics.clear()
         self.appointments.clear()
         self._closed.set()
 
@@ -518,6 +520,7 @@ class SimulatedContext:
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
         self.opened.append(topic)
+        self._topics.append((self._name(name), kind, False))
         return Offer(self, topic)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
@@ -535,9 +538,22 @@ class SimulatedContext:
             self._wake()
 
         try:
-            return OpenEnd(self, self._graph.subscribe(self._name(name), kind, arrived, queue))
+            heard = OpenEnd(self, self._graph.subscribe(self._name(name), kind, arrived, queue))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
+        self._topics.append((self._name(name), kind, True))
+        return heard
+
+    def topic_uses(self) -> List[TopicUse]:
+        """The topics it offers and hears; from any thread."""
+        link, pose = "", IDENTITY
+        if self.sensor is not None:
+            link, pose = self._scope + self.sensor_link, self.sensor.pose
+            if link not in self.entity.link_names:
+                link = self.sensor_link
+        kind = self.sensor.type if self.sensor is not None else ""
+        return [TopicUse(name, message, heard, self.model, link, kind, pose)
+                for name, message, heard in list(self._topics)]
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> "OpenEnd":
         """Offer a service."""

@@ -12,6 +12,7 @@ from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Visual
 from my_simulations.description.world import World
+from my_simulations.editor.topics.live_topics import TOPIC
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import Pose
@@ -104,6 +105,7 @@ class Browser:
         self.socket = socket
         self.pushes = []
         self.frames = []
+        self.views = []
         self.poses = {}
         self.document = None
         self.news = asyncio.Condition()
@@ -170,6 +172,9 @@ class Browser:
                 self.news.notify_all()
 
     def _frame(self, data):
+        if data[0] == TOPIC:
+            self.views.append(data)
+            return
         kind, revision, step, sim, real, count, _ = HEAD.unpack_from(data)
         assert len(data) == HEAD.size + count * RECORD.size
         self.frames.append((kind, revision, sim, count))

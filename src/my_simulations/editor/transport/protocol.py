@@ -175,6 +175,11 @@ class Protocol:
         return list(self._data["requests"])
 
     @property
+    def notices(self) -> List[str]:
+        """All types of notices."""
+        return list(self._data["notices"])
+
+    @property
     def operations(self) -> List[str]:
         """All kinds of operations."""
         return list(self._data["operations"])

@@ -80,7 +80,8 @@ class BulletBackend:
         self._rolling = RollingContacts()
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
-        self._forces = Forces(self._waker.around)
+        self._forces = Forces(self._waker.around,
+                              lambda rows: self._motors.yield_to(rows))
         self._friction = FrictionBalance(self._on_misfit)
         self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)
         self._holds = PinnedBodies(self._waker.around)

@@ -28,8 +28,11 @@ class Forces:
         slip: links whose surfaces slip.
     """
 
-    def __init__(self, wake: Callable[[List[Body]], None]) -> None:
+    def __init__(self, wake: Callable[[List[Body]], None],
+                 loops_changed: Callable[[Set[int]], None] = lambda rows: None) -> None:
+        """`loops_changed` gets the axis rows that PID loops drive whenever these change."""
         self._wake = wake
+        self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
         self._acting: Dict[int, TimedForce] = {}
         self._loops: Dict[int, PidController] = {}
@@ -98,18 +101,27 @@ class Forces:
 
     def drop(self, force_ids: Sequence[int]) -> None:
         """Drop timed forces by id."""
+        ended = [self._loops.pop(force_id, None) for force_id in force_ids]
         for force_id in force_ids:
             self._timed.pop(force_id, None)
             self._acting.pop(force_id, None)
-            self._loops.pop(force_id, None)
+        if any(ended):
+            self._tell_loops()
+
+    def _tell_loops(self) -> None:
+        self._loops_changed({self._acting[number].row for number in self._loops
+                             if number in self._acting})
 
     def clear(self) -> None:
         """All bodies are gone, and every timed force with them."""
+        ended = bool(self._loops)
         for table in (self._timed, self._acting, self._loops, self._parts, self._axes,
                       self._weightless, self._implicit, self._limits):
             table.clear()
         self.slip.clear()
         self._placed.clear()
+        if ended:
+            self._tell_loops()
         self.servos.clear()
 
     @property
@@ -192,6 +204,7 @@ class Forces:
 
     def _begin_and_end(self, step: int) -> None:
         beginning = []
+        loops = len(self._loops)
         for force_id, force in list(self._timed.items()):
             if step >= force.stop:
                 self.drop([force_id])
@@ -200,6 +213,8 @@ class Forces:
                 if isinstance(force, TimedEffort) and force.pid is not None:
                     self._loops[force_id] = PidController(force.pid)
                 beginning.append(force)
+        if len(self._loops) != loops:
+            self._tell_loops()
         if beginning:
             self._wake([self._target(force) for force in beginning])
 

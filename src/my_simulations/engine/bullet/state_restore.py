@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Sequence
+from typing import Any, Callable, Dict, List
 
 import numpy as np
 import pybullet
@@ -93,7 +93,7 @@ def inherited(before: Entry, model: Model, frame: Pose, state_of: Callable[[int]
                               twist_at(state.twist, rotate(state.pose.orientation,
                                                            shift.position)))
         states.append(state)
-    axes: Dict[str, Sequence[float]] = {
+    axes: Dict[str, Any] = {
         row_name(axis.name, axis.number): axis_table[axis.row].tolist()
         for body in before.bodies for axis in body.axes}
     joints_of = axis_rows(model)

@@ -34,6 +34,9 @@ StartEditor = Callable[[Simulator, Resolver, Dict[str, Any]], RunningEditor]
 class EditorLauncher:
     """Starts the editor on first use, with settings from the parameter server.
 
+    Attributes:
+        topics: makes what the editor knows of ROS topics (`ros.plugins.topic_graph`).
+
     Args:
         start: starts it.
         simulator: the world it shows.
@@ -48,6 +51,7 @@ class EditorLauncher:
         self._world = (simulator, resolver)
         self._listen = listen
         self._caller = caller
+        self.topics: Callable[[], Any] = lambda: None
         self._lock = threading.Lock()
         self._editor: Optional[RunningEditor] = None
         if rospy.has_param(URL):  # left behind by a node that was killed
@@ -67,7 +71,8 @@ class EditorLauncher:
         with self._lock:
             if self._editor is None:
                 self._editor = self._start(*self._world, {
-                    **_settings(), "log": log_issue, "caller": self._caller})
+                    **_settings(), "log": log_issue, "caller": self._caller,
+                    "topics": self.topics()})
                 self._listen(self._editor.tell)
                 rospy.set_param(URL, self._editor.public_url)
                 rospy.loginfo("the world editor is at %s (gzclient opens it)",
