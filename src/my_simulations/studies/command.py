@@ -30,8 +30,8 @@ def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = argparse.ArgumentParser(
         prog="study", description="Run worlds many times with varied parameters, and measure them."
-        " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are missing,"
-        " 2 for a faulty study or command line, 130 if interrupted.")
+        " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are"
+        " missing, 2 for a faulty study or command line, 130 if interrupted.")
     actions = made.add_subparsers(dest="action", metavar="ACTION", required=True)
     run = actions.add_parser("run", help="run a study, or the cases of it that have no result yet")
     run.add_argument("file", metavar="FILE", help="study file (doc/studies.md)")

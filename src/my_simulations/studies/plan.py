@@ -1,6 +1,7 @@
 """The cases of a study, one at a time: a million of them need no more memory than one."""
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from typing import Dict, Iterator, Optional, Tuple
 
@@ -52,9 +53,10 @@ class CasePlan:
         self._base = digest_of([
             self.versions, study.profile, study.duration, study.sample,
             [(name, expression.text) for name, expression in study.measure + study.require],
-            [(model.name, model.file, model.pose) for model in study.models],
+            [(model.name, os.path.basename(model.file), model.pose) for model in study.models],
             [(p.name, p.target.kind, p.target.name, p.target.part) for p in study.parameters],
             study.trajectory and [study.trajectory.every, study.trajectory.models]])
+        self._worlds = {p.name for p in study.parameters if p.target.kind == "world"}
         self._files: Dict[Tuple[str, Tuple[str, ...]], str] = {}
 
     def __len__(self) -> int:
@@ -78,7 +80,9 @@ class CasePlan:
             seed = study.seeds.at(number)
         files = self._digest_of_files(*self.world_and_objects(settings))
         draw = index if study.plan.cases else -1  # two draws may give the same values
-        identity = digest_of([self._base, files, seed, settings, draw])[:_ID_DIGITS]
+        content = {name: os.path.basename(str(value)) if name in self._worlds else value
+                   for name, value in settings.items()}
+        identity = digest_of([self._base, files, seed, content, draw])[:_ID_DIGITS]
         return Case(index, identity, seed, settings)
 
     def find(self, start_of_id: str) -> Optional[Case]:

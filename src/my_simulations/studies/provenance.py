@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import platform
 from importlib import metadata
 from typing import Any, Dict, List, Sequence
@@ -98,7 +99,8 @@ def digest_of_world(world: str, profile: str, objects: Sequence[str], object_lis
                 read_entity(stream.read(), resolver, model)
         except (OSError, SimulationError) as fault:
             parts.append(str(fault))
-    parts += [(name, _content(name)) for name in sorted(resolver.found)]
+    # By base name: a study whose folder was moved, or is mounted elsewhere, keeps its ids.
+    parts += sorted((os.path.basename(name), _content(name)) for name in resolver.found)
     return digest_of(parts)
 
 
