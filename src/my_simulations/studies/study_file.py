@@ -64,7 +64,7 @@ class StudyReader(ValueReader):
         self._check_names(measure + require, vary)
         study = Study(
             self.text(top.get("study", os.path.splitext(os.path.basename(file))[0]), ("study",)),
-            file, self.path_of(self.text(top.get("world", "worlds/empty.world"), ("world",))),
+            file, self.world(top.get("world", "worlds/empty.world"), ("world",)),
             self.text(top["profile"], ("profile",)) if "profile" in top else "",
             self.names(top.get("objects"), ("objects",)),
             self._file(top["object_list"], ("object_list",)) if "object_list" in top else "",

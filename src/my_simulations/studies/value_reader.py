@@ -3,11 +3,12 @@ from __future__ import annotations
 
 import difflib
 import math
-import os
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 from ..errors import Issue, error
 from ..objects.yaml_source import KeyPath, Source
+from ..resources.resolver import ResourceNotFoundError, Resolver
+from ..resources.world_lookup import advice_on, find_world
 
 
 class ValueReader:
@@ -22,6 +23,7 @@ class ValueReader:
         self.issues: List[Issue] = []
         self._source = source
         self._folder = folder
+        self._resolver = Resolver.from_environment()
 
     def fault(self, path: Sequence[str], message: str, hint: str = "",
               code: str = "study-value") -> None:
@@ -94,10 +96,15 @@ class ValueReader:
         items = value if isinstance(value, list) else [value]
         return () if value is None else tuple(self.text(item, path) for item in items)
 
-    def path_of(self, name: str) -> str:
-        """An existing file beside the study as an absolute path; other names as they are."""
-        beside = os.path.join(self._folder, os.path.expanduser(name))
-        return os.path.abspath(beside) if os.path.exists(beside) else name
+    def world(self, value: Any, path: KeyPath) -> str:
+        """The absolute path of a world file, found as by `open_world` or beside the study."""
+        name = self.text(value, path)
+        try:
+            return find_world(name, self._resolver, self._folder) if name else ""
+        except ResourceNotFoundError:
+            self.fault(path, f"there is no world file '{name}'", advice_on(name, self._folder),
+                       "world-not-found")
+            return name
 
 
 def _shown(path: Sequence[str]) -> str:

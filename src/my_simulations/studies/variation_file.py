@@ -90,7 +90,7 @@ def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
         elif target.wants == NAMES:
             found.append(reader.names(item, path))
         elif target.wants == NAME:
-            found.append(reader.path_of(reader.text(item, path)))
+            found.append(reader.world(item, path))
         elif target.kind == "none" and isinstance(item, str):
             found.append(item)
         else:

@@ -58,7 +58,7 @@ def test_a_whole_study_is_read(tmp_path):
 
 def test_the_least_study_is_a_duration(tmp_path):
     study, _ = read(tmp_path, "duration: 1\n")
-    assert study.name == "my" and study.count == 1 and study.world == "worlds/empty.world"
+    assert study.name == "my" and study.count == 1 and study.world.endswith("worlds/empty.world")
 
 
 @pytest.mark.parametrize(("text", "line", "xpath", "said"), [
@@ -86,6 +86,9 @@ def test_the_least_study_is_a_duration(tmp_path):
     ("duration: 1\nvary:\n  m: {set: pose.b, values: [[1, 2]]}\n", 3, "/vary/m/values",
      "3 or 6 numbers"),
     ("duration: 1\nlimits: {attempts: 0}\n", 2, "/limits/attempts", "between 1 and 10"),
+    ("duration: 1\nworld: none.world\n", 2, "/world", "no world file 'none.world'"),
+    ("duration: 1\nvary:\n  w: {set: world, values: [none.world]}\n", 3, "/vary/w/values",
+     "no world file 'none.world'"),
     ("[1]\n", 0, "", "must be a mapping")])
 def test_a_fault_is_told_with_its_line_and_key(tmp_path, text, line, xpath, said):
     (found,) = faults(tmp_path, text)
