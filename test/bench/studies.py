@@ -3,8 +3,8 @@
 
 usage: studies.py [ROW …]   rows: cost plan status (default: all)
 
-`cost` compares the processor time, engines included, of a study in two slots with two processes that
-each open one world after the other in a kept engine, and check that the results are equal.
+`cost` compares the processor time, engines included, of a study in two slots with two processes
+that each open one world after the other in a kept engine; the results must be equal.
 """
 from __future__ import annotations
 

@@ -178,7 +178,7 @@ limits: {processor_seconds: 1.5}
 
 
 def test_a_state_that_diverges_is_told(folder):
-    text = """duration: 0.1
+    text = """duration: 2
 models:
   box: {file: box.sdf, pose: [0, 0, 1]}
 vary:

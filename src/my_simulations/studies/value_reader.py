@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 from ..errors import Issue, error
 from ..objects.yaml_source import KeyPath, Source
-from ..resources.resolver import ResourceNotFoundError, Resolver
+from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import advice_on, find_world
 
 

@@ -117,8 +117,9 @@ class ResidualFriction:
     def _ask(self, uid: int, look: int) -> None:
         """Find out whether a body is fast, slow or at rest."""
         linear, angular = pybullet.getBaseVelocity(uid)
-        speed = max(linear[0] ** 2 + linear[1] ** 2 + linear[2] ** 2,
-                    angular[0] ** 2 + angular[1] ** 2 + angular[2] ** 2)
+        # Products become infinite where `** 2` raises OverflowError, which would end the engine.
+        speed = max(sum(value * value for value in linear),
+                    sum(value * value for value in angular))
         if (speed == 0.0) != (uid in self._asleep):
             (self._asleep.add if speed == 0.0 else self._asleep.discard)(uid)
             self._rounds = None
