@@ -25,8 +25,8 @@ from .trajectories import CaseTrajectory
 
 _SLICE = 1000  # steps between two looks at `stop`
 
-Hook = Callable[[Case, int, int], None]
-"""Called before a case begins to move, with its attempt and the process id of its engine."""
+Hook = Callable[[Case, int, OpenWorld], None]
+"""Called before a case begins to move, with its attempt and its world."""
 
 
 class StoppedError(Exception):
@@ -186,7 +186,7 @@ class Slot:
         study = self._study
         world = self._opened(case)
         if self._hook is not None:
-            self._hook(case, row.attempt, world.simulator.engine_pid)
+            self._hook(case, row.attempt, world)
         expressions = study.measure + study.require
         steps = round(study.duration / world.step_size)
         if steps > study.limits.steps:
