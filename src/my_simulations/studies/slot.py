@@ -23,6 +23,7 @@ from .signals import SignalReader
 from .study import Study
 from .trajectories import CaseTrajectory
 
+_FARTHEST = 1e9  # m: Bullet stops bodies whose bounds it cannot compute, without a word
 _SLICE = 1000  # steps between two looks at `stop`
 
 Hook = Callable[[Case, int, OpenWorld], None]
@@ -199,14 +200,12 @@ class Slot:
         samples = run.reader.samples()
         row.step, row.hash = steps, final_hash(world)
         row.values = {name: expression.value(samples) for name, expression in expressions}
-        for issue in world.issues:
-            if issue.code == "state-diverged":
-                row.status, row.issue = DIVERGED, issue.message
-                break
-        else:
-            missed = [name for name, _ in study.require if not row.values[name]]
-            if missed:
-                row.status, row.issue = FAILED, f"required, and not so: {', '.join(missed)}"
+        row.issue = _divergence(world)
+        missed = [name for name, _ in study.require if not row.values[name]]
+        if row.issue:
+            row.status = DIVERGED
+        elif missed:
+            row.status, row.issue = FAILED, f"required, and not so: {', '.join(missed)}"
         if study.trajectory is None:
             return None
         return CaseTrajectory(np.array(run.times), run.names, np.array(run.frames))
@@ -283,6 +282,16 @@ def final_hash(world: OpenWorld) -> str:
     for rows in (links.pose, links.twist, joints.position, joints.rate):
         digest.update(np.ascontiguousarray(rows.array, dtype="<f8").tobytes())
     return digest.hexdigest()[:32]
+
+
+def _divergence(world: OpenWorld) -> str:
+    """What became infinite, or went where no world is; "" for nothing."""
+    for issue in world.issues:
+        if issue.code == "state-diverged":
+            return issue.message
+    pose = world.links().pose
+    far = ~(np.abs(pose.array[:, :3]) < _FARTHEST).all(axis=1)
+    return f"{pose.names[int(np.argmax(far))]} is farther than {_FARTHEST:g} m" if far.any() else ""
 
 
 def _interval(seconds: float, world: OpenWorld) -> int:
