@@ -1,15 +1,13 @@
 #!/usr/bin/env python3
 """Prints what studies cost. Needs no ROS.
 
-usage: studies.py [ROW …]   rows: cost plan status (default: all)
+usage: studies.py [ROW …]   rows: cost plan (default: all)
 
 `cost` compares the processor time, engines included, of a study in two slots with two processes
 that each open one world after the other in a kept engine; the results must be equal.
 """
 from __future__ import annotations
 
-import contextlib
-import io
 import os
 import resource
 import subprocess
@@ -20,10 +18,7 @@ from typing import Dict, List
 
 from my_simulations.python_api import OpenWorld, WorldChoice
 from my_simulations.studies.changes import CaseChanges
-from my_simulations.studies.command import main as study
-from my_simulations.studies.journal import Journal, counts
 from my_simulations.studies.plan import CasePlan
-from my_simulations.studies.row import OK, Row
 from my_simulations.studies.slot import final_hash
 from my_simulations.studies.study_file import read_study
 from my_simulations.studies.table import rows_in_order
@@ -120,25 +115,9 @@ def plan() -> None:
         print(f"planning {count} cases: {took:.1f} s, {memory:.0f} MiB (bar: 60 s, 500 MB)")
 
 
-def status() -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "journal.jsonl")
-        journal = Journal(path, {"study": "s", "cases": 10 ** 6})
-        for first in range(0, 10 ** 6, 1000):
-            journal.append([Row(OK, f"{n:016x}", n, 0, {"height": 0.5, "mu": 0.25}, {"rest": 0.1},
-                                hash="0" * 32) for n in range(first, first + 1000)])
-        journal.close()
-        began = time.process_time()
-        with contextlib.redirect_stdout(io.StringIO()):
-            study(["study", "status", folder])
-        took = time.process_time() - began
-        assert counts(path)[OK] == 10 ** 6
-        print(f"status of 10^6 rows: {took:.2f} s (bar: 2 s)")
-
-
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--bare"]:
         bare(sys.argv[2], int(sys.argv[3]))
     else:
-        for row in sys.argv[1:] or ["cost", "plan", "status"]:
-            {"cost": cost, "plan": plan, "status": status}[row]()
+        for row in sys.argv[1:] or ["cost", "plan"]:
+            {"cost": cost, "plan": plan}[row]()

@@ -14,13 +14,13 @@ from ..errors import CommandError, InputError, SimulationError
 from .folder import REPORT, StudyFolder
 from .journal import Journal, counts, finished_cases, header_of
 from .plan import WHOLE, CasePlan, Shard
-from .progress import Progress
 from .report import write_report
 from .row import OK
-from .runner import Rate, StudyRunner
 from .show import can_launch, launch_command, write_world
 from .slot import Hook
 from .study_file import read_study
+from .study_progress import Progress
+from .study_runner import Rate, StudyRunner
 from .trajectories import Recorder
 
 NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130

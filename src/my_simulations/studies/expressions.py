@@ -160,7 +160,7 @@ class _Parser:
     def whole(self) -> _Node:
         node = self._or()
         if self._at < len(self._tokens):
-            raise self._fault("an operator or the end")
+            raise self._expected("an operator or the end")
         return node
 
     # -- tokens ----------------------------------------------------------------------------------
@@ -177,9 +177,9 @@ class _Parser:
 
     def _need(self, sign: str) -> None:
         if not self._take(sign):
-            raise self._fault(f"'{sign}'")
+            raise self._expected(f"'{sign}'")
 
-    def _fault(self, expected: str) -> ExpressionError:
+    def _expected(self, expected: str) -> ExpressionError:
         if self._at < len(self._tokens):
             _, found, column = self._tokens[self._at]
             return ExpressionError(f"'{self._text}': expected {expected} at column {column},"
@@ -266,7 +266,7 @@ class _Parser:
             number = float(text)
             return _Node(lambda samples: number)
         if kind != "word":
-            raise self._fault("a value")
+            raise self._expected("a value")
         self._at += 1
         if text in ("contact", "force"):
             return self._pair(text)
@@ -275,12 +275,12 @@ class _Parser:
         if self._take("("):
             return self._call(text)
         self._at -= 1
-        raise self._fault("a number, a function or one of " + ", ".join(_KNOWN))
+        raise self._expected("a number, a function or one of " + ", ".join(_KNOWN))
 
     def _call(self, name: str) -> _Node:
         if name not in _REDUCERS and name not in _FUNCTIONS:
             self._at -= 2
-            raise self._fault("a function: " + ", ".join([*_REDUCERS, *_FUNCTIONS]))
+            raise self._expected("a function: " + ", ".join([*_REDUCERS, *_FUNCTIONS]))
         given = [self._or()]
         while self._take(","):
             given.append(self._or())
@@ -322,13 +322,13 @@ class _Parser:
         self._need(".")
         part = self._take(*parts)
         if not part:
-            raise self._fault("one of " + ", ".join(parts))
+            raise self._expected("one of " + ", ".join(parts))
         return _of_signal(Signal(kind, (name,), part))
 
     def _name(self) -> str:
         kind, text = self._peek()
         if kind not in ("word", "quoted"):
-            raise self._fault("a name")
+            raise self._expected("a name")
         self._at += 1
         return text
 

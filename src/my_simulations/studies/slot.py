@@ -13,13 +13,13 @@ import numpy as np
 from ..engine.api import Engine
 from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
-from ..errors import CommandError, InputError, Severity
+from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld, WorldChoice
 from ..simulator.watchdog import process_time
 from .changes import CaseChanges
 from .plan import Case, CasePlan
 from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, Row
-from .signals import SignalReader
+from .sampling import SignalReader
 from .study import Study
 from .trajectories import CaseTrajectory
 
@@ -30,7 +30,7 @@ Hook = Callable[[Case, int, OpenWorld], None]
 """Called before a case begins to move, with its attempt and its world."""
 
 
-class StoppedError(Exception):
+class StoppedError(SimulationError):
     """The study was told to stop during a case."""
 
 

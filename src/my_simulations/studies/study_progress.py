@@ -6,7 +6,7 @@ import time
 from typing import TextIO
 
 from .row import OK, Row
-from .runner import Rate
+from .study_runner import Rate
 
 _EVERY_S = 0.2       # on a terminal
 _EVERY_LOG_S = 10.0  # elsewhere
