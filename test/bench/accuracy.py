@@ -5,23 +5,23 @@ usage: accuracy.py [PAIRS [SCENE …]]     PAIRS: 5 by default; SCENE: words in 
 
 Each scene runs in a process of its own, ours and bare in turns, steps of 1 ms. Bare is PyBullet
 with its default settings, and with rigid bodies (maximal coordinates) where there are no joints, as
-ours. Times are medians of the pairs, with their spread; the accuracy is that of every run, as runs
-repeat bit for bit: how far what should stand moved, how deep what fell lies in other things, how
-much energy arms that swing freely lost or gained.
+ours; in both the ground has mu 1, so that a pair has the mu of the piece. Times are medians of the
+pairs, with their spread; the accuracy is that of every run, as runs repeat bit for bit: how far
+what should stand moved, how deep what fell lies in other things, how much energy arms that swing
+freely lost or gained.
 """
 from __future__ import annotations
 
 import math
-import statistics
-import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Callable, List, Tuple
+from typing import Callable, List
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "engine"))
+sys.path[:0] = [str(HERE), str(HERE.parent / "engine")]
 import numpy as np
+import pairs
 import pybullet
 import structures
 
@@ -64,7 +64,7 @@ def _arm_bare(y: float) -> None:
 def _ours(scene: str) -> Callable[[int], None]:
     from conftest import Lab, ground
     lab = Lab()
-    lab.load(ground())
+    lab.load(ground(1.0))
     if scene == ARMS:
         for n in range(10):
             lab.load(_arm_ours(), (0, n, 3))
@@ -144,31 +144,8 @@ def child(kind: str, scene: str) -> None:
         print(took, f"{1000 * deep:.2f} mm deep")
 
 
-def measured(kind: str, scene: str) -> Tuple[float, str]:
-    """The same in a process of its own."""
-    done = subprocess.run([sys.executable, __file__, "--child", kind, scene], check=True,
-                          stdout=subprocess.PIPE, text=True, timeout=1800)
-    took, accuracy = done.stdout.strip().splitlines()[-1].split(" ", 1)
-    return float(took), accuracy
-
-
-def main(words: List[str]) -> int:
-    pairs = int(words[0]) if words else 5
-    print(f"{'scene':<24} {'':<5} {'us a step':>10} {'spread':>17}  accuracy")
-    for scene in [*structures.SCENES, ARMS]:
-        if words[1:] and not any(word in scene for word in words[1:]):
-            continue
-        runs = [(kind, *measured(kind, scene)) for _ in range(pairs) for kind in ("ours", "bare")]
-        for kind in ("ours", "bare"):
-            times = [took for name, took, _ in runs if name == kind]
-            accuracy = "; ".join(sorted({what for name, _, what in runs if name == kind}))
-            print(f"{scene:<24} {kind:<5} {statistics.median(times):>10.0f} "
-                  f"{min(times):>8.0f}{max(times):>9.0f}  {accuracy}", flush=True)
-    return 0
-
-
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--child"]:
         child(sys.argv[2], sys.argv[3])
     else:
-        sys.exit(main(sys.argv[1:]))
+        sys.exit(pairs.rows(__file__, [*structures.SCENES, ARMS], sys.argv[1:], "accuracy"))

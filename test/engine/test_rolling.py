@@ -42,6 +42,8 @@ def _floor(lab: Lab, kind: str) -> None:
         lab.load(ground(1.0))
     elif kind == "box":
         lab.load(slab("floor", (40.0, 40.0, 0.2)), (0, 0, -0.1))
+    elif kind == "long box":
+        lab.load(slab("floor", (140.0, 40.0, 0.2)), (50.0, 0, -0.1))
     else:
         side = np.linspace(-20, 20, 81)
         x, y = np.meshgrid(side, side)
@@ -69,7 +71,7 @@ def test_a_lying_can_stays_where_it_is(lab: Lab, laws: Laws, floor: str, asleep:
     for can, start in zip(cans, starts):
         laws.at_most(f"a lying can on a {floor}: way in 30 s, m",
                      math.dist(lab.pose(can).position[:2], start[:2]),
-                     0.2 if floor == "mesh" else 1e-3)   # on the seams of triangles
+                     1e-3)
 
 
 LONG_30 = [10, pytest.param(30, marks=pytest.mark.long)]   # s
@@ -160,15 +162,17 @@ def _roll_hinged(lab: Lab, kind: str, floor: str, speed: float, seconds: int) ->
 @pytest.mark.parametrize("seconds", LONG_30)
 @pytest.mark.parametrize("speed", [0.05, 0.5, 3.0])
 @pytest.mark.parametrize("kind", ["one", "car"])
-def test_hinged_wheels_roll_on_at_their_speed(lab: Lab, laws: Laws, kind: str, speed: float,
-                                              seconds: int):
-    for measured in _roll_hinged(lab, kind, "plane", speed, seconds):
-        laws.near(f"hinged wheels ({kind}) on a plane for {seconds} s: speed, m/s",
+@pytest.mark.parametrize("floor", ["plane", "box"])
+def test_hinged_wheels_roll_on_at_their_speed(lab: Lab, laws: Laws, kind: str, floor: str,
+                                              speed: float, seconds: int):
+    for measured in _roll_hinged(
+            lab, kind, "long box" if floor == "box" and speed > 1.0 else floor, speed, seconds):
+        laws.near(f"hinged wheels ({kind}) on a {floor} for {seconds} s: speed, m/s",
                   measured, speed, rel=0.01)
 
 
 @pytest.mark.parametrize("speed", [0.5, 3.0])
-@pytest.mark.parametrize("kind, bar", [("one", 0.08), ("car", 0.02)])
+@pytest.mark.parametrize("kind, bar", [("one", 0.03), ("car", 0.02)])
 def test_hinged_wheels_roll_over_the_seams_of_a_height_map(lab: Lab, laws: Laws, kind: str,
                                                            bar: float, speed: float):
     for measured in _roll_hinged(lab, kind, "mesh", speed, 5):

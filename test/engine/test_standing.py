@@ -4,13 +4,15 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from conftest import Lab, box, ground, inertial_of_box, link_of, slab
 from laws import Laws
 from test_contact import _cube_mesh
 
 from my_simulations.description.model import Model
-from my_simulations.description.shapes import Box, Mesh, Surface, mesh_key
+from my_simulations.description.shapes import Box, Mesh, MeshData, Surface, mesh_key
+from my_simulations.geometry import Pose
 
 
 @pytest.mark.parametrize("seconds", [10, pytest.param(60, marks=pytest.mark.long)])
@@ -62,3 +64,23 @@ def test_a_mesh_rests_at_its_height(lab: Lab, laws: Laws, floor: str):
     lab.seconds(30)
     laws.at_most("a mesh of one convex piece at rest: way in 30 s, m",
                  math.dist(lab.pose(cube).position, start), 1e-4)
+
+
+@pytest.mark.parametrize("floor", ["plane", "box"])
+def test_a_mesh_of_several_pieces_rests_at_its_height(lab: Lab, laws: Laws, floor: str):
+    if floor == "plane":
+        lab.load(ground())
+    else:
+        lab.load(slab("floor", (20, 20, 1)), (0, 0, -0.5))
+    cube, mesh = _cube_mesh(), Mesh("u", "/u")
+    boxes = [((1, 0.5, 0.1), (0, 0, 0)), ((0.1, 0.5, 0.5), (-0.45, 0, 0.3)),
+             ((0.1, 0.5, 0.5), (0.45, 0, 0.3))]
+    parts = [MeshData(cube.vertices * size + at, cube.triangles) for size, at in boxes]
+    whole = MeshData(np.concatenate([part.vertices for part in parts]),
+                     np.concatenate([cube.triangles + 8 * n for n in range(3)]), parts)
+    u = lab.load(Model("u", allow_auto_disable=False, links=[link_of(
+        mesh, inertial_of_box(3, 1, 0.5, 0.6, Pose((0, 0, 0.15))))]), (0, 0, 0.06),
+        meshes={mesh_key(mesh): whole})
+    lab.seconds(2)
+    laws.near("a mesh of several convex pieces at rest: height, m", lab.pose(u).position[2],
+              0.05, abs=1e-4)

@@ -11,6 +11,7 @@ from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..errors import Severity
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
+from .link_surface import coefficient, counting_collision
 from .model import WORLD, Inertial, Link, Model
 from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
 from .validate import Fault
@@ -30,14 +31,18 @@ def advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
         if only not in ("", model.name):
             continue
         odd: List[Fault] = []
+        shared: List[Fault] = []
         for name, link, _pose, static in links_of(model):
             for collision in link.collisions:
                 yield from _thin(collision, name)
+            shared += _shared_friction(link, name)
             if not static:
                 odd += _odd_inertia(link, name)
-        if odd:
-            more = f" (so it is with {len(odd) - 1} more of its links)" if len(odd) > 1 else ""
-            yield replace(odd[0], message=odd[0].message + more)
+        for alike in (odd, shared):
+            if alike:
+                more = (f" (so it is with {len(alike) - 1} more of its links)"
+                        if len(alike) > 1 else "")
+                yield replace(alike[0], message=alike[0].message + more)
     yield from _overlaps(models, only)
 
 
@@ -97,6 +102,20 @@ def thin_mesh(collision: Collision, link: str, extents: Sequence[float]) -> Iter
         yield Fault("shape-thin", f"the mesh of collision {collision.name!r} of {link!r} is"
                     f" {min(extents):g} m thin; what moves passes through it", collision,
                     Severity.WARNING, "use a box of a millimetre or more, or a mesh with two sides")
+
+
+def _shared_friction(link: Link, name: str) -> Iterator[Fault]:
+    """Collisions with unlike friction, of which one holds for all."""
+    counting = counting_collision(link)
+    found = sorted({coefficient(one.surface) for one in link.collisions})
+    if counting is None or len(found) < 2:
+        return
+    listed = ", ".join(f"{mu:g}" for mu in found)
+    yield Fault("friction-shared", f"the collisions of {name!r} have unlike friction (mu {listed});"
+                f" mu {coefficient(counting.surface):g} of {counting.name!r}, which reaches lowest,"
+                " holds for all of them", counting, Severity.WARNING,
+                "give those with another friction a link of their own; in a URDF, keep it by"
+                " <preserveFixedJoint>true</preserveFixedJoint>")
 
 
 def _odd_inertia(link: Link, name: str) -> Iterator[Fault]:

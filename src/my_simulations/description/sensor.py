@@ -307,7 +307,7 @@ class Sensor:
     Attributes:
         name: unique in its link or joint.
         type: SDF's name of the type: `ray`, `camera`, `imu`, ...
-        pose: pose in the frame of the link; of a joint's sensor, in that of the child link.
+        pose: pose in the frame of the link; of a joint's sensor, in the joint's.
         always_on: whether the sensor works without subscribers.
         update_rate: Hz of sim time; 0 for every step.
         visualize: whether the editor draws it.

@@ -205,7 +205,8 @@ class Surface:
         mu: Coulomb friction coefficient, no unit; with `fdir1` in the first direction.
         mu2: coefficient in the second direction; used with `fdir1`.
         fdir1: first friction direction, in the collision frame; zero for none.
-        slip1, slip2: force-dependent slip in the two directions, m/(N s); kept.
+        slip1, slip2: slip velocity by friction force along `fdir1` and across it, m/(N s); without
+            `fdir1` slip1 holds in all directions.
         restitution: coefficient of restitution, 0 to 1.
         bounce_threshold: impact velocity below which nothing bounces, m/s.
         kp: contact stiffness, N/m.

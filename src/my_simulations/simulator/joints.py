@@ -2,10 +2,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint
-from ..engine.commands import SetAxes, SetJoints
+from ..engine.commands import JointWrench, ReadJointWrenches, SetAxes, SetJoints
 from .models import Models
 from .session import Session
 
@@ -36,6 +36,21 @@ class Joints:
             snapshot = self._session.snapshot()
             return [snapshot.joint(row) for row in (entity.axis_row(joint.name, number)
                                                     for number in (0, 1)) if row is not None]
+
+    def wrenches(self, names: Sequence[str]) -> List[Optional[JointWrench]]:
+        """What joints (fixed ones too) transmitted in the last step, in one question to the engine.
+
+        A joint is measured from the step after its first reading on: the first answer is None, and
+        so is the one after a reset, a change of its model, or a crash of the engine. None for ever
+        for joints between models.
+
+        Raises UnknownEntityError, CommandError.
+        """
+        with self._session.registry_lock:
+            found = [self._session.registry.joint(name) for name in names]
+        answer = self._session.call(ReadJointWrenches(tuple(
+            (entity.model_id, joint.name) for entity, joint, _ in found))).value
+        return list(answer) if isinstance(answer, tuple) else [None] * len(found)
 
     def set_positions(self, positions: Dict[str, float]) -> None:
         """Move joint axes to positions (rad or m), at rest.

@@ -75,6 +75,19 @@ def test_odd_inertia_is_told_once_for_a_model(found):
     assert issue.code == "inertia-odd" and "1 more" in issue.message
 
 
+def test_unlike_friction_of_one_link_is_told_with_the_one_that_holds(found):
+    def collision(name: str, height: float, mu: str) -> str:
+        return (f'<collision name="{name}"><pose>0 0 {height} 0 0 0</pose><geometry><sphere>'
+                f"<radius>0.1</radius></sphere></geometry><surface><friction><ode><mu>{mu}</mu></ode>"
+                "</friction></surface></collision>")
+    one = solid("b", "0 0 5 0 0 0")
+    unlike = one.replace("</link>", collision("caster", -0.6, "0") + "</link>")
+    (issue,) = found(unlike)
+    assert issue.code == "friction-shared" and issue.severity is Severity.WARNING
+    assert "mu 0, 1" in issue.message and "mu 0 of 'caster'" in issue.message
+    assert found(one.replace("</link>", collision("caster", -0.6, "1") + "</link>")) == []
+
+
 @pytest.mark.parametrize("pose, depth", [("0 0 0.4 0 0 0", "100"), ("0 0 0.5 0.785398 0 0", "207"),
                                          ("0 0 -3 0 0 0", "3.5e+03")])
 def test_a_box_in_the_ground_is_reported(found, pose, depth):
@@ -188,3 +201,44 @@ def test_the_strict_count_what_is_tolerated_as_an_error(capsys):
     assert main(["check_model", "--json", path]) == 0
     (issue,) = json.loads(capsys.readouterr().out)["issues"]
     assert issue["tolerated"] and issue["severity"] == "warning"
+
+
+HOSTILE_XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:property name="x" value="${[c for c in ().__class__.__base__.__subclasses__()]}"/></robot>"""
+
+
+def test_xacro_outside_of_the_workspace_is_not_run_without_consent(tmp_path, monkeypatch, capsys):
+    path = tmp_path / "downloads" / "r.xacro"
+    path.parent.mkdir()
+    path.write_text(HOSTILE_XACRO)
+    inside = tmp_path / "ws" / "src" / "p"
+    inside.mkdir(parents=True)
+    (inside / "r.xacro").write_text(HOSTILE_XACRO)
+    (inside / "link.xacro").symlink_to(path)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", f"{tmp_path}/ws/src:/nowhere")
+    run = []
+    monkeypatch.setattr("my_simulations.cli.check_model_command.run_xacro",
+                        lambda path, seconds: run.append(path) or "<robot name='r'/>")
+    assert main(["check_model", str(path)]) == 1
+    assert main(["check_model", str(inside / "link.xacro")]) == 1
+    told = capsys.readouterr().out
+    assert f"{path}: error: xacro was not run" in told and "--run-xacro" in told
+    assert run == []
+    main(["check_model", "--run-xacro", str(path)])
+    main(["check_model", str(inside / "r.xacro")])
+    assert run == [str(path), str(inside / "r.xacro")]
+
+
+def test_plugins_that_nobody_brings_are_named_once(tmp_path):
+    path = tmp_path / "robot.sdf"
+    plugins = "".join(f'<plugin name="{name}" filename="{name}.so"/>\n' for name in (
+        "libmystery", "libgazebo_ros_p3d", "libmystery"))
+    camera = ('<sensor name="s" type="camera"><camera/>'
+              '<plugin name="c" filename="libgazebo_ros_camera.so"/>'
+              '<plugin name="u" filename="libunseen.so"/></sensor>')
+    path.write_text(sdf('<model name="m"><static>1</static>\n'
+                        f'<link name="l">{camera}</link>\n{plugins}</model>'))
+    found = [(issue.severity, issue.line, issue.message.rpartition(" ")[2])
+             for issue in check(str(path), Resolver())[1] if "plugin" in issue.message]
+    assert sorted(found, key=lambda one: one[2]) == [
+        (Severity.NOTE, 3, "libmystery.so"), (Severity.NOTE, 2, "libunseen.so")]

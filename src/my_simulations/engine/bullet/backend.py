@@ -16,11 +16,14 @@ from ..commands import (
     ClearTimedForces,
     Command,
     ConnectModels,
+    DisconnectModels,
     LoadModel,
     ModelState,
     PhysicsSettings,
     PinModels,
     ReadContacts,
+    ReadEfforts,
+    ReadJointWrenches,
     RemoveModel,
     Restart,
     SetAxes,
@@ -29,6 +32,8 @@ from ..commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
+    SetWheelSlips,
 )
 from ..ring import JOINTS, LINKS
 from . import bodies, collision_groups, extra_surfaces, joint_axes
@@ -36,26 +41,25 @@ from .bodies import Body, Part
 from .body_builder import Builder
 from .collision_shapes import ShapeError, ShapeFactory
 from .contact_readout import read_contacts
-from .contact_settling import EVERY as EVERY_SETTLE
 from .contact_settling import ContactSettling
+from .force_dependent_slip import slips
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
 from .initial_state_cache import InitialStateCache, Start
 from .inter_model_joints import InterModelJoints
 from .joint_constraints import Constraints
 from .joint_motors import JointMotors
-from .pair_friction import EVERY, FrictionBalance
+from .joint_wrenches import JointWrenches
+from .pair_friction import FrictionBalance
 from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
-from .residual_friction import EVERY as EVERY_FRICTION
 from .residual_friction import ResidualFriction
-from .rolling_contacts import EVERY as EVERY_ROLL
 from .rolling_contacts import RollingContacts
-from .sliding import EVERY as EVERY_SLIDE
 from .sliding import Sliding
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
+from .step_helper import StepLoop
 from .velocity_decay import VelocityDecay
 from .wake_up import WakeUp
 
@@ -76,24 +80,34 @@ class BulletBackend:
         self._rolling = RollingContacts()
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
-        self._forces = Forces(self._waker.around)
+        self._forces = Forces(self._waker.around,
+                              lambda rows: self._motors.yield_to(rows))
         self._friction = FrictionBalance(self._on_misfit)
-        self._spin = GyroscopicRigid()
+        self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)
         self._holds = PinnedBodies(self._waker.around)
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
-        self._settling = ContactSettling()
+        self._settling = ContactSettling(lambda: self._forces.loaded_bodies)
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)
         self._planar = PlanarMotion(self._models, self._mover.model_pose, self._waker.around)
+        self._wrenches = JointWrenches(self._models, self._forces, self._sliding)
+        # What acts around the steps, in the order in which it does.
+        helpers = (self._friction, self._settling, self._forces, self._decay, self._planar,
+                   self._rolling, self._spin, self._residual, self._sliding, self._holds)
+        self._loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
-        self._keepers = (self._forces, self._friction, self._spin, self._holds, self._ties,
-                         self._decay, self._residual, self._rolling, self._sliding,
-                         self._settling, self._motors, self._planar, self._readout)
+        self._keepers = (*helpers, self._ties, self._motors, self._wrenches,
+                         self._readout)
+        # Whom it concerns that a command, or a force that begins, reaches a body.
+        self._hearers = (self._readout.touch, *(part.touched for part in (
+            self._loop, self._friction, self._settling, self._residual, self._rolling,
+            self._sliding)))
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
+        self._is_fresh = True   # nothing has moved since the world began
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
@@ -102,10 +116,16 @@ class BulletBackend:
             SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,
             ConnectModels: self._connect,
+            DisconnectModels: self._disconnect,
             SetMotors: lambda command: self._motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
-            ReadContacts: lambda command: read_contacts(self._bodies, command.limit,
-                                                        self._sliding.friction),
+            ReadContacts: lambda command: read_contacts(
+                self._bodies, command.limit, self._sliding.friction, self._forces.slip.friction),
+            SetWheelSlips: self._set_wheel_slips,
+            ReadJointWrenches: self._wrenches.read,
+            SetServos: lambda command: self._forces.servos.set(
+                command.servos, self._settings.step_size),
+            ReadEfforts: lambda command: self._forces.servos.efforts(command.rows),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
         }
@@ -137,57 +157,17 @@ class BulletBackend:
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
         self._settle()
+        self._is_fresh = False
         self._readout.stepped()
-        one = pybullet.stepSimulation
-        dt, gravity = self._settings.step_size, self._settings.gravity
-        if all(part.idle for part in (self._forces, self._friction, self._spin, self._holds,
-                                      self._decay, self._planar)):
-            self._step_freely(first, count, dt)
-            self._forces.stepped()
+        run, dt, gravity = self._loop.run, self._settings.step_size, self._settings.gravity
+        if self._wrenches.idle:
+            run(first, count, dt, gravity)
             return
-        for step in range(first, first + count):
-            if not self._friction.idle and step % EVERY == 0:
-                self._friction.balance()
-            self._settling.look(step)
-            self._forces.apply(step, dt, gravity)
-            self._decay.apply(dt)
-            self._planar.apply()
-            self._rolling.before(step, dt, gravity)
-            self._sliding.before()
-            free = self._spin.before(step, dt)
-            one()
-            self._spin.after(free, self._forces.wrenched_links, dt)
-            self._residual.after(step, dt)
-            self._sliding.after(step, dt, gravity)
-            self._holds.apply()
-
-    def _step_freely(self, first: int, count: int, dt: float) -> None:
-        """Make steps that nothing acts on from outside: between two looks at them, no calls."""
-        one, residual, rolling = pybullet.stepSimulation, self._residual, self._rolling
-        settling, sliding = self._settling, self._sliding
-        step, end = first, first + count
-        while step < end:
-            settling.look(step)
-            if not rolling.idle:
-                rolling.before(step, dt, self._settings.gravity)
-            sliding.before()
-            ahead = end - step
-            if rolling.busy or residual.busy or sliding.busy:
-                ahead = 1
-            else:
-                if not residual.idle:
-                    ahead = min(ahead, -step % EVERY_FRICTION + 1)   # they look after a step
-                if not sliding.idle:
-                    ahead = min(ahead, -step % EVERY_SLIDE + 1)
-                if not rolling.idle:
-                    ahead = min(ahead, EVERY_ROLL - step % EVERY_ROLL)   # before one
-                if not settling.idle:
-                    ahead = min(ahead, EVERY_SETTLE - step % EVERY_SETTLE)
-            for _ in range(ahead):
-                one()
-            step += ahead
-            residual.after(step - 1, dt)
-            sliding.after(step - 1, dt, self._settings.gravity)
+        if count > 1:
+            run(first, count - 1, dt, gravity)
+        self._wrenches.before(count)
+        run(first + count - 1, 1, dt, gravity)
+        self._wrenches.after(dt, gravity)
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -245,7 +225,10 @@ class BulletBackend:
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
             restore(entry, state)
-        self._waker.around(entry.bodies)
+        # In a fresh world all is awake. Looking for neighbours changes the order in which Bullet
+        # finds contacts, and with it what follows: a restart, which need not look, must repeat it.
+        if not self._is_fresh:
+            self._waker.around(entry.bodies)
 
     def _enter(self, builder: Builder, model: Model, pose: Pose) -> Entry:
         """Build a model and know it."""
@@ -264,8 +247,10 @@ class BulletBackend:
                 link = model.links[part.row - first_row]
                 self._decay.add(body, part, link)
                 self._rolling.add(body, part, link)
-                self._sliding.add(body, part, link)
+                if not slips(link):
+                    self._sliding.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
+                self._forces.slip.add(body, part, link)
             self._set_up_axes(body, model)
         return entry
 
@@ -350,17 +335,14 @@ class BulletBackend:
         self._waker.around([self._rows[row][0] for row in (command.child_row, command.parent_row)
                             if row >= 0])
 
+    def _disconnect(self, command: DisconnectModels) -> None:
+        self._waker.around(self._ties.disconnect(command.names))
+
     def _clear(self, _: Clear) -> None:
         self._put_off = None
-        for entry in self._models.values():
-            for body in entry.bodies:
-                self._readout.forget(body)
-                self._forces.forget(body)
+        self._is_fresh = True
         self._models.clear()
-        self._forces.clear_all()
-        for keeper in (self._friction, self._spin, self._holds, self._ties, self._decay,
-                       self._residual, self._rolling, self._sliding, self._settling,
-                       self._motors, self._planar):
+        for keeper in self._keepers:
             keeper.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
@@ -387,6 +369,14 @@ class BulletBackend:
     def _set_up_axes(self, body: Body, model: Model) -> None:
         joint_axes.set_up(body, model, self._forces, self._settings.step_size)
         self._motors.set_up(body, model)
+        self._forces.servos.set_up(body, model, self._settings.step_size)
+
+    def _set_wheel_slips(self, command: SetWheelSlips) -> None:
+        for wheel in command.wheels:
+            if wheel.row not in self._rows or wheel.joint_row not in self._axes:
+                raise CommandRefusedError("the link or joint of the wheel does not exist")
+            self._sliding.leave(*self._rows[wheel.row])
+        self._forces.slip.set_wheels(command.wheels)
 
     def _hold(self, command: PinModels) -> None:
         self._holds.set(body for number in command.model_ids
@@ -400,14 +390,12 @@ class BulletBackend:
             raise CommandRefusedError(refusal)
 
     def _clear_timed_forces(self, command: ClearTimedForces) -> None:
-        self._forces.clear(command.force_ids)
+        self._forces.drop(command.force_ids)
 
     def _touched(self, body: Body) -> None:
         """A command reached a body."""
-        self._readout.touch(body)
-        self._residual.touched(body)
-        self._rolling.touched(body)
-        self._sliding.touched(body)
+        for hear in self._hearers:
+            hear(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

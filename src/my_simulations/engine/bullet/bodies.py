@@ -182,6 +182,15 @@ def set_decay(uid: int, link: Link, dt: float) -> None:
         pybullet.changeDynamics(uid, BASE, linearDamping=damping[0], angularDamping=damping[1])
 
 
+def let_rest(uid: int) -> None:
+    """Mark a rigid static body as asleep, as Bullet does itself; PyBullet's settings wake it.
+
+    Else its pairs with sleepers are gone through in every step: a world of 100 sleeping boxes then
+    takes 87 us a step instead of 13.
+    """
+    pybullet.changeDynamics(uid, BASE, activationState=pybullet.ACTIVATION_STATE_SLEEP)
+
+
 def remove(body: Body) -> None:
     """Take the body out of PyBullet."""
     for uid in body.uids:

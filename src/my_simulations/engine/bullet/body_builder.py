@@ -14,7 +14,18 @@ from ..commands import LoadModel
 from ..principal_inertia import principal
 from ..ring_rows import AXES, axis_rows, row_name
 from . import collision_groups, surface_coefficients
-from .bodies import Axis, Ball, Body, Part, radius_of, remove, set_decay, set_dynamics, sweep
+from .bodies import (
+    Axis,
+    Ball,
+    Body,
+    Part,
+    let_rest,
+    radius_of,
+    remove,
+    set_decay,
+    set_dynamics,
+    sweep,
+)
 from .collision_shapes import MAX_SHAPES, Recipe, ShapeFactory
 from .extra_surfaces import gives_way
 from .implicit_axes import mobility
@@ -141,6 +152,8 @@ class Builder:
                          body.may_sleep and not rigid.static)
             if body.rigid:
                 set_decay(uid, link, dt)
+            if body.rigid and rigid.static:
+                let_rest(uid)
         body.radius = radius_of(uids[0])
         if body.rigid and body.moves and rigid.pieces:
             sweep(uids[0])
@@ -240,7 +253,8 @@ class Builder:
     def _ease(self, uid: int, axes: Sequence[Axis]) -> None:
         """Work out once how easily the axes of a tree move."""
         if axes and axes[0].row not in self._eases:
-            found = mobility(MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
+            found: Any = mobility(
+                MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
             self._eases.update((axis.row, ease) for axis, ease in zip(axes, found))
         for axis in axes:
             axis.ease = self._eases[axis.row]

@@ -27,12 +27,14 @@ from ...description.shapes import (
 )
 from ...errors import SimulationError
 from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
-from ..convex.hull_points import hull_points, naming_triangles
+from ..convex.hull_points import hull_points, naming_triangles, shrunk
 from ..scratch_folder import Scratch
 
 MAX_SHAPES = 16
 """Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
 
+_MARGIN = 1e-3
+"""What Bullet adds around a hull in a compound, m; that of a lone one can be taken off."""
 
 _FLOOR = 1e6
 """Half the edge of the box that stands below a plane, m."""
@@ -125,9 +127,10 @@ class ShapeFactory:
 
     def _recipe(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                 static: bool, more: Optional[Dict[str, Any]] = None) -> Recipe:
-        columns = [self._column(c, meshes, frame, static) for c in collisions]
         is_hull = (len(collisions) == 1 and more is None
                    and _is_hull(collisions[0], meshes, static))
+        margin = 0.0 if is_hull or static else _MARGIN
+        columns = [self._column(c, meshes, frame, static, margin) for c in collisions]
         if more is not None:
             columns.append(more)
         return Recipe(", ".join(c.name for c in collisions), {
@@ -144,15 +147,16 @@ class ShapeFactory:
         }, is_hull=is_hull)
 
     def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
-                static: bool) -> Dict[str, Any]:
-        column = self._geometry(collision.geometry, meshes, static)
+                static: bool, margin: float) -> Dict[str, Any]:
+        column = self._geometry(collision.geometry, meshes, static, margin)
         pose = compose(frame, collision.pose)
         if isinstance(collision.geometry, Plane):
             pose = Pose(pose.position, multiply(pose.orientation, _to_z(collision.geometry)))
         column["pose"] = pose
         return column
 
-    def _geometry(self, geometry: Geometry, meshes: MeshTable, static: bool) -> Dict[str, Any]:
+    def _geometry(self, geometry: Geometry, meshes: MeshTable, static: bool,
+                  margin: float) -> Dict[str, Any]:
         if isinstance(geometry, Box):
             return {"type": pybullet.GEOM_BOX, "half": tuple(s / 2.0 for s in geometry.size)}
         if isinstance(geometry, Sphere):
@@ -173,7 +177,7 @@ class ShapeFactory:
                 raise ShapeError(f"the shape {key} was not made ready")
             flags = pybullet.GEOM_FORCE_CONCAVE_TRIMESH if static else 0
             return {"type": pybullet.GEOM_MESH, "flags": flags,
-                    "file": self._file(key, meshes[key], static)}
+                    "file": self._file(key, meshes[key], static, margin)}
         raise ShapeError(f"no collision shape for {type(geometry).__name__}")
 
     def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable,
@@ -186,8 +190,10 @@ class ShapeFactory:
             for collision in collisions:
                 pose = compose(frame, collision.pose)
                 for points, triangles in _pieces(collision, meshes):
-                    moved = [transform(pose, (p[0], p[1], p[2])) for p in points.tolist()]
-                    _write_part(stream, moved, triangles.tolist(), first)
+                    rows: Any = points.tolist()
+                    corners: Any = triangles.tolist()
+                    moved = [transform(pose, (p[0], p[1], p[2])) for p in rows]
+                    _write_part(stream, moved, corners, first)
                     first += len(moved)
         return {"type": pybullet.GEOM_MESH, "file": path, "pose": IDENTITY}
 
@@ -196,20 +202,22 @@ class ShapeFactory:
         points = hull_points(geometry)
         return self._file(repr(geometry), MeshData(points, naming_triangles(len(points))), True)
 
-    def _file(self, key: str, mesh: MeshData, static: bool) -> str:
+    def _file(self, key: str, mesh: MeshData, static: bool, margin: float = 0.0) -> str:
         """The mesh as a file: PyBullet takes compounds of meshes by file name only.
 
-        Static ones as their triangles, moving ones as their convex pieces.
+        Static ones as their triangles, moving ones as their convex pieces, smaller by `margin` m.
         """
-        key = f"{key} {'triangles' if static else 'pieces'}"
+        key = f"{key} {'triangles' if static else 'pieces'} {margin}"
         if key not in self._files:
             self._count += 1
             path = os.path.join(self._scratch.path, f"{self._count}.obj")
             first = 1
             with open(path, "w", encoding="ascii") as stream:
                 for piece in [mesh] if static or not mesh.parts else mesh.parts:
-                    vertices = np.asarray(piece.vertices).tolist()
-                    _write_part(stream, vertices, np.asarray(piece.triangles).tolist(), first)
+                    vertices, triangles = np.asarray(piece.vertices), np.asarray(piece.triangles)
+                    if margin:
+                        vertices = shrunk(vertices, triangles, margin)
+                    _write_part(stream, vertices.tolist(), triangles.tolist(), first)
                     first += len(vertices)
             self._files[key] = path
         return self._files[key]

@@ -12,10 +12,10 @@ from .bodies import Body
 
 
 def read_contacts(bodies: Dict[int, Body], limit: int,
-                  more_friction: Callable[[int, int, Vec3], Vec3]) -> Tuple[Contact, ...]:
+                  *more_friction: Callable[[int, int, Vec3], Vec3]) -> Tuple[Contact, ...]:
     """At most `limit` contacts between known links; `bodies` by PyBullet's number.
 
-    `more_friction` tells what acts on a link, of body and index, at a point besides Bullet's.
+    `more_friction` tell what acts on a link, of body and index, at a point besides Bullet's.
     """
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
@@ -28,8 +28,9 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
         if len(rows) == 2:
             # Bullet does not solve points that are apart: what they tell is of an older step.
             friction = add(scale(contact[11], contact[10]), scale(contact[13], contact[12]))
-            friction = add(friction, more_friction(contact[1], contact[3], contact[5]))
-            friction = add(friction, scale(more_friction(contact[2], contact[4], contact[6]), -1))
+            for more in more_friction:
+                friction = add(friction, more(contact[1], contact[3], contact[5]))
+                friction = add(friction, scale(more(contact[2], contact[4], contact[6]), -1))
             force, friction = ((contact[9], friction) if contact[8] <= 0.0
                                else (0.0, (0.0, 0.0, 0.0)))
             found.append(Contact(rows[0], rows[1], contact[6], contact[7], -contact[8], force,

@@ -1,20 +1,23 @@
 """What keeps standing things where they stand.
 
-In the first second after something was put into the world overlaps are parted without giving
-velocity: with split impulses Bullet moves rigid bodies apart and
-leaves their momentum alone, so that a body that starts in a shelf does not jump out of it, and one
-with a large moment of inertia does not turn on for ever. Their price is that Bullet forgets to put
-joints back that went past their stops, so that is done here, without velocity too.
+After something was put into the world overlaps are parted without giving velocity, for a second at
+most: with split impulses Bullet moves rigid bodies apart and leaves their momentum alone, so that a
+body that starts in a shelf does not jump out of it, and one with a large moment of inertia does not
+turn on for ever. Their price is that Bullet forgets to put joints back that went past their stops,
+so that is done here, without velocity too.
 
-With that, contacts may begin with 0.99 of the impulse that they had in the step before. Later the
-split impulses end: with them a stack of ten boxes leans by 1 mm a second (measured).
+With that, contacts may begin with 0.99 of the impulse that they had in the step before. The split
+impulses end once nothing is deep: with them a stack of ten boxes leans by 1 mm a second, and a wall
+of 200 bricks moves 1.7 mm in one (measured).
 
 Bullet ends its iterations once no row changes a velocity by more than sqrt(1e-7) m/s, at which a
 thing that stands may drift. Contacts of articulated bodies start from nothing in each step (there
 is no warm start for them): a parked robot went 1 mm and 0.8 degrees in a minute, or slid where its
 wheels were not solved in 50 iterations (measured). While one that touches something is slow, the
-world is solved to 3e-8 m/s and with more iterations; one that is slower than 0.01 mm/s is put back
-where it was 16 steps ago, or in ten minutes it would turn by 0.1 degrees. Rigid bodies that may not
+world is solved to 3e-8 m/s and with more iterations, which takes five times as long. One that has
+then stood still for half a second, and that nothing acts on but gravity and static bodies, is held:
+put back with its joints every 16 steps, at rest. Until something touches it, the world is solved as
+if it were not there. Rigid bodies that may not
 sleep creep where friction holds them up; while there are such, it is solved to 3e-6 m/s. What
 moves, sleeps, or stands on the level costs nothing. Small ones that may not sleep creep on the
 level too, for which 3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in 20 s, solved so
@@ -22,41 +25,73 @@ level too, for which 3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in
 """
 from __future__ import annotations
 
-from math import dist
-from typing import Any, Dict, Optional, Sequence
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
-from ...geometry import Pose
+from ...geometry import Pose, Vec3
 from .bodies import Body
+from .step_helper import FAR, next_multiple
 
 JointStates = Sequence[Any]  # as PyBullet tells them
 
 EVERY = 16            # steps between two looks at articulated bodies
 _RIGID_EVERY = 256    # and at rigid ones, of which there may be hundreds
 _SLOW = 0.02          # m/s and rad/s: of the base, and of all joints
-_STILL = 1e-5         # m/s and rad/s: an acceleration of 1e-3 gives more between two looks
-_CREEP = 1e-6         # m, or of a quaternion: what else goes so far between two looks was moved
+_STILL = 2e-5         # m/s and rad/s, of the base: more is a motion of its own
+_STILL_JOINT = 1e-4   # rad/s or m/s
+_CLEAR = 3            # looks
+_STANDS = 32          # looks: to be held, an acceleration must be below 4e-5 m/s^2
+_PUSHED = 2e-3        # m/s and rad/s, of the base: one that is held has less between two looks
+_PUSHED_JOINT = 0.05  # rad/s or m/s
 _LEANS = 0.02         # friction by normal force
+_NONE = (0.0, 0.0, 0.0)
 _SMALL = 0.06         # m, radius: such a body creeps on the level too
 _RESIDUALS = (1e-7, 1e-11, 1e-15)  # PyBullet's own; for leaning bodies; for standing robots
 _MORE_ITERATIONS = 4
-_PARTING = 1.0        # s
+_PARTING = 1.0        # s, at most
+_LEAST = 0.1          # s, at least: what is put down a little higher has landed
+_SHALLOW = 1e-4       # m: overlaps that may part with velocity
+_OVERLAPS_EVERY = 64  # steps between two looks at them
 _PAST_STOP = 1e-6     # rad or m past a stop that do not matter
 _PUT_BACK = 0.5       # share of the way back to the stop at each look
 
 
-class ContactSettling:
-    """Chooses how exactly Bullet solves."""
+@dataclass
+class _Tree:
+    """An articulated body.
 
-    def __init__(self) -> None:
-        self._trees: Dict[int, Body] = {}
+    Attributes:
+        indices: of its axes.
+        looks: in a row at which it stood still.
+        clear: looks for which an arm that touched nothing need not be asked what it touches.
+        held: where its base, if it has a free one, and its axes are put back to; None: it is not.
+    """
+
+    body: Body
+    indices: List[int]
+    looks: int = 0
+    clear: int = 0
+    held: Optional[Tuple[Optional[Pose], List[float]]] = None
+
+
+class ContactSettling:
+    """Chooses how exactly Bullet solves, and holds robots that stand.
+
+    Args:
+        loaded: tells the bodies that timed forces act on in this step.
+    """
+
+    def __init__(self, loaded: Callable[[], Set[int]]) -> None:
+        self._loaded = loaded
+        self._trees: Dict[int, _Tree] = {}
+        self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}
-        self._kept: Dict[int, Pose] = {}
         self._level = 0
         self._leaning = False
         self._iterations = 50
-        self._parting_steps = 1000
+        self._parting_steps, self._least_steps = 1000, 100
         self._new = False                     # something was put in since the last look
         self._until: Optional[int] = None     # the step at which split impulses end
 
@@ -66,7 +101,7 @@ class ContactSettling:
         `dt`: the step size, s.
         """
         self._iterations = iterations
-        self._parting_steps = round(_PARTING / dt)
+        self._parting_steps, self._least_steps = round(_PARTING / dt), round(_LEAST / dt)
         pybullet.setPhysicsEngineParameter(splitImpulsePenetrationThreshold=0.0)
         self._split(self._new or self._until is not None)
         self._use(self._level)
@@ -74,15 +109,17 @@ class ContactSettling:
     def add(self, body: Body) -> None:
         """Know a body; only articulated ones and those that may not sleep matter."""
         self._new = True
+        if body.moves:
+            self._moving.add(body.uid)
         if body.moves and not body.rigid:
-            self._trees[body.uid] = body
+            self._trees[body.uid] = _Tree(body, [axis.index for axis in body.axes])
         elif body.moves and not body.may_sleep:
             self._rigid[body.uid] = body
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._trees.pop(body.uid, None)
-        self._kept.pop(body.uid, None)
+        self._moving.discard(body.uid)
         self._rigid.pop(body.uid, None)
         if not self._trees and not self._rigid:
             self._leaning = False
@@ -91,50 +128,88 @@ class ContactSettling:
     def clear(self) -> None:
         """All bodies are gone."""
         self._trees.clear()
-        self._kept.clear()
+        self._moving.clear()
         self._rigid.clear()
         self._level, self._leaning = 0, False
         self._new, self._until = False, None
 
-    @property
-    def idle(self) -> bool:
-        """True when no body can need it."""
-        return not (self._trees or self._rigid or self._new or self._until is not None)
+    def touched(self, body: Body) -> None:
+        """A command reached a body: it may move from now on."""
+        tree = self._trees.get(body.uid)
+        if tree is not None:
+            tree.looks, tree.clear, tree.held = 0, 0, None
 
-    def look(self, step: int) -> None:
-        """Before the step that begins at count `step`: whether something stands."""
+    def due(self, step: int) -> int:
+        """At once when something was put in, else the next look."""
+        if self._new:
+            return step
+        if self._trees or self._until is not None:
+            return next_multiple(step, EVERY)
+        return next_multiple(step, _RIGID_EVERY) if self._rigid else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """See now and then whether something stands."""
         if self._new:
             self._new, self._until = False, step + self._parting_steps
             self._split(True)
         if step % EVERY:
             return
-        if self._until is not None and step >= self._until:
+        if self._until is not None and (step >= self._until or (
+                step % _OVERLAPS_EVERY == 0 and self._is_parted(step))):
             self._until = None
             self._split(False)
         if step % _RIGID_EVERY == 0:
             self._leaning = any(_creeps(body) for body in self._rigid.values())
         standing = False
-        for body in self._trees.values():
-            states = pybullet.getJointStates(body.uid, [axis.index for axis in body.axes]) or ()
-            _put_back(body, states)
-            stands = _stands(body, states)
-            standing = standing or stands
-            self._keep(body, states, stands)
+        for tree in self._trees.values():
+            states = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
+            if tree.held is None:
+                _put_back(tree.body, states)
+            standing = self._stands(tree, states) or standing
         self._change(2 if standing else int(self._leaning))
 
-    def _keep(self, body: Body, states: JointStates, stands: bool) -> None:
-        """Put a free body that stands back where it stood at the last look."""
-        before = self._kept.pop(body.uid, None)
-        if not stands or body.base is None or not _is_slow(body.uid, _STILL) or any(
-                abs(state[1]) > _STILL for state in states):
-            return
-        position, turn = pybullet.getBasePositionAndOrientation(body.uid)
-        if before is None or dist(position, before.position) > _CREEP or dist(
-                turn, before.orientation) > _CREEP:
-            before = Pose(position, turn)
-        elif position != before.position or turn != before.orientation:
-            pybullet.resetBasePositionAndOrientation(body.uid, *before)
-        self._kept[body.uid] = before
+    def _is_parted(self, step: int) -> bool:
+        """Whether nothing lies deep in anything else any more."""
+        assert self._until is not None
+        if step < self._until - self._parting_steps + self._least_steps:
+            return False
+        return all(contact[8] > -_SHALLOW for contact in pybullet.getContactPoints())
+
+    def _stands(self, tree: _Tree, states: JointStates) -> bool:
+        """Whether an articulated body is slow, touches something, and is not held."""
+        body = tree.body
+        held, tree.held = tree.held, None
+        fastest = max([abs(state[1]) for state in states], default=0.0)
+        speed = 0.0 if body.base is None else _speed(body.uid)
+        if speed > _SLOW or fastest > _SLOW and held is None:
+            tree.looks = 0
+            return False
+        if tree.clear:
+            tree.clear -= 1
+            return False
+        contacts = pybullet.getContactPoints(bodyA=body.uid)
+        if not contacts:
+            tree.looks, tree.clear = 0, _CLEAR if body.base is None else 0
+            return False
+        alone = not (body.ties or body.balls or body.uid in self._loaded()
+                     or any(contact[2] in self._moving for contact in contacts))
+        if held is not None:
+            if alone and speed < _PUSHED and fastest < _PUSHED_JOINT:
+                _hold(tree, held)
+                return False
+            tree.looks = 0
+        elif alone and speed < _STILL and fastest < _STILL_JOINT:
+            tree.looks += 1
+            if tree.looks > _STANDS:
+                _hold(tree, (Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+                             if body.base is not None else None, [state[0] for state in states]))
+                return False
+        else:
+            tree.looks = 0
+        return True
 
     @staticmethod
     def _split(wanted: bool) -> None:
@@ -159,19 +234,21 @@ def _put_back(body: Body, states: JointStates) -> None:
             pybullet.resetJointState(body.uid, axis.index, position - _PUT_BACK * past, rate)
 
 
-def _stands(body: Body, states: JointStates) -> bool:
-    """An articulated body is slow, and touches something."""
-    if body.base is not None and not _is_slow(body.uid):
-        return False
-    if any(abs(state[1]) > _SLOW for state in states):
-        return False
-    return bool(pybullet.getContactPoints(bodyA=body.uid))
+def _hold(tree: _Tree, held: Tuple[Optional[Pose], List[float]]) -> None:
+    """Put an articulated body, and its joints, back where they are held, at rest."""
+    tree.held = held
+    pose, positions = held
+    if pose is not None:
+        pybullet.resetBasePositionAndOrientation(tree.body.uid, *pose)
+        pybullet.resetBaseVelocity(tree.body.uid, _NONE, _NONE)
+    for index, position in zip(tree.indices, positions):
+        pybullet.resetJointState(tree.body.uid, index, position, 0.0)
 
 
 def _creeps(body: Body) -> bool:
     """A rigid body is slow, and small, or friction carries a share of its weight."""
     uid = body.uid
-    if not _is_slow(uid):
+    if _speed(uid) > _SLOW:
         return False
     if body.radius < _SMALL:
         return True
@@ -183,6 +260,7 @@ def _creeps(body: Body) -> bool:
     return max(along, across) > _LEANS * normal
 
 
-def _is_slow(uid: int, most: float = _SLOW) -> bool:
+def _speed(uid: int) -> float:
+    """The largest part of the velocities of a body, m/s or rad/s."""
     linear, angular = pybullet.getBaseVelocity(uid)
-    return max(map(abs, linear)) <= most and max(map(abs, angular)) <= most
+    return max(map(abs, (*linear, *angular)))

@@ -9,20 +9,30 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
-from ..body_plan import BASE
 from ..commands import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part
+from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
+from .joint_servos import JointServos
+from .link_states import place
+from .step_helper import FAR
 
 _NOTHING = (0.0, 0.0, 0.0)
 
 
 class Forces:
-    """All that `apply` must do before the next step."""
+    """All that must be done before the next step.
 
-    def __init__(self, wake: Callable[[List[Body]], None]) -> None:
+    Attributes:
+        slip: links whose surfaces slip.
+    """
+
+    def __init__(self, wake: Callable[[List[Body]], None],
+                 loops_changed: Callable[[Set[int]], None] = lambda rows: None) -> None:
+        """`loops_changed` gets the axis rows that PID loops drive whenever these change."""
         self._wake = wake
+        self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
         self._acting: Dict[int, TimedForce] = {}
         self._loops: Dict[int, PidController] = {}
@@ -32,6 +42,8 @@ class Forces:
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
+        self.servos = JointServos(self._axes, wake)
+        self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:
         """Know the rows of a new body."""
@@ -60,11 +72,14 @@ class Forces:
         self._placed.add(body.uid)
         if body.uid in self._implicit:
             self._implicit[body.uid].disturbed()
+        self.servos.disturbed(body)
 
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
+        self.slip.forget(body)
         self._implicit.pop(body.uid, None)
+        self.servos.forget(body)
         for part in body.parts:
             self._parts.pop(part.row, None)
             self._weightless.pop(part.row, None)
@@ -73,8 +88,8 @@ class Forces:
             self._limits.pop(axis.row, None)
         rows = {part.row for part in body.parts}
         axes = {axis.row for axis in body.axes}
-        self.clear([force.force_id for force in self._timed.values()
-                    if force.row in (rows if isinstance(force, TimedWrench) else axes)])
+        self.drop([force.force_id for force in self._timed.values()
+                   if force.row in (rows if isinstance(force, TimedWrench) else axes)])
 
     def add(self, forces: Sequence[TimedForce]) -> str:
         """Queue timed forces; returns why not, or ""."""
@@ -84,29 +99,65 @@ class Forces:
         self._timed.update({force.force_id: force for force in forces})
         return ""
 
-    def clear(self, force_ids: Sequence[int]) -> None:
+    def drop(self, force_ids: Sequence[int]) -> None:
         """Drop timed forces by id."""
+        ended = [self._loops.pop(force_id, None) for force_id in force_ids]
         for force_id in force_ids:
             self._timed.pop(force_id, None)
             self._acting.pop(force_id, None)
-            self._loops.pop(force_id, None)
+        if any(ended):
+            self._tell_loops()
 
-    def clear_all(self) -> None:
-        """Drop every timed force."""
-        for table in (self._timed, self._acting, self._loops):
+    def _tell_loops(self) -> None:
+        self._loops_changed({self._acting[number].row for number in self._loops
+                             if number in self._acting})
+
+    def clear(self) -> None:
+        """All bodies are gone, and every timed force with them."""
+        ended = bool(self._loops)
+        for table in (self._timed, self._acting, self._loops, self._parts, self._axes,
+                      self._weightless, self._implicit, self._limits):
             table.clear()
-
-    @property
-    def idle(self) -> bool:
-        """True when a step needs nothing from here, now or later."""
-        return not (self._timed or self._weightless or self._implicit)
+        self.slip.clear()
+        self._placed.clear()
+        if ended:
+            self._tell_loops()
+        self.servos.clear()
 
     @property
     def wrenched_links(self) -> Set[int]:
         """Rows of the links that a timed wrench acts on in this step."""
         return {force.row for force in self._acting.values() if isinstance(force, TimedWrench)}
 
-    def apply(self, step: int, dt: float, gravity: Vec3) -> None:
+    def acting_on(self, row: int) -> Tuple[Vec3, Vec3]:
+        """The timed wrenches of the last step on a link: force and torque about its centre of mass.
+
+        N and N m, world axes.
+        """
+        force, torque = _NOTHING, _NOTHING
+        for wrench in self._acting.values():
+            if isinstance(wrench, TimedWrench) and wrench.row == row:
+                body, part = self._parts[row]
+                one, other = _in_world(wrench, part, place(body.uid, part.index)[1])
+                force, torque = add(force, one), add(torque, other)
+        return force, torque
+
+    @property
+    def loaded_bodies(self) -> Set[int]:
+        """PyBullet's numbers of the bodies that timed forces act on in this step."""
+        return {self._target(force).uid for force in self._acting.values()}
+
+    def due(self, step: int) -> int:
+        """Each step while something acts anew in it, or was put somewhere before it."""
+        return step if (self._timed or self._weightless or self._implicit
+                        or self._placed or not self.slip.idle
+                        or not self.servos.idle) else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Forget who was put somewhere before the step."""
+        self._placed.clear()
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
         efforts: Dict[int, float] = {}
         if self._timed:
@@ -116,6 +167,8 @@ class Forces:
                     self._apply_wrench(force, dt)
                 else:
                     efforts[force.row] = efforts.get(force.row, 0.0) + self._limited(force, dt)
+        if not self.servos.idle:
+            self.servos.add_to(efforts, step)
         for implicit in self._implicit.values():
             implicit.add_to(efforts)
         for row, effort in efforts.items():
@@ -123,14 +176,11 @@ class Forces:
             pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.TORQUE_CONTROL,
                                            force=effort)
         for body, part in self._weightless.values():
-            at = self._com(body, part)[0]
+            at = place(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
-        self._placed.clear()
-
-    def stepped(self) -> None:
-        """A step was made without `apply`."""
-        self._placed.clear()
+        if not self.slip.idle:
+            self.slip.apply(dt)
 
     def _limited(self, force: TimedEffort, dt: float) -> float:
         """An effort within the limits of its axis, each by itself as in Gazebo.
@@ -154,14 +204,17 @@ class Forces:
 
     def _begin_and_end(self, step: int) -> None:
         beginning = []
+        loops = len(self._loops)
         for force_id, force in list(self._timed.items()):
             if step >= force.stop:
-                self.clear([force_id])
+                self.drop([force_id])
             elif step >= force.start and force_id not in self._acting:
                 self._acting[force_id] = force
                 if isinstance(force, TimedEffort) and force.pid is not None:
                     self._loops[force_id] = PidController(force.pid)
                 beginning.append(force)
+        if len(self._loops) != loops:
+            self._tell_loops()
         if beginning:
             self._wake([self._target(force) for force in beginning])
 
@@ -174,15 +227,8 @@ class Forces:
         body, part = self._parts[wrench.row]
         if not body.moves:
             return
-        at, turn = self._com(body, part)
-        force, torque, point = wrench.force, wrench.torque, wrench.point
-        if wrench.in_link_axes:
-            # The link's axes, not the principal ones that PyBullet's frame follows.
-            x, y, z, w = part.link_from_com.orientation
-            inverse_turn = (-x, -y, -z, w)
-            force, torque, point = (rotate(turn, rotate(inverse_turn, v))
-                                    for v in (force, torque, point))
-        torque = add(torque, cross(point, force))
+        at, turn = place(body.uid, part.index)
+        force, torque = _in_world(wrench, part, turn)
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != _NOTHING and body.rigid and body.uid in self._placed:
@@ -190,11 +236,15 @@ class Forces:
         elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
 
-    @staticmethod
-    def _com(body: Body, part: Part) -> "tuple":
-        if part.index == BASE:
-            return pybullet.getBasePositionAndOrientation(body.uid)
-        return pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)[:2]
+
+def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:
+    """Force, and torque about the centre of mass, in world axes; `turn` is that of PyBullet."""
+    force, torque, point = wrench.force, wrench.torque, wrench.point
+    if wrench.in_link_axes:
+        # The link's axes, not the principal ones that PyBullet's frame follows.
+        back = conjugate(part.link_from_com.orientation)
+        force, torque, point = (rotate(turn, rotate(back, v)) for v in (force, torque, point))
+    return force, add(torque, cross(point, force))
 
 
 def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:

@@ -15,7 +15,9 @@ import numpy as np
 import pybullet
 
 from ...geometry import multiply, normalised
+from ..body_plan import BASE
 from .bodies import Body
+from .link_states import motion, motions
 
 _FAST = 2.0  # rad/s
 
@@ -65,6 +67,11 @@ class GyroscopicArticulated:
     def idle(self) -> bool:
         """True when no body can need it."""
         return not self._bodies
+
+    @property
+    def busy(self) -> bool:
+        """True while some body is watched in every step."""
+        return bool(self._then)
 
     def mend(self, dt: float) -> None:
         """Correct those that met nothing since the last time, and see who turns fast now."""
@@ -121,11 +128,7 @@ def _is_fast(uid: int) -> bool:
 
 def _whole(body: Body) -> Whole:
     base, hung = body.parts[0], body.parts[1:]
-    states = [(*pybullet.getBasePositionAndOrientation(body.uid),
-               *pybullet.getBaseVelocity(body.uid))]
-    for state in pybullet.getLinkStates(body.uid, [part.index for part in hung],
-                                        computeLinkVelocity=1, computeForwardKinematics=1):
-        states.append((state[0], state[1], state[6], state[7]))
+    states = [motion(body.uid, BASE), *motions(body.uid, [part.index for part in hung])]
     mass = np.array([part.mass for part in (base, *hung)])
     at, speed, spin = (np.array([state[n] for state in states]) for n in (0, 2, 3))
     turns = np.array([pybullet.getMatrixFromQuaternion(state[1]) for state in states])

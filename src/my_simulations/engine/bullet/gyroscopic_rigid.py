@@ -9,13 +9,14 @@ Only bodies that turn fast are looked at in each step; which they are is asked n
 """
 from __future__ import annotations
 
-from typing import Dict, List, Set, Tuple
+from typing import Callable, Dict, List, Set, Tuple
 
 import pybullet
 
 from ...geometry import Quat, Vec3, conjugate, multiply, normalised, rotate
 from .bodies import Body
 from .gyroscopic_articulated import GyroscopicArticulated
+from .step_helper import FAR, next_multiple
 
 _EVERY = 16        # steps between two looks for fast bodies
 _FAST = 1.0        # rad/s
@@ -28,7 +29,10 @@ Free = Tuple[int, Quat, Vec3]
 class GyroscopicRigid:
     """Corrects free, fast bodies after each step: asymmetric rigid ones, and articulated ones."""
 
-    def __init__(self) -> None:
+    def __init__(self, loaded: Callable[[], Set[int]]) -> None:
+        """`loaded` tells the rows of links that a load acts on in this step."""
+        self._loaded = loaded
+        self._free: List[Free] = []
         self._moments: Dict[int, Vec3] = {}
         self._bodies: Dict[int, Body] = {}
         self._fast: List[int] = []
@@ -47,6 +51,7 @@ class GyroscopicRigid:
         self._moments.pop(body.uid, None)
         self._bodies.pop(body.uid, None)
         self._fast = [uid for uid in self._fast if uid != body.uid]
+        self._free = []
         self._trees.forget(body)
 
     def clear(self) -> None:
@@ -54,31 +59,33 @@ class GyroscopicRigid:
         self._moments.clear()
         self._bodies.clear()
         self._fast.clear()
+        self._free.clear()
         self._trees.clear()
-
-    @property
-    def idle(self) -> bool:
-        """True when no body can need it."""
-        return not self._moments and self._trees.idle
 
     def moved(self, body: Body) -> None:
         """A body was put somewhere, or given another velocity."""
         self._trees.moved(body)
 
-    def before(self, step: int, dt: float) -> List[Free]:
-        """The fast rigid bodies before the step that begins at count `step`."""
+    def due(self, step: int) -> int:
+        """Each step while something turns fast, else the next look."""
+        if self._fast or self._trees.busy:
+            return step
+        return FAR if not self._moments and self._trees.idle else next_multiple(step, _EVERY)
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """See now and then who turns fast, and note their momentum."""
         if step % _EVERY == 0:
             self._fast = [uid for uid in self._moments if _is_fast(uid)]
             self._trees.mend(dt)
-        return [self._free(uid) for uid in self._fast]
+        self._free = [self._momentum(uid) for uid in self._fast]
 
-    def after(self, free: List[Free], loaded: Set[int], dt: float) -> None:
-        """Give the bodies that met nothing the attitude and velocity of their momentum.
-
-        `loaded`: rows of links that a load acted on.
-        """
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Give the bodies that met nothing the attitude and velocity of their momentum."""
+        if not (self._free or self._trees.busy):
+            return
+        loaded = self._loaded()
         self._trees.after(loaded)
-        for uid, turn, momentum in free:
+        for uid, turn, momentum in self._free:
             body = self._bodies[uid]
             if (body.ties or body.parts[0].row in loaded
                     or pybullet.getContactPoints(bodyA=uid)):
@@ -90,7 +97,7 @@ class GyroscopicRigid:
                 uid, pybullet.getBasePositionAndOrientation(uid)[0], turn)
             pybullet.resetBaseVelocity(uid, linear, _velocity(turn, momentum, moments))
 
-    def _free(self, uid: int) -> Free:
+    def _momentum(self, uid: int) -> Free:
         turn: Quat = pybullet.getBasePositionAndOrientation(uid)[1]
         own = rotate(conjugate(turn), pybullet.getBaseVelocity(uid)[1])
         a, b, c = self._moments[uid]

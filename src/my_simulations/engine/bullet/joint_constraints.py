@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -71,7 +71,11 @@ def _tie(one: End, mine: Pose, other: Optional[End], theirs: Pose, kind: int, ax
 
 
 class Constraints:
-    """The constraints of one model; `remove` before its bodies go."""
+    """The constraints of one model; `remove` before its bodies go.
+
+    Attributes:
+        closing: what stands for joints that close loops: PyBullet's numbers by the joint's name.
+    """
 
     def __init__(self, model: Model, plans: Sequence[BodyPlan], bodies: Sequence[Body],
                  pose: Pose, open_joints: Sequence[Joint], first_row: int) -> None:
@@ -82,6 +86,7 @@ class Constraints:
         self._axes = {(axis.name, axis.number): (body, axis)
                       for body in bodies for axis in body.axes}
         self._made: List[int] = []
+        self.closing: Dict[str, List[int]] = {}
         for joint in open_joints:
             if joint.type == "gearbox":
                 self._gearbox(joint)
@@ -90,6 +95,10 @@ class Constraints:
         for plan, body in zip(plans, bodies):
             self._screws(plan, body)
         self._mimics()
+
+    def end(self, name: str) -> Optional[End]:
+        """A link of the model by its name; None for the world."""
+        return self._end(name)
 
     def remove(self) -> None:
         """Take them out."""
@@ -103,13 +112,15 @@ class Constraints:
         """A joint that would close a loop."""
         parent, child = self._end(joint.parent), self._end(joint.child)
         at = self._model_from_joint(joint)
+        made: List[int] = []
         if child is not None:
-            self._made += tie(joint, child, self._seen_from(child, at), parent,
-                              compose(self._pose, at) if parent is None
-                              else self._seen_from(parent, at))
+            made = tie(joint, child, self._seen_from(child, at), parent,
+                       compose(self._pose, at) if parent is None
+                       else self._seen_from(parent, at))
         elif parent is not None:
-            self._made += tie(joint, parent, self._seen_from(parent, at), None,
-                              compose(self._pose, at))
+            made = tie(joint, parent, self._seen_from(parent, at), None, compose(self._pose, at))
+        self._made += made
+        self.closing[joint.name] = made
 
     def _seen_from(self, end: End, at: Pose) -> Pose:
         """A pose of the model frame seen from a link, at joint positions 0."""

@@ -15,6 +15,8 @@ from typing import Dict, List, Tuple
 import numpy as np
 import pybullet
 
+from .link_states import hung_states
+
 _AXES = {pybullet.JOINT_REVOLUTE: True, pybullet.JOINT_PRISMATIC: False}  # kind: it turns
 
 
@@ -76,12 +78,10 @@ class MassMatrix:
         """Of the base and each link: centre of mass, pivot, rotation of the principal axes."""
         position, turn = pybullet.getBasePositionAndOrientation(self._uid)
         centres, pivots, quaternions = [position], [position], [turn]
-        if self._links:
-            for state in pybullet.getLinkStates(self._uid, self._links,
-                                                computeForwardKinematics=1):
-                centres.append(state[0])
-                pivots.append(state[4])
-                quaternions.append(state[1])
+        for state in hung_states(self._uid, self._links, velocities=0):
+            centres.append(state[0])
+            pivots.append(state[4])
+            quaternions.append(state[1])
         return np.array(centres), np.array(pivots), _rotations(np.array(quaternions))
 
 

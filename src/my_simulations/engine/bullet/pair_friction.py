@@ -18,20 +18,26 @@ from typing import Callable, Dict, FrozenSet, List, Set, Tuple
 import numpy as np
 import pybullet
 
+from ...geometry import Vec3
 from .bodies import Body
+from .step_helper import FAR
+
+Node = Tuple[int, int]  # body uid, link index
+Pair = FrozenSet[Node]
 
 EVERY = 4
 """Steps between two looks at the contacts."""
 
+_MOST_LOOKS = 4       # looks until a surface is asked again that touches what it touched before
+_AT_REST = 16         # the same for one of a body at rest
+_SLOTS = 32           # more than the longest wait
 _RING_EVERY = 8       # looks between two solutions of a ring
 _LEAST_WEIGHT = 1e-3  # of a contact that carries nothing
 _COUNTS = 0.1         # a contact that carries this share of the most is worth a warning
 _TOLERATED = 0.03
 _SMALLEST = 1e-6
+_NOTHING: FrozenSet[Pair] = frozenset()
 _NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-
-Node = Tuple[int, int]  # body uid, link index
-Pair = FrozenSet[Node]
 
 
 class FrictionBalance:
@@ -47,6 +53,11 @@ class FrictionBalance:
         self._mu: Dict[Node, float] = {}
         self._fixed: Dict[Node, float] = {}
         self._free: Dict[Node, float] = {}
+        self._touching: Dict[Node, Set[Pair]] = {}
+        # Who is asked at which look, modulo _SLOTS: a clock that is set does not matter.
+        self._slots: List[List[Node]] = [[] for _ in range(_SLOTS)]
+        self._wait: Dict[Node, Tuple[int, int]] = {}   # slot, looks from one to the next
+        self._soon: Dict[Node, None] = {}              # asked at the next look
         self._rigid: Set[int] = set()
         self._pairs: Dict[Pair, float] = {}
         self._ring = 0
@@ -61,6 +72,7 @@ class FrictionBalance:
                 self._mu[node] = max(part.mu, _SMALLEST)
                 if body.moves and part.mu != 1.0:
                     self._free[node] = part.friction
+                    self._soon[node] = None
                 else:
                     self._fixed[node] = max(part.friction, _SMALLEST)
 
@@ -69,40 +81,80 @@ class FrictionBalance:
         self._rigid.discard(body.uid)
         for part in body.parts:
             for uid in body.uids:
-                for table in (self._mu, self._fixed, self._free):
-                    table.pop((uid, part.index), None)
-        self._pairs = {}
+                node = uid, part.index
+                for pair in list(self._touching.get(node, ())):
+                    self._part(pair)
+                for table in (self._mu, self._fixed, self._free, self._touching, self._wait,
+                              self._soon):
+                    table.pop(node, None)
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._mu, self._fixed, self._free):
+        for table in (self._mu, self._fixed, self._free, self._touching, self._wait, self._soon,
+                      self._pairs):
             table.clear()
+        for slot in self._slots:
+            slot.clear()
         self._rigid.clear()
-        self._pairs = {}
         self._told = False
+        self._ring = 0
 
-    @property
-    def idle(self) -> bool:
-        """True when every pair there can be is exact as stored."""
-        return not self._free
+    def touched(self, body: Body) -> None:
+        """A body was put somewhere or woken: it is asked soon."""
+        for part in body.parts:
+            if (body.uid, part.index) in self._free:
+                self._soon[body.uid, part.index] = None
 
-    def balance(self) -> None:
-        """Look at the contacts; when they are others than before, store new values.
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Look at contacts; where they are others than before, store new values.
 
         In rings also now and then, as what the contacts carry changes.
         """
-        pairs = self._touching()
-        same = pairs.keys() == self._pairs.keys()
-        self._pairs = pairs
-        if same:
+        if step % EVERY:
+            return
+        changed = self._ask_due(step // EVERY)
+        if not changed:
             if not self._ring:
                 return
             self._ring -= 1
             if self._ring:
                 return
-        nodes = sorted({node for pair in pairs for node in pair if node in self._free})
+        nodes = sorted({node for pair in self._pairs for node in pair if node in self._free})
         if nodes:
-            self._solve(nodes, sorted(pairs, key=sorted))
+            self._solve(nodes, sorted(self._pairs, key=sorted))
+
+    def due(self, step: int) -> int:
+        """The next look at which somebody is asked."""
+        if not self._free:
+            return FAR
+        look = -(-step // EVERY)
+        if not (self._soon or self._ring):
+            look = next((each for each in range(look, look + _SLOTS)
+                         if self._slots[each % _SLOTS]), FAR)
+        return look * EVERY
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def _ask_due(self, look: int) -> bool:
+        """Ask the surfaces whose turn it is what they touch. Returns whether that has changed."""
+        slot = look % _SLOTS
+        due = {node for node in self._slots[slot] if self._wait.get(node, (-1,))[0] == slot}
+        due.update(self._soon)
+        self._soon.clear()
+        self._slots[slot].clear()
+        changed = False
+        for node in sorted(due):
+            if node[0] in self._rigid and pybullet.getBaseVelocity(node[0]) == _NO_VELOCITY:
+                looks = _AT_REST
+            elif self._ask(node):
+                changed, looks = True, 1
+            else:
+                looks = min(2 * self._wait.get(node, (0, 1))[1], _MOST_LOOKS)
+            at = (look + looks) % _SLOTS
+            self._wait[node] = at, looks
+            self._slots[at].append(node)
+        return changed
 
     def _solve(self, nodes: List[Node], pairs: List[Pair]) -> None:
         column = {node: n for n, node in enumerate(nodes)}
@@ -132,24 +184,33 @@ class FrictionBalance:
             node = next(node for node in sorted(pairs[worst]) if node in self._free)
             self._misfit(node[0], float(off[worst]))
 
-    def _touching(self) -> Dict[Pair, float]:
-        """The pairs that touch, and the normal forces they carry, N."""
+    def _ask(self, node: Node) -> bool:
+        """Note what a surface touches, and the normal forces, N. Returns whether it is other."""
         found: Dict[Pair, float] = {}
-        seen: Set[int] = set()
-        resting: Set[int] = set()
-        for uid in sorted({node[0] for node in self._free}):
-            if uid in self._rigid and pybullet.getBaseVelocity(uid) == _NO_VELOCITY:
-                resting.add(uid)
-                continue
-            for contact in pybullet.getContactPoints(bodyA=uid):
-                if contact[1] in seen or contact[2] in seen:
-                    continue  # it was counted from the other side
-                pair = frozenset(((contact[1], contact[3]), (contact[2], contact[4])))
-                if len(pair) == 2 and all(node in self._mu for node in pair) and any(
-                        node in self._free for node in pair):
-                    found[pair] = found.get(pair, 0.0) + contact[9]
-            seen.add(uid)
-        for pair, force in self._pairs.items():
-            if any(node[0] in resting for node in pair):
-                found.setdefault(pair, force)
-        return found
+        uid, index = node
+        contacts = [(each[2], each[4], each[9])
+                    for each in pybullet.getContactPoints(bodyA=uid, linkIndexA=index)]
+        if uid not in self._rigid:  # of two links of one body, PyBullet tells of one as the first
+            contacts += [(uid, each[3], each[9]) for each in pybullet.getContactPoints(
+                bodyA=uid, bodyB=uid, linkIndexB=index)]
+        for other_uid, other_index, force in contacts:
+            other = other_uid, other_index
+            if other in self._mu and other != node:
+                pair = frozenset((node, other))
+                found[pair] = found.get(pair, 0.0) + force
+        before = self._touching.get(node, _NOTHING)
+        changed = before != found.keys()
+        if changed:
+            for pair in before - found.keys():
+                self._part(pair)
+            for pair in found:
+                for one in pair:
+                    self._touching.setdefault(one, set()).add(pair)
+        self._pairs.update(found)
+        return changed
+
+    def _part(self, pair: Pair) -> None:
+        """Two surfaces do not touch any more."""
+        self._pairs.pop(pair, None)
+        for one in pair:
+            self._touching[one].discard(pair)

@@ -5,8 +5,9 @@ from typing import Callable, Dict, Iterable, List
 
 import pybullet
 
-from ...geometry import Pose
+from ...geometry import Pose, Vec3
 from .bodies import Body
+from .step_helper import FAR
 
 _STILL = (0.0, 0.0, 0.0)
 
@@ -18,11 +19,6 @@ class PinnedBodies:
         self._wake = wake
         self._bodies: Dict[int, Body] = {}
         self._poses: Dict[int, Pose] = {}
-
-    @property
-    def idle(self) -> bool:
-        """True when nothing is held."""
-        return not self._bodies
 
     def set(self, bodies: Iterable[Body]) -> None:
         """Hold these, and let go of all others."""
@@ -49,7 +45,14 @@ class PinnedBodies:
         self._bodies.clear()
         self._poses.clear()
 
-    def apply(self) -> None:
+    def due(self, step: int) -> int:
+        """Each step, when something is held."""
+        return step if self._poses else FAR
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing before a step."""
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Undo what the last step did to them."""
         for uid, pose in self._poses.items():
             pybullet.resetBasePositionAndOrientation(uid, pose.position, pose.orientation)

@@ -6,10 +6,11 @@ from typing import Callable, Dict, Iterable, List, Mapping
 
 import pybullet
 
-from ...geometry import Pose, cross, rpy_from_quat, subtract
+from ...geometry import Pose, Vec3, cross, rpy_from_quat, subtract
 from ..commands import PlanarVelocity
 from .bodies import Body
 from .state_restore import Entry
+from .step_helper import FAR
 
 
 class PlanarMotion:
@@ -21,11 +22,6 @@ class PlanarMotion:
         self._model_pose = model_pose
         self._wake = wake
         self._velocities: Dict[int, PlanarVelocity] = {}
-
-    @property
-    def idle(self) -> bool:
-        """True when no model is told how to move."""
-        return not self._velocities
 
     def set(self, velocities: Iterable[PlanarVelocity]) -> None:
         """Move these models, and no others; those that have gone are ignored."""
@@ -44,7 +40,14 @@ class PlanarMotion:
         """All bodies are gone."""
         self._velocities.clear()
 
-    def apply(self) -> None:
+    def due(self, step: int) -> int:
+        """Each step, when a model is told how to move."""
+        return step if self._velocities else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act before the next step."""
         for number, wanted in self._velocities.items():
             entry = self._models[number]

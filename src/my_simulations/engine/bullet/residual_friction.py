@@ -6,8 +6,8 @@ something in an early iteration and nothing in the last one keeps the friction o
 unit cube with mu 0.8 that slides on a box stops 18 % too early, with mu 1 26 %. After the step such
 impulses are known, and their effect on the velocities is taken back: 1 % remains.
 
-Only fast bodies are looked at, and only those where something was found in every step. Which they
-are follows from the step count and their state alone, so runs repeat bit for bit.
+Only bodies that slide are looked at: fast ones that do not tumble, fly, or lie in a pile. Which
+they are follows from the step count and their state alone, so runs repeat bit for bit.
 """
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, conjugate, cross, rotate
+from ...geometry import Vec3, conjugate, cross, dot, norm, rotate
 from .bodies import Body
+from .step_helper import FAR, looks_until_turn, turn_of
 
 EVERY = 8
 """Steps between two looks at the fast bodies."""
@@ -25,10 +26,17 @@ _FAST_ROUNDS = 2   # looks until every fast body was asked for its contacts
 _ROUNDS = 16       # looks until every moving body was asked for its speed
 _SLOW_ROUNDS = 64  # the same for those found at rest
 _FAST = 0.05       # m/s, or rad/s: slower ones lose nothing that one sees
-_KEPT = 16         # looks for which a body is asked in every step, once fast or after a find
-_MOST_CONTACTS = 8 # a body with more lies in a pile, where nobody knows how far it should slide
+_TUMBLES = 1.5     # rad/s across gravity: nobody knows how far a body that turns over slides
+_CLEAR = 24        # looks for which what flies clear of everything is not asked
+_REACH = 0.02      # m: contacts exist a little before surfaces meet
+_FIRST = 3         # looks for which a body is asked in every step, once it slides
+_KEPT = 16         # the same after a find
+_MOST_CONTACTS = 8 # a body with more, or that touches two that move, lies in a pile: as tumbling
 _SOON = -1         # instead of a look: it is not known yet which comes next
 _NONE = (0.0, 0.0, 0.0)
+
+# What the contacts of a body tell:
+_FLIES, _PILED, _SLIDES, _MENDED = range(4)
 
 
 class ResidualFriction:
@@ -37,16 +45,22 @@ class ResidualFriction:
     def __init__(self) -> None:
         self._bodies: Dict[int, Body] = {}
         self._trees: Set[int] = set()
+        self._moving: Set[int] = set()
         self._watched: Dict[int, None] = {}
         self._fast: Dict[int, None] = {}
         self._mended: Dict[int, int] = {}   # until which look
         self._asleep: Set[int] = set()
+        self._clear: Dict[int, int] = {}    # until which look
+        self._planes: Set[int] = set()
         self._rounds: Optional[Tuple[List[int], List[int]]] = None
 
     def add(self, body: Body) -> None:
         """Know a new body; only rigid ones that move and can have several contacts matter."""
         if not body.moves:
+            if not body.radius:
+                self._planes.add(body.uid)  # endless; the box below each says what it says
             return
+        self._moving.add(body.uid)
         if not body.rigid:
             self._trees.add(body.uid)
             return
@@ -57,87 +71,143 @@ class ResidualFriction:
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
-        for table in (self._bodies, self._watched, self._fast, self._mended):
+        for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
             table.pop(body.uid, None)
-        self._trees.discard(body.uid)
-        self._asleep.discard(body.uid)
+        for group in (self._moving, self._trees, self._asleep, self._planes):
+            group.discard(body.uid)
         self._rounds = None
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._bodies, self._watched, self._fast, self._mended):
+        for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
             table.clear()
-        self._trees.clear()
-        self._asleep.clear()
+        for group in (self._moving, self._trees, self._asleep, self._planes):
+            group.clear()
         self._rounds = None
-
-    @property
-    def idle(self) -> bool:
-        """True when no body can need it."""
-        return not self._watched
-
-    @property
-    def busy(self) -> bool:
-        """True when bodies are mended in every step, not only looked at now and then."""
-        return bool(self._mended)
 
     def touched(self, body: Body) -> None:
         """A body was put somewhere or given another velocity: it is looked at soon."""
         if body.uid in self._watched:
             self._fast[body.uid] = None
             self._mended[body.uid] = _SOON
+            self._clear.pop(body.uid, None)
+            if body.uid in self._asleep:
+                self._asleep.discard(body.uid)
+                self._rounds = None
 
-    def after(self, step: int, dt: float) -> None:
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing before a step."""
+
+    def due(self, step: int) -> int:
+        """Each step while bodies are mended, else the next look, which comes after a step."""
+        if not self._watched:
+            return FAR
+        if self._mended:
+            return step
+        look = -(-step // EVERY)
+        awake, asleep = self._lists()
+        return EVERY * (look + min(looks_until_turn(len(awake), look, _ROUNDS),
+                                   looks_until_turn(len(asleep), look, _SLOW_ROUNDS),
+                                   looks_until_turn(len(self._fast), look, _FAST_ROUNDS)))
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Mend what the step that began at count `step` left, and look around now and then."""
         look = step // EVERY
         seen: Set[int] = set()
-        for uid in list(self._mended):
-            if self._mend(uid, seen, dt):
-                self._mended[uid] = look + _KEPT
-            elif self._mended[uid] == _SOON:
-                self._mended[uid] = look + _KEPT
-            elif look > self._mended[uid]:
-                del self._mended[uid]
+        flying = [uid for uid in list(self._mended)
+                  if not self._keep_on(uid, self._mend(uid, seen, dt), look)]
         if step % EVERY == 0:
-            self._look(look, seen, dt)
+            flying += self._look(look, seen, dt, gravity)
+        for uid in flying:
+            self._look_ahead(uid, look, dt, gravity)
 
     # -- who needs it ----------------------------------------------------------------------------
 
-    def _look(self, look: int, seen: Set[int], dt: float) -> None:
+    def _keep_on(self, uid: int, found: int, look: int) -> bool:
+        """Go on mending a body in every step, or not. Returns False when it flies."""
+        until = self._mended[uid]
+        if found == _MENDED:
+            self._mended[uid] = look + _KEPT
+        elif found == _SLIDES and until == _SOON:
+            self._mended[uid] = look + _FIRST
+        elif found != _SLIDES or look > until:
+            del self._mended[uid]
+            if found == _PILED:
+                self._fast.pop(uid, None)
+        return found != _FLIES
+
+    def _look(self, look: int, seen: Set[int], dt: float, gravity: Vec3) -> List[int]:
+        """Ask those whose turn it is. Returns which of them fly."""
+        awake, asleep = self._lists()
+        flying = [uid for uid in turn_of(awake, look, _ROUNDS) + turn_of(
+            asleep, look, _SLOW_ROUNDS) if not self._ask(uid, look, gravity)]
+        for uid in turn_of(list(self._fast), look, _FAST_ROUNDS):
+            if uid in self._mended:
+                continue
+            found = self._mend(uid, seen, dt)
+            if found == _MENDED:
+                self._mended[uid] = look + _KEPT
+            elif found == _PILED:
+                del self._fast[uid]
+            elif found == _FLIES:
+                flying.append(uid)
+        return flying
+
+    def _lists(self) -> Tuple[List[int], List[int]]:
+        """Who is asked for its speed: what moved when it was asked last, and what did not."""
         if self._rounds is None:
             self._rounds = ([uid for uid in self._watched if uid not in self._asleep],
                             [uid for uid in self._watched if uid in self._asleep])
-        awake, asleep = self._rounds
-        for uid in awake[look % _ROUNDS::_ROUNDS] + asleep[look % _SLOW_ROUNDS::_SLOW_ROUNDS]:
-            self._ask(uid, look)
-        for uid in list(self._fast)[look % _FAST_ROUNDS::_FAST_ROUNDS]:
-            if uid not in self._mended and self._mend(uid, seen, dt):
-                self._mended[uid] = look + _KEPT
+        return self._rounds
 
-    def _ask(self, uid: int, look: int) -> None:
-        """Find out whether a body is fast, slow or at rest."""
+    def _ask(self, uid: int, look: int, gravity: Vec3) -> bool:
+        """Find out whether a body is fast, slow or at rest. Returns False when it flew so far."""
+        until = self._clear.pop(uid, None)
+        if until is not None and until > look:
+            self._clear[uid] = until
+            return True
         linear, angular = pybullet.getBaseVelocity(uid)
-        # Products become infinite where `** 2` raises OverflowError, which would end the engine.
-        speed = max(sum(value * value for value in linear),
-                    sum(value * value for value in angular))
+        speed = max(dot(linear, linear), dot(angular, angular))
         if (speed == 0.0) != (uid in self._asleep):
             (self._asleep.add if speed == 0.0 else self._asleep.discard)(uid)
             self._rounds = None
-        if speed <= _FAST * _FAST:
+        if speed <= _FAST * _FAST or _tumbles(angular, gravity):
             self._fast.pop(uid, None)
             self._mended.pop(uid, None)
+        elif until is not None:
+            return False
         elif uid not in self._fast:
             self._fast[uid] = None
-            self._mended[uid] = look + _KEPT
+            self._mended[uid] = look + _FIRST
+        return True
+
+    def _look_ahead(self, uid: int, look: int, dt: float, gravity: Vec3) -> None:
+        """Leave a body that flies alone for as long as it meets nothing, else ask it often."""
+        centre = pybullet.getBasePositionAndOrientation(uid)[0]
+        linear = pybullet.getBaseVelocity(uid)[0]
+        reach, span = self._bodies[uid].radius + _REACH, (_CLEAR + _ROUNDS) * EVERY * dt
+        ways = [v * span + g * span * span / 2.0 for v, g in zip(linear, gravity)]
+        rise = norm(gravity) * span * span / 8.0  # the most that a parabola is above its chord
+        low = [c + min(0.0, way) - reach - rise for c, way in zip(centre, ways)]
+        high = [c + max(0.0, way) + reach + rise for c, way in zip(centre, ways)]
+        near = pybullet.getOverlappingObjects(low, high) or ()
+        if all(other == uid or other in self._planes for other, _ in near):
+            self._clear[uid] = look + _CLEAR
+            self._fast.pop(uid, None)
+        else:
+            self._fast[uid] = None
 
     # -- mending ---------------------------------------------------------------------------------
 
-    def _mend(self, uid: int, seen: Set[int], dt: float) -> bool:
-        """Take back what was left at the contacts of a body. Returns True when there was any."""
-        found = False
+    def _mend(self, uid: int, seen: Set[int], dt: float) -> int:
+        """Take back what was left at the contacts of a body. Returns what they tell."""
         contacts = pybullet.getContactPoints(bodyA=uid)
         if len(contacts) > _MOST_CONTACTS:
-            return False
+            return _PILED
+        tells, near = (_SLIDES, contacts[0][2]) if contacts else (_FLIES, -1)
+        if any(contact[2] != near for contact in contacts) and len(
+                {contact[2] for contact in contacts} & self._moving) > 1:
+            return _PILED
         for contact in contacts:
             # What lies apart was not solved in this step, its forces are older ones.
             if contact[9] > 0.0 or contact[10] == 0.0 or contact[8] > 0.0:
@@ -146,9 +216,9 @@ class ResidualFriction:
             if other in seen or other in self._trees:
                 continue  # those with joints go through another solver, which leaves nothing
             self._take_back(uid, other, contact, dt)
-            found = True
+            tells = _MENDED
         seen.add(uid)
-        return found
+        return tells
 
     def _take_back(self, uid: int, other: int, contact: Tuple[Any, ...], dt: float) -> None:
         """Undo the friction impulse of one contact: it acts against the slip of each body."""
@@ -186,3 +256,9 @@ class ResidualFriction:
             uid, (vx + impulse[0] / part.mass, vy + impulse[1] / part.mass,
                   vz + impulse[2] / part.mass), (wx + ax, wy + ay, wz + az))
 
+
+def _tumbles(angular: Vec3, gravity: Vec3) -> bool:
+    """Whether a body turns over; turning about what is upright it may well slide."""
+    pull = norm(gravity)
+    about = dot(angular, gravity) / pull if pull > 0.0 else 0.0
+    return dot(angular, angular) - about * about > _TUMBLES * _TUMBLES

@@ -7,7 +7,7 @@ points of lying cylinders are dropped before each step; the step finds new ones.
 
 A step finds one new point, at one end or the other, so only one end is pushed out of the floor at a
 time: at the rate of other contacts a cylinder of 3 cm rolls 1.9 mm deep, where Bullet is so inexact
-on boxes that it loses 2 % of 0.05 m/s in 20 s (measured). Where a rigid cylinder rolls on what does
+on boxes that it loses 2 % of 0.05 m/s in 20 s (measured). Where a cylinder rolls on what does
 not move, its overlaps are therefore parted as fast as that gives it no velocity to jump with.
 
 A cylinder at rest would rock on such points. So one that hardly moves, where the floor is level and
@@ -22,21 +22,27 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 import pybullet
 
 from ...description.model import Link
-from ...description.shapes import Capsule, Cylinder, Empty
+from ...description.shapes import Capsule, Cylinder, Empty, Heightmap, Mesh
 from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
+from .extra_surfaces import SOFT
+from .link_states import place
+from .step_helper import FAR, next_multiple
 
 EVERY = 8
 """Steps between two looks at who lies."""
 
 _LYING = 0.1      # of the contact normal along the axis: less is a cylinder on its side
+_UPRIGHT = 0.9    # more is one on its end
 _TURNS = 0.01     # rad/s: joints slower than that need nothing
 _CREEP = 5e-3     # m/s: what rolls slower stands
 _TURN = 0.2       # rad/s: the same for its turning
 _LEVEL = 1e-3     # of gravity along the floor: less is a level one
 _ASLEEP = 3       # looks without velocity: it sleeps, and Bullet leaves it alone
+_HINGED = 3       # looks until a wheel that rolls is looked at again
+_PATIENCE = 8     # looks until one that sleeps, or stands on its end, is looked at again
 _SHIFT = 1e-5     # m between two looks: less is not its own
 _NONE = (0.0, 0.0, 0.0)
 
@@ -49,13 +55,20 @@ _CHANGE = 0.1       # smaller changes of the share are not worth a call
 
 @dataclass
 class _Roller:
-    """A round link: its axis in the frame of its principal axes; looks without velocity."""
+    """A round link: its axis in the frame of its principal axes; looks without velocity.
+
+    Attributes:
+        hard: its contacts are no springs, so how they part is ours to say.
+        wait: looks at which it need not be looked at.
+    """
 
     body: Body
     part: Part
     axis: Vec3
     meets: collision_groups.Filter
+    hard: bool
     still: int = 0
+    wait: int = 0
     share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
 
 
@@ -67,21 +80,26 @@ class RollingContacts:
         self._rolling: Dict[Tuple[int, int], collision_groups.Filter] = {}
         self._standing: Dict[int, Pose] = {}
         self._moving: Set[int] = set()
+        self._seams: Set[int] = set()   # floors of triangles
 
     def add(self, body: Body, part: Part, link: Link) -> None:
         """Know a link of a body; only moving ones that are cylinders about one axis matter."""
         if body.moves:
             self._moving.add(body.uid)
+        elif any(isinstance(each.geometry, (Heightmap, Mesh)) for each in link.collisions):
+            self._seams.update(body.uids)
         axis = _axis_of(link)
         if axis is not None and body.moves:
             own = rotate(conjugate(part.link_from_com.orientation), axis)
             self._rollers[body.uid, part.index] = _Roller(body, part, own,
-                                                          collision_groups.moving(link))
+                                                          collision_groups.moving(link),
+                                                          link.collisions[0].surface.kp >= SOFT)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._standing.pop(body.uid, None)
         self._moving.discard(body.uid)
+        self._seams.difference_update(body.uids)
         for part in body.parts:
             for table in (self._rollers, self._rolling):
                 table.pop((body.uid, part.index), None)
@@ -92,30 +110,23 @@ class RollingContacts:
         self._rolling.clear()
         self._standing.clear()
         self._moving.clear()
-
-    @property
-    def idle(self) -> bool:
-        """True when no link can need it."""
-        return not self._rollers
-
-    @property
-    def busy(self) -> bool:
-        """True when something must be done before every step."""
-        return bool(self._rolling or self._standing)
+        self._seams.clear()
 
     def touched(self, body: Body) -> None:
         """A rigid body was put somewhere or given another velocity: it may roll at once."""
         self._standing.pop(body.uid, None)
         roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
         if roller is not None:
-            roller.still = 0
+            roller.still = roller.wait = 0
             self._rolling[body.uid, BASE] = roller.meets
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Act before the step of `dt` s that begins at count `step`."""
+        """Find out now and then who rolls, and let it roll in the next step."""
         if step % EVERY == 0:
             for key, roller in self._rollers.items():
-                if self._rolls(roller, dt, gravity):
+                if roller.wait:
+                    roller.wait -= 1
+                elif self._rolls(roller, dt, gravity):
                     self._rolling[key] = roller.meets
                 else:
                     self._rolling.pop(key, None)
@@ -126,6 +137,15 @@ class RollingContacts:
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 
+    def due(self, step: int) -> int:
+        """Each step while something rolls, or stands, else the next look."""
+        if self._rolling or self._standing:
+            return step
+        return next_multiple(step, EVERY) if self._rollers else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
     def _rolls(self, roller: _Roller, dt: float, gravity: Vec3) -> bool:
         """Whether a link lies on its side and does not stand; finds out whether it does."""
         uid, index = roller.body.uid, roller.part.index
@@ -135,36 +155,43 @@ class RollingContacts:
             if roller.still:
                 if roller.still >= _ASLEEP:
                     self._standing.pop(uid, None)
+                    roller.wait = _PATIENCE
                 return False
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
-        elif index == BASE:
-            turn = pybullet.getBasePositionAndOrientation(uid)[1]
+        elif index != BASE and abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
+            return False
         else:
-            if abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
-                return False
-            turn = pybullet.getLinkState(uid, index, computeForwardKinematics=1)[1]
+            turn = place(uid, index)[1]
         axis = rotate(turn, roller.axis)
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
-        if roller.body.rigid:
+        if roller.hard:
             self._part(roller, contacts, dt, norm(gravity))
         if not contacts:
             return (uid, index) in self._rolling
         if any(abs(dot(contact[7], axis)) > _LYING for contact in contacts):
+            roller.wait = _PATIENCE if all(
+                abs(dot(contact[7], axis)) > _UPRIGHT for contact in contacts) else 0
             return False
         if roller.body.rigid:
             before = self._standing.pop(uid, None)
             if _slow(linear, angular) and self._on_level(contacts, gravity):
                 self._stand(uid, before)
                 return False
+        else:
+            roller.wait = _HINGED
         return True
 
     def _part(self, roller: _Roller, contacts: Tuple[Any, ...], dt: float, weight: float) -> None:
-        """Set how fast the overlaps of a rigid link are parted. `weight`: gravity, m/s^2."""
+        """Set how fast the overlaps of a link are parted. `weight`: gravity, m/s^2.
+
+        Wheels keep the usual rate on triangles, whose edges would drive them on.
+        """
         share = least = min(_MOST, _PARTING * dt)
         key = roller.body.uid, roller.part.index
         depth = max((-contact[8] for contact in contacts), default=0.0)
         if depth > 0.0 and key in self._rolling and not any(
-                contact[2] in self._moving for contact in contacts):
+                contact[2] in self._moving or (contact[2] in self._seams and not roller.body.rigid)
+                for contact in contacts):
             share = min(_MOST, max(least, _PUSH * weight * dt * dt / depth))
         if abs(share - (roller.share or least)) > _CHANGE * share:
             roller.share = share
@@ -181,9 +208,13 @@ class RollingContacts:
         self._standing[uid] = at
 
     def _on_level(self, contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
-        """Whether a body only touches level floors that do not move."""
+        """Whether a body only stands on level floors that do not move.
+
+        Edges of triangles beside it, which carry nothing, may be inclined.
+        """
         limit = _LEVEL * norm(gravity)
-        return all(contact[2] not in self._moving and norm(cross(contact[7], gravity)) <= limit
+        return all(contact[2] not in self._moving and (
+            contact[8] > 0.0 or norm(cross(contact[7], gravity)) <= limit)
                    for contact in contacts)
 
 

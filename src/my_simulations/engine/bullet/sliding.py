@@ -14,18 +14,21 @@ friction back every 64 steps, for as long as that slows it down, and keeps it wh
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Set, Tuple
 
 import pybullet
 
 from ...description.model import Link
 from ...geometry import Vec3, add, cross, dot, norm, scale
 from .bodies import Body, Part
+from .link_states import motion
+from .step_helper import FAR, next_multiple
 from .surface_coefficients import directed
 
 EVERY = 16
 """Steps between two looks at who slides."""
 
+_SELDOM = 4        # looks until one that hangs on the world is looked at again
 _SLIDES = 2e-3     # m/s of slip: a link at rest never has it
 _HELD = 5e-4       # m/s: what slips less than that is held
 _SOFT = 4.0        # steps of braking by friction: a slip that ends sooner meets less of it
@@ -65,6 +68,7 @@ class Sliding:
     def __init__(self) -> None:
         self._parts: Dict[int, Dict[int, Part]] = {}
         self._mass: Dict[int, float] = {}
+        self._fixed: Set[int] = set()
         self._static: Dict[int, float] = {}
         self._slides: Dict[Key, _Slide] = {}
         self._wanted = True
@@ -85,9 +89,18 @@ class Sliding:
         elif part.mu > 0.0 and any(axis.index == part.index for axis in body.axes):
             self._parts.setdefault(body.uid, {})[part.index] = part
             self._mass[body.uid] = sum(each.mass for each in body.parts)
+            if body.base is None:
+                self._fixed.add(body.uid)
+
+    def leave(self, body: Body, part: Part) -> None:
+        """The friction of a link is another's business."""
+        if (body.uid, part.index) in self._slides:
+            self._give_back((body.uid, part.index))
+        self._parts.get(body.uid, {}).pop(part.index, None)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
+        self._fixed.discard(body.uid)
         for uid in body.uids:
             for table in (self._static, self._parts, self._mass):
                 table.pop(uid, None)
@@ -98,16 +111,7 @@ class Sliding:
         """All bodies are gone."""
         for table in (self._static, self._parts, self._mass, self._slides):
             table.clear()
-
-    @property
-    def idle(self) -> bool:
-        """True when no link can need it."""
-        return not (self._wanted and self._parts)
-
-    @property
-    def busy(self) -> bool:
-        """True when something must be done before and after every step."""
-        return bool(self._slides)
+        self._fixed.clear()
 
     def touched(self, body: Body) -> None:
         """A body was put somewhere or given another velocity."""
@@ -119,17 +123,30 @@ class Sliding:
         slide = self._slides.get((uid, index))
         return _NONE if slide is None else slide.forces.get(at, _NONE)
 
-    def before(self) -> None:
-        """Act before a step."""
+    @property
+    def busy(self) -> bool:
+        """True while a link slides."""
+        return bool(self._slides)
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Let friction act in the next step."""
         for (uid, index), slide in self._slides.items():
             for at, force in slide.forces.items():
                 pybullet.applyExternalForce(uid, index, force, at, pybullet.WORLD_FRAME)
 
+    def due(self, step: int) -> int:
+        """Each step while a link slides, else the next look, which comes after a step."""
+        if self._slides:
+            return step
+        return next_multiple(step, EVERY) if self._wanted and self._parts else FAR
+
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """See how links slide after the step that began at count `step`; now and then, which."""
         if step % EVERY == 0 and self._wanted:
+            seldom = step % (_SELDOM * EVERY) == 0
             for uid, parts in self._parts.items():
-                self._look(uid, parts)
+                if seldom or uid not in self._fixed:
+                    self._look(uid, parts)
         if self._slides:
             least = norm(gravity)
             for key, slide in list(self._slides.items()):
@@ -201,9 +218,7 @@ class Sliding:
 
 def _slips(uid: int, index: int, contacts: Contacts) -> List[Vec3]:
     """The velocity of a link across the floor at each contact, m/s."""
-    # With forward kinematics: else the answer depends on whether somebody has read the link before.
-    state = pybullet.getLinkState(uid, index, computeLinkVelocity=1, computeForwardKinematics=1)
-    centre, linear, angular = state[0], state[6], state[7]
+    centre, _, linear, angular = motion(uid, index)
     found: List[Vec3] = []
     for contact in contacts:
         at, normal = contact[5], contact[7]

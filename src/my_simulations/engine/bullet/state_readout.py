@@ -17,6 +17,7 @@ from ...geometry import IDENTITY, Pose, inverse
 from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
 from .bodies import Body
+from .link_states import motions
 
 _ROW = struct.Struct("=13d")
 _PLACE = struct.Struct("=7d")
@@ -77,6 +78,12 @@ class StateReadout:
             table.pop(body.uid, None)
         for part in body.parts:
             self._offsets.pop(part.row, None)
+
+    def clear(self) -> None:
+        """All bodies are gone; their rows stay as they are."""
+        for table in (self._awake, self._trees, self._resting, self._guards, self._touched,
+                      self._offsets):
+            table.clear()
 
     def touch(self, body: Body) -> None:
         """The body may have moved: read it until it rests again."""
@@ -248,16 +255,15 @@ class StateReadout:
                            *angular)
             total += sum(position) + sum(turn) + sum(linear) + sum(angular)
             hung = body.parts[1:]
-        states = pybullet.getLinkStates(uid, [part.index for part in hung],
-                                        computeLinkVelocity=1, computeForwardKinematics=1)
-        for part, state in zip(hung, states):
-            _ROW.pack_into(links, part.row * _ROW.size, *state[0], *state[1], *state[6], *state[7])
-            total += sum(state[0]) + sum(state[6])
+        for part, state in zip(hung, motions(uid, [part.index for part in hung])):
+            _ROW.pack_into(links, part.row * _ROW.size, *state.position, *state.orientation,
+                           *state.linear, *state.angular)
+            total += sum(state.position) + sum(state.linear)
         if body.axes:
             states = pybullet.getJointStates(uid, [axis.index for axis in body.axes])
-            for axis, state in zip(body.axes, states):
-                _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, *state[:2])
-                total += state[0] + state[1]
+            for axis, (at, rate, *_) in zip(body.axes, states):
+                _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, at, rate)
+                total += at + rate
         if total - total != 0.0:
             self._diverged(body)
             return

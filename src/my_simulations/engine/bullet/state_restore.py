@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, List
+from typing import Any, Callable, Dict, List
 
 import numpy as np
 import pybullet
@@ -15,6 +15,7 @@ from . import bodies
 from .bodies import Body
 from .body_builder import Builder
 from .joint_constraints import Constraints
+from .link_states import place
 
 
 @dataclass
@@ -52,8 +53,7 @@ def _restore_base(body: Body, link_pose: Pose) -> None:
     """Put the fixed base where it must be for the first link to have its pose."""
     base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
     part = body.parts[0]
-    at = pybullet.getLinkState(body.uid, part.index, computeForwardKinematics=1)
-    base_from_com = compose(inverse(base), Pose(at[0], at[1]))
+    base_from_com = compose(inverse(base), Pose(*place(body.uid, part.index)))
     target = compose(part.com_pose(link_pose), inverse(base_from_com))
     if not _nearly(base, target):
         pybullet.resetBasePositionAndOrientation(body.uid, target.position,
@@ -93,8 +93,9 @@ def inherited(before: Entry, model: Model, frame: Pose, state_of: Callable[[int]
                               twist_at(state.twist, rotate(state.pose.orientation,
                                                            shift.position)))
         states.append(state)
-    axes = {row_name(axis.name, axis.number): axis_table[axis.row].tolist()
-            for body in before.bodies for axis in body.axes}
+    axes: Dict[str, Any] = {
+        row_name(axis.name, axis.number): axis_table[axis.row].tolist()
+        for body in before.bodies for axis in body.axes}
     joints_of = axis_rows(model)
     return ModelState(tuple(states), tuple(
         (values[0], values[1])

@@ -11,8 +11,9 @@ import pybullet
 
 from ...description.model import Link
 from ...geometry import Vec3, conjugate, rotate, scale
-from ..body_plan import BASE
 from .bodies import Body, Part
+from .link_states import motion
+from .step_helper import FAR
 
 
 class VelocityDecay:
@@ -36,15 +37,17 @@ class VelocityDecay:
         """All bodies are gone."""
         self._links.clear()
 
-    @property
-    def idle(self) -> bool:
-        """True when no link is slowed down."""
-        return not self._links
+    def due(self, step: int) -> int:
+        """Each step, when a link is slowed down."""
+        return step if self._links else FAR
 
-    def apply(self, dt: float) -> None:
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act in the next step, of `dt` s."""
         for body, part, linear_share, angular_share in self._links.values():
-            at, turn, linear, angular = _motion(body, part)
+            at, turn, linear, angular = motion(body.uid, part.index)
             if linear_share:
                 pybullet.applyExternalForce(
                     body.uid, part.index, scale(linear, -linear_share * part.mass / dt), at,
@@ -56,13 +59,3 @@ class VelocityDecay:
                     body.uid, part.index,
                     scale(rotate(turn, (torque[0], torque[1], torque[2])), -angular_share / dt),
                     pybullet.WORLD_FRAME)
-
-
-def _motion(body: Body, part: Part) -> "Tuple[Vec3, Tuple[float, float, float, float], Vec3, Vec3]":
-    """Place, attitude and velocities of a link's centre of mass."""
-    if part.index == BASE:
-        return (*pybullet.getBasePositionAndOrientation(body.uid),
-                *pybullet.getBaseVelocity(body.uid))
-    state = pybullet.getLinkState(body.uid, part.index, computeLinkVelocity=1,
-                                  computeForwardKinematics=1)
-    return state[0], state[1], state[6], state[7]

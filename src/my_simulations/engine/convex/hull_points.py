@@ -12,6 +12,10 @@ _ROUND = 32     # points on a circle
 _SPHERE = 256   # points on a sphere
 
 
+_THIN = 2.5        # times the distance: what is thinner is not shrunk
+_FARTHEST = 3.0    # times the distance: how far a sharp corner moves
+
+
 def hull_points(geometry: Geometry) -> np.ndarray[Any, Any]:
     """Points (n, 3) in metres, in the shape's frame, whose hull is the shape.
 
@@ -43,6 +47,36 @@ def naming_triangles(count: int) -> np.ndarray[Any, Any]:
     """Triangles (count, 3) that use every point, because mesh readers skip unused points."""
     ring = np.arange(count)
     return np.stack([ring, (ring + 1) % count, (ring + 2) % count], axis=1)
+
+
+def shrunk(vertices: np.ndarray[Any, Any], triangles: np.ndarray[Any, Any],
+           distance: float) -> np.ndarray[Any, Any]:
+    """The corners of a convex solid whose faces are all moved inwards by `distance`, m.
+
+    `triangles` (m, 3) are its surface. Corners keep their order. What is hardly thicker than twice
+    the distance stays as it is.
+    """
+    points, same = np.unique(vertices, axis=0, return_inverse=True)
+    corners = points[same.reshape(-1)[triangles]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(normals, axis=1)
+    faces = np.flatnonzero(sizes > 1e-12 * sizes.max())
+    outward = ((corners[:, 0] - points.mean(axis=0)) * normals).sum(axis=1) >= 0.0
+    normals[faces] /= np.where(outward, sizes, -sizes)[faces, None]
+    reach = (corners[faces, 0] * normals[faces]).sum(axis=1)
+    thickness = reach - (points @ normals[faces].T).min(axis=0)
+    if thickness.min() < _THIN * distance:
+        return vertices
+    moved = points.copy()
+    at = same.reshape(-1)[triangles[faces]]
+    for n in range(len(points)):
+        mine = normals[faces[(at == n).any(axis=1)]]
+        if len(mine):
+            away = np.linalg.lstsq(mine, np.full(len(mine), -distance), rcond=1e-3)[0]
+            length = max(float(np.linalg.norm(away)), 1e-12)
+            moved[n] += away * min(1.0, _FARTHEST * distance / length)
+    found: np.ndarray[Any, Any] = moved[same.reshape(-1)]
+    return found
 
 
 def _circle(radius: float, z: float) -> np.ndarray[Any, Any]:

@@ -104,7 +104,7 @@ GEOMETRIES: Mapping[str, Table] = {
 
 _ODE_FRICTION = Group({
     "mu": Value("mu", FRICTION), "mu2": Value("mu2", FRICTION), "fdir1": Value("fdir1", VECTOR3),
-    "slip1": Value("slip1", FLOAT, use=KEPT), "slip2": Value("slip2", FLOAT, use=KEPT),
+    "slip1": Value("slip1", FLOAT), "slip2": Value("slip2", FLOAT),
 })
 _ODE_CONTACT = Group({
     **{name: Value(name, FLOAT) for name in ("kp", "kd", "max_vel")},

@@ -1,0 +1,89 @@
+"""What contacts and constraints exerted on the links of a body in the last step."""
+from __future__ import annotations
+
+from typing import Any, Dict, Iterable, List, Mapping, Sequence, Tuple
+
+import numpy as np
+import pybullet
+
+from ...geometry import ZERO3, Pose, Vec3, multiply, rotate, scale, transform
+from ..body_plan import BASE
+from .bodies import Body
+from .link_motion import State
+
+Acting = Dict[int, List[Tuple[Vec3, Vec3, Vec3]]]
+"""By PyBullet's index of a link: force, where it acts, and torque; N, m, N m, world axes."""
+
+
+def note(found: Acting, index: int, force: Vec3, at: Vec3, torque: Vec3 = ZERO3) -> None:
+    """Add what acts on a link, if anything does."""
+    if any(force) or any(torque):
+        found.setdefault(index, []).append((force, at, torque))
+
+
+def note_contacts(found: Acting, body: Body) -> None:
+    """Add what Bullet's contacts exert on the links of a body."""
+    mine = pybullet.getContactPoints(bodyA=body.uid)
+    if not mine:
+        return
+    # Asked for one body, PyBullet swaps points and normals of some contacts, but not the
+    # directions of friction (measured, 3.2.7).
+    for contact in pybullet.getContactPoints() if any(
+            contact[10] or contact[12] for contact in mine) else mine:
+        if contact[8] > 0.0 or body.uid not in contact[1:3]:   # apart: of an older step
+            continue
+        force = _vector(contact[7][n] * contact[9] + contact[11][n] * contact[10]
+                        + contact[13][n] * contact[12] for n in range(3))
+        if contact[1] == body.uid:
+            note(found, contact[3], force, contact[5])
+        if contact[2] == body.uid:
+            note(found, contact[4], scale(force, -1.0), contact[6])
+
+
+def note_constraints(found: Acting, body: Body, links: Mapping[int, State]) -> None:
+    """Add what the constraints of loops and ties exert on the links of a body."""
+    for n in range(pybullet.getNumConstraints()):
+        number = pybullet.getConstraintUniqueId(n)
+        info = pybullet.getConstraintInfo(number)
+        if body.uid not in (info[0], info[2]) or info[4] == pybullet.JOINT_GEAR:
+            continue
+        force, torque = _on_the_second(info, pybullet.getConstraintState(number))
+        for uid, index, pivot, sign in ((info[0], info[1], info[6], -1.0),
+                                        (info[2], info[3], info[7], 1.0)):
+            if uid == body.uid and index in links:
+                at = Pose(links[index].position, links[index].turn)
+                note(found, index, scale(force, sign), transform(at, pivot), scale(torque, sign))
+
+
+def constraint_forces(number: int, body: Body, index: int, link: State
+                      ) -> Tuple[Vec3, Vec3, Vec3]:
+    """Force, where it acts, and torque of a constraint on a link that it holds; world axes."""
+    info = pybullet.getConstraintInfo(number)
+    force, torque = _on_the_second(info, pybullet.getConstraintState(number))
+    sign, pivot = (1.0, info[7]) if (info[2], info[3]) == (body.uid, index) else (-1.0, info[6])
+    return (scale(force, sign), transform(Pose(link.position, link.turn), pivot),
+            scale(torque, sign))
+
+
+def _on_the_second(info: Sequence[Any], state: Sequence[float]) -> Tuple[Vec3, Vec3]:
+    """Force and torque that a constraint exerts on its second body, N and N m, world axes.
+
+    Source: the rows of Bullet's btMultiBodyPoint2Point, FixedConstraint and SliderConstraint.
+    """
+    if info[4] == pybullet.JOINT_POINT2POINT:
+        return _vector(state[:3]), ZERO3
+    turn = (pybullet.getBasePositionAndOrientation(info[0]) if info[1] == BASE
+            else pybullet.getLinkState(info[0], info[1], computeForwardKinematics=1))[1]
+    frame = np.array(pybullet.getMatrixFromQuaternion(multiply(turn, info[8]))).reshape(3, 3).T
+    if info[4] == pybullet.JOINT_FIXED:
+        return _vector(-np.array(state[:3])), _vector(-(np.array(state[3:6]) @ frame))
+    along = np.array(rotate(turn, info[5]))
+    across = next(c for c in np.cross(frame, along) if np.linalg.norm(c) > 1e-6)
+    across = across / np.linalg.norm(across)
+    return (_vector(-state[0] * across - state[1] * np.cross(along, across)),
+            _vector(-(np.array([state[3], state[4], state[2]]) @ frame)))
+
+
+def _vector(values: Iterable[float]) -> Vec3:
+    x, y, z = values
+    return (float(x), float(y), float(z))

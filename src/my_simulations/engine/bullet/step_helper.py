@@ -1,0 +1,103 @@
+"""What the engine does around the steps of Bullet, one part a question."""
+from __future__ import annotations
+
+from typing import Callable, List, Protocol, Sequence, TypeVar
+
+from ...geometry import Vec3
+from .bodies import Body
+
+FAR = 1 << 30
+"""More steps than are ever made in one go."""
+
+Item = TypeVar("Item")
+
+
+class BodyKeeper(Protocol):
+    """Remembers bodies one by one."""
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+
+
+class StepHelper(BodyKeeper, Protocol):
+    """Acts around steps.
+
+    Everything it does follows from step counts, commands and the state of the world, never from how
+    many steps are made in one go: so runs repeat bit for bit.
+    """
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Act before the step of `dt` s that begins at count `step`."""
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Act after the step that began at count `step`."""
+
+    def due(self, step: int) -> int:
+        """The first step from count `step` on around which it acts, as far as is known now.
+
+        `FAR` for none. It stays right until the helper has acted or a command reached a body.
+        """
+
+
+class StepLoop:
+    """Makes steps and calls helpers around those where they are due, in their order."""
+
+    def __init__(self, helpers: Sequence[StepHelper], one: Callable[[], object]) -> None:
+        """`one` makes a step."""
+        self._helpers = helpers
+        self._one = one
+        self._touched = False
+
+    def touched(self, body: Body) -> None:
+        """A command, or a force that begins, reached a body: others may be due."""
+        self._touched = True
+
+    def run(self, first: int, count: int, dt: float, gravity: Vec3) -> None:
+        """Make `count` steps of `dt` s from count `first` on."""
+        helpers, one = self._helpers, self._one
+        step, end = first, first + count
+        dues = [helper.due(step) for helper in helpers]
+        while step < end:
+            free = min(min(dues), end) - step
+            if free > 0:
+                for _ in range(free):
+                    one()
+                step += free
+                continue
+            self._touched = False
+            for helper, due in zip(helpers, dues):
+                if due <= step or self._touched and helper.due(step) <= step:
+                    helper.before(step, dt, gravity)
+            one()
+            for helper, due in zip(helpers, dues):
+                if due <= step or self._touched and helper.due(step) <= step:
+                    helper.after(step, dt, gravity)
+            step += 1
+            dues = [helper.due(step) if due < step or self._touched else due
+                    for helper, due in zip(helpers, dues)]
+
+
+def next_multiple(step: int, every: int) -> int:
+    """The first multiple of `every` from `step` on."""
+    return step + -step % every
+
+
+_FEWEST = 8  # items a turn: a look costs about as much as asking two of them
+
+
+def turn_of(items: List[Item], look: int, rounds: int) -> List[Item]:
+    """The items whose turn it is at count `look`, when each has its turn once in `rounds` looks."""
+    share = max(_FEWEST, -(-len(items) // rounds))
+    at = look % rounds * share
+    return items[at:at + share]
+
+
+def looks_until_turn(count: int, look: int, rounds: int) -> int:
+    """How many looks after `look` the next of `count` items has its turn; 0 for at this one."""
+    if not count:
+        return FAR
+    at = look % rounds
+    return 0 if at * max(_FEWEST, -(-count // rounds)) < count else rounds - at
