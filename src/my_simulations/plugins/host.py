@@ -10,7 +10,7 @@ import contextlib
 import threading
 import traceback
 from collections import deque
-from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
 
 from ..description.model import WORLD, Model
 from ..engine.commands import JointMotor, PlanarVelocity
@@ -22,7 +22,7 @@ from ..simulator.simulator import Simulator
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
-from .graph import Graph
+from .graph import Graph, Topic
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import Found, Running, plugins_of
 from .simulated_context import SimulatedContext
@@ -33,6 +33,11 @@ _END_S = 2.0
 
 WORLD_SCOPE = ""
 """Stands for the world among the names of models."""
+
+
+def _send(messages: Iterable[Tuple[Topic, Any]]) -> None:
+    for topic, message in messages:
+        topic.send(message)
 
 
 class PluginHost:
@@ -248,9 +253,9 @@ class PluginHost:
         for _, all_running in self._models.values():
             for running in all_running:
                 context = running.context
-                outbox, context.outbox = context.outbox, []
-                for topic, message in outbox:
-                    self._guarded(running, topic.send, message)
+                if context.outbox:
+                    outbox, context.outbox = context.outbox, []
+                    self._guarded(running, _send, outbox)
                 transforms += context.transforms
                 context.transforms = []
         if transforms:
