@@ -61,7 +61,7 @@ def spawn(count: int, laser: bool = True, drives: bool = True) -> None:
     from geometry_msgs.msg import Point, Pose, Quaternion
 
     text = subprocess.run(["xacro", str(ROBOT)], stdout=subprocess.PIPE, text=True,
-                          check=True).stdout.replace("/scan", "scan").replace(
+                          check=True).stdout.replace(">/scan<", ">scan<").replace(
                               "<robotNamespace>/</robotNamespace>", "")
     if not laser:
         text = text.replace("libgazebo_ros_laser.so", "libgazebo_ros_template.so")

@@ -87,7 +87,7 @@ class BulletBackend:
         self._holds = PinnedBodies(self._waker.around)
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
-        self._settling = ContactSettling(lambda: self._forces.loaded_bodies)
+        self._settling = ContactSettling(lambda: self._forces.loaded_bodies, self._on_held)
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)
@@ -396,6 +396,10 @@ class BulletBackend:
         """A command reached a body."""
         for hear in self._hearers:
             hear(body)
+
+    def _on_held(self, body: Body, held: bool) -> None:
+        self._forces.rest(body, held)
+        self._loop.touched(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

@@ -81,10 +81,12 @@ class ContactSettling:
 
     Args:
         loaded: tells the bodies that timed forces act on in this step.
+        on_held: hears which body is held from now on (True), or is not any more.
     """
 
-    def __init__(self, loaded: Callable[[], Set[int]]) -> None:
-        self._loaded = loaded
+    def __init__(self, loaded: Callable[[], Set[int]],
+                 on_held: Callable[[Body, bool], None]) -> None:
+        self._loaded, self._on_held = loaded, on_held
         self._trees: Dict[int, _Tree] = {}
         self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}
@@ -137,7 +139,10 @@ class ContactSettling:
         """A command reached a body: it may move from now on."""
         tree = self._trees.get(body.uid)
         if tree is not None:
-            tree.looks, tree.clear, tree.held = 0, 0, None
+            held, tree.held = tree.held, None
+            tree.looks, tree.clear = 0, 0
+            if held is not None:
+                self._on_held(body, False)
 
     def due(self, step: int) -> int:
         """At once when something was put in, else the next look."""
@@ -168,7 +173,10 @@ class ContactSettling:
             states = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
             if tree.held is None:
                 _put_back(tree.body, states)
+            held = tree.held is not None
             standing = self._stands(tree, states) or standing
+            if held != (tree.held is not None):
+                self._on_held(tree.body, not held)
         self._change(2 if standing else int(self._leaning))
 
     def _is_parted(self, step: int) -> bool:
