@@ -1,0 +1,294 @@
+"""Lets what lands flat land flat: finds all points at which it will touch, before the impact.
+
+Bullet finds one point a step where shapes meet, and four at once for two boxes only. The first
+impact of a can or a mesh that lands upright would so be taken by one point of its rim: from 5 cm
+it tilts by 6 degrees, from 0.3 m it falls over (measured). Bullet keeps points from step to step,
+though, and solves all that it has. So in the step in which a flying body will touch something, it
+is tilted to and fro a little about the place where it touches, Bullet looks for contacts each time,
+and the body is put back: the points lie on the corners, or around the rim, that are within reach.
+Points that do not touch in this step, as of a body that lands on a corner, carry nothing.
+
+Who flies is asked now and then; of what flies, how far it is from what it could reach, and then not
+again before it can be there. What stands, or sleeps, costs next to nothing.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import cos, pi, sin
+from typing import Callable, Dict, List, NamedTuple, Optional, Set, Tuple
+
+import pybullet
+
+from ...description.model import Link
+from ...description.shapes import Box, Empty, Plane
+from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, scale, subtract
+from .bodies import Body
+from .step_helper import FAR, looks_until_turn, next_multiple, turn_of
+
+EVERY = 16
+"""Steps between two looks for bodies that fly."""
+
+_ROUNDS = 2        # looks until every body was asked
+_RESTS = 0.03      # m/s: what flies is faster 3 ms after it left the ground
+_BOUNCES = 8       # steps until one that has landed is looked at again
+_SOFT = 2e-3       # m/s: what comes slower tilts nothing
+_AHEAD = 16        # steps for which a flying body looks ahead, at most
+_TILT = 2e-3       # rad: of the first round
+_HINT = 1e-5       # rad: of the landing step, in which Bullet finds one more point: a corner too
+_MOST_TILT = 0.15  # rad: of the second, which finds what is reached within the step
+_DIRECTIONS = 4
+_ACROSS = 0.8      # of a normal along an axis: less is across it
+_ENOUGH = 3        # points: a body that has them stands on them
+_FIRST = 0.65      # rad: not along the edges of what stands square to the axes
+
+
+@dataclass
+class _Flight:
+    """One body that flies, or has just landed. `through`: bodies that it does not meet."""
+
+    body: Body
+    look: int = 0
+    through: Set[int] = field(default_factory=set)
+    tried: Set[int] = field(default_factory=set)   # what it lay in when points were sought
+
+
+class _Touch(NamedTuple):
+    """Where a body will touch another in this step. 
+
+    Attributes:
+        gap: m, below 0 for an overlap.
+        normal: points at the body.
+        way: how far it comes nearer in this step, and how deep it is already, m.
+        width: of the body, across the normal, m.
+    """
+
+    uid: int
+    other: int
+    gap: float
+    place: Vec3
+    normal: Vec3
+    way: float
+    width: float
+
+
+class LandingContacts:
+    """Finds the contact points of what lands before Bullet solves its impact.
+
+    Args:
+        landed: is told which body lands, and the normal of what it lands on.
+    """
+
+    def __init__(self, landed: Callable[[int, Vec3], None]) -> None:
+        self._landed = landed
+        self._bodies: Dict[int, Body] = {}
+        self._order: List[int] = []
+        self._moving: Set[int] = set()
+        self._boxes: Dict[int, bool] = {}   # whether all shapes of a body are boxes, or planes
+        self._flights: Dict[int, _Flight] = {}
+        self._next = FAR                    # the first step at which a flight is looked at
+
+    def add(self, body: Body, link: Link) -> None:
+        """Know one link of a body; only bodies that can tilt as they land matter."""
+        flat = (Box, Empty) if body.moves else (Box, Empty, Plane)
+        self._boxes[body.uid] = self._boxes.get(body.uid, True) and all(
+            isinstance(collision.geometry, flat) for collision in link.collisions)
+        if not body.moves:
+            return
+        self._moving.add(body.uid)
+        if not body.is_ball and body.base is not None and body.uid not in self._bodies:
+            self._bodies[body.uid] = body
+            self._order.append(body.uid)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        for table in (self._bodies, self._boxes, self._flights):
+            table.pop(body.uid, None)
+        self._moving.discard(body.uid)
+        self._order = list(self._bodies)
+        self._plan()
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        for table in (self._bodies, self._boxes, self._flights):
+            table.clear()
+        self._moving.clear()
+        self._order.clear()
+        self._next = FAR
+
+    def touched(self, body: Body) -> None:
+        """A command reached a body: it may fly from now on."""
+        if body.uid in self._bodies:
+            self._flights[body.uid] = _Flight(body)
+            self._next = 0
+
+    def due(self, step: int) -> int:
+        """The next look at a flight, or for new ones."""
+        if not self._order:
+            return FAR
+        look = -(-step // EVERY)
+        turn = EVERY * (look + looks_until_turn(len(self._order), look, _ROUNDS))
+        return max(step, min(turn, self._next))
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Look for flights now and then, and find the points of those that end in this step."""
+        if step % EVERY == 0:
+            for uid in turn_of(self._order, step // EVERY, _ROUNDS):
+                if uid not in self._flights and _speed(uid) > _RESTS:
+                    self._flights[uid] = _Flight(self._bodies[uid])
+        touches: List[_Touch] = []
+        for uid, flight in list(self._flights.items()):
+            if flight.look <= step:
+                touches += self._look(flight, step, dt, gravity)
+        self._plan()
+        while touches:
+            # Two that land on each other would tilt together; so one after the other.
+            now: Dict[int, _Touch] = {}
+            for touch in touches:
+                if touch.other not in now:
+                    now.setdefault(touch.uid, touch)
+            _find_points(list(now.values()))
+            touches = [touch for touch in touches if touch.uid not in now]
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def _plan(self) -> None:
+        self._next = min((flight.look for flight in self._flights.values()), default=FAR)
+
+    def _look(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[_Touch]:
+        """What a body will touch in this step, deepest first; finds out when to look again."""
+        uid = flight.body.uid
+        linear, angular = pybullet.getBaseVelocity(uid)
+        if any(contact[9] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
+            if norm(linear) <= _RESTS:
+                del self._flights[uid]
+            flight.look = step + _BOUNCES
+            flight.through.clear()
+            flight.tried.clear()
+            return []
+        low, high = _extent(flight.body)
+        fall = norm(gravity) * dt
+        speed = norm(linear) + norm(angular) * norm(subtract(high, low)) + _AHEAD * fall
+        reach = speed * dt * (_AHEAD + 2)
+        ahead = _AHEAD
+        touches: List[_Touch] = []
+        for other in self._within(flight, low, high, reach):
+            moves = other in self._moving
+            towards = speed + (_speed(other) if moves else 0.0)
+            points = pybullet.getClosestPoints(uid, other, towards * dt * (_AHEAD + 2))
+            if not points:
+                continue
+            nearest = min(points, key=lambda point: point[8])
+            gap: float = nearest[8]
+            ahead = min(ahead, int(gap / (towards * dt)) - 1)
+            if gap > towards * dt:
+                continue
+            normal: Vec3 = nearest[7]
+            way = _approach(uid, other if moves else None, nearest[5], normal) * dt
+            way += max(0.0, -dot(gravity, normal)) * dt * dt
+            if way > _SOFT * dt and gap <= way and not self._falls_through(flight, other, gap):
+                touches.append(_Touch(uid, other, gap, nearest[6], normal,
+                                      way + max(0.0, -gap), _width(low, high, normal)))
+        flight.look = step + max(1, ahead)
+        touches.sort(key=lambda touch: touch.gap)
+        if touches:
+            self._landed(uid, touches[0].normal)
+        return touches[:1]
+
+    def _within(self, flight: _Flight, low: Vec3, high: Vec3, reach: float) -> List[int]:
+        """What a body may meet within `reach`, m, in the order of numbers."""
+        uid, margin = flight.body.uid, (reach, reach, reach)
+        found = pybullet.getOverlappingObjects(subtract(low, margin), add(high, margin)) or ()
+        return sorted({other for other, _ in found if other != uid
+                       and other not in flight.through
+                       and not (self._boxes[uid] and self._boxes.get(other, False))})
+
+    def _falls_through(self, flight: _Flight, other: int, gap: float) -> bool:
+        """Whether a body has been in another before, and did not touch it: they do not meet."""
+        if gap > 0.0:
+            return False
+        if other in flight.tried:
+            flight.through.add(other)
+        flight.tried.add(other)
+        return other in flight.through
+
+
+def _find_points(touches: List[_Touch]) -> None:
+    """Tilt bodies to and fro about where they will touch, and let Bullet look for points."""
+    states = [(*pybullet.getBasePositionAndOrientation(touch.uid),
+               *pybullet.getBaseVelocity(touch.uid)) for touch in touches]
+    tilts = [_TILT for _ in touches]
+    while any(tilts):
+        for number in range(_DIRECTIONS):
+            angle = _FIRST + 2.0 * pi * number / _DIRECTIONS
+            for touch, (at, turn, _, _), tilt in zip(touches, states, tilts):
+                if tilt:
+                    centre, tilted = _tilted(touch, at, turn, angle, tilt)
+                    pybullet.resetBasePositionAndOrientation(
+                        touch.uid, subtract(centre, scale(touch.normal, touch.gap)), tilted)
+            pybullet.performCollisionDetection()
+        for touch, (at, turn, linear, angular) in zip(touches, states):
+            _put(touch.uid, _tilted(touch, at, turn, angle, _HINT), linear, angular)
+        tilts = [_wider(touch) if tilt == _TILT else 0.0 for touch, tilt in zip(touches, tilts)]
+
+
+def _wider(touch: _Touch) -> float:
+    """The tilt that a body lands with at most if all of it lands in this step, rad.
+
+    0 where enough points are known, or no more can be within reach.
+    """
+    if len(pybullet.getContactPoints(touch.uid, touch.other)) >= _ENOUGH:
+        return 0.0
+    tilt = min(_MOST_TILT, touch.way / touch.width)
+    return tilt if tilt > 1.5 * _TILT else 0.0
+
+
+def _tilted(touch: _Touch, at: Vec3, turn: Quat, angle: float, tilt: float) -> Tuple[Vec3, Quat]:
+    """Where a body is when it is tilted by `tilt`, rad, about the place that it will touch."""
+    normal = touch.normal
+    side = cross(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0))
+    side = scale(side, 1.0 / norm(side))
+    axis = add(scale(side, cos(angle)), scale(cross(normal, side), sin(angle)))
+    s = sin(tilt / 2.0)
+    by: Quat = (axis[0] * s, axis[1] * s, axis[2] * s, cos(tilt / 2.0))
+    pivot = subtract(at, scale(normal, dot(subtract(at, touch.place), normal)))
+    return add(pivot, rotate(by, subtract(at, pivot))), multiply(by, turn)
+
+
+def _put(uid: int, pose: Tuple[Vec3, Quat], linear: Vec3, angular: Vec3) -> None:
+    """Put a body somewhere without changing its velocity."""
+    pybullet.resetBasePositionAndOrientation(uid, *pose)
+    pybullet.resetBaseVelocity(uid, linear, angular)  # placing a body stops it
+
+
+def _extent(body: Body) -> Tuple[Vec3, Vec3]:
+    """The lowest and highest corner of a box along the world's axes about a body."""
+    boxes = [pybullet.getAABB(body.uid, part.index) for part in body.parts]
+    low = (min(box[0][0] for box in boxes), min(box[0][1] for box in boxes),
+           min(box[0][2] for box in boxes))
+    high = (max(box[1][0] for box in boxes), max(box[1][1] for box in boxes),
+            max(box[1][2] for box in boxes))
+    return low, high
+
+
+def _width(low: Vec3, high: Vec3, normal: Vec3) -> float:
+    """The least extent across a direction, m."""
+    return min(b - a for a, b, along in zip(low, high, normal) if abs(along) < _ACROSS)
+
+
+def _approach(uid: int, other: Optional[int], place: Vec3, normal: Vec3) -> float:
+    """How fast a body comes nearer to another at a place, m/s; None: what does not move."""
+    speed = -dot(_velocity_at(uid, place), normal)
+    return speed if other is None else speed + dot(_velocity_at(other, place), normal)
+
+
+def _velocity_at(uid: int, place: Vec3) -> Vec3:
+    """Of a point of a body, as if joints stood still."""
+    linear, angular = pybullet.getBaseVelocity(uid)
+    lever = subtract(place, pybullet.getBasePositionAndOrientation(uid)[0])
+    return add(linear, cross(angular, lever))
+
+
+def _speed(uid: int) -> float:
+    linear: Vec3 = pybullet.getBaseVelocity(uid)[0]
+    return norm(linear)
