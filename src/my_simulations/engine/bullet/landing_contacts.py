@@ -14,7 +14,7 @@ again before it can be there. What stands, or sleeps, costs next to nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import cos, pi, sin
+from math import atan2, cos, hypot, pi, sin
 from typing import Callable, Dict, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
@@ -35,10 +35,9 @@ _SOFT = 2e-3       # m/s: what comes slower tilts nothing
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
 _TILT = 2e-3       # rad: of the first round
 _HINT = 1e-5       # rad: of the landing step, in which Bullet finds one more point: a corner too
-_MOST_TILT = 0.15  # rad: of the second, which finds what is reached within the step
-_DIRECTIONS = 4
-_ACROSS = 0.8      # of a normal along an axis: less is across it
-_ENOUGH = 3        # points: a body that has them stands on them
+_ROUND = 4         # directions, a quarter of a turn each
+_DIRECTIONS = 8    # after the first round, along and across what it found
+_QUARTER = pi / 2.0
 _FIRST = 0.65      # rad: not along the edges of what stands square to the axes
 
 
@@ -58,8 +57,6 @@ class _Touch(NamedTuple):
     Attributes:
         gap: m, below 0 for an overlap.
         normal: points at the body.
-        way: how far it comes nearer in this step, and how deep it is already, m.
-        width: of the body, across the normal, m.
     """
 
     uid: int
@@ -67,8 +64,6 @@ class _Touch(NamedTuple):
     gap: float
     place: Vec3
     normal: Vec3
-    way: float
-    width: float
 
 
 class LandingContacts:
@@ -187,8 +182,7 @@ class LandingContacts:
             way = _approach(uid, other if moves else None, nearest[5], normal) * dt
             way += max(0.0, -dot(gravity, normal)) * dt * dt
             if way > _SOFT * dt and gap <= way and not self._falls_through(flight, other, gap):
-                touches.append(_Touch(uid, other, gap, nearest[6], normal,
-                                      way + max(0.0, -gap), _width(low, high, normal)))
+                touches.append(_Touch(uid, other, gap, nearest[6], normal))
         flight.look = step + max(1, ahead)
         touches.sort(key=lambda touch: touch.gap)
         if touches:
@@ -217,48 +211,50 @@ def _find_points(touches: List[_Touch]) -> None:
     """Tilt bodies to and fro about where they will touch, and let Bullet look for points."""
     states = [(*pybullet.getBasePositionAndOrientation(touch.uid),
                *pybullet.getBaseVelocity(touch.uid)) for touch in touches]
-    tilts = [_TILT for _ in touches]
-    while any(tilts):
-        for number in range(_DIRECTIONS):
-            angle = _FIRST + 2.0 * pi * number / _DIRECTIONS
-            for touch, (at, turn, _, _), tilt in zip(touches, states, tilts):
-                if tilt:
-                    centre, tilted = _tilted(touch, at, turn, angle, tilt)
-                    pybullet.resetBasePositionAndOrientation(
-                        touch.uid, subtract(centre, scale(touch.normal, touch.gap)), tilted)
-            pybullet.performCollisionDetection()
-        for touch, (at, turn, linear, angular) in zip(touches, states):
-            _put(touch.uid, _tilted(touch, at, turn, angle, _HINT), linear, angular)
-        tilts = [_wider(touch) if tilt == _TILT else 0.0 for touch, tilt in zip(touches, tilts)]
+    angles = [_FIRST for _ in touches]
+    for number in range(_DIRECTIONS):
+        if number == _ROUND:
+            angles = [_along(touch, angle) for touch, angle in zip(touches, angles)]
+        for touch, angle, (at, turn, _, _) in zip(touches, angles, states):
+            centre, tilted = _tilted(touch, at, turn, angle + _QUARTER * number, _TILT)
+            pybullet.resetBasePositionAndOrientation(
+                touch.uid, subtract(centre, scale(touch.normal, touch.gap)), tilted)
+        pybullet.performCollisionDetection()
+    for touch, angle, (at, turn, linear, angular) in zip(touches, angles, states):
+        pybullet.resetBasePositionAndOrientation(
+            touch.uid, *_tilted(touch, at, turn, angle + _QUARTER * number, _HINT))
+        pybullet.resetBaseVelocity(touch.uid, linear, angular)  # placing a body stops it
 
 
-def _wider(touch: _Touch) -> float:
-    """The tilt that a body lands with at most if all of it lands in this step, rad.
+def _along(touch: _Touch, angle: float) -> float:
+    """The angle of the two points found that are farthest apart.
 
-    0 where enough points are known, or no more can be within reach.
+    What is long and thin has corners that no four directions find, but those along it and across.
     """
-    if len(pybullet.getContactPoints(touch.uid, touch.other)) >= _ENOUGH:
-        return 0.0
-    tilt = min(_MOST_TILT, touch.way / touch.width)
-    return tilt if tilt > 1.5 * _TILT else 0.0
+    side, fore = _sides(touch.normal)
+    points = [(dot(contact[5], side), dot(contact[5], fore))
+              for contact in pybullet.getContactPoints(touch.uid)]
+    spans = [(a[0] - b[0], a[1] - b[1]) for at, a in enumerate(points) for b in points[:at]]
+    longest = max(spans, key=lambda span: hypot(*span), default=(0.0, 0.0))
+    return atan2(longest[1], longest[0]) if hypot(*longest) > 0.0 else angle
+
+
+def _sides(normal: Vec3) -> Tuple[Vec3, Vec3]:
+    """Two directions across a normal, and across each other."""
+    side = cross(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0))
+    side = scale(side, 1.0 / norm(side))
+    return side, cross(normal, side)
 
 
 def _tilted(touch: _Touch, at: Vec3, turn: Quat, angle: float, tilt: float) -> Tuple[Vec3, Quat]:
     """Where a body is when it is tilted by `tilt`, rad, about the place that it will touch."""
     normal = touch.normal
-    side = cross(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0))
-    side = scale(side, 1.0 / norm(side))
-    axis = add(scale(side, cos(angle)), scale(cross(normal, side), sin(angle)))
+    side, fore = _sides(normal)
+    axis = add(scale(side, cos(angle)), scale(fore, sin(angle)))
     s = sin(tilt / 2.0)
     by: Quat = (axis[0] * s, axis[1] * s, axis[2] * s, cos(tilt / 2.0))
     pivot = subtract(at, scale(normal, dot(subtract(at, touch.place), normal)))
     return add(pivot, rotate(by, subtract(at, pivot))), multiply(by, turn)
-
-
-def _put(uid: int, pose: Tuple[Vec3, Quat], linear: Vec3, angular: Vec3) -> None:
-    """Put a body somewhere without changing its velocity."""
-    pybullet.resetBasePositionAndOrientation(uid, *pose)
-    pybullet.resetBaseVelocity(uid, linear, angular)  # placing a body stops it
 
 
 def _extent(body: Body) -> Tuple[Vec3, Vec3]:
@@ -269,11 +265,6 @@ def _extent(body: Body) -> Tuple[Vec3, Vec3]:
     high = (max(box[1][0] for box in boxes), max(box[1][1] for box in boxes),
             max(box[1][2] for box in boxes))
     return low, high
-
-
-def _width(low: Vec3, high: Vec3, normal: Vec3) -> float:
-    """The least extent across a direction, m."""
-    return min(b - a for a, b, along in zip(low, high, normal) if abs(along) < _ACROSS)
 
 
 def _approach(uid: int, other: Optional[int], place: Vec3, normal: Vec3) -> float:
