@@ -239,7 +239,7 @@ class BulletBackend:
                 self._rolling.add(body, part, link)
                 if not slips(link):
                     self._sliding.add(body, part, link)
-                self._landing.add(body, link)
+                self._landing.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
                 self._forces.slip.add(body, part, link)
             self._set_up_axes(body, model)

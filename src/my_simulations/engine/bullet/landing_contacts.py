@@ -22,7 +22,8 @@ import pybullet
 from ...description.model import Link
 from ...description.shapes import Box, Empty, Plane
 from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, scale, subtract
-from .bodies import Body
+from . import collision_groups
+from .bodies import Body, Part
 from .step_helper import FAR, looks_until_turn, next_multiple, turn_of
 
 EVERY = 16
@@ -51,6 +52,9 @@ class _Flight:
     tried: Set[int] = field(default_factory=set)   # what it lay in when points were sought
 
 
+_Filters = List[Tuple[int, collision_groups.Filter]]   # by PyBullet's link index
+
+
 class _Touch(NamedTuple):
     """Where a body will touch another in this step. 
 
@@ -76,13 +80,14 @@ class LandingContacts:
     def __init__(self, landed: Callable[[int, Vec3], None]) -> None:
         self._landed = landed
         self._bodies: Dict[int, Body] = {}
+        self._meets: Dict[int, _Filters] = {}
         self._order: List[int] = []
         self._moving: Set[int] = set()
         self._boxes: Dict[int, bool] = {}   # whether all shapes of a body are boxes, or planes
         self._flights: Dict[int, _Flight] = {}
         self._next = FAR                    # the first step at which a flight is looked at
 
-    def add(self, body: Body, link: Link) -> None:
+    def add(self, body: Body, part: Part, link: Link) -> None:
         """Know one link of a body; only bodies that can tilt as they land matter."""
         flat = (Box, Empty) if body.moves else (Box, Empty, Plane)
         self._boxes[body.uid] = self._boxes.get(body.uid, True) and all(
@@ -90,13 +95,17 @@ class LandingContacts:
         if not body.moves:
             return
         self._moving.add(body.uid)
-        if not body.is_ball and body.base is not None and body.uid not in self._bodies:
+        if body.is_ball or body.base is None:
+            return
+        if body.uid not in self._bodies:
             self._bodies[body.uid] = body
             self._order.append(body.uid)
+        meets = self._meets.setdefault(body.uid, [])
+        meets.append((part.index, collision_groups.moving(link)))
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
-        for table in (self._bodies, self._boxes, self._flights):
+        for table in (self._bodies, self._meets, self._boxes, self._flights):
             table.pop(body.uid, None)
         self._moving.discard(body.uid)
         self._order = list(self._bodies)
@@ -104,7 +113,7 @@ class LandingContacts:
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._bodies, self._boxes, self._flights):
+        for table in (self._bodies, self._meets, self._boxes, self._flights):
             table.clear()
         self._moving.clear()
         self._order.clear()
@@ -141,7 +150,7 @@ class LandingContacts:
             for touch in touches:
                 if touch.other not in now:
                     now.setdefault(touch.uid, touch)
-            _find_points(list(now.values()))
+            self._find_points(list(now.values()))
             touches = [touch for touch in touches if touch.uid not in now]
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
@@ -206,24 +215,30 @@ class LandingContacts:
         flight.tried.add(other)
         return other in flight.through
 
-
-def _find_points(touches: List[_Touch]) -> None:
-    """Tilt bodies to and fro about where they will touch, and let Bullet look for points."""
-    states = [(*pybullet.getBasePositionAndOrientation(touch.uid),
-               *pybullet.getBaseVelocity(touch.uid)) for touch in touches]
-    angles = [_FIRST for _ in touches]
-    for number in range(_DIRECTIONS):
-        if number == _ROUND:
-            angles = [_along(touch, angle) for touch, angle in zip(touches, angles)]
-        for touch, angle, (at, turn, _, _) in zip(touches, angles, states):
-            centre, tilted = _tilted(touch, at, turn, angle + _QUARTER * number, _TILT)
+    def _find_points(self, touches: List[_Touch]) -> None:
+        """Tilt bodies to and fro about where they will touch, and let Bullet look for points."""
+        states = [(*pybullet.getBasePositionAndOrientation(touch.uid),
+                   *pybullet.getBaseVelocity(touch.uid)) for touch in touches]
+        angles = [_FIRST for _ in touches]
+        for number in range(_DIRECTIONS):
+            if number == _ROUND:
+                angles = [_along(touch, angle) for touch, angle in zip(touches, angles)]
+                for touch in touches:
+                    self._drop_points(touch.uid)
+            for touch, angle, (at, turn, _, _) in zip(touches, angles, states):
+                centre, tilted = _tilted(touch, at, turn, angle + _QUARTER * number, _TILT)
+                pybullet.resetBasePositionAndOrientation(
+                    touch.uid, subtract(centre, scale(touch.normal, touch.gap)), tilted)
+            pybullet.performCollisionDetection()
+        for touch, angle, (at, turn, linear, angular) in zip(touches, angles, states):
             pybullet.resetBasePositionAndOrientation(
-                touch.uid, subtract(centre, scale(touch.normal, touch.gap)), tilted)
-        pybullet.performCollisionDetection()
-    for touch, angle, (at, turn, linear, angular) in zip(touches, angles, states):
-        pybullet.resetBasePositionAndOrientation(
-            touch.uid, *_tilted(touch, at, turn, angle + _QUARTER * number, _HINT))
-        pybullet.resetBaseVelocity(touch.uid, linear, angular)  # placing a body stops it
+                touch.uid, *_tilted(touch, at, turn, angle + _QUARTER * number, _HINT))
+            pybullet.resetBaseVelocity(touch.uid, linear, angular)  # placing a body stops it
+
+    def _drop_points(self, uid: int) -> None:
+        """Let a body have four new points on each surface: Bullet does not choose well of more."""
+        for index, meets in self._meets[uid]:
+            meets.set(uid, index)
 
 
 def _along(touch: _Touch, angle: float) -> float:
