@@ -35,7 +35,7 @@ _BOUNCES = 8       # steps until one that has landed is looked at again
 _SOFT = 2e-3       # m/s: what comes slower tilts nothing
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
 _TILT = 2e-3       # rad: of the first round
-_HINT = 1e-5       # rad: of the landing step, in which Bullet finds one more point: a corner too
+_HINT = 1e-4       # rad: of the landing step, in which Bullet finds one more point: a corner too
 _ROUND = 4         # directions, a quarter of a turn each
 _DIRECTIONS = 8    # after the first round, along and across what it found
 _QUARTER = pi / 2.0
@@ -184,13 +184,12 @@ class LandingContacts:
                 continue
             nearest = min(points, key=lambda point: point[8])
             gap: float = nearest[8]
-            ahead = min(ahead, int(gap / (towards * dt)) - 1)
-            if gap > towards * dt:
+            ahead = min(ahead, int(gap / (towards * dt)))
+            if gap > 0.0:
                 continue
             normal: Vec3 = nearest[7]
-            way = _approach(uid, other if moves else None, nearest[5], normal) * dt
-            way += max(0.0, -dot(gravity, normal)) * dt * dt
-            if way > _SOFT * dt and gap <= way and not self._falls_through(flight, other, gap):
+            speed_in = _approach(uid, other if moves else None, nearest[5], normal)
+            if speed_in - dot(gravity, normal) * dt > _SOFT and not self._lies_in(flight, other):
                 touches.append(_Touch(uid, other, gap, nearest[6], normal))
         flight.look = step + max(1, ahead)
         touches.sort(key=lambda touch: touch.gap)
@@ -206,10 +205,8 @@ class LandingContacts:
                        and other not in flight.through
                        and not (self._boxes[uid] and self._boxes.get(other, False))})
 
-    def _falls_through(self, flight: _Flight, other: int, gap: float) -> bool:
-        """Whether a body has been in another before, and did not touch it: they do not meet."""
-        if gap > 0.0:
-            return False
+    def _lies_in(self, flight: _Flight, other: int) -> bool:
+        """Whether a body is in another that it did not touch a step before: they do not meet."""
         if other in flight.tried:
             flight.through.add(other)
         flight.tried.add(other)
