@@ -217,9 +217,11 @@ class LandingContacts:
         states = [(*pybullet.getBasePositionAndOrientation(touch.uid),
                    *pybullet.getBaseVelocity(touch.uid)) for touch in touches]
         angles = [_FIRST for _ in touches]
+        found: List[List[Vec3]] = [[] for _ in touches]
         for number in range(_DIRECTIONS):
             if number == _ROUND:
-                angles = [_along(touch, angle) for touch, angle in zip(touches, angles)]
+                angles = [_along(touch, points) for touch, points in zip(touches, found)]
+            if number % _ROUND == 0:
                 for touch in touches:
                     self._drop_points(touch.uid)
             for touch, angle, (at, turn, _, _) in zip(touches, angles, states):
@@ -227,6 +229,8 @@ class LandingContacts:
                 pybullet.resetBasePositionAndOrientation(
                     touch.uid, subtract(centre, scale(touch.normal, touch.gap)), tilted)
             pybullet.performCollisionDetection()
+            for touch, points in zip(touches, found):
+                points += [contact[5] for contact in pybullet.getContactPoints(touch.uid)]
         for touch, angle, (at, turn, linear, angular) in zip(touches, angles, states):
             pybullet.resetBasePositionAndOrientation(
                 touch.uid, *_tilted(touch, at, turn, angle + _QUARTER * number, _HINT))
@@ -238,17 +242,16 @@ class LandingContacts:
             meets.set(uid, index)
 
 
-def _along(touch: _Touch, angle: float) -> float:
+def _along(touch: _Touch, places: List[Vec3]) -> float:
     """The angle of the two points found that are farthest apart.
 
     What is long and thin has corners that no four directions find, but those along it and across.
     """
     side, fore = _sides(touch.normal)
-    points = [(dot(contact[5], side), dot(contact[5], fore))
-              for contact in pybullet.getContactPoints(touch.uid)]
+    points = [(dot(place, side), dot(place, fore)) for place in places]
     spans = [(a[0] - b[0], a[1] - b[1]) for at, a in enumerate(points) for b in points[:at]]
     longest = max(spans, key=lambda span: hypot(*span), default=(0.0, 0.0))
-    return atan2(longest[1], longest[0]) if hypot(*longest) > 0.0 else angle
+    return atan2(longest[1], longest[0]) if hypot(*longest) > 0.0 else _FIRST
 
 
 def _sides(normal: Vec3) -> Tuple[Vec3, Vec3]:
