@@ -220,7 +220,8 @@ class LandingContacts:
         found: List[List[Vec3]] = [[] for _ in touches]
         for number in range(_DIRECTIONS):
             if number == _ROUND:
-                angles = [_along(touch, points) for touch, points in zip(touches, found)]
+                spans = [_longest(touch, points) for touch, points in zip(touches, found)]
+                angles = [atan2(y, x) if x or y else _FIRST for x, y in spans]
             if number % _ROUND == 0:
                 for touch in touches:
                     self._drop_points(touch.uid)
@@ -231,9 +232,11 @@ class LandingContacts:
             pybullet.performCollisionDetection()
             for touch, points in zip(touches, found):
                 points += [contact[5] for contact in pybullet.getContactPoints(touch.uid)]
-        for touch, angle, (at, turn, linear, angular) in zip(touches, angles, states):
+        for touch, angle, span, (at, turn, linear, angular) in zip(touches, angles, spans, states):
+            centre, tilted = _tilted(touch, at, turn, angle + _QUARTER * number, _HINT)
+            raised = max(0.0, touch.gap + _HINT * hypot(*span))  # or points would not touch
             pybullet.resetBasePositionAndOrientation(
-                touch.uid, *_tilted(touch, at, turn, angle + _QUARTER * number, _HINT))
+                touch.uid, subtract(centre, scale(touch.normal, raised)), tilted)
             pybullet.resetBaseVelocity(touch.uid, linear, angular)  # placing a body stops it
 
     def _drop_points(self, uid: int) -> None:
@@ -242,16 +245,15 @@ class LandingContacts:
             meets.set(uid, index)
 
 
-def _along(touch: _Touch, places: List[Vec3]) -> float:
-    """The angle of the two points found that are farthest apart.
+def _longest(touch: _Touch, places: List[Vec3]) -> Tuple[float, float]:
+    """The way between the two places that are farthest apart, across the normal, m.
 
     What is long and thin has corners that no four directions find, but those along it and across.
     """
     side, fore = _sides(touch.normal)
     points = [(dot(place, side), dot(place, fore)) for place in places]
-    spans = [(a[0] - b[0], a[1] - b[1]) for at, a in enumerate(points) for b in points[:at]]
-    longest = max(spans, key=lambda span: hypot(*span), default=(0.0, 0.0))
-    return atan2(longest[1], longest[0]) if hypot(*longest) > 0.0 else _FIRST
+    ways = [(a[0] - b[0], a[1] - b[1]) for at, a in enumerate(points) for b in points[:at]]
+    return max(ways, key=lambda way: hypot(*way), default=(0.0, 0.0))
 
 
 def _sides(normal: Vec3) -> Tuple[Vec3, Vec3]:
