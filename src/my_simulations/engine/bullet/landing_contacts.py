@@ -36,8 +36,10 @@ _SOFT = 2e-3       # m/s: what comes slower tilts nothing
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
 _TILT = 2e-3       # rad: of the first round
 _HINT = 1e-4       # rad: of the landing step, in which Bullet finds one more point: a corner too
-_ROUND = 4         # directions, a quarter of a turn each
-_DIRECTIONS = 8    # after the first round, along and across what it found
+_MOST_TILT = 0.15  # rad: of the second
+_LOST = 1e-3       # m above a surface points are lost
+_ACROSS = 0.8      # of a normal along an axis: less is across it
+_DIRECTIONS = 4    # a quarter of a turn each
 _QUARTER = pi / 2.0
 _FIRST = 0.65      # rad: not along the edges of what stands square to the axes
 
@@ -61,6 +63,8 @@ class _Touch(NamedTuple):
     Attributes:
         gap: m, below 0 for an overlap.
         normal: points at the body.
+        at, turn: where the body is.
+        width, breadth: the least and largest extent of the body across the normal, m.
     """
 
     uid: int
@@ -68,6 +72,30 @@ class _Touch(NamedTuple):
     gap: float
     place: Vec3
     normal: Vec3
+    at: Vec3
+    turn: Quat
+    velocity: Tuple[Vec3, Vec3]
+    width: float
+    breadth: float
+
+    @property
+    def most(self) -> float:
+        """The largest tilt of a flat body with which all of it is in the other, rad."""
+        return min(_MOST_TILT, -self.gap / self.width)
+
+    @property
+    def raised(self) -> float:
+        """By how much to raise it, m, so that no point is lost when it is tilted so far."""
+        return -max(0.0, self.most * self.width - _LOST)
+
+
+class _Trial(NamedTuple):
+    """How to tilt a body, about which axis and how far, rad, and by how much to raise it, m."""
+
+    touch: _Touch
+    angle: float
+    tilt: float
+    raised: float
 
 
 class LandingContacts:
@@ -190,7 +218,10 @@ class LandingContacts:
             normal: Vec3 = nearest[7]
             speed_in = _approach(uid, other if moves else None, nearest[5], normal)
             if speed_in - dot(gravity, normal) * dt > _SOFT and not self._lies_in(flight, other):
-                touches.append(_Touch(uid, other, gap, nearest[6], normal))
+                touches.append(_Touch(
+                    uid, other, gap, nearest[6], normal,
+                    *pybullet.getBasePositionAndOrientation(uid), (linear, angular),
+                    *_across(low, high, normal)))
         flight.look = step + max(1, ahead)
         touches.sort(key=lambda touch: touch.gap)
         if touches:
@@ -214,30 +245,35 @@ class LandingContacts:
 
     def _find_points(self, touches: List[_Touch]) -> None:
         """Tilt bodies to and fro about where they will touch, and let Bullet look for points."""
-        states = [(*pybullet.getBasePositionAndOrientation(touch.uid),
-                   *pybullet.getBaseVelocity(touch.uid)) for touch in touches]
-        angles = [_FIRST for _ in touches]
-        found: List[List[Vec3]] = [[] for _ in touches]
-        for number in range(_DIRECTIONS):
-            if number == _ROUND:
-                spans = [_longest(touch, points) for touch, points in zip(touches, found)]
-                angles = [atan2(y, x) if x or y else _FIRST for x, y in spans]
-            if number % _ROUND == 0:
-                for touch in touches:
-                    self._drop_points(touch.uid)
-            for touch, angle, (at, turn, _, _) in zip(touches, angles, states):
-                centre, tilted = _tilted(touch, at, turn, angle + _QUARTER * number, _TILT)
-                pybullet.resetBasePositionAndOrientation(
-                    touch.uid, subtract(centre, scale(touch.normal, touch.gap)), tilted)
+        trials = [_Trial(touch, _FIRST, _TILT, -touch.gap) for touch in touches]
+        # What is long and thin has corners that no four directions find, but these do.
+        trials = [trial._replace(angle=_longest(trial.touch, points))
+                  for trial, points in zip(trials, self._try(trials))]
+        self._try(trials)
+        # What lands tilted, and is so deep already that all of it touches, touches everywhere.
+        deep = [touch for touch in touches if touch.most > _TILT]
+        if deep:
             pybullet.performCollisionDetection()
-            for touch, points in zip(touches, found):
-                points += [contact[5] for contact in pybullet.getContactPoints(touch.uid)]
-        for touch, angle, span, (at, turn, linear, angular) in zip(touches, angles, spans, states):
-            centre, tilted = _tilted(touch, at, turn, angle + _QUARTER * number, _HINT)
-            raised = max(0.0, touch.gap + _HINT * hypot(*span))  # or points would not touch
-            pybullet.resetBasePositionAndOrientation(
-                touch.uid, subtract(centre, scale(touch.normal, raised)), tilted)
-            pybullet.resetBaseVelocity(touch.uid, linear, angular)  # placing a body stops it
+            self._try([_Trial(touch, _lowest(touch), touch.most, touch.raised) for touch in deep
+                       if not _stands(touch)])
+
+    def _try(self, trials: List[_Trial]) -> List[List[Vec3]]:
+        """Have four points found for each body, and leave it in such a pose that Bullet's own
+        point will be the last of them; gives all places that were seen."""
+        found: List[List[Vec3]] = [[] for _ in trials]
+        for trial in trials:
+            self._drop_points(trial.touch.uid)
+        for number in range(_DIRECTIONS if trials else 0):
+            for touch, angle, tilt, raised in trials:
+                _tilt(touch, angle + _QUARTER * number, tilt, raised)
+            pybullet.performCollisionDetection()
+            for trial, places in zip(trials, found):
+                places += [point[5] for point in pybullet.getContactPoints(trial.touch.uid)]
+        for touch, angle, _, _ in trials:
+            sunk = max(0.0, touch.gap + _HINT * touch.breadth)  # or points would not touch
+            _tilt(touch, angle - _QUARTER, _HINT, -sunk)
+            pybullet.resetBaseVelocity(touch.uid, *touch.velocity)  # placing a body stops it
+        return found
 
     def _drop_points(self, uid: int) -> None:
         """Let a body have four new points on each surface: Bullet does not choose well of more."""
@@ -245,15 +281,13 @@ class LandingContacts:
             meets.set(uid, index)
 
 
-def _longest(touch: _Touch, places: List[Vec3]) -> Tuple[float, float]:
-    """The way between the two places that are farthest apart, across the normal, m.
-
-    What is long and thin has corners that no four directions find, but those along it and across.
-    """
+def _longest(touch: _Touch, places: List[Vec3]) -> float:
+    """The angle of the way between the two places that are farthest apart, rad."""
     side, fore = _sides(touch.normal)
     points = [(dot(place, side), dot(place, fore)) for place in places]
     ways = [(a[0] - b[0], a[1] - b[1]) for at, a in enumerate(points) for b in points[:at]]
-    return max(ways, key=lambda way: hypot(*way), default=(0.0, 0.0))
+    x, y = max(ways, key=lambda way: hypot(*way), default=(0.0, 0.0))
+    return atan2(y, x) if x or y else _FIRST
 
 
 def _sides(normal: Vec3) -> Tuple[Vec3, Vec3]:
@@ -263,15 +297,40 @@ def _sides(normal: Vec3) -> Tuple[Vec3, Vec3]:
     return side, cross(normal, side)
 
 
-def _tilted(touch: _Touch, at: Vec3, turn: Quat, angle: float, tilt: float) -> Tuple[Vec3, Quat]:
-    """Where a body is when it is tilted by `tilt`, rad, about the place that it will touch."""
+def _tilt(touch: _Touch, angle: float, tilt: float, raised: float) -> None:
+    """Tilt a body about the place that it will touch, and raise it by `raised`, m."""
     normal = touch.normal
     side, fore = _sides(normal)
     axis = add(scale(side, cos(angle)), scale(fore, sin(angle)))
     s = sin(tilt / 2.0)
     by: Quat = (axis[0] * s, axis[1] * s, axis[2] * s, cos(tilt / 2.0))
-    pivot = subtract(at, scale(normal, dot(subtract(at, touch.place), normal)))
-    return add(pivot, rotate(by, subtract(at, pivot))), multiply(by, turn)
+    pivot = subtract(touch.at, scale(normal, dot(subtract(touch.at, touch.place), normal)))
+    centre = add(pivot, rotate(by, subtract(touch.at, pivot)))
+    pybullet.resetBasePositionAndOrientation(
+        touch.uid, add(centre, scale(normal, raised)), multiply(by, touch.turn))
+
+
+def _lowest(touch: _Touch) -> float:
+    """The angle of four turns whose last one lowers what is lowest already."""
+    side, fore = _sides(touch.normal)
+    lever = subtract(touch.place, touch.at)
+    return atan2(dot(lever, fore), dot(lever, side)) - 2.0 * _QUARTER
+
+
+def _stands(touch: _Touch) -> bool:
+    """Whether the centre of mass lies over the points that touch."""
+    side, fore = _sides(touch.normal)
+    levers = [subtract(point[5], touch.at) for point in pybullet.getContactPoints(touch.uid)
+              if point[8] <= 0.0]
+    angles = sorted(atan2(dot(lever, fore), dot(lever, side)) for lever in levers)
+    around = [*angles[1:], angles[0] + 2.0 * pi] if angles else []
+    return bool(angles) and max(b - a for a, b in zip(angles, around)) < pi
+
+
+def _across(low: Vec3, high: Vec3, normal: Vec3) -> Tuple[float, float]:
+    """The least and largest extent across a direction, m."""
+    extents = [b - a for a, b, along in zip(low, high, normal) if abs(along) < _ACROSS]
+    return min(extents), max(extents)
 
 
 def _extent(body: Body) -> Tuple[Vec3, Vec3]:
