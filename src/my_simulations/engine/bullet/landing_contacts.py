@@ -20,7 +20,7 @@ from typing import Callable, Dict, List, NamedTuple, Optional, Set, Tuple
 import pybullet
 
 from ...description.model import Link
-from ...description.shapes import Box, Empty, Plane
+from ...description.shapes import Box, Empty, Plane, Sphere
 from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, scale, subtract
 from . import collision_groups
 from .bodies import Body, Part
@@ -109,62 +109,60 @@ class LandingContacts:
         self._landed = landed
         self._bodies: Dict[int, Body] = {}
         self._meets: Dict[int, _Filters] = {}
-        self._order: List[int] = []
+        self._order: Optional[List[int]] = None
         self._moving: Set[int] = set()
-        self._boxes: Dict[int, bool] = {}   # whether all shapes of a body are boxes, or planes
+        self._uneven: Dict[int, None] = {}  # not made of boxes, balls and planes alone
         self._flights: Dict[int, _Flight] = {}
         self._next = FAR                    # the first step at which a flight is looked at
 
     def add(self, body: Body, part: Part, link: Link) -> None:
         """Know one link of a body; only bodies that can tilt as they land matter."""
-        flat = (Box, Empty) if body.moves else (Box, Empty, Plane)
-        self._boxes[body.uid] = self._boxes.get(body.uid, True) and all(
-            isinstance(collision.geometry, flat) for collision in link.collisions)
-        if not body.moves:
-            return
-        self._moving.add(body.uid)
-        if body.is_ball or body.base is None:
-            return
-        if body.uid not in self._bodies:
-            self._bodies[body.uid] = body
-            self._order.append(body.uid)
-        meets = self._meets.setdefault(body.uid, [])
-        meets.append((part.index, collision_groups.moving(link)))
+        known = (Box, Sphere, Empty) if body.moves else (Box, Sphere, Empty, Plane)
+        if not all(isinstance(collision.geometry, known) for collision in link.collisions):
+            self._uneven[body.uid] = None
+        if body.moves:
+            self._moving.add(body.uid)
+            if not body.is_ball and body.base is not None:
+                self._bodies[body.uid] = body
+                self._meets.setdefault(body.uid, []).append(
+                    (part.index, collision_groups.moving(link)))
+        self._order = None
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
-        for table in (self._bodies, self._meets, self._boxes, self._flights):
+        for table in (self._bodies, self._meets, self._uneven, self._flights):
             table.pop(body.uid, None)
         self._moving.discard(body.uid)
-        self._order = list(self._bodies)
+        self._order = None
         self._plan()
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._bodies, self._meets, self._boxes, self._flights):
+        for table in (self._bodies, self._meets, self._uneven, self._flights):
             table.clear()
         self._moving.clear()
-        self._order.clear()
+        self._order = None
         self._next = FAR
 
     def touched(self, body: Body) -> None:
         """A command reached a body: it may fly from now on."""
-        if body.uid in self._bodies:
+        if body.uid in self._bodies and self._watched():
             self._flights[body.uid] = _Flight(body)
             self._next = 0
 
     def due(self, step: int) -> int:
         """The next look at a flight, or for new ones."""
-        if not self._order:
+        watched = self._watched()
+        if not watched:
             return FAR
         look = -(-step // EVERY)
-        turn = EVERY * (look + looks_until_turn(len(self._order), look, _ROUNDS))
+        turn = EVERY * (look + looks_until_turn(len(watched), look, _ROUNDS))
         return max(step, min(turn, self._next))
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Look for flights now and then, and find the points of those that end in this step."""
         if step % EVERY == 0:
-            for uid in turn_of(self._order, step // EVERY, _ROUNDS):
+            for uid in turn_of(self._watched(), step // EVERY, _ROUNDS):
                 if uid not in self._flights and _speed(uid) > _RESTS:
                     self._flights[uid] = _Flight(self._bodies[uid])
         touches: List[_Touch] = []
@@ -183,6 +181,15 @@ class LandingContacts:
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""
+
+    def _watched(self) -> List[int]:
+        """The bodies that can land on something, one of both not made of boxes.
+
+        Bullet finds all points of two boxes by itself.
+        """
+        if self._order is None:
+            self._order = list(self._bodies) if self._uneven else []
+        return self._order
 
     def _plan(self) -> None:
         self._next = min((flight.look for flight in self._flights.values()), default=FAR)
@@ -234,7 +241,7 @@ class LandingContacts:
         found = pybullet.getOverlappingObjects(subtract(low, margin), add(high, margin)) or ()
         return sorted({other for other, _ in found if other != uid
                        and other not in flight.through
-                       and not (self._boxes[uid] and self._boxes.get(other, False))})
+                       and (uid in self._uneven or other in self._uneven)})
 
     def _lies_in(self, flight: _Flight, other: int) -> bool:
         """Whether a body is in another that it did not touch a step before: they do not meet."""
