@@ -4,9 +4,11 @@ Bullet finds one point a step where shapes meet, and four at once for two boxes 
 impact of a can or a mesh that lands upright would so be taken by one point of its rim: from 5 cm
 it tilts by 6 degrees, from 0.3 m it falls over (measured). Bullet keeps points from step to step,
 though, and solves all that it has. So in the step in which a flying body will touch something, it
-is tilted to and fro a little about the place where it touches, Bullet looks for contacts each time,
-and the body is put back: the points lie on the corners, or around the rim, that are within reach.
-Points that do not touch in this step, as of a body that lands on a corner, carry nothing.
+is tilted to and fro by 2 mrad about the place where it touches, Bullet looks for contacts each
+time, and the body is put back: the points lie on the corners, or around the rim. It stays tilted
+by 0.1 mrad, so that the one point that the step adds is a corner too, not one in between that takes
+the place of another. Points that do not touch yet, as of a body that lands on a corner, carry
+nothing.
 
 Who flies is asked now and then; of what flies, how far it is from what it could reach, and then not
 again before it can be there. What stands, or sleeps, costs next to nothing.
@@ -24,14 +26,16 @@ from ...description.shapes import Box, Empty, Plane, Sphere
 from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, scale, subtract
 from . import collision_groups
 from .bodies import Body, Part
-from .step_helper import FAR, looks_until_turn, next_multiple, turn_of
+from .step_helper import FAR, looks_until_turn, turn_of
 
 EVERY = 16
 """Steps between two looks for bodies that fly."""
 
 _ROUNDS = 2        # looks until every body was asked
 _RESTS = 0.03      # m/s: what flies is faster 3 ms after it left the ground
-_BOUNCES = 8       # steps until one that has landed is looked at again
+_BOUNCE = 8        # steps until one that has landed is looked at again
+_BOUNCES = 4       # such looks until it is one of those that are asked now and then
+_PATIENCE = 7      # turns that one that sleeps is left out
 _SOFT = 2e-3       # m/s: what comes slower tilts nothing
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
 _TILT = 2e-3       # rad: of the first round
@@ -39,6 +43,7 @@ _HINT = 1e-4       # rad: of the landing step, in which Bullet finds one more po
 _MOST_TILT = 0.15  # rad: of the second
 _LOST = 1e-3       # m above a surface points are lost
 _ACROSS = 0.8      # of a normal along an axis: less is across it
+_NONE = (0.0, 0.0, 0.0)
 _DIRECTIONS = 4    # a quarter of a turn each
 _QUARTER = pi / 2.0
 _FIRST = 0.65      # rad: not along the edges of what stands square to the axes
@@ -50,6 +55,7 @@ class _Flight:
 
     body: Body
     look: int = 0
+    on_ground: int = 0   # looks in a row
     through: Set[int] = field(default_factory=set)
     tried: Set[int] = field(default_factory=set)   # what it lay in when points were sought
 
@@ -58,7 +64,7 @@ _Filters = List[Tuple[int, collision_groups.Filter]]   # by PyBullet's link inde
 
 
 class _Touch(NamedTuple):
-    """Where a body will touch another in this step. 
+    """Where a body will touch another in this step.
 
     Attributes:
         gap: m, below 0 for an overlap.
@@ -112,6 +118,7 @@ class LandingContacts:
         self._order: Optional[List[int]] = None
         self._moving: Set[int] = set()
         self._uneven: Dict[int, None] = {}  # not made of boxes, balls and planes alone
+        self._asleep: Dict[int, int] = {}   # turns that are left out
         self._flights: Dict[int, _Flight] = {}
         self._next = FAR                    # the first step at which a flight is looked at
 
@@ -130,7 +137,7 @@ class LandingContacts:
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
-        for table in (self._bodies, self._meets, self._uneven, self._flights):
+        for table in (self._bodies, self._meets, self._uneven, self._asleep, self._flights):
             table.pop(body.uid, None)
         self._moving.discard(body.uid)
         self._order = None
@@ -138,7 +145,7 @@ class LandingContacts:
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._bodies, self._meets, self._uneven, self._flights):
+        for table in (self._bodies, self._meets, self._uneven, self._asleep, self._flights):
             table.clear()
         self._moving.clear()
         self._order = None
@@ -146,6 +153,7 @@ class LandingContacts:
 
     def touched(self, body: Body) -> None:
         """A command reached a body: it may fly from now on."""
+        self._asleep.pop(body.uid, None)
         if body.uid in self._bodies and self._watched():
             self._flights[body.uid] = _Flight(body)
             self._next = 0
@@ -162,11 +170,9 @@ class LandingContacts:
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Look for flights now and then, and find the points of those that end in this step."""
         if step % EVERY == 0:
-            for uid in turn_of(self._watched(), step // EVERY, _ROUNDS):
-                if uid not in self._flights and _speed(uid) > _RESTS:
-                    self._flights[uid] = _Flight(self._bodies[uid])
+            self._ask(turn_of(self._watched(), step // EVERY, _ROUNDS))
         touches: List[_Touch] = []
-        for uid, flight in list(self._flights.items()):
+        for flight in list(self._flights.values()):
             if flight.look <= step:
                 touches += self._look(flight, step, dt, gravity)
         self._plan()
@@ -181,6 +187,18 @@ class LandingContacts:
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""
+
+    def _ask(self, uids: List[int]) -> None:
+        """Find out which bodies may fly; what sleeps is asked less often."""
+        for uid in uids:
+            if self._asleep.get(uid):
+                self._asleep[uid] -= 1
+                continue
+            linear = pybullet.getBaseVelocity(uid)[0]
+            if linear == _NONE:
+                self._asleep[uid] = _PATIENCE
+            elif uid not in self._flights and norm(linear) > _RESTS:
+                self._flights[uid] = _Flight(self._bodies[uid], on_ground=_BOUNCES)
 
     def _watched(self) -> List[int]:
         """The bodies that can land on something, one of both not made of boxes.
@@ -199,12 +217,14 @@ class LandingContacts:
         uid = flight.body.uid
         linear, angular = pybullet.getBaseVelocity(uid)
         if any(contact[9] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
-            if norm(linear) <= _RESTS:
+            flight.on_ground += 1
+            if norm(linear) <= _RESTS or flight.on_ground > _BOUNCES:
                 del self._flights[uid]
-            flight.look = step + _BOUNCES
+            flight.look = step + _BOUNCE
             flight.through.clear()
             flight.tried.clear()
             return []
+        flight.on_ground = 0
         low, high = _extent(flight.body)
         fall = norm(gravity) * dt
         speed = norm(linear) + norm(angular) * norm(subtract(high, low)) + _AHEAD * fall
@@ -225,10 +245,10 @@ class LandingContacts:
             normal: Vec3 = nearest[7]
             speed_in = _approach(uid, other if moves else None, nearest[5], normal)
             if speed_in - dot(gravity, normal) * dt > _SOFT and not self._lies_in(flight, other):
-                touches.append(_Touch(
-                    uid, other, gap, nearest[6], normal,
-                    *pybullet.getBasePositionAndOrientation(uid), (linear, angular),
-                    *_across(low, high, normal)))
+                at, turn = pybullet.getBasePositionAndOrientation(uid)
+                width, breadth = _across(low, high, normal)
+                touches.append(_Touch(uid, other, gap, nearest[6], normal, at, turn,
+                                      (linear, angular), width, breadth))
         flight.look = step + max(1, ahead)
         touches.sort(key=lambda touch: touch.gap)
         if touches:
@@ -258,15 +278,18 @@ class LandingContacts:
                   for trial, points in zip(trials, self._try(trials))]
         self._try(trials)
         # What lands tilted, and is so deep already that all of it touches, touches everywhere.
-        deep = [touch for touch in touches if touch.most > _TILT]
-        if deep:
-            pybullet.performCollisionDetection()
-            self._try([_Trial(touch, _lowest(touch), touch.most, touch.raised) for touch in deep
-                       if not _stands(touch)])
+        wide = [_Trial(trial.touch, _lowest(trial.touch), trial.touch.most, trial.touch.raised)
+                for trial in _leaning([trial for trial in trials if trial.touch.most > _TILT])]
+        self._try(wide)
+        # And what leans none the less lands on its corner.
+        leaning = {trial.touch.uid for trial in _leaning(wide)}
+        self._try([trial for trial in trials if trial.touch.uid in leaning])
 
     def _try(self, trials: List[_Trial]) -> List[List[Vec3]]:
-        """Have four points found for each body, and leave it in such a pose that Bullet's own
-        point will be the last of them; gives all places that were seen."""
+        """Have four points found for each body; gives all places that were seen.
+
+        Each is left in such a pose that Bullet's own point will be the last of them.
+        """
         found: List[List[Vec3]] = [[] for _ in trials]
         for trial in trials:
             self._drop_points(trial.touch.uid)
@@ -322,6 +345,13 @@ def _lowest(touch: _Touch) -> float:
     side, fore = _sides(touch.normal)
     lever = subtract(touch.place, touch.at)
     return atan2(dot(lever, fore), dot(lever, side)) - 2.0 * _QUARTER
+
+
+def _leaning(trials: List[_Trial]) -> List[_Trial]:
+    """Those of bodies whose centre of mass does not lie over the points that touch."""
+    if trials:
+        pybullet.performCollisionDetection()
+    return [trial for trial in trials if not _stands(trial.touch)]
 
 
 def _stands(touch: _Touch) -> bool:
