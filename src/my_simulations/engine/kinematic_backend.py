@@ -14,7 +14,9 @@ from .commands import (
     ClearTimedForces,
     Command,
     ConnectModels,
+    DisconnectModels,
     JointMotor,
+    JointServo,
     JointWrench,
     LinkState,
     LoadModel,
@@ -22,6 +24,7 @@ from .commands import (
     PinModels,
     PlanarVelocity,
     ReadContacts,
+    ReadEfforts,
     ReadJointWrenches,
     RemoveModel,
     Restart,
@@ -31,6 +34,7 @@ from .commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
     SetWheelSlips,
     WheelSlip,
 )
@@ -50,8 +54,10 @@ class KinematicBackend:
         self.models: Dict[int, Tuple[Model, int, int, bool]] = {}
         self.timed_forces: Dict[int, object] = {}
         self.held: Tuple[int, ...] = ()
+        self.connected: Dict[str, ConnectModels] = {}
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.servos: Dict[int, JointServo] = {}
         self.wheel_slips: Dict[int, WheelSlip] = {}
         self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
@@ -69,12 +75,15 @@ class KinematicBackend:
             PinModels: self._hold,
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
             SetPlanarVelocities: self._set_planar,
+            SetServos: lambda c: self.servos.update({servo.row: servo for servo in c.servos}),
+            ReadEfforts: lambda c: (0.0,) * len(c.rows),
             SetWheelSlips: lambda c: self.wheel_slips.update(
                 {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
+            ConnectModels: lambda c: self.connected.update({c.joint.name: c}),
+            DisconnectModels: lambda c: [self.connected.pop(name, None) for name in c.names],
             ReadJointWrenches: lambda command: tuple(
                 self.joint_wrenches.get(key) for key in command.joints),
-            ConnectModels: lambda _: None,
             AddTimedForces: lambda c: self.timed_forces.update(
                 {force.force_id: force for force in c.forces}
             ),
@@ -140,6 +149,7 @@ class KinematicBackend:
         self.timed_forces.clear()
         self.motors.clear()
         self.planar.clear()
+        self.servos.clear()
 
     def _restart(self, command: Restart) -> None:
         before = {number: self.models[number] for number, _ in command.models}
@@ -194,6 +204,10 @@ class KinematicBackend:
             del self.links[first_link + n]
         for n in range(len(axis_rows(model))):
             del self.joints[first_joint + n]
+        for name, joint in list(self.connected.items()):
+            if {joint.parent_row, joint.child_row} & set(range(first_link,
+                                                               first_link + len(model.links))):
+                del self.connected[name]
 
     def _set_model(self, command: SetModelState) -> None:
         if command.model_id not in self.models:

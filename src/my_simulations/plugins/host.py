@@ -6,62 +6,34 @@ then messages are published, so that publishing costs no sim time.
 """
 from __future__ import annotations
 
+import contextlib
 import threading
 import traceback
-from dataclasses import dataclass, field
-from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
+from collections import deque
+from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
-from ..description.model import Model
-from ..description.plugin import PluginSpec
-from ..description.sensor import Sensor
-from ..engine.commands import JointMotor, PlanarVelocity
+from ..description.model import WORLD, Model
+from ..engine.commands import JointMotor, JointServo, PlanarVelocity
 from ..errors import CommandError, Issue, Severity, warning
+from ..geometry import IDENTITY
 from ..simulator.appointments import Consumer, Moment
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
-from .base import Plugin
+from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
-from .graph import Graph
+from .graph import Graph, TopicUse
+from .message_maker import Later, MessageMaker
 from .registry import PluginRegistry, UnknownPluginError, library_name
+from .running import Found, Running, plugins_of
 from .simulated_context import SimulatedContext
 
 _LOOK_S = 0.5      # between two looks while nothing rings
 _SETTLE_S = 30.0   # how long a caller waits for plugins to be loaded
 _END_S = 2.0
 
-
-@dataclass(frozen=True)
-class Found:
-    """A plugin in a description: where it belongs. `scope` is that of a nested model, `inner::`."""
-
-    spec: PluginSpec
-    scope: str = ""
-    link: str = ""
-    sensor: Optional[Sensor] = field(default=None, compare=False)
-
-
-@dataclass
-class Running:
-    """A plugin at work; `plugin` None for one that is unknown or was switched off."""
-
-    found: Found
-    context: SimulatedContext
-    plugin: Optional[Plugin]
-
-
-def plugins_of(model: Model, scope: str = "") -> Iterator[Found]:
-    """The plugins of a flattened model: its own, those of its sensors, those of nested models."""
-    for spec in model.plugins:
-        yield Found(spec, scope)
-    if not scope:
-        for link in model.links:
-            inner = link.name.rpartition("::")[0]
-            for sensor in link.sensors:
-                for spec in sensor.plugins:
-                    yield Found(spec, f"{inner}::" if inner else "", link.name, sensor)
-    for nested in (model.guide.models if model.guide is not None else model.models):
-        yield from plugins_of(nested, f"{scope}{nested.name}::")
+WORLD_SCOPE = ""
+"""Stands for the world among the names of models."""
 
 
 class PluginHost:
@@ -72,12 +44,14 @@ class PluginHost:
         graph: how plugins reach ROS.
         registry: finds their classes.
         log: hears of plugins that are unknown or fail.
+        patience: how long a call of a plugin may take; loading may take five times as long.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
-                 log: Callable[[Issue], None]) -> None:
+                 log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._eyes = Eyes(simulator, log)
+        self._messages = MessageMaker()
         self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
         self._told: Dict[str, bool] = {}
         self._revision = self._followed = -1
@@ -88,7 +62,15 @@ class PluginHost:
         self._consumer: Optional[Consumer] = None
         self._wake = threading.Event()
         self._moment: Optional[Moment] = None
-        self._thread = threading.Thread(target=self._run, name="plugins", daemon=True)
+        self._patience = patience
+        self._watch = CallWatch(self._go_on_without)
+        self._to_load: Deque[Tuple[str, Found]] = deque()
+        self._leaving: Deque[Running] = deque()
+        self._overdue: Deque[Tuple[Running, str]] = deque()
+        self._thread = self._new_thread()
+
+    def _new_thread(self) -> threading.Thread:
+        return threading.Thread(target=self._run, name="plugins", daemon=True)
 
     def start(self) -> None:
         """Begin; returns when the plugins of all present models are loaded."""
@@ -117,6 +99,11 @@ class PluginHost:
         if self._thread.is_alive():
             self._thread.join(_END_S)
 
+    def topic_uses(self) -> List[TopicUse]:
+        """The topics of all plugins; from any thread."""
+        return [use for _, all_running in list(self._models.values())
+                for running in list(all_running) for use in running.context.topic_uses()]
+
     # -- the thread --------------------------------------------------------------------------------
 
     def _run(self) -> None:
@@ -127,16 +114,32 @@ class PluginHost:
                 except CommandError as fault:  # the engine is being replaced, or the world ends
                     self._log(warning("plugin-turn", f"plugins missed their turn: {fault}"))
                 self._rest()
-        finally:
-            self._stop.set()
             for name in list(self._models):
                 self._end_model(name)
-            self._eyes.close()
-            if self._consumer is not None:
-                self._consumer.leave()
-                self._consumer = None
-            with self._settled:
-                self._settled.notify_all()
+            self._end_leaving()
+        except CallOverdue:
+            return  # this thread was left behind; another one goes on
+        finally:
+            if threading.current_thread() is self._thread:
+                self._clean_up()
+
+    def _clean_up(self) -> None:
+        self._stop.set()
+        self._watch.stop()
+        self._eyes.close()
+        self._messages.stop()
+        if self._consumer is not None:
+            self._consumer.leave()
+            self._consumer = None
+        with self._settled:
+            self._settled.notify_all()
+
+    def _go_on_without(self, running: Running, why: str) -> None:
+        """Leave a thread behind that does not come back from a plugin; comes from the watch."""
+        running.plugin = None
+        self._overdue.append((running, why))
+        self._thread = self._new_thread()
+        self._thread.start()
 
     def _rest(self) -> None:
         if self._consumer is not None:
@@ -147,6 +150,9 @@ class PluginHost:
 
     def _turn(self) -> None:
         """Look at the world once, and do what is due."""
+        while self._overdue:
+            running, why = self._overdue.popleft()
+            self._switch_off(running, f"{why}; its thread was left behind")
         self._follow_models()
         moment = self._now()
         self._notice_resets(moment)
@@ -173,10 +179,12 @@ class PluginHost:
     def _serve(self, moment: Moment) -> None:
         """Call whose appointment it is."""
         for running in self._all():
-            for appointment in running.context.appointments:
-                if moment.step >= appointment.next:
+            for appointment in list(running.context.appointments):
+                if moment.step >= appointment.next and running.plugin is not None:
+                    if appointment.single:
+                        appointment.end()
+                    appointment.set_next(moment)
                     self._guarded(running, appointment.call)
-                    appointment.next = appointment.rate.after(moment.step, moment.clock)
 
     def _give_orders(self) -> None:
         """What plugins have ordered, in one command, for the models that there are now."""
@@ -185,30 +193,48 @@ class PluginHost:
 
     def _ordered(self) -> bool:
         motors: List[JointMotor] = []
+        servos: List[JointServo] = []
         planar: List[PlanarVelocity] = []
-        for _, all_running in self._models.values():
-            for running in all_running:
-                context = running.context
-                motors += context.motors.values()
-                if context.planar is not None:
-                    planar.append(context.planar)
-        if (motors or planar) and not self._simulator.drives.set(motors, planar, self._followed):
+        contexts = [running.context for _, all_running in self._models.values()
+                    for running in all_running]
+        for context in contexts:
+            motors += context.motors.values()
+            servos += context.servos.values()
+            if context.planar is not None:
+                planar.append(context.planar)
+        if (motors or servos or planar) and not self._simulator.drives.set(
+                motors, planar, self._followed, servos):
             return False
-        for _, all_running in self._models.values():
-            for running in all_running:
-                running.context.motors, running.context.planar = {}, None
+        for context in contexts:
+            context.motors, context.servos, context.planar = {}, {}, None
+        return self._pushed([context for context in contexts if context.pushes])
+
+    def _pushed(self, contexts: List[SimulatedContext]) -> bool:
+        if not contexts:
+            return True
+        orders = [(context, link, *push) for context in contexts
+                  for link, push in context.pushes.items()]
+        ids = self._simulator.wrenches.swap(
+            [context.push_ids[link] for context, link, *_ in orders if link in context.push_ids],
+            [order[1:] for order in orders], self._followed)
+        if ids is None:
+            return False
+        for (context, link, *_), number in zip(orders, ids):
+            context.push_ids.pop(link, None)
+            if number:
+                context.push_ids[link] = number
+        for context in contexts:
+            context.pushes = {}
         return True
 
     def _go_on(self, moment: Moment) -> None:
         """Let the engine run to the next appointment of anybody."""
-        steps = [appointment.next for running in self._all()
-                 for appointment in running.context.appointments]
+        steps = self._next_steps()
         if steps and self._consumer is None:
             self._consumer = self._simulator.appointments.join()
             moment = self._consumer.now()
             self._make_anew(moment)
-            steps = [appointment.next for running in self._all()
-                     for appointment in running.context.appointments]
+            steps = self._next_steps()
         if self._consumer is not None and steps:
             self._consumer.allow(moment, min(steps))
         elif self._consumer is not None:
@@ -216,10 +242,19 @@ class PluginHost:
             self._consumer = None
         self._moment = moment
 
+    def _next_steps(self) -> List[int]:
+        return [appointment.next for running in self._all()
+                for appointment in running.context.appointments]
+
     def _make_anew(self, moment: Moment) -> None:
         for running in self._all():
-            for appointment in running.context.appointments:
-                appointment.next = appointment.rate.after(moment.step, moment.clock)
+            for appointment in list(running.context.appointments):
+                if appointment.single and self._clock_was_set(moment):
+                    appointment.end()
+                appointment.set_next(moment)
+
+    def _clock_was_set(self, moment: Moment) -> bool:
+        return self._moment is not None and moment.clock_sets != self._moment.clock_sets
 
     def _publish(self, moment: Moment) -> None:
         transforms = []
@@ -228,15 +263,28 @@ class PluginHost:
                 context = running.context
                 outbox, context.outbox = context.outbox, []
                 for topic, message in outbox:
-                    self._guarded(running, topic.send, message)
+                    if isinstance(message, Later):
+                        self._messages.put(topic, message, self._failing(running))
+                    else:
+                        self._guarded(running, topic.send, message)
                 transforms += context.transforms
                 context.transforms = []
         if transforms:
             self._graph.send_transforms(transforms, moment.sim_ns)
 
+    def _failing(self, running: Running) -> Callable[[Exception], None]:
+        """What tells the plugins' thread of a fault in another one."""
+        def fail(fault: Exception) -> None:
+            def again() -> None:
+                raise fault
+
+            running.context.inbox.append(again)
+            self.wake()
+        return fail
+
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
-        while inbox:
+        while inbox and running.plugin is not None:
             self._guarded(running, inbox.popleft())
 
     def _notice_resets(self, moment: Moment) -> None:
@@ -246,6 +294,8 @@ class PluginHost:
         calls: List[str] = []
         if before is not None and moment.clock_sets != before.clock_sets:
             self._make_anew(moment)
+            for running in self._all():
+                running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:
                 calls.append("reset")
             elif moment.sim_ns < before.sim_ns:
@@ -254,19 +304,28 @@ class PluginHost:
         if resets.world_resets != self._world_resets:
             self._world_resets = resets.world_resets
             calls.append("reset")
-        for call in calls:
+        for call in reversed(calls):
             for running in self._all():
-                self._guarded(running, getattr(running.plugin, call))
+                running.context.inbox.appendleft(getattr(running.plugin, call))
 
     # -- models ------------------------------------------------------------------------------------
 
     def _follow_models(self) -> None:
         """Start and end plugins with their models."""
-        revision, entities = self._simulator.models.inventory()
-        if revision == self._followed:
-            return
-        self._followed = revision
-        present = {entity.model.name: entity for entity in entities}
+        while True:
+            revision, entities = self._simulator.models.inventory()
+            if revision != self._followed:
+                self._followed = revision
+                self._compare({WORLD_SCOPE: self._world_entity(),
+                               **{entity.model.name: entity for entity in entities}})
+            self._end_leaving()
+            if not self._to_load:
+                return
+            name, found = self._to_load.popleft()
+            self._load(*self._models[name], found)  # which may change models
+
+    def _compare(self, present: Dict[str, Entity]) -> None:
+        """Note what is to be loaded and ended; tell of other rows those that stay."""
         for name in [name for name in self._models if name not in present]:
             self._end_model(name)
         for name, entity in present.items():
@@ -274,24 +333,36 @@ class PluginHost:
             if before is not None and before[0] is entity:
                 continue
             found = list(plugins_of(entity.model))
-            if before is not None and [one.found for one in before[1]] == found:
-                self._rebind(entity, before[1])
+            known = [] if before is None else [
+                *(one.found for one in before[1]),
+                *(one for owner, one in self._to_load if owner == name)]
+            if before is not None and known == found:
                 self._models[name] = (entity, before[1])
+                self._rebind(entity, before[1])
                 continue
             if before is not None:
                 self._end_model(name)
             self._models[name] = (entity, [])
-            for one in found:
-                self._load(entity, one, self._models[name][1])
+            self._to_load += [(name, one) for one in found]
+
+    def _world_entity(self) -> Entity:
+        """What stands for the world as owner of its plugins."""
+        world = self._simulator.world  # plugins of actors are unknown here, and told so
+        plugins = [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
+        before = self._models.get(WORLD_SCOPE)
+        if before is not None and before[0].model.plugins == plugins:
+            return before[0]
+        return Entity(0, Model(WORLD, plugins=plugins), IDENTITY, 0, 0)
 
     def _rebind(self, entity: Entity, all_running: List[Running]) -> None:
         for running in all_running:
             if running.plugin is not None:
                 self._guarded(running, running.context.bind, entity)
 
-    def _load(self, entity: Entity, found: Found, into: List[Running]) -> None:
+    def _load(self, entity: Entity, into: List[Running], found: Found) -> None:
         context = SimulatedContext(self._simulator, self._graph, entity, found.spec, found.scope,
-                                   self._log, self.wake, self._eyes, found.sensor, found.link)
+                                   self._log, self.wake, self._eyes, found.sensor, found.link,
+                                   found.joint)
         running = Running(found, context, None)
         into.append(running)
         if self._registry.is_provided(found.spec.filename):
@@ -302,9 +373,9 @@ class PluginHost:
             self._tell_unknown(found, entity, str(unknown))
             return
         moment = context.moment = self._simulator.appointments.now()
-        if self._guarded(running, running.plugin.load):
+        if self._guarded(running, running.plugin.load, patience=self._patience.longer()):
             for appointment in context.appointments:
-                appointment.next = appointment.rate.after(moment.step, moment.clock)
+                appointment.set_next(moment)
 
     def _tell_unknown(self, found: Found, entity: Entity, text: str) -> None:
         name = library_name(found.spec.filename)
@@ -317,16 +388,28 @@ class PluginHost:
 
     def _end_model(self, name: str) -> None:
         _, all_running = self._models.pop(name)
-        for running in all_running:
+        self._to_load = deque(one for one in self._to_load if one[0] != name)
+        self._leaving += all_running
+
+    def _end_leaving(self) -> None:
+        while self._leaving:
+            running = self._leaving.popleft()
             if running.plugin is not None:
                 self._guarded(running, running.plugin.close)
             running.context.close()
+            with contextlib.suppress(CommandError):  # the engine ends as well
+                running.context.let_go()
 
-    def _guarded(self, running: Running, call: Callable[..., None], *arguments: Any) -> bool:
-        """Call a plugin; one that raises is reported and switched off."""
+    def _guarded(self, running: Running, call: Callable[..., None], *arguments: Any,
+                 patience: Optional[Patience] = None) -> bool:
+        """Call a plugin; one that raises, or does not come back, is reported and switched off."""
         try:
-            call(*arguments)
+            self._watch.run(running, patience or self._patience, call, *arguments)
             return True
+        except CallOverdue as overdue:
+            if threading.current_thread() is not self._thread:
+                raise
+            self._switch_off(running, str(overdue))
         except PluginError as fault:
             self._switch_off(running, str(fault))
         except Exception as fault:  # whatever a plugin does wrong, the world goes on

@@ -38,6 +38,19 @@ class Parameters:
         """The texts of all children of that name."""
         return [(child.text or "").strip() for child in self._root.findall(name)]
 
+    def children(self, name: str) -> "List[Parameters]":
+        """The children of that name, as elements with children of their own."""
+        found = []
+        for child in self._root.findall(name):
+            made = Parameters("", self._warn)
+            made._root = child
+            found.append(made)
+        return found
+
+    def attribute(self, name: str, default: str = "") -> str:
+        """An attribute of the element."""
+        return str(self._root.get(name, default))
+
     def number(self, name: str, default: float) -> float:
         """A number."""
         return self._read(name, default, float, "a number")

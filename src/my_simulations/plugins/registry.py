@@ -21,21 +21,63 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_diff_drive.so": "drive.diff_drive:DiffDrive",
     "libgazebo_ros_skid_steer_drive.so": "drive.skid_steer_drive:SkidSteerDrive",
     "libgazebo_ros_planar_move.so": "drive.planar_move:PlanarMove",
+    "libgazebo_ros_tricycle_drive.so": "drive.tricycle_drive:TricycleDrive",
+    "libgazebo_ros_wheel_slip.so": "drive.wheel_slip:WheelSlip",
+    "libWheelSlipPlugin.so": "drive.wheel_slip:WheelSlip",
+    "libgazebo_ros_force_based_move.so": "drive.force_based_move:ForceBasedMove",
+    "librobotnik_force_based_move.so": "drive.force_based_move:ForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
+    "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
     "libgazebo_ros_force.so": "state.force:Force",
+    "libgazebo_ros_joint_pose_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
+    "libgazebo_ros_joint_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
+    "libgazebo_ros_ft_sensor.so": "state.ft_sensor:FtSensor",
+    "libgazebo_ros_hand_of_god.so": "state.hand_of_god:HandOfGod",
+    "libroboticsgroup_gazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
+    "libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
+    "libgazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
+    "libInitialVelocityPlugin.so": "state.initial_velocity:InitialVelocity",
+    "libgazebo_ros_vacuum_gripper.so": "gripping.vacuum_gripper:VacuumGripper",
+    "libgazebo_grasp_fix.so": "gripping.grasp_fix:GraspFix",
+    "libgazebo_ros_link_attacher.so": "gripping.link_attacher:LinkAttacher",
+    "libLiftDragPlugin.so": "world.lift_drag:LiftDrag",
+    "libBuoyancyPlugin.so": "world.buoyancy:Buoyancy",
     "libgazebo_ros_laser.so": "sensors.laser:Laser",
     "libgazebo_ros_gpu_laser.so": "sensors.laser:Laser",
+    "libgazebo_ros_block_laser.so": "sensors.laser_points:BlockLaser",
+    "libgazebo_ros_velodyne_laser.so": "sensors.laser_points:Velodyne",
+    "libgazebo_ros_velodyne_gpu_laser.so": "sensors.laser_points:Velodyne",
     "libgazebo_ros_range.so": "sensors.range:Range",
     "libgazebo_ros_imu.so": "sensors.imu:ModelImu",
     "libgazebo_ros_imu_sensor.so": "sensors.imu:SensorImu",
+    "libhector_gazebo_ros_imu.so": "sensors.hector_imu:HectorImu",
+    "libhector_gazebo_ros_gps.so": "sensors.hector:Gps",
+    "libhector_gazebo_ros_magnetic.so": "sensors.hector:Magnetic",
+    "libhector_gazebo_ros_baro.so": "sensors.hector:Baro",
+    "libhector_gazebo_ros_sonar.so": "sensors.hector:Sonar",
     "libgazebo_ros_bumper.so": "sensors.bumper:Bumper",
+    "libgazebo_ros_camera.so": "sensors.camera:Camera",
+    "libgazebo_ros_triggered_camera.so": "sensors.camera:TriggeredCamera",
+    "libgazebo_ros_multicamera.so": "sensors.camera:MultiCamera",
+    "libgazebo_ros_prosilica.so": "sensors.camera:Camera",
+    "libgazebo_ros_depth_camera.so": "sensors.depth_camera:DepthCamera",
+    "librealsense_gazebo_plugin.so": "sensors.realsense:RealSense",
+    "libgazebo_ros_realsense.so": "sensors.realsense:RealSense",
+    "libgazebo_ros_openni_kinect.so": "sensors.depth_camera:OpenniKinect",
+    "libmy_simulations_segmentation_camera.so": "sensors.segmentation:SegmentationCamera",
+    "libmy_simulations_gps.so": "sensors.environment:GpsSensor",
+    "libmy_simulations_magnetometer.so": "sensors.environment:MagnetometerSensor",
+    "libmy_simulations_altimeter.so": "sensors.environment:AltimeterSensor",
 }
-"""Classes in this package, by library."""
+"""Classes in this package, by library. Those called libmy_simulations are not in Gazebo."""
 
 PROVIDED = ("libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so",
-            "libgazebo_ros_init.so", "libgazebo_ros_factory.so")
-"""What these libraries do, the simulator itself does."""
+            "libgazebo_ros_init.so", "libgazebo_ros_factory.so",
+            "libroboticsgroup_gazebo_disable_link_plugin.so",
+            "libroboticsgroup_upatras_gazebo_disable_link_plugin.so",
+            "libgazebo_ros_template.so")
+"""What these libraries do, the simulator itself does, or it is nothing here."""
 
 _EXPORT = re.compile(r"<my_simulations\b([^>]*)>")
 _ATTRIBUTE = re.compile(r"""(plugin|library)\s*=\s*["']([^"']*)["']""")
@@ -70,6 +112,12 @@ class PluginRegistry:
     def is_provided(self, filename: str) -> bool:
         """Whether the simulator does by itself what the library does."""
         return library_name(filename) in PROVIDED
+
+    def knows(self, filename: str) -> bool:
+        """Whether somebody does what the library does; nothing is imported."""
+        name = library_name(filename)
+        return (name in PROVIDED or name in self._extra or name in BUILT_IN
+                or name in self._of_packages())
 
     def find(self, filename: str) -> Type[Plugin]:
         """The class for a library.

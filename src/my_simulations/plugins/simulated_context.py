@@ -3,37 +3,62 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from concurrent.futures import Future
-from concurrent.futures import TimeoutError as FutureTimeoutError
-from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+from dataclasses import replace
+from typing import Any, Callable, Deque, Dict, List, Optional, Sequence, Tuple
 
+from ..description.model import Inertial, Mimic, Model
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
-from ..engine.commands import FOREVER, JointMotor, PlanarVelocity, TimedWrench
-from ..errors import Issue, Severity
-from ..geometry import IDENTITY, Pose, Twist, Vec3, compose
-from ..sensing.api import RayFan, RayReturns, SensingError
+from ..description.surroundings import SphericalCoordinates
+from ..description.transmission import Transmission
+from ..engine.commands import JointMotor, JointServo, JointWrench, PlanarVelocity, WheelSlip
+from ..errors import CommandError, InputError, Issue, Severity
+from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
+from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
-from .context import PluginError
+from ..simulator.wrenches import first_step
+from .context import PluginError, View
 from .eyes import Eyes
-from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .graph import Closing, Graph, MissingTypeError, Topic, TopicUse, TransformOf
+from .message_maker import Later
 from .parameters import Parameters
+from .sensing_requests import SensingRequests
 
 Report = Callable[[Issue], None]
 
-_SCAN_S = 10.0  # of wall time, for rays
+_LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
 
 
 class Appointment:
-    """Something that is called at a rate."""
+    """Something that is called at a rate, or once.
 
-    def __init__(self, hertz: float, call: Callable[[], None]) -> None:
-        self.rate = Rate(hertz)
+    Attributes:
+        call: what is called.
+        next: the step at which that is due.
+        single: whether it is over then.
+    """
+
+    def __init__(self, owner: "List[Appointment]", rate: Optional[Rate],
+                 call: Callable[[], None], ns: int = 0) -> None:
+        self._owner, self._rate, self._ns = owner, rate, ns
         self.call = call
         self.next = 0
+        self.single = rate is None
+
+    def set_next(self, moment: Moment) -> None:
+        """The first time after a moment."""
+        if self._rate is not None:
+            self.next = self._rate.after(moment.step, moment.clock)
+        else:
+            self.next = max(moment.step + 1, first_step(moment.clock, self._ns))
+
+    def end(self) -> None:
+        """Never again."""
+        if self in self._owner:
+            self._owner.remove(self)
 
 
 class SimulatedLink:
@@ -43,6 +68,7 @@ class SimulatedLink:
         self.name = name
         self._context = context
         self.row = -1
+        self.inertial = Inertial()
 
     @property
     def pose(self) -> Pose:
@@ -64,6 +90,8 @@ class SimulatedJoint:
         self._context = context
         self.row = -1
         self.motor: Optional[JointMotor] = None
+        self.servo: Optional[JointServo] = None
+        self.spec = spec
 
     @property
     def position(self) -> float:
@@ -79,6 +107,11 @@ class SimulatedJoint:
         """Turn the motor."""
         self.motor = JointMotor(self.row, rate, effort)
         self._context.motors[self.row] = self.motor
+
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo."""
+        self.servo = replace(servo, row=self.row)
+        self._context.servos[self.row] = self.servo
 
 
 class Offer:
@@ -96,23 +129,51 @@ class Offer:
         """Publish."""
         self._context.outbox.append((self._topic, message))
 
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what another thread makes."""
+        self._context.outbox.append((self._topic, Later(make, self._context.sensing.unsent)))
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        waiting = [one for one in self._context.outbox if one[0] is self._topic]
+        self._context.outbox = [one for one in self._context.outbox if one[0] is not self._topic]
+        for _, message in waiting:
+            self._topic.send(message.make() if isinstance(message, Later) else message)
+        self._context.close_one(self._topic)
+
+
+class OpenEnd:
+    """A subscription or service of a plugin."""
+
+    def __init__(self, context: "SimulatedContext", end: Closing) -> None:
+        self._context, self._end = context, end
+        context.opened.append(end)
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        self._context.close_one(self._end)
+
 
 class SimulatedContext:
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
 
     Attributes:
         appointments: when the plugin wants to be called.
-        motors, planar: what it has ordered since they were last taken.
+        motors, servos, planar, pushes: what it has ordered since they were last taken.
+        push_ids: the wrenches that act now, by link.
         outbox, transforms: what it has published since they were last taken.
         inbox: what has come for it: functions to be called.
+        sensing: what it has asked of the sensing process.
+        opened: what it has on the graph.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
                  scope: str, report: Report, wake: Callable[[], None],
-                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "") -> None:
+                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 sensor_joint: str = "") -> None:
         self.simulator = simulator
         self.model = entity.model.name
-        self.sensor, self.sensor_link = sensor, sensor_link
+        self.sensor, self.sensor_link, self.sensor_joint = sensor, sensor_link, sensor_joint
         self.spec = spec
         self._graph, self._scope, self._report, self._wake = graph, scope, report, wake
         self.parameters = Parameters(spec.xml, self.warn)
@@ -120,6 +181,7 @@ class SimulatedContext:
         self.moment: Optional[Moment] = None
         self.appointments: List[Appointment] = []
         self.motors: Dict[int, JointMotor] = {}
+        self.servos: Dict[int, JointServo] = {}
         self.planar: Optional[PlanarVelocity] = None
         self.level: Optional[PlanarVelocity] = None
         self.outbox: List[Tuple[Topic, Any]] = []
@@ -127,13 +189,15 @@ class SimulatedContext:
         self.inbox: Deque[Callable[[], None]] = deque()
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
-        self._scan_fault = ""
-        self._pushes: Dict[str, List[int]] = {}
-        self._eyes = eyes
-        self._scan: "Optional[Tuple[Future[RayReturns], Callable[[RayReturns, int], None], int]]" \
-            = None
+        self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
+        self.push_ids: Dict[str, int] = {}
+        self._closed = threading.Event()
+        self._attached: List[str] = []
+        self._held = False
+        self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
         self._namespace = ""
-        self._open: List[Closing] = []
+        self.opened: List[Closing] = []
+        self._topics: List[Tuple[str, str, bool]] = []
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -141,31 +205,53 @@ class SimulatedContext:
         """The model has other rows, or another name, now. Raises PluginError for what is gone."""
         self.entity, self.model = entity, entity.model.name
         for link in self._links.values():
-            link.row = self._link_row(link.name)
-        self.motors = {}
+            self._find(link)
+        self.motors, self.servos = {}, {}
         for joint in self._joints.values():
             joint.row = self._axis_row(joint.spec_name)
             if joint.motor is not None:
                 joint.drive(joint.motor.rate, joint.motor.effort)
+            if joint.servo is not None:
+                joint.steer(joint.servo)
         if self.level is not None:
             self.drive_level(self.level.x, self.level.y, self.level.yaw_rate)
 
     def close(self) -> None:
         """Take everything off the graph, and switch off what was driven."""
-        for one in self._open:
+        for one in self.opened:
             one.close()
-        self._open.clear()
+        self.opened.clear()
+        self._topics.clear()
         self.appointments.clear()
+        self._closed.set()
+
+    def close_one(self, end: Closing) -> None:
+        """Take one thing off the graph."""
+        if end in self.opened:
+            self.opened.remove(end)
+            end.close()
 
     def stop(self) -> None:
         """Switch off what the plugin drives, in a world that still has the model."""
         for joint in self._joints.values():
             if joint.motor is not None:
                 joint.drive(0.0, 0.0)
+            if joint.servo is not None:
+                joint.steer(JointServo(joint.row, ""))
         if self.level is not None:
             self.simulator.drives.stop(self.entity)
-        for link in list(self._pushes):
-            self.simulator.wrenches.remove(self._pushes.pop(link))
+        if self._held:
+            self.hold(False)
+        self.let_go()
+
+    def let_go(self) -> None:
+        """Detach what the plugin has attached, and push nothing any more."""
+        self.pushes = {}
+        if self.push_ids:
+            self.simulator.wrenches.remove(list(self.push_ids.values()))
+        self.push_ids = {}
+        for name in list(self._attached):
+            self.detach(name)
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -179,9 +265,24 @@ class SimulatedContext:
         """Of the simulation, s."""
         return self.simulator.physics.settings.max_step_size
 
-    def every(self, hertz: float, call: Callable[[], None]) -> None:
+    @property
+    def step(self) -> int:
+        """The step count."""
+        return self.moment.step if self.moment is not None else self.simulator.clock.step
+
+    def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
         """Be called at a rate."""
-        self.appointments.append(Appointment(hertz, call))
+        return self._appointed(Appointment(self.appointments, Rate(hertz), call))
+
+    def once(self, ns: int, call: Callable[[], None]) -> Appointment:
+        """Be called once."""
+        return self._appointed(Appointment(self.appointments, None, call, ns))
+
+    def _appointed(self, made: Appointment) -> Appointment:
+        if self.moment is not None:
+            made.set_next(self.moment)
+        self.appointments.append(made)
+        return made
 
     # -- the model -------------------------------------------------------------------------------
 
@@ -209,25 +310,50 @@ class SimulatedContext:
         """Of what is drawn at random."""
         return self.simulator.world.seed
 
+    @property
+    def magnetic_field(self) -> Vec3:
+        """T, world axes."""
+        return self.simulator.world.magnetic_field
+
+    @property
+    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+        """Where the world's origin is."""
+        return self.simulator.world.spherical_coordinates
+
     def link(self, name: str) -> SimulatedLink:
         """A link of the model."""
+        if not name and self.entity.link_names:
+            name = self.entity.link_names[self.entity.canonical_row - self.entity.first_link_row]
         if name not in self._links:
             link = SimulatedLink(self, name)
-            link.row = self._link_row(name)
+            self._find(link)
             self._links[name] = link
         return self._links[name]
+
+    def _find(self, link: SimulatedLink) -> None:
+        link.row = self._link_row(link.name)
+        link.inertial = self.entity.model.links[link.row - self.entity.first_link_row].inertial
 
     def joint(self, name: str) -> SimulatedJoint:
         """A joint of the model that moves."""
         if name not in self._joints:
-            known = {joint.name: joint for joint in self.entity.model.joints}
-            spec = known.get(self._scope + name) or known.get(name)
-            if spec is None:
-                raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+            spec = self._joint_spec(name)
             joint = SimulatedJoint(self, spec, name)
             joint.row = self._axis_row(spec.name)
             self._joints[name] = joint
         return self._joints[name]
+
+    def _joint_spec(self, name: str) -> JointSpec:
+        known = {joint.name: joint for joint in self.entity.model.joints}
+        spec = known.get(self._scope + name) or known.get(name)
+        if spec is None:
+            raise PluginError(f"model '{self.model}' has no joint '{name}'" + _list(known))
+        return spec
+
+    def joint_wrench(self, name: str) -> Optional[JointWrench]:
+        """What a joint transmitted in the last step."""
+        spec = self._joint_spec(name)
+        return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
 
     def _link_row(self, name: str) -> int:
         names = self.entity.link_names
@@ -246,15 +372,93 @@ class SimulatedContext:
         """Move level from now on."""
         self.planar = self.level = PlanarVelocity(self.entity.model_id, x, y, yaw_rate)
 
+    @property
+    def description(self) -> Model:
+        """The flattened description."""
+        return self.entity.model
+
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """Those of the description, else of a parameter."""
+        own = self.entity.model.transmissions
+        text = "" if own else self.search_parameter(parameter, "")
+        if not isinstance(text, str) or not text.strip():
+            return own
+        from ..formats.urdf.transmission import transmissions_of
+
+        try:
+            return transmissions_of(text, f"parameter {parameter}")
+        except InputError as fault:
+            raise PluginError(str(fault)) from fault
+
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
-        wrenches, row = self.simulator.wrenches, self._link_row(link)
-        old = self._pushes.pop(link, [])
-        if any((*force, *torque)):
-            self._pushes[link] = wrenches.add(
-                [TimedWrench(0, row, 0, FOREVER, force, torque)], whole=True)
-        if old:
-            wrenches.remove(old)
+        if "::" not in link or self._owns(link):
+            row = self._link_row(link)
+            link = f"{self.model}::{self.entity.link_names[row - self.entity.first_link_row]}"
+        self.pushes[link] = (force, torque)
+
+    def _owns(self, link: str) -> bool:
+        return link in self.entity.link_names or self._scope + link in self.entity.link_names
+
+    def move(self, pose: Pose, twist: Twist = STILL) -> None:
+        """Put the model somewhere."""
+        self.simulator.states.set_model_state(self.model, pose, twist)
+
+    def hold(self, held: bool) -> None:
+        """Keep the model where it is put."""
+        self._held = held
+        self.simulator.models.hold(self.model, held)
+
+    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+             longitudinal: float) -> None:
+        """Let a wheel slip."""
+        self.simulator.drives.set_wheel_slips([WheelSlip(
+            self._link_row(link), self._axis_row(self._joint_spec(joint).name), radius,
+            normal_force, lateral, longitudinal)])
+
+    def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
+        """Have a joint follow another one."""
+        (joint, ahead) = self.joint(follower), self.joint(leader)
+        spec = next(one for one in self.entity.model.joints if one.name == joint.spec_name)
+        wanted = Mimic(ahead.spec_name, multiplier, offset)
+        if spec.axis is None or spec.axis.mimic == wanted:
+            return
+        self.simulator.joints.edit(f"{self.model}::{spec.name}", replace(
+            spec, axis=replace(spec.axis, mimic=wanted)))
+
+    # -- other models ----------------------------------------------------------------------------
+
+    def model_link(self, scoped: str) -> SimulatedLink:
+        """A link of any model."""
+        found = self.simulator.models.link_place(scoped)
+        if found is None:
+            raise PluginError(f"there is no link '{scoped}'")
+        link = SimulatedLink(self, scoped)
+        link.row, link.inertial = found
+        return link
+
+    def models(self) -> Dict[str, Model]:
+        """All models."""
+        return {entity.model.name: entity.model
+                for entity in self.simulator.models.inventory()[1]}
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Fix a link to another."""
+        try:
+            self.simulator.models.attach(name, parent, child)
+        except CommandError as fault:
+            raise PluginError(str(fault)) from fault
+        if name not in self._attached:
+            self._attached.append(name)
+
+    def detach(self, name: str) -> bool:
+        """Let go."""
+        self._attached = [one for one in self._attached if one != name]
+        return self.simulator.models.detach(name)
+
+    def efforts(self, joints: Sequence[str]) -> List[float]:
+        """What was spent on joints in the last step."""
+        return self.simulator.drives.efforts([self.joint(name).row for name in joints])
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Move joints at once."""
@@ -264,29 +468,24 @@ class SimulatedContext:
 
     def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
         """Cast rays from the plugin's sensor."""
-        self._end_scan()
         assert self.sensor is not None
-        future = self._eyes.cast(self._link_row(self.sensor_link), self.sensor.pose, fan, visuals)
-        self._scan = (future, call, self.now_ns)
-        future.add_done_callback(self._scanned)
+        self.sensing.scan(Mount(self._link_row(self.sensor_link), self.sensor.pose), fan, visuals,
+                          call, self.now_ns)
 
-    def _scanned(self, future: "Future[RayReturns]") -> None:
-        self.inbox.append(lambda: self._end_scan(future))
-        self._wake()
+    def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
+                   stream: str = "") -> bool:
+        """Take pictures."""
+        mounted = [(Mount(self._link_row(view.link), view.pose), view) for view in views]
+        return self.sensing.photograph(mounted, call, self.now_ns, self.simulator.clock.by_hand,
+                                       stream)
 
-    def _end_scan(self, only: "Optional[Future[RayReturns]]" = None) -> None:
-        """Wait for the scan on its way, if there is one, and hand it over."""
-        if self._scan is None or only not in (None, self._scan[0]):
-            return
-        (future, call, ns), self._scan = self._scan, None
-        try:
-            found = future.result(_SCAN_S)
-        except (SensingError, FutureTimeoutError) as fault:
-            if str(fault) != self._scan_fault:
-                self._scan_fault = str(fault)
-                self.warn(f"a scan is left out: {fault or 'it took too long'}")
-            return
-        call(found, ns)
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """The sensors of the model's links."""
+        return [(link.name, sensor) for link in self.entity.model.links for sensor in link.sensors]
+
+    def link_names(self) -> Dict[int, str]:
+        """Scoped names by row."""
+        return self.simulator.states.link_names()
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""
@@ -320,10 +519,12 @@ class SimulatedContext:
             topic = self._graph.publish(self._name(name), kind, queue, latch)
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
-        self._open.append(topic)
+        self.opened.append(topic)
+        self._topics.append((self._name(name), kind, False))
         return Offer(self, topic)
 
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int = 1) -> "OpenEnd":
         """Hear a topic."""
         waiting: Deque[Any] = deque(maxlen=max(1, queue))
 
@@ -337,29 +538,56 @@ class SimulatedContext:
             self._wake()
 
         try:
-            self._open.append(self._graph.subscribe(self._name(name), kind, arrived, queue))
+            heard = OpenEnd(self, self._graph.subscribe(self._name(name), kind, arrived, queue))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
+        self._topics.append((self._name(name), kind, True))
+        return heard
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+    def topic_uses(self) -> List[TopicUse]:
+        """The topics it offers and hears; from any thread."""
+        link, pose = "", IDENTITY
+        if self.sensor is not None:
+            link, pose = self._scope + self.sensor_link, self.sensor.pose
+            if link not in self.entity.link_names:
+                link = self.sensor_link
+        kind = self.sensor.type if self.sensor is not None else ""
+        return [TopicUse(name, message, heard, self.model, link, kind, pose)
+                for name, message, heard in list(self._topics)]
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> "OpenEnd":
         """Offer a service."""
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
 
+            fault: List[str] = []
+
             def answer() -> None:
                 try:
                     call(request, response)
+                except Exception as raised:  # the caller hears of it as well
+                    fault.append(str(raised))
+                    raise
                 finally:
                     done.set()
 
             self.inbox.append(answer)
             self._wake()
-            done.wait()
+            while not done.wait(_LOOK_S):
+                if self._closed.is_set():
+                    fault.append("the plugin has ended")
+                    break
+            if fault:
+                raise PluginError(fault[0])
 
         try:
-            self._open.append(self._graph.serve(self._name(name), kind, asked))
+            return OpenEnd(self, self._graph.serve(self._name(name), kind, asked))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace."""
+        return self._graph.parameter(self._namespace, name, default)
 
     def search_parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace or above."""

@@ -79,6 +79,19 @@ class InterModelJoints:
                 found.append(_Connection(joint, compose(inverse(parent), at)))
         return self._of(found), issues
 
+    def added(self, registry: Registry, joint: Joint, parent_from_joint: Pose
+              ) -> "InterModelJoints":
+        """With one more, whose links must be there. Raises UnknownEntityError."""
+        for end in (joint.parent, joint.child):
+            if end != WORLD:
+                registry.link(end)
+        return self._of([one for one in self._all if one.joint.name != joint.name]
+                        + [_Connection(joint, parent_from_joint)])
+
+    def removed(self, names: Sequence[str]) -> "InterModelJoints":
+        """Without the joints of these names."""
+        return self._of([one for one in self._all if one.joint.name not in names])
+
     def commands(self, registry: Registry, model: str = "",
                  instead: Optional[Entity] = None) -> List[ConnectModels]:
         """Commands that create the joints; with `model`, only the joints of that model.

@@ -5,13 +5,14 @@ from dataclasses import replace as replaced
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.flatten import flattened
-from ..description.model import Inertial, Joint, Link, Model
+from ..description.model import WORLD, Inertial, Joint, Link, Model
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.commands import (
     AddTimedForces,
     Batch,
     Command,
+    DisconnectModels,
     LoadModel,
     ModelState,
     PinModels,
@@ -20,14 +21,14 @@ from ..engine.commands import (
 from ..engine.ring import Snapshot
 from ..errors import CommandError, error
 from ..formats.mesh.loading import without_missing_meshes
-from ..geometry import Pose, compose, normalised
+from ..geometry import Pose, compose, inverse, normalised
 from .convex_meshes import ConvexParts
 from .drives import Drives
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .order_slot import OrderSlot
 from .registry import Entity
-from .session import Session
+from .session import Session, check_name
 from .wrenches import Wrenches
 
 
@@ -46,6 +47,8 @@ class Models:
         self._convex_meshes = convex_meshes
         self._between = InterModelJoints()
         self._pinned: List[str] = []
+        self._held: List[str] = []
+        self._attached: List[str] = []
         self._losses: List[str] = []
         self._saved_starts = dict(session.world.initial)
 
@@ -72,6 +75,15 @@ class Models:
             entity, index = self._session.registry.link(name)
             return entity.model.links[index]
 
+    def link_place(self, scoped: str) -> Optional[Tuple[int, Inertial]]:
+        """Row and inertial of a link by its scoped name; None where there is none."""
+        with self._session.registry_lock:
+            row = self._session.registry.link_row_or_none(scoped)
+            if row is None:
+                return None
+            entity, index = self._session.registry.link(scoped)
+            return row, entity.model.links[index].inertial
+
     @property
     def revision(self) -> int:
         """Increases with every change of names, descriptions, lights or scene settings."""
@@ -85,8 +97,11 @@ class Models:
 
     @property
     def inter_model_joints(self) -> List[Joint]:
-        """The joints between models in effect; their ends are scoped link names or `world`."""
-        return self._between.joints
+        """The joints between models in effect; their ends are scoped link names or `world`.
+
+        Without those of `attach`, which belong to the caller that made them.
+        """
+        return [joint for joint in self._between.joints if joint.name not in self._attached]
 
     def launched(self) -> List[str]:
         """The models that the launch file of this simulator spawned (see `Entity`)."""
@@ -125,8 +140,7 @@ class Models:
         Raises:
             CommandError: empty or existing name, unknown frame, or rejected by the engine.
         """
-        if not model.name:
-            raise CommandError("the name of a model must not be empty")
+        check_name(model.name, "model")
         model = flattened(model)
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
@@ -215,8 +229,7 @@ class Models:
         Raises:
             CommandError: unknown or existing name, or rejected by the engine; nothing has changed.
         """
-        if not model.name:
-            raise CommandError("the name of a model must not be empty")
+        check_name(model.name, "model")
         model = flattened(model)
         session = self._session
         with session.structure_lock:
@@ -247,8 +260,9 @@ class Models:
                 self._forget(old)
             self._wrenches.keep(forces)
             self._drives.adopt(driving)
-            self._pinned = [model.name if pinned == name else pinned for pinned in self._pinned]
-            if model.name in self._pinned:
+            self._pinned, self._held = ([model.name if one == name else one for one in names]
+                                        for names in (self._pinned, self._held))
+            if model.name in self._pinned or model.name in self._held:
                 session.call(self._pin_command())
 
     def set_link_inertial(self, link: str, inertial: Inertial,
@@ -278,11 +292,64 @@ class Models:
             self._pinned = list(names)
             self._session.call(self._pin_command())
 
+    def hold(self, name: str, held: bool) -> None:
+        """Keep one model at rest where it is put, or no more; besides those that are pinned.
+
+        Raises UnknownEntityError.
+        """
+        with self._session.structure_lock:
+            with self._session.registry_lock:
+                self._session.registry.model(name)
+            self._held = [one for one in self._held if one != name] + ([name] if held else [])
+            self._session.call(self._pin_command())
+
     def _pin_command(self) -> PinModels:
         with self._session.registry_lock:
             registry = self._session.registry
             return PinModels(tuple(registry.model(name).model_id
-                              for name in self._pinned if name in registry))
+                              for name in dict.fromkeys(self._pinned + self._held)
+                              if name in registry))
+
+    # -- joints between models ---------------------------------------------------------------------
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Join a link to another one, or to the world, as they are now.
+
+        The joint is fixed, and replaces another between models with the same name. It goes with
+        either model, and with a reset of the world to how it began.
+
+        Args:
+            name: of the joint.
+            parent: scoped name of a link, or `world`.
+            child: scoped name of a link of another model.
+
+        Raises CommandError: a link does not exist, or the engine refused it.
+        """
+        session = self._session
+        with session.structure_lock:
+            with session.registry_lock:
+                snapshot = session.snapshot()
+                at = snapshot.link(session.link_row(child))[0]
+                if parent != WORLD:
+                    at = compose(inverse(snapshot.link(session.link_row(parent))[0]), at)
+                wanted = self._between.added(session.registry, Joint(name, "fixed", parent, child),
+                                             at)
+                (command,) = [one for one in wanted.commands(session.registry)
+                              if one.joint.name == name]
+            session.call(Batch((DisconnectModels((name,)), command)))
+            self._between = wanted
+            if name not in self._attached:
+                self._attached.append(name)
+
+    def detach(self, name: str) -> bool:
+        """Take away a joint between models; returns whether there was one of that name."""
+        with self._session.structure_lock:
+            if not any(joint.name == name for joint in self._between.joints):
+                return False
+            self._session.call(DisconnectModels((name,)))
+            self._between = self._between.removed((name,))
+            self._attached = [one for one in self._attached if one != name]
+            return True
 
     # -- whole worlds, for the other parts, which hold the structure lock --------------------------
 
@@ -330,14 +397,20 @@ class Models:
             for entity in session.registry.entities():
                 session.registry.remove(entity.model.name)
                 self._forget(entity)
-        self._pinned = []
+        self._pinned, self._held, self._attached = [], [], []
 
     def commands_after_loading(self) -> List[Command]:
         """Commands to send after all models were loaded: joints between models, and pins."""
         commands: List[Command] = list(self._between.commands(self._session.registry))
-        if self._pinned:
+        if self._pinned or self._held:
             commands.append(self._pin_command())
         return commands
+
+    def detach_all(self) -> List[Command]:
+        """Forget what `attach` has made: the world begins anew. Returns what undoes it."""
+        names, self._attached = tuple(self._attached), []
+        self._between = self._between.removed(names)
+        return [DisconnectModels(names)] if names else []
 
     def restore_commands(self, snapshot: Snapshot) -> List[Command]:
         """Commands that load every model into a new engine, in the states of a snapshot."""

@@ -249,6 +249,11 @@ class Registry:
             raise UnknownEntityError(f"unknown link '{name}'" + self._nearest_link(name))
         return found
 
+    def link_row_or_none(self, name: str) -> Optional[int]:
+        """The row of a link by its scoped name; None where there is none."""
+        found = self._scoped_link(name)
+        return None if found is None else found[0].first_link_row + found[1]
+
     def joint_row(self, name: str) -> int:
         """The row of a movable joint by plain or scoped name. Raises UnknownEntityError."""
         for entity, joint, number in self._joints_named(name):

@@ -56,9 +56,9 @@ class Resets:
         session = self._session
         with session.structure_lock:
             entities = session.registry.entities()
-            session.call(Batch(tuple(
+            session.call(Batch((*self._models.detach_all(), *(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
-                for entity in entities if entity.link_names)))
+                for entity in entities if entity.link_names))))
             self._move_linkless_models(entities)
             self.world_resets += 1
 
@@ -72,6 +72,7 @@ class Resets:
             entities = session.registry.entities()
             self.simulation_resets += 1
             commands: List[Command] = [
+                *self._models.detach_all(),
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
                 SetClock(0, 0)]
             for entity in entities:

@@ -2,19 +2,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, List, Sequence, Tuple, Union
+from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from ..engine.commands import (
     FOREVER,
     AddTimedForces,
+    Batch,
     ClearTimedForces,
+    Command,
     JointPid,
     TimedEffort,
     TimedForce,
     TimedWrench,
 )
 from ..engine.ring import Clock
-from ..geometry import ZERO3, Vec3, compose, inverse, rotate, subtract, transform
+from ..errors import CommandError
+from ..geometry import ZERO3, Vec3, compose, inverse, is_finite, rotate, subtract, transform
 from .registry import Entity
 from .session import Session
 
@@ -52,7 +55,10 @@ class Wrenches:
 
         Raises:
             UnknownEntityError, UnknownFrameError: no such link or frame.
+            CommandError: force, torque or point is not finite.
         """
+        if not is_finite(*force, *torque, *point):
+            raise CommandError(f"the wrench for link '{link}' contains NaN or infinity")
         session = self._session
         with session.structure_lock:
             with session.registry_lock:
@@ -125,6 +131,44 @@ class Wrenches:
             for force_id in force_ids:
                 self._forces.pop(force_id, None)
             self._session.call(ClearTimedForces(tuple(force_ids)))
+
+    def swap(self, old: Sequence[int], wrenches: Sequence[Tuple[str, Vec3, Vec3]],
+             revision: Optional[int] = None) -> Optional[List[int]]:
+        """Clear some by id, and let others act until they are cleared, in the same gap.
+
+        Args:
+            old: ids; unknown ones have run out.
+            wrenches: scoped name of a link, force (N) and torque (N m) in world axes at the centre
+                of mass. What is zero, or on a link that is not there, is left out.
+            revision: of the models when they were worked out (`Models.revision`).
+
+        Returns:
+            An id for each wrench, 0 for one that is left out; None when the models have changed
+            since; then nothing is done.
+        """
+        session = self._session
+        with session.structure_lock:
+            if revision is not None and revision != session.registry.revision:
+                return None
+            ids: List[int] = []
+            new: List[TimedForce] = []
+            for link, force, torque in wrenches:
+                row = session.registry.link_row_or_none(link) \
+                    if any((*force, *torque)) else None
+                if row is None:
+                    ids.append(0)
+                    continue
+                ids.append(session.new_id())
+                new.append(TimedWrench(ids[-1], row, 0, FOREVER, force, torque))
+            commands: List[Command] = [ClearTimedForces(tuple(old))] if old else []
+            if new:
+                commands.append(AddTimedForces(tuple(new), whole=True))
+            if commands:
+                now = session.call(Batch(tuple(commands))).step
+                for number in old:
+                    self._forces.pop(number, None)
+                self._forces.update({one.force_id: one.begun(now) for one in new})
+            return ids
 
     # -- for the other parts, which hold the structure lock ----------------------------------------
 

@@ -30,6 +30,14 @@ def test_a_plugin_of_a_lumped_link_names_what_stands_for_it_and_grows_its_offset
         [0, 0, math.pi / 2])
 
 
+def test_a_plugin_of_a_sensor_keeps_its_frame_where_the_sensor_still_is():
+    model = kept('<sensor name="s" type="ray"><pose>0 0 0 0 0 0</pose><plugin name="p" '
+                 'filename="f"><frameName>hand</frameName></plugin></sensor>', ' reference="hand"')
+    (sensor,) = model.links[0].sensors
+    assert "<frameName>hand</frameName>" in sensor.plugins[0].xml
+    assert sensor.pose.position == pytest.approx((1, 2, 3))
+
+
 def test_a_contact_sensor_names_the_collisions_by_their_new_names():
     model = kept('<sensor name="s" type="contact"><contact><collision>hand_collision_1</collision>'
                  "</contact></sensor>", ' reference="hand"')

@@ -5,11 +5,16 @@ import math
 
 import pytest
 
+from my_simulations.description.model import Joint, Link
+from my_simulations.description.shapes import Collision, Cylinder
 from my_simulations.geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.drive.diff_drive import DiffDrive
+from my_simulations.plugins.drive.force_based_move import ForceBasedMove
 from my_simulations.plugins.drive.planar_move import PlanarMove
 from my_simulations.plugins.drive.skid_steer_drive import SkidSteerDrive
+from my_simulations.plugins.drive.tricycle_drive import TricycleDrive
+from my_simulations.plugins.drive.wheel_slip import WheelSlip
 from my_simulations.plugins.testing import FakeContext
 
 WHEELS = ("left_joint", "right_joint")
@@ -154,3 +159,107 @@ def test_planar_move_tells_the_velocity_since_the_last_message():
     odom = context.published["odom"][-1]
     assert odom.twist.twist.linear.x == pytest.approx(0.2)
     assert rpy_from_quat(context.transforms[-1][2].orientation)[2] == 0.0
+
+
+TRICYCLE = ("front_steering_joint", "front_wheel_joint", "left_wheel_joint", "right_wheel_joint")
+
+
+def tricycle(inside=""):
+    context = FakeContext(f"<plugin>{inside}</plugin>", joints=TRICYCLE)
+    plugin = TricycleDrive(context)
+    plugin.load()
+    return context, plugin
+
+
+def test_a_tricycle_drives_and_steers_its_front_wheel():
+    context, _ = tricycle()
+    context.hear("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 0.5})
+    context.advance(0.01)
+    assert context.joints["front_wheel_joint"].motor == pytest.approx((4.0, 5.0))
+    assert context.joints["front_steering_joint"].position == 0.5
+    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": -2.0})
+    context.advance(0.01)
+    assert context.joints["front_steering_joint"].position == pytest.approx(-math.pi / 2)
+
+
+def test_a_tricycle_steers_no_faster_than_it_may_and_stops_at_the_angle():
+    context, _ = tricycle("<steeringSpeed>0.4</steeringSpeed>")
+    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.2})
+    context.advance(0.26)
+    assert context.joints["front_steering_joint"].position == pytest.approx(0.1)
+    context.advance(0.4)
+    assert context.joints["front_steering_joint"].position == pytest.approx(0.2, abs=0.01)
+    assert context.joints["front_steering_joint"].motor[0] == 0.0
+
+
+def test_a_tricycle_accelerates_and_brakes_as_it_is_told():
+    context, _ = tricycle("<wheelAcceleration>2</wheelAcceleration>"
+                          "<wheelDeceleration>4</wheelDeceleration>")
+    wheel = context.joints["front_wheel_joint"]
+    context.hear("robot/cmd_vel", linear={"x": 0.75}, angular={"z": 0.0})
+    context.advance(0.5)
+    assert wheel.motor[0] == pytest.approx(1.0, abs=0.03)
+    context.advance(5.0)
+    assert wheel.motor[0] == pytest.approx(10.0)
+    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.0})
+    context.advance(0.5)
+    assert wheel.motor[0] == pytest.approx(8.0, abs=0.05)
+
+
+def test_a_tricycle_counts_a_turn_to_the_left_as_one():
+    context, _ = tricycle("<odometrySource>encoder</odometrySource>"
+                          "<publishWheelJointState>1</publishWheelJointState>"
+                          "<publishWheelTF>1</publishWheelTF>")
+    context.joints["right_wheel_joint"].motor = (1.0, 1.0)
+    context.advance(1.0)
+    odom = context.published["robot/odom"][-1]
+    assert 2.0 * math.asin(odom.pose.pose.orientation.z) == pytest.approx(0.15)
+    assert odom.child_frame_id == "base_link"
+    states = context.published["robot/joint_states"][-1]
+    assert states.name == list(TRICYCLE) and states.velocity[3] == 1.0
+    assert ("base", "front_wheel_joint") in {pair[:2] for pair in context.transforms}
+
+
+def test_forces_move_a_base_as_it_is_told():
+    context = FakeContext("<plugin><yaw_velocity_p_gain>10</yaw_velocity_p_gain></plugin>",
+                          links=("base_footprint",))
+    context.description.links.append(Link("base_footprint"))
+    ForceBasedMove(context).load()
+    context.links["base_footprint"].pose = Pose((0, 0, 0), quat_from_rpy(0, 0, math.pi / 2))
+    context.links["base_footprint"].twist = Twist((0.0, 0.1, 0.0), (0.0, 0.0, 0.2))
+    context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.5})
+    context.advance(0.001)
+    force, torque = context.pushes["base_footprint"]
+    assert force == pytest.approx((0.0, 2000.0, 0.0)) and torque == pytest.approx((0, 0, 3.0))
+    context.advance(0.6)  # the watchdog has stopped it
+    assert context.pushes["base_footprint"][0] == pytest.approx((0.0, -1000.0, 0.0))
+
+
+def test_a_tricycle_whose_wheels_have_the_names_of_the_other_side_counts_a_left_turn_as_one():
+    context = FakeContext("<plugin><odometrySource>encoder</odometrySource></plugin>",
+                          joints=TRICYCLE)
+    context.link("right_wheel_joint").pose = Pose((0.0, 0.25, 0.0))
+    TricycleDrive(context).load()
+    context.joints["left_wheel_joint"].motor = (1.0, 1.0)
+    context.advance(1.0)
+    odom = context.published["robot/odom"][-1]
+    assert odom.twist.twist.angular.z == pytest.approx(0.15)
+
+
+def slipping(inside):
+    context = FakeContext(f"<plugin>{inside}</plugin>")
+    context.description.links.append(Link("rear", collisions=[Collision("c", Cylinder(0.3, 0.1))]))
+    context.description.joints.append(Joint("axle", "revolute", "base", "rear"))
+    WheelSlip(context).load()
+    return context.slips
+
+
+def test_a_wheel_slips_by_its_compliances_and_the_radius_of_its_collision():
+    force = "<wheel_normal_force>77</wheel_normal_force>"
+    assert slipping(f'<wheel link_name="rear"><slip_compliance_lateral>1</slip_compliance_lateral>'
+                    f"<slip_compliance_longitudinal>2</slip_compliance_longitudinal>{force}"
+                    "</wheel>") == {"rear": ("axle", 0.3, 77.0, 1.0, 2.0)}
+    assert slipping(f'<wheel link_name="rear">{force}<wheel_radius>0.25</wheel_radius>'
+                    "</wheel>") == {"rear": ("axle", 0.25, 77.0, 0.0, 0.0)}
+    with pytest.raises(PluginError, match="wheel_normal_force"):
+        slipping('<wheel link_name="rear"/>')

@@ -14,6 +14,8 @@ from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import Severity
 from my_simulations.plugins.base import Plugin
+from my_simulations.plugins.call_watch import PATIENCE, Patience
+from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry, exports, library_name
 from my_simulations.plugins.testing import Message
@@ -54,18 +56,26 @@ def robot(name="robot", xml=DRIVE, library="libgazebo_ros_diff_drive.so"):
 
 
 class Case:
-    def __init__(self, *models, extra=None):
+    def __init__(self, *models, extra=None, patience=PATIENCE, plugins=()):
         self.issues, self.graph = [], Graph()
         engine = InlineEngine(KinematicBackend)
-        self.sim = Simulator(World(models=list(models)), engine_factory=lambda: engine,
+        self.sim = Simulator(World(models=list(models), plugins=list(plugins)),
+                             engine_factory=lambda: engine,
                              paused=True, log=self.issues.append)
         self.sim.start()
-        self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append)
+        self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append,
+                               patience)
         self.host.start()
 
     def close(self):
         self.host.stop()
         self.sim.close()
+
+    def failed(self):
+        return [issue for issue in self.issues if issue.code == "plugin-failed"]
+
+    def backend(self):
+        return self.sim._session.supervisor.engine.backend
 
     def command(self, **fields):
         self.graph.heard["robot/cmd_vel"](Message(**fields))
@@ -205,3 +215,165 @@ def test_a_package_brings_a_plugin(case, tmp_path):
         f'<package><export><my_simulations plugin="{__name__}:Counting" library="libfoo.so"/>'
         "</export></package>")
     assert PluginRegistry({}, lambda: [str(tmp_path)]).find("libfoo.so") is Counting
+
+
+class Spinning(Plugin):
+    """Loops for ever in the named function."""
+
+    where = "update"
+
+    def load(self):
+        self.context.subscribe("talk", "std_msgs/Empty", lambda message: self.spin("hear"))
+        self.context.every(100.0, lambda: self.spin("update"))
+        self.spin("load")
+
+    def reset(self):
+        self.spin("reset")
+
+    def spin(self, where):
+        while where == self.where:
+            pass
+
+
+class Sleeping(Plugin):
+    """Waits in the kernel, where no exception reaches it."""
+
+    ends = threading.Event()
+
+    def load(self):
+        self.context.every(100.0, self.ends.wait)
+
+
+@pytest.mark.parametrize("where", ["load", "update", "reset", "hear"])
+def test_a_plugin_that_never_returns_is_switched_off_and_the_others_go_on(case, monkeypatch, where):
+    monkeypatch.setattr(Spinning, "where", where)
+    one = case(robot("bad", "<plugin/>", "libspin.so"), robot(), patience=Patience(0.1, 10.0),
+               extra={"libspin.so": f"{__name__}:Spinning"})
+    if where == "reset":
+        one.sim.resets.reset_simulation()
+    if where == "hear":
+        one.graph.heard["talk"](Message())
+    one.sim.clock.advance(100)
+    until(lambda: len(one.graph.on("robot/odom")) == 10)
+    until(lambda: one.failed())
+    (issue,) = one.failed()
+    assert (issue.file, issue.line) == ("robot.urdf", 12)
+    limit = "0.5" if where == "load" else "0.1"
+    assert f"{limit} s of processor time (in spin, " in issue.message
+    assert "test_host.py" in issue.message
+
+
+def test_a_plugin_that_waits_for_ever_is_left_behind(case, monkeypatch):
+    monkeypatch.setattr(Sleeping, "ends", threading.Event())
+    one = case(robot("bad", "<plugin/>", "libsleep.so"), robot(), patience=Patience(5.0, 0.2),
+               extra={"libsleep.so": f"{__name__}:Sleeping"})
+    one.command(linear={"x": 0.5}, angular={"z": 0.0})
+    one.sim.clock.advance(110)
+    until(lambda: len(one.graph.on("robot/odom")) == 11)
+    (issue,) = one.failed()
+    assert "waited for more than 0.2 s" in issue.message and "left behind" in issue.message
+    assert "advance" not in issue.message
+    Sleeping.ends.set()
+    until(lambda: sum(thread.name == "plugins" for thread in threading.enumerate()) == 1)
+    one.sim.clock.advance(100)
+    until(lambda: len(one.graph.on("robot/odom")) == 21)
+    assert len(one.failed()) == 1
+
+
+class Grumbling(Plugin):
+    def load(self):
+        for topic in "ab":
+            self.context.subscribe(topic, "std_msgs/Empty", self.hear, queue=5)
+        self.context.serve("ask", "std_srvs/Empty", lambda request, response: self.hear(None))
+        self.context.every(100.0, lambda: self.hear(None))
+        self.context.every(50.0, lambda: self.hear(None))
+
+    def hear(self, message):
+        raise RuntimeError("no")
+
+
+def test_a_plugin_that_raises_in_everything_is_switched_off_once(case):
+    one = case(robot("bad", "<plugin/>", "libgrumble.so"),
+               extra={"libgrumble.so": f"{__name__}:Grumbling"})
+    ask = one.graph.heard["ask"]
+    for topic in "aabab":
+        one.graph.heard.get(topic, lambda message: None)(Message())
+    one.sim.clock.advance(100)
+    until(one.failed)
+    one.sim.clock.advance(100)
+    assert len(one.failed()) == 1
+    with pytest.raises(PluginError, match="ended"):
+        ask(Message(), Message())
+
+
+def test_who_asks_a_service_hears_why_it_failed(case):
+    one = case(robot("bad", "<plugin/>", "libgrumble.so"),
+               extra={"libgrumble.so": f"{__name__}:Grumbling"})
+    with pytest.raises(PluginError, match="no"):
+        one.graph.heard["ask"](Message(), Message())
+
+
+class OfTheWorld(Plugin):
+    found = []
+
+    def load(self):
+        self.found.append((self.context.model, sorted(self.context.models())))
+
+
+def test_a_world_has_plugins_too(case, monkeypatch):
+    monkeypatch.setattr(OfTheWorld, "found", [])
+    case(robot(), extra={"libworld.so": f"{__name__}:OfTheWorld"},
+         plugins=[PluginSpec("w", "libworld.so", "<plugin/>", "a.world", 3)])
+    assert OfTheWorld.found == [("world", ["robot"])]
+
+
+class Pushing(Plugin):
+    def load(self):
+        self.context.subscribe("push", "std_msgs/Float64", self.hear)
+
+    def hear(self, message):
+        self.context.push("wheel_l", (message.data, 0.0, 0.0), (0.0, 0.0, 0.0))
+        self.context.push("other::base", (0.0, message.data, 0.0), (0.0, 0.0, 0.0))
+        self.context.push("gone::base", (0.0, message.data, 0.0), (0.0, 0.0, 0.0))
+
+
+def test_wrenches_replace_each_other_in_one_gap_and_end_with_the_plugin(case):
+    one = case(robot("me", "<plugin/>", "libpush.so"), robot("other"),
+               extra={"libpush.so": f"{__name__}:Pushing"})
+
+    def acting():
+        return {(force.row, force.force) for force in one.sim.wrenches.pending(one.sim.clock.step)}
+
+    for newton in (1.0, 2.0, 0.0, 3.0):
+        one.graph.heard["push"](Message(data=newton))
+        wanted = {(1, (newton, 0.0, 0.0)), (3, (0.0, newton, 0.0))} if newton else set()
+        until(lambda wanted=wanted: acting() == wanted)
+    one.sim.models.delete("me")
+    until(lambda: acting() == set())
+
+
+class Joining(Plugin):
+    def load(self):
+        self.context.attach("hold", "me::base", "other::base")
+        self.context.subscribe("leave", "std_msgs/Empty",
+                               lambda message: self.context.detach("hold"))
+
+
+@pytest.mark.parametrize("how", ["told", "reset", "deleted", "switched off"])
+def test_what_is_attached_is_let_go(case, how):
+    one = case(robot("me", "<plugin/>", "libjoin.so"), robot("other"),
+               extra={"libjoin.so": f"{__name__}:Joining"})
+    connected = one.backend().connected
+    assert list(connected) == ["hold"] and not one.sim.models.inter_model_joints
+    if how == "told":
+        one.graph.heard["leave"](Message())
+    elif how == "reset":
+        one.sim.resets.reset_simulation()
+    elif how == "deleted":
+        one.sim.models.delete("me")
+    else:
+        (running,) = [running for running in one.host._all() if "libjoin" in
+                      running.found.spec.filename]
+        running.context.inbox.append(lambda: 1 / 0)
+        one.host.wake()
+    until(lambda: not connected)

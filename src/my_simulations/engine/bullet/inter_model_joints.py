@@ -6,7 +6,7 @@ Tied bodies do not sleep, and those that are tied to each other do not collide (
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -20,8 +20,14 @@ from .joint_constraints import End, tie
 
 @dataclass
 class _Tie:
-    bodies: Tuple[Body, ...]
+    name: str
+    ends: Tuple[End, ...]
     constraints: List[int]
+
+    @property
+    def bodies(self) -> Tuple[Body, ...]:
+        """Those that are tied."""
+        return tuple(end[0] for end in self.ends)
 
 
 class InterModelJoints:
@@ -50,13 +56,11 @@ class InterModelJoints:
                 f"joint '{joint.name}' slides between bodies that are not articulated"
             )
         made = tie(joint, one, ends[0][1], other, ends[1][1])
-        tied = tuple(end[0] for end in (one, other) if end is not self._anchor)
-        self._ties.append(_Tie(tied, made))
-        if len(tied) == 2:
-            for uid in one[0].uids:
-                for near in other[0].uids:
-                    pybullet.setCollisionFilterPair(uid, near, one[1].index, other[1].index, 0)
-        for body in tied:
+        found = _Tie(joint.name, tuple(end for end in (one, other) if end is not self._anchor),
+                     made)
+        self._ties.append(found)
+        _let_collide(found, False)
+        for body in found.bodies:
             body.ties += 1
             if body.ties == 1 and body.rigid and body.moves:
                 pybullet.changeDynamics(body.uid, BASE,
@@ -75,17 +79,38 @@ class InterModelJoints:
         if not body.ties:
             return
         for one in [one for one in self._ties if body in one.bodies]:
-            self._ties.remove(one)
-            for made in one.constraints:
-                pybullet.removeConstraint(made)
-            for tied in one.bodies:
-                tied.ties -= 1
-                if not tied.ties and tied.rigid and tied.moves and tied.may_sleep:
-                    pybullet.changeDynamics(
-                        tied.uid, BASE, sleepThreshold=SLEEP_THRESHOLD,
-                        activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING)
+            self._untie(one)
+
+    def disconnect(self, names: Sequence[str]) -> List[Body]:
+        """Untie joints by name; returns the bodies that are free, which collide again."""
+        found = [one for one in self._ties if one.name in names]
+        for one in found:
+            self._untie(one)
+            if not any(set(other.bodies) == set(one.bodies) for other in self._ties):
+                _let_collide(one, True)
+        return [body for one in found for body in one.bodies]
+
+    def _untie(self, one: _Tie) -> None:
+        self._ties.remove(one)
+        for made in one.constraints:
+            pybullet.removeConstraint(made)
+        for tied in one.bodies:
+            tied.ties -= 1
+            if not tied.ties and tied.rigid and tied.moves and tied.may_sleep:
+                pybullet.changeDynamics(
+                    tied.uid, BASE, sleepThreshold=SLEEP_THRESHOLD,
+                    activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING)
 
     def clear(self) -> None:
         """All bodies are gone."""
         self._ties.clear()
         self._anchor = None
+
+
+def _let_collide(one: _Tie, collide: bool) -> None:
+    if len(one.ends) < 2:
+        return
+    (body, part), (other, its) = one.ends
+    for uid in body.uids:
+        for near in other.uids:
+            pybullet.setCollisionFilterPair(uid, near, part.index, its.index, int(collide))

@@ -1,8 +1,9 @@
 """Updates names in plugins and sensors of a robot after fixed joint lumping.
 
-Source: Gazebo's converter. Contact sensors refer to collisions; plugins to a `bodyName` or
-`frameName`, with an offset to which the transform between the links is added; grippers, projectors
-and joints to links.
+Source: Gazebo's converter. Contact sensors refer to collisions; plugins of the model to a
+`bodyName` or `frameName`, with an offset to which the transform between the links is added;
+grippers, projectors and joints to links. Plugins of sensors keep their `frameName`: it is a tf
+frame, which robot_state_publisher still publishes, and the sensor stays where that link was.
 """
 from __future__ import annotations
 
@@ -59,11 +60,11 @@ def _in_element(element: Any, names: Renamed) -> bool:
     inside = parent.tag if parent is not None else ""
     if element.tag == "collision" and inside == "contact":
         return _put(element, names.collisions, text)
-    if element.tag in _PLACED and text.lstrip("/") in names.links:
+    own = inside == "plugin" and parent.getparent() is None
+    if own and element.tag in _PLACED and text.lstrip("/") in names.links:
         body = names.links[text.lstrip("/")]
         element.text = _standing(body)
-        if parent is not None:
-            _move_offset(parent, body.offset)
+        _move_offset(parent, body.offset)
         return True
     if element.tag in _LINKS or (element.tag in ("parent", "child") and inside == "joint"):
         return _put(element, {name: _standing(body) for name, body in names.links.items()}, text)

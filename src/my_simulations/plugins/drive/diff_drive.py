@@ -6,12 +6,11 @@ positions of the wheels, so that it has no drift of its own; its forward velocit
 """
 from __future__ import annotations
 
-import math
 from typing import Tuple
 
 from ..base import Plugin
 from ..parameters import namespace_or
-from .odometry import Odometer, in_base, planar
+from .odometry import Odometer, WheelCounter, in_base
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
 _REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plugins)
@@ -33,6 +32,7 @@ class DiffDrive(Plugin):
         self._broadcasts = p.flag("publishOdomTF", True)
         self._joints = (context.joint(p.text("leftJoint", "left_joint")),
                         context.joint(p.text("rightJoint", "right_joint")))
+        self._counter = WheelCounter(*self._joints, self._radius, self._separation)
         self._odometer = Odometer(
             context, p.text("odometryTopic", "odom") if self._publishes else "",
             p.text("odometryFrame", "odom"), p.text("robotBaseFrame", "base_footprint"))
@@ -48,7 +48,7 @@ class DiffDrive(Plugin):
     def reset(self) -> None:
         """Stand, and count from here."""
         self._command.stop()
-        self._estimate = (0.0, 0.0, 0.0)
+        self._counter.reset()
         self._instructed = [0.0, 0.0]
         self.clock_set()
         self._drive((0.0, 0.0))
@@ -56,13 +56,13 @@ class DiffDrive(Plugin):
     def clock_set(self) -> None:
         """Time begins anew; where the robot is does not."""
         self._last_ns = self.context.now_ns
-        self._last = tuple(joint.position for joint in self._joints)
+        self._counter.forget_way()
 
     def update(self) -> None:
         """Odometry first, then the command (as the original)."""
         dt = (self.context.now_ns - self._last_ns) * 1e-9
         self._last_ns = self.context.now_ns
-        velocity = self._count(dt)
+        velocity = self._counter.count(dt)
         if self._publishes:
             self._tell(velocity)
         if self._frames is not None:
@@ -71,20 +71,9 @@ class DiffDrive(Plugin):
             self._states.send()
         self._drive(self._speeds(dt))
 
-    def _count(self, dt: float) -> Tuple[float, float, float]:
-        """Add up what the wheels have turned; Siegwart, Autonomous Mobile Robots, 5.2.4."""
-        now = tuple(joint.position for joint in self._joints)
-        left, right = ((a - b) * self._radius for a, b in zip(now, self._last))
-        self._last = now
-        way, turn = (left + right) / 2.0, (right - left) / self._separation
-        x, y, yaw = self._estimate
-        self._estimate = (x + way * math.cos(yaw + turn / 2.0),
-                          y + way * math.sin(yaw + turn / 2.0), yaw + turn)
-        return (way / dt, 0.0, turn / dt) if dt > 0.0 else (0.0, 0.0, 0.0)
-
     def _tell(self, velocity: Tuple[float, float, float]) -> None:
         if self._encoder:
-            pose = planar(*self._estimate)
+            pose = self._counter.pose
         else:
             pose = self.context.pose
             velocity = in_base(pose, self.context.twist)
@@ -105,7 +94,10 @@ class DiffDrive(Plugin):
             return wanted
         most = self._acceleration * dt
         for n in (0, 1):
-            self._instructed[n] += max(-most, min(most, wanted[n] - present[n]))
+            before = self._instructed[n]
+            after = before + max(-most, min(most, wanted[n] - present[n]))
+            # Not past what is wanted: a wheel that is held or driven by others winds nothing up.
+            self._instructed[n] = min(max(after, min(before, wanted[n])), max(before, wanted[n]))
         return self._instructed[0], self._instructed[1]
 
     def _drive(self, speeds: Tuple[float, float]) -> None:

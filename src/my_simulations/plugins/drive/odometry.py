@@ -5,7 +5,7 @@ import math
 from typing import Any, List, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
-from ..context import Context
+from ..context import Context, Joint
 from ..frames import resolve
 
 _NO_IDEA = 1e12  # of what a wheeled robot does not measure
@@ -30,6 +30,44 @@ def diagonal(values: Tuple[float, ...]) -> List[float]:
     matrix = [0.0] * 36
     matrix[::7] = values
     return matrix
+
+
+class WheelCounter:
+    """Where a robot is by what its wheels have turned; Siegwart, Autonomous Mobile Robots, 5.2.4.
+
+    Attributes:
+        pose: since the last `reset`.
+    """
+
+    def __init__(self, left: Joint, right: Joint, radius: float, separation: float) -> None:
+        self._joints = (left, right)
+        self._radius, self._separation = radius, separation
+        self.reset()
+
+    def reset(self) -> None:
+        """Count from here."""
+        self._x = self._y = self._yaw = 0.0
+        self.forget_way()
+
+    def forget_way(self) -> None:
+        """What the wheels have turned since the last count does not count."""
+        self._last = tuple(joint.position for joint in self._joints)
+
+    @property
+    def pose(self) -> Pose:
+        """On the ground."""
+        return planar(self._x, self._y, self._yaw)
+
+    def count(self, dt: float) -> Tuple[float, float, float]:
+        """Add up what has been turned; returns the velocity (forward, 0, yaw) over the last dt."""
+        now = tuple(joint.position for joint in self._joints)
+        left, right = ((a - b) * self._radius for a, b in zip(now, self._last))
+        self._last = now
+        way, turn = (left + right) / 2.0, (right - left) / self._separation
+        self._x += way * math.cos(self._yaw + turn / 2.0)
+        self._y += way * math.sin(self._yaw + turn / 2.0)
+        self._yaw += turn
+        return (way / dt, 0.0, turn / dt) if dt > 0.0 else (0.0, 0.0, 0.0)
 
 
 class Odometer:

@@ -28,11 +28,12 @@ class Range(Plugin):
         self._kind = _ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" \
             else _INFRARED
         self._view = p.number("fov", 0.05)
-        self._noise = WhiteNoise(context.seed, f"{context.model}::{context.sensor_link}::range",
+        assert context.sensor is not None
+        self._noise = WhiteNoise(context.seed, f"{context.model}::{context.sensor_link}::"
+                                 f"{context.sensor.name}::range",
                                  p.number("gaussianNoise", 0.0))
         self._fan = fan_of(self._ray)
         self._topic = context.publish(p.text("topicName", "/range"), "sensor_msgs/Range")
-        assert context.sensor is not None
         context.every(p.number("updateRate", 0.0) or context.sensor.update_rate, self.update)
 
     def update(self) -> None:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import threading
-from typing import Any, Callable, Iterator, Mapping, Optional
+from typing import Any, Callable, Iterator, List, Mapping, Optional
 
 from ...description.model import Model
 from ...errors import Issue
@@ -42,7 +42,9 @@ class PluginStarter:
                 return
             self._seen = revision
             if self._host is None:
-                if not any(_has_plugin(entity.model) for entity in entities):
+                world = self._simulator.world
+                if not (world.plugins or any(actor.plugins for actor in world.actors)
+                        or any(_has_plugin(entity.model) for entity in entities)):
                     return
                 self._host = self._made()
                 self._host.start()
@@ -53,6 +55,10 @@ class PluginStarter:
         """Start the host if a model has come that needs it; for models from the editor."""
         if self._host is None:
             self.settle()
+
+    def topic_uses(self) -> List[Any]:
+        """The topics of all plugins (`plugins.graph.TopicUse`)."""
+        return self._host.topic_uses() if self._host is not None else []
 
     def stop(self) -> None:
         """End all plugins."""
@@ -79,6 +85,9 @@ def _plugins(model: Model) -> Iterator[Any]:
     yield from model.plugins
     for link in model.links:
         for sensor in link.sensors:
+            yield from sensor.plugins
+    for joint in model.joints:
+        for sensor in joint.sensors:
             yield from sensor.plugins
     for nested in (model.guide.models if model.guide is not None else model.models):
         yield from _plugins(nested)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Set, Tuple
 
-from ...xml.binding import Entry, Group, Kept, Nested, Part, Table, Value, default_of
+from ...xml.binding import Entry, Group, Kept, Nested, Part, Table, Value, usual_value
 from .xml_text import append_fragment, write_value
 
 WriteParts = Mapping[str, Callable[[Any], object]]
@@ -41,7 +41,7 @@ def _write_nested(parent: Any, source: Any, of: Any, tag: str, entry: Nested) ->
     from lxml import etree
 
     value = getattr(source, entry.field)
-    if value == default_of(of, entry.field):
+    if value == usual_value(of, entry.field):
         return
     for item in value if isinstance(value, list) else [value]:
         fill_element(etree.SubElement(parent, tag), item, entry.table, {}, item.extra,
@@ -82,10 +82,16 @@ class _Filler:
 
         inner = getattr(source, entry.part) if entry.part else source
         inner_of = type(inner) if entry.part else of
+        if entry.part and inner == usual_value(of, entry.part) and not self._has_more(path):
+            return
         child = etree.SubElement(element, name)
         self.fill(child, inner, inner_of, entry.children, entry.attributes, f"{path}/")
         if not len(child) and not child.attrib:
             element.remove(child)
+
+    def _has_more(self, path: str) -> bool:
+        """Whether something below a path is written that its object does not show."""
+        return any(each.startswith(f"{path}/") for each in (*self._required, *self._parts))
 
     def _value(self, element: Any, source: Any, of: Any, name: str, value: Value,
                path: str) -> None:
@@ -103,7 +109,7 @@ class _Filler:
             return None
         if value.part:
             source, of = getattr(source, value.part), type(getattr(source, value.part))
-        now, usual = getattr(source, value.field), default_of(of, value.field)
+        now, usual = getattr(source, value.field), usual_value(of, value.field)
         if now is None or (now == usual and path not in self._required):
             return None
         return value.kind.format(now)

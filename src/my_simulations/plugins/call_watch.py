@@ -1,0 +1,165 @@
+"""Notices a plugin that does not come back from a call, and gets the thread out of it.
+
+A call is overdue when its thread has computed for too long, or has neither computed nor come back
+for longer still (it waits for something that never comes). Time in which the thread gets no
+processor does not count.
+
+First an exception is raised in the thread: that ends a loop in Python, and the thread goes on with
+its next work. Never while it is inside the simulator, whose locks and tables would be left half
+done. A thread that does not react (it is in a library, or waits in the kernel) is abandoned: the
+host starts another one. An abandoned thread holds no lock of the simulator: plugins are called
+without any, and calls from a plugin into the simulator end by themselves, because the supervisor
+ends an engine that hangs.
+"""
+from __future__ import annotations
+
+import ctypes
+import sys
+import threading
+import time
+from typing import Any, Callable, NamedTuple, Optional, Tuple
+
+_LOOK_S = 0.25          # between two looks
+_GRACE_S = 1.0          # for the exception to arrive
+_OWN_PARTS = ("my_simulations.simulator", "my_simulations.engine")
+
+
+class CallOverdue(BaseException):
+    """Raised in a thread whose call is overdue; no `except Exception` of a plugin stops it."""
+
+
+class Patience(NamedTuple):
+    """How long a call may take.
+
+    Attributes:
+        computing: s of processor time.
+        waiting: s of wall time, for a call that does not compute.
+    """
+
+    computing: float = 5.0
+    waiting: float = 30.0
+
+    def longer(self) -> "Patience":
+        """For work that may take five times as long."""
+        return Patience(5.0 * self.computing, 5.0 * self.waiting)
+
+
+PATIENCE = Patience()
+"""With the plugins of users."""
+
+
+class _Call:
+    def __init__(self, subject: Any, patience: Patience) -> None:
+        self.subject, self.patience = subject, patience
+        self.thread = threading.get_ident()
+        self.clock = time.pthread_getcpuclockid(self.thread)
+        self.computed = self._used()
+        self.begun = time.monotonic()
+        self.interrupted = 0.0   # monotonic time; 0 before
+        self.where = ""
+        self.why = ""
+
+    def _used(self) -> float:
+        return time.clock_gettime(self.clock)
+
+    def overdue(self) -> str:
+        """Why the call has taken too long; "" when it has not."""
+        used = self._used() - self.computed
+        if used > self.patience.computing:
+            return f"it did not come back within {self.patience.computing:g} s of processor time"
+        waited = time.monotonic() - self.begun
+        if waited > self.patience.waiting and used < 0.1 * waited:
+            return f"it waited for more than {self.patience.waiting:g} s"
+        return ""
+
+
+class CallWatch:
+    """Watches the calls of one thread at a time.
+
+    Args:
+        abandon: hears of a call that cannot be ended: its subject, and why. The thread that is in
+            it will end with `CallOverdue` if it ever comes back.
+    """
+
+    def __init__(self, abandon: Callable[[Any, str], None]) -> None:
+        self._abandon = abandon
+        self._lock = threading.Lock()
+        self._call: Optional[_Call] = None
+        self._stop = threading.Event()
+        self._watcher: Optional[threading.Thread] = None
+
+    def stop(self) -> None:
+        """End; nothing is watched any more."""
+        self._stop.set()
+
+    def run(self, subject: Any, patience: Patience, call: Callable[..., Any],
+            *arguments: Any) -> None:
+        """Call; raises CallOverdue, with the reason, where the call had to be ended."""
+        if self._watcher is None:
+            self._watcher = threading.Thread(target=self._watch, name="plugin-watch", daemon=True)
+            self._watcher.start()
+        mine = _Call(subject, patience)
+        self._call = mine
+        try:
+            try:
+                call(*arguments)
+            finally:
+                with self._lock:
+                    abandoned = self._call is not mine
+                    if not abandoned:
+                        self._call = None
+                    if mine.interrupted:
+                        _raise_in(mine.thread, None)  # it has come back by itself in this moment
+        except CallOverdue:
+            with self._lock:
+                if self._call is mine:
+                    self._call = None
+            raise CallOverdue(f"{mine.why}{mine.where}") from None
+        if abandoned:
+            raise CallOverdue(mine.why)
+
+    def _watch(self) -> None:
+        while not self._stop.wait(_LOOK_S):
+            with self._lock:
+                call = self._call
+                if call is None:
+                    continue
+                if not call.interrupted:
+                    self._interrupt(call)
+                    continue
+                if time.monotonic() - call.interrupted < _GRACE_S:
+                    continue
+                self._call = None
+            self._abandon(call.subject, call.why + call.where)
+
+    def _interrupt(self, call: _Call) -> None:
+        why = call.overdue()
+        if not why:
+            return
+        module, where = _innermost(call.thread)
+        if module.startswith(_OWN_PARTS):
+            return  # it comes back from there by itself
+        call.why, call.where = why, where
+        call.interrupted = time.monotonic()
+        _raise_in(call.thread, CallOverdue)
+
+
+def _innermost(thread: int) -> Tuple[str, str]:
+    """The module in which a thread is, and ` (in f, file:line)` of the plugin it came from."""
+    frame = sys._current_frames().get(thread)
+    if frame is None:
+        return "", ""
+    modules, at = [], ""
+    while frame is not None and frame.f_globals.get("__name__") != __name__:
+        name = str(frame.f_globals.get("__name__", ""))
+        modules.append(name)
+        if not at and not name.startswith(("threading", "my_simulations.plugins.simulated_")):
+            at = f" (in {frame.f_code.co_name}, {frame.f_code.co_filename}:{frame.f_lineno})"
+        frame = frame.f_back
+    return next((name for name in modules if name.startswith(_OWN_PARTS)), ""), at
+
+
+def _raise_in(thread: int, kind: Optional[type]) -> None:
+    """Raise an exception in another thread, once it runs Python again; None takes it back."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+        ctypes.c_ulong(thread), ctypes.py_object(kind) if kind is not None else None)

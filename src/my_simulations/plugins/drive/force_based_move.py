@@ -1,0 +1,76 @@
+"""libgazebo_ros_force_based_move.so (hector): forces on the base make it move as it is told.
+
+Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
+(librobotnik_force_based_move.so): in every step a force along x and y of the base, and a torque
+about its vertical, in proportion to what its velocity lacks.
+"""
+from __future__ import annotations
+
+import math
+
+from ...geometry import conjugate, rotate, rpy_from_quat
+from ..base import Plugin
+from ..parameters import namespace_or
+from .odometry import Odometer, planar
+from .wheels import VelocityCommand
+
+
+class ForceBasedMove(Plugin):
+    """Pushes the link `<robotBaseFrame>`, or the model's first one."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        base = p.text("robotBaseFrame", "base_footprint")
+        names = [link.name for link in context.description.links]
+        self._base = context.link(base if base in names else names[0])
+        self._gains = (p.number("x_velocity_p_gain", 10000.0),
+                       p.number("y_velocity_p_gain", 10000.0),
+                       p.number("yaw_velocity_p_gain", 100.0))
+        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
+                                  p.text("odometryFrame", "odom"), base,
+                                  (1e-3, 1e-3, 1e12, 1e12, 1e12, 1e-3),
+                                  (1e-3, 1e-3, 1e12, 1e12, 1e12, 1e-3))
+        self._broadcasts = p.flag("publishOdometryTf", True)
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
+                                        p.number("commandWatchdog", 0.5))
+        self._begin()
+        context.every(0.0, self.push)
+        hertz = p.number("odometryRate", 20.0)
+        if hertz > 0.0:
+            context.every(hertz, self.tell)
+
+    def reset(self) -> None:
+        """Stand."""
+        self._command.stop()
+        self._begin()
+
+    def _begin(self) -> None:
+        """Odometry begins where the robot is, as in the original."""
+        pose = self.context.pose
+        self._start = (pose.position[0], pose.position[1], rpy_from_quat(pose.orientation)[2])
+
+    def push(self) -> None:
+        """Before each step."""
+        self._command.look()
+        pose, twist = self._base.pose, self._base.twist
+        vx, vy, _ = rotate(conjugate(pose.orientation), twist.linear)
+        along = (self._gains[0] * (self._command.x - vx), self._gains[1] * (self._command.y - vy),
+                 0.0)
+        torque = self._gains[2] * (self._command.yaw - twist.angular[2])
+        self.context.push(self._base.name, rotate(pose.orientation, along), (0.0, 0.0, torque))
+
+    def tell(self) -> None:
+        """Publish odometry: truth, from where the robot began."""
+        pose, twist = self.context.pose, self.context.twist
+        x0, y0, yaw0 = self._start
+        dx, dy = pose.position[0] - x0, pose.position[1] - y0
+        c, s = math.cos(yaw0), math.sin(yaw0)
+        yaw = rpy_from_quat(pose.orientation)[2]
+        here = planar(c * dx + s * dy, c * dy - s * dx, yaw - yaw0)
+        if self._broadcasts:
+            self._odometer.transform(here)
+        c, s = math.cos(yaw), math.sin(yaw)
+        vx, vy, _ = twist.linear
+        self._odometer.publish(here, (c * vx + s * vy, c * vy - s * vx, twist.angular[2]))

@@ -1,0 +1,111 @@
+"""libgazebo_ros_tricycle_drive.so: one driven and steered wheel, two wheels that are counted.
+
+Parameters, defaults, topics and laws are those of gazebo_plugins. Where it differs: wheel frames
+are those of the links; which encoder wheel is on the left is seen from where it is (the original
+subtracts the right one from the left one, and its own robot has the names the other way round);
+the acceleration acts where the wheel gets faster, the deceleration where it gets slower; a steering
+speed steers to the angle, and not to the speed of the wheel.
+"""
+from __future__ import annotations
+
+import math
+from typing import Tuple
+
+from ...geometry import inverse, transform
+from ..base import Plugin
+from ..context import Joint
+from ..parameters import namespace_or
+from .odometry import Odometer, WheelCounter, in_base
+from .wheels import VelocityCommand, WheelFrames, WheelStates
+
+_MOST_STEERING = math.pi / 2.0
+
+
+class TricycleDrive(Plugin):
+    """`linear.x` of a command is the speed of the driven wheel, `angular.z` the steering angle."""
+
+    def load(self) -> None:
+        """Read parameters; take the motors."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, context.model))
+        self._radius = p.number("actuatedWheelDiameter", 0.15) / 2.0
+        self._torque = p.number("wheelTorque", 5.0)
+        self._acceleration = p.number("wheelAcceleration", 0.0)
+        self._deceleration = p.number("wheelDeceleration", self._acceleration)
+        self._speed_tolerance = p.number("wheelSpeedTolerance", 0.01)
+        self._steering_speed = p.number("steeringSpeed", 0.0)
+        self._angle_tolerance = p.number("steeringAngleTolerance", 0.01)
+        self._encoder = p.choice("odometrySource", {"encoder": True, "world": False}, False)
+        self._steering = context.joint(p.text("steeringJoint", "front_steering_joint"))
+        self._wheel = context.joint(p.text("actuatedWheelJoint", "front_wheel_joint"))
+        left = context.joint(p.text("encoderWheelLeftJoint", "left_wheel_joint"))
+        right = context.joint(p.text("encoderWheelRightJoint", "right_wheel_joint"))
+        self._counter = WheelCounter(*self._by_side(left, right),
+                                     p.number("encoderWheelDiameter", 0.15) / 2.0,
+                                     p.number("encoderWheelSeparation", 0.5))
+        self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
+                                  p.text("odometryFrame", "odom"),
+                                  p.text("robotBaseFrame", "base_link"))
+        joints = (self._steering, self._wheel, left, right)
+        self._frames = WheelFrames(context, joints) if p.flag("publishWheelTF", False) else None
+        self._states = WheelStates(context, joints, motion=True) \
+            if p.flag("publishWheelJointState", False) else None
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
+        self.reset()
+        context.every(p.number("updateRate", 100.0), self.update)
+
+    def _by_side(self, left: Joint, right: Joint) -> Tuple[Joint, Joint]:
+        """The wheel further to the left first."""
+        back = inverse(self.context.pose)
+        one, other = (transform(back, self.context.link(joint.child).pose.position)[1]
+                      for joint in (left, right))
+        return (left, right) if one >= other else (right, left)
+
+    def reset(self) -> None:
+        """Stand, and count from here."""
+        self._command.stop()
+        self._counter.reset()
+        self.clock_set()
+        self._drive(0.0, 0.0)
+
+    def clock_set(self) -> None:
+        """Time begins anew; where the robot is does not."""
+        self._last_ns = self.context.now_ns
+        self._counter.forget_way()
+
+    def update(self) -> None:
+        """Odometry first, then the command (as the original)."""
+        dt = (self.context.now_ns - self._last_ns) * 1e-9
+        self._last_ns = self.context.now_ns
+        velocity, pose = self._counter.count(dt), self._counter.pose
+        if not self._encoder:
+            pose = self.context.pose
+            velocity = in_base(pose, self.context.twist)
+        self._odometer.transform(pose)
+        self._odometer.publish(pose, velocity)
+        if self._frames is not None:
+            self._frames.send()
+        if self._states is not None:
+            self._states.send()
+        self._drive(self._command.x, dt)
+        self._steer(max(-_MOST_STEERING, min(_MOST_STEERING, self._command.yaw)), dt)
+
+    def _drive(self, speed: float, dt: float) -> None:
+        wanted, present = speed / self._radius, self._wheel.velocity
+        if self._acceleration > 0.0:
+            slower = abs(wanted) < abs(present) and wanted * present >= 0.0
+            most = (self._deceleration if slower else self._acceleration) * dt
+            if abs(wanted - present) > max(most, self._speed_tolerance):
+                wanted = present + math.copysign(most, wanted - present)
+        self._wheel.drive(wanted, self._torque)
+
+    def _steer(self, wanted: float, dt: float) -> None:
+        """With a steering speed the motor turns; without one the wheel is turned at once."""
+        ahead = wanted - self._steering.position
+        rate = 0.0
+        if self._steering_speed <= 0.0:
+            if abs(ahead) > 1e-6:
+                self.context.set_joint_positions({self._steering.name: wanted})
+        elif abs(ahead) > self._angle_tolerance:
+            rate = math.copysign(min(self._steering_speed, abs(ahead) / dt), ahead)
+        self._steering.drive(rate, self._torque)

@@ -1,0 +1,157 @@
+"""libgazebo_grasp_fix.so: what a gripper has between its fingers stays in its palm.
+
+Parameters and defaults are those of gazebo_grasp_plugin. An object that is pressed from opposite
+sides in more than `grip_count_threshold` looks is fixed to the palm, and let go when a finger has
+gone back from it by more than `release_tolerance`.
+"""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Dict, List, NamedTuple, Tuple
+
+from ...geometry import Vec3, add, conjugate, dot, inverse, norm, rotate, scale, subtract, transform
+from ..base import Plugin
+from ..context import PluginError
+from ..parameters import Parameters
+
+_FORGET = 1e-6  # N: a contact that does not press
+
+
+class Press(NamedTuple):
+    """What a finger does to an object: force on the object, N, and where, m; world axes."""
+
+    finger: str
+    force: Vec3
+    point: Vec3
+
+
+@dataclass
+class Arm:
+    """A gripper.
+
+    Attributes:
+        counts: in how many looks more an object was pressed than not, by its scoped link name.
+        held: the object that is fixed to the palm; "" for none.
+        marks: of each finger that held it, where it touched (in the finger and in the palm frame)
+            and which way it pressed (in the palm frame).
+    """
+
+    name: str
+    palm: str
+    fingers: List[str]
+    counts: Dict[str, int] = field(default_factory=dict)
+    held: str = ""
+    marks: List[Tuple[str, Vec3, Vec3, Vec3]] = field(default_factory=list)
+
+
+class GraspFix(Plugin):
+    """Watches the fingers of one or more arms."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        self._arms = [self._arm(one) for one in p.children("arm")]
+        if not self._arms:
+            raise PluginError("it has no <arm>")
+        self._least_angle = math.radians(p.number("forces_angle_tolerance", 120.0))
+        self._threshold = p.integer("grip_count_threshold", 10)
+        self._most = p.integer("max_grip_count", 2 * self._threshold)
+        self._release = p.number("release_tolerance", 0.005)
+        context.every(p.number("update_rate", 5.0), self.update)
+
+    def _arm(self, p: Parameters) -> Arm:
+        name, palm = p.text("arm_name", "default_arm"), p.text("palm_link")
+        fingers = [one for one in p.texts("gripper_link") if one]
+        if not palm or not fingers:
+            raise PluginError(f"arm '{name}' has no <palm_link> or no <gripper_link>")
+        for link in (palm, *fingers):
+            self.context.link(link)
+        return Arm(name, palm, fingers)
+
+    def reset(self) -> None:
+        """Nothing is held."""
+        for arm in self._arms:
+            arm.counts, arm.held, arm.marks = {}, "", []
+
+    def update(self) -> None:
+        """Look at the contacts of the last step."""
+        contacts = self.context.contacts()
+        for arm in self._arms:
+            pressed = self._pressed(arm, contacts)
+            if arm.held:
+                if arm.held.partition("::")[0] not in self.context.models() or self._opened(arm):
+                    self._let_go(arm)
+                continue
+            self._count(arm, pressed)
+
+    def _pressed(self, arm: Arm, contacts: list) -> Dict[str, List[Press]]:
+        """What presses movable links of other models, by their names."""
+        prefix, models = f"{self.context.model}::", self.context.models()
+        parts = {prefix + name: name for name in (arm.palm, *arm.fingers)}
+        found: Dict[str, Dict[str, Press]] = {}
+        for one, other, contact in contacts:
+            for mine, theirs, sign in ((one, other, -1.0), (other, one, 1.0)):
+                if mine not in parts or theirs.startswith(prefix) or contact.force <= _FORGET:
+                    continue
+                model = models.get(theirs.partition("::")[0])
+                if model is None or model.static:
+                    continue
+                force = scale(add(scale(contact.normal, contact.force), contact.friction), sign)
+                before = found.setdefault(theirs, {}).get(mine)
+                if before is not None:
+                    force = add(before.force, force)
+                found[theirs][mine] = Press(parts[mine], force, contact.position)
+        return {name: list(presses.values()) for name, presses in found.items()}
+
+    def _count(self, arm: Arm, pressed: Dict[str, List[Press]]) -> None:
+        gripped = {name for name, presses in pressed.items() if self._opposed(presses)}
+        for name in gripped | set(arm.counts):
+            arm.counts[name] = min(self._most, arm.counts.get(name, 0) + 1) if name in gripped \
+                else arm.counts[name] - 1
+        arm.counts = {name: count for name, count in arm.counts.items() if count > 0}
+        for name in sorted(gripped):
+            if arm.counts[name] > self._threshold:
+                self._hold(arm, name, pressed[name])
+                return
+
+    def _opposed(self, presses: List[Press]) -> bool:
+        for n, one in enumerate(presses):
+            for other in presses[n + 1:]:
+                size = norm(one.force) * norm(other.force)
+                if size > 0.0 and math.acos(max(-1.0, min(1.0, dot(
+                        one.force, other.force) / size))) > self._least_angle:
+                    return True
+        return False
+
+    def _hold(self, arm: Arm, name: str, presses: List[Press]) -> None:
+        context, palm = self.context, self.context.link(arm.palm).pose
+        context.attach(self._joint(arm), f"{context.model}::{arm.palm}", name)
+        arm.held = name
+        arm.marks = []
+        for press in presses:
+            if press.finger == arm.palm:
+                continue
+            finger = context.link(press.finger).pose
+            arm.marks.append((press.finger, transform(inverse(finger), press.point),
+                              transform(inverse(palm), press.point),
+                              rotate(conjugate(palm.orientation),
+                                     scale(press.force, 1.0 / norm(press.force)))))
+        context.info(f"arm '{arm.name}' holds {name}")
+
+    def _opened(self, arm: Arm) -> bool:
+        """Whether a finger has gone back from where it held, against the way it pressed."""
+        palm = inverse(self.context.link(arm.palm).pose)
+        for finger, mark, place, way in arm.marks:
+            now = transform(palm, transform(self.context.link(finger).pose, mark))
+            if dot(subtract(place, now), way) > self._release:
+                return True
+        return False
+
+    def _let_go(self, arm: Arm) -> None:
+        self.context.detach(self._joint(arm))
+        self.context.info(f"arm '{arm.name}' lets go of {arm.held}")
+        arm.counts, arm.held, arm.marks = {}, "", []
+
+    def _joint(self, arm: Arm) -> str:
+        return f"{self.context.model}::{arm.name}::grasp"

@@ -1,0 +1,77 @@
+"""libgazebo_ros_vacuum_gripper.so: a link that holds what comes close to it, while it is on.
+
+Parameters, defaults, topic and services are those of gazebo_plugins: links of other models whose
+origin comes within 5 cm of the link's origin are held. Here they stay where they were met, on a
+fixed joint; there they are drawn to the link's origin.
+"""
+from __future__ import annotations
+
+from typing import List, Tuple
+
+from ...geometry import norm, subtract
+from ..base import Plugin
+from ..context import PluginError
+from ..parameters import namespace_or
+
+_REACH = 0.05   # m, between the origins of the links
+_HERTZ = 100.0
+
+
+class VacuumGripper(Plugin):
+    """The link `<bodyName>`; `on` and `off` are services, the topic tells whether it holds."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        if not p.text("topicName"):
+            raise PluginError("it has no <topicName>")
+        self._link = context.link(p.text("bodyName"))
+        self._on = False
+        self._held: List[Tuple[str, str]] = []
+        self._topic = context.publish(p.text("topicName"), "std_msgs/Bool")
+        context.serve("on", "std_srvs/Empty", lambda request, response: self._switch(True))
+        context.serve("off", "std_srvs/Empty", lambda request, response: self._switch(False))
+        context.every(_HERTZ, self.update)
+
+    def reset(self) -> None:
+        """Nothing is held, and it stays on or off as it is."""
+        self._held = []
+
+    def _switch(self, on: bool) -> None:
+        if on == self._on:
+            self.context.warn(f"it is {'on' if on else 'off'} already")
+        self._on = on
+        if not on:
+            self._let_go()
+
+    def _let_go(self) -> None:
+        for joint, _ in self._held:
+            self.context.detach(joint)
+        self._held = []
+
+    def update(self) -> None:
+        """Take what is close, and tell."""
+        if self._on:
+            self._take()
+        if self._topic.wanted:
+            message = self.context.message("std_msgs/Bool")
+            message.data = bool(self._held)
+            self._topic.publish(message)
+
+    def _take(self) -> None:
+        context, here = self.context, self._link.pose.position
+        models = context.models()
+        self._held = [one for one in self._held if one[1].partition("::")[0] in models]
+        taken = {link for _, link in self._held}
+        for name, model in models.items():
+            if name == context.model or model.static:
+                continue
+            for link in model.links:
+                scoped = f"{name}::{link.name}"
+                if scoped in taken or norm(subtract(
+                        here, context.model_link(scoped).pose.position)) >= _REACH:
+                    continue
+                joint = f"{context.model}::{self._link.name}::holds::{scoped}"
+                context.attach(joint, f"{context.model}::{self._link.name}", scoped)
+                self._held.append((joint, scoped))

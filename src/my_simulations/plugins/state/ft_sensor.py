@@ -1,0 +1,93 @@
+"""libgazebo_ros_ft_sensor.so: the wrench of a joint as geometry_msgs/WrenchStamped.
+
+Parameters, defaults, topic and frame are those of gazebo_plugins: in the frame of the child link,
+what it exerts on its parent. In a `<sensor type="force_torque">` of a joint it measures that joint,
+by the sensor's `<frame>`, `<measure_direction>`, noise and rate.
+"""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from ...description.model import WORLD, Joint
+from ...description.sensor import ForceTorque
+from ...sensing.models.force_torque import measure
+from ..base import Plugin
+from ..context import PluginError
+from ..frames import resolve
+from ..noise import WhiteNoise
+from ..parameters import namespace_or
+from ..sensors.rays import SampledNoise
+
+
+class FtSensor(Plugin):
+    """Publishes while somebody listens."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._name = p.text("jointName") or context.sensor_joint
+        for what, value in (("jointName", self._name), ("topicName", p.text("topicName"))):
+            if not value:
+                raise PluginError(f"it has no <{what}>")
+        sensor = context.sensor
+        self._block: Optional[ForceTorque] = sensor.force_torque if sensor is not None else None
+        self._joint = self._described()
+        self._white = WhiteNoise(context.seed, f"{context.model}::{self._name}::ft",
+                                 p.number("gaussianNoise", 0.0))
+        self._noise = [SampledNoise(context, getattr(getattr(self._block, kind), axis),
+                                    f"{kind}/{axis}")
+                       for kind in ("force", "torque") for axis in "xyz"
+                       ] if self._block is not None else []
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self._frame = resolve(prefix, self._frame_name())
+        self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
+        context.joint_wrench(self._name)
+        context.every(p.number("updateRate", 0.0) or (
+            sensor.update_rate if sensor is not None else 0.0), self.update)
+
+    def _described(self) -> Joint:
+        joints = {joint.name: joint for joint in self.context.description.joints}
+        if self._name not in joints:
+            raise PluginError(
+                f"model '{self.context.model}' has no joint '{self._name}'; a fixed joint is there"
+                " with <preserveFixedJoint>true</preserveFixedJoint> in its <gazebo> element")
+        return joints[self._name]
+
+    def _frame_name(self) -> str:
+        joint, block = self._joint, self._block
+        if block is not None and block.frame == "parent" and joint.parent != WORLD:
+            return joint.parent
+        if block is not None and block.frame == "sensor" and self.context.sensor is not None:
+            return self.context.sensor.name
+        return joint.child
+
+    def reset(self) -> None:
+        """Noise begins anew."""
+        for noise in self._noise:
+            noise.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Publish what was transmitted in the last step."""
+        if not self._topic.wanted:
+            return
+        context, block, sensor = self.context, self._block, self.context.sensor
+        wrench = context.joint_wrench(self._name)
+        if wrench is None:
+            return
+        sample = measure(wrench) if block is None or sensor is None else measure(
+            wrench, block.frame, block.measure_direction, self._joint.pose, sensor.pose)
+        values = [value + noise for value, noise in zip(
+            (*sample.force, *sample.torque), self._white.draw(6))]
+        values = [float(noise.apply(value, context.now_ns))
+                  for noise, value in zip(self._noise, values)] or values
+        self._topic.publish(self._message(values))
+
+    def _message(self, values: "list[float]") -> Any:
+        message = self.context.message("geometry_msgs/WrenchStamped")
+        message.header.stamp, message.header.frame_id = self.context.stamp(), self._frame
+        force, torque = message.wrench.force, message.wrench.torque
+        force.x, force.y, force.z, torque.x, torque.y, torque.z = values
+        return message

@@ -1,0 +1,40 @@
+"""What /tf says: where frames are in each other, the newest of each."""
+from __future__ import annotations
+
+from typing import Any, Dict, Optional, Tuple
+
+from ..geometry import IDENTITY, Pose, compose, inverse, normalised
+from .context import Context
+
+_DEEPEST = 100  # frames above another: more is a loop
+
+
+class Transforms:
+    """Hears `/tf` and `/tf_static`."""
+
+    def __init__(self, context: Context) -> None:
+        self._parents: Dict[str, Tuple[str, Pose]] = {}
+        for topic in ("/tf", "/tf_static"):
+            context.subscribe(topic, "tf2_msgs/TFMessage", self._hear, queue=100)
+
+    def _hear(self, message: Any) -> None:
+        for one in message.transforms:
+            at, turn = one.transform.translation, one.transform.rotation
+            self._parents[one.child_frame_id.lstrip("/")] = (
+                one.header.frame_id.lstrip("/"),
+                Pose((at.x, at.y, at.z), normalised((turn.x, turn.y, turn.z, turn.w))))
+
+    def look_up(self, frame: str, child: str) -> Optional[Pose]:
+        """Where `child` is in `frame`; None where /tf has not connected them."""
+        (top, one), (other_top, other) = self._root(frame), self._root(child)
+        return compose(inverse(one), other) if top == other_top else None
+
+    def _root(self, frame: str) -> Tuple[str, Pose]:
+        """The topmost frame above a frame, and where the frame is in it."""
+        frame, pose = frame.lstrip("/"), IDENTITY
+        for _ in range(_DEEPEST):
+            if frame not in self._parents:
+                break
+            frame, step = self._parents[frame]
+            pose = compose(step, pose)
+        return frame, pose

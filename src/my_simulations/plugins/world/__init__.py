@@ -1,0 +1,1 @@
+"""Plugins of worlds, and of what surrounds a model: air, water, wind."""

@@ -1,0 +1,80 @@
+"""libBuoyancyPlugin.so: a model that is wholly in a fluid.
+
+Parameters and defaults are those of Gazebo: `<fluid_density>` in kg/m^3, and for a link `<link
+name="..."><center_of_volume/><volume/></link>`; else volume and centre come from its collisions.
+"""
+from __future__ import annotations
+
+import math
+from typing import List, Optional, Tuple
+
+from ...description.model import Link as LinkSpec
+from ...description.shapes import Box, Capsule, Cone, Cylinder, Ellipsoid, Sphere
+from ...geometry import Vec3, add, cross, norm, scale, subtract, transform
+from ..base import Plugin
+from ..context import Link
+
+_WATER = 999.1026  # kg/m^3, at 15 degrees
+_SAME_PLACE = 1e-9  # m
+
+
+class Buoyancy(Plugin):
+    """Lifts each link by the weight of the fluid in its place."""
+
+    def load(self) -> None:
+        """Find volumes and their centres."""
+        context, p = self.context, self.context.parameters
+        self._density = p.number("fluid_density", _WATER)
+        given = {one.attribute("name"): (one.number("volume", 0.0), one.vector("center_of_volume"))
+                 for one in p.children("link")}
+        self._floats: List[Tuple[Link, float, Vec3]] = []
+        for spec in context.description.links:
+            found = given.get(spec.name) or self._volume(spec)
+            if found is not None and found[0] > 0.0:
+                self._floats.append((context.link(spec.name), *found))
+        turning = any(norm(subtract(centre, link.inertial.pose.position)) > _SAME_PLACE
+                      for link, _, centre in self._floats)
+        self.update()
+        context.every(0.0 if turning else 10.0, self.update)
+
+    def reset(self) -> None:
+        """Forces ended with the reset."""
+        self.update()
+
+    def _volume(self, spec: LinkSpec) -> Optional[Tuple[float, Vec3]]:
+        total, moment = 0.0, (0.0, 0.0, 0.0)
+        for collision in spec.collisions:
+            volume = volume_of(collision.geometry)
+            if volume is None:
+                self.context.warn(f"link '{spec.name}' has a collision whose volume is not known;"
+                                  " give its <volume>")
+                return None
+            total += volume
+            moment = add(moment, scale(collision.pose.position, volume))
+        return (total, scale(moment, 1.0 / total)) if total > 0.0 else None
+
+    def update(self) -> None:
+        """Push at the centres of volume; where that is the centre of mass, it stays so."""
+        for link, volume, centre in self._floats:
+            pose = link.pose
+            force = scale(self.context.gravity, -self._density * volume)
+            arm = subtract(transform(pose, centre),
+                           transform(pose, link.inertial.pose.position))
+            self.context.push(link.name, force, cross(arm, force))
+
+
+def volume_of(shape: object) -> Optional[float]:
+    """m^3; None for what has none that is known (meshes, planes)."""
+    if isinstance(shape, Box):
+        return shape.size[0] * shape.size[1] * shape.size[2]
+    if isinstance(shape, Sphere):
+        return 4.0 / 3.0 * math.pi * shape.radius ** 3
+    if isinstance(shape, Cylinder):
+        return math.pi * shape.radius ** 2 * shape.length
+    if isinstance(shape, Capsule):
+        return math.pi * shape.radius ** 2 * (shape.length + 4.0 / 3.0 * shape.radius)
+    if isinstance(shape, Ellipsoid):
+        return 4.0 / 3.0 * math.pi * shape.radii[0] * shape.radii[1] * shape.radii[2]
+    if isinstance(shape, Cone):
+        return math.pi * shape.radius ** 2 * shape.length / 3.0
+    return None

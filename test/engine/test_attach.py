@@ -1,0 +1,98 @@
+"""Links that are attached to others while the world runs, and let go."""
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+from conftest import box, ground
+
+from my_simulations.description.world import World
+from my_simulations.engine.bullet.backend import BulletBackend
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.errors import CommandError
+from my_simulations.geometry import STILL, Pose, Twist, compose, inverse
+from my_simulations.simulator.simulator import Simulator
+
+
+def world(make):
+    held, hand = box("held", 0.1, 0.5), box("hand", 0.2, 2.0)
+    held.pose, hand.pose = Pose((0.0, 0.0, 0.849)), Pose((0.0, 0.0, 1.0))
+    made = Simulator(World(models=[ground(mu=1.0), held, hand]), engine_factory=make,
+                     paused=True, log=lambda issue: None)
+    made.start()
+    made.models.hold("hand", True)
+    return made
+
+
+@pytest.fixture
+def sim():
+    engine = InlineEngine(BulletBackend)
+    made = world(lambda: engine)
+    yield made
+    made.close()
+
+
+def pose(sim, name):
+    return sim.states.model_state(name)[0]
+
+
+def test_what_is_attached_hangs_and_what_is_let_go_falls_at_g(sim):
+    sim.models.attach("grasp", "hand::link", "held::link")
+    sim.clock.advance(1000)
+    assert pose(sim, "held").position == pytest.approx((0.0, 0.0, 0.849), abs=1e-4)
+    assert sim.models.detach("grasp") and not sim.models.detach("grasp")
+    sim.clock.advance(200)
+    fallen = 0.849 - pose(sim, "held").position[2]
+    assert fallen == pytest.approx(9.8 * 0.2 ** 2 / 2, rel=0.01)
+
+
+def test_it_is_carried_without_slipping(sim):
+    sim.models.attach("grasp", "hand::link", "held::link")
+    before = compose(inverse(pose(sim, "hand")), pose(sim, "held"))
+    sim.models.hold("hand", False)
+    for _ in range(100):
+        here = pose(sim, "hand")
+        sim.states.set_model_state("hand", here, Twist((0.5, 0.2, 0.3), (0.0, 0.0, 1.0)))
+        sim.clock.advance(10)
+    after = compose(inverse(pose(sim, "hand")), pose(sim, "held"))
+    assert after.position == pytest.approx(before.position, abs=5e-3)
+
+
+def test_they_collide_again(sim):
+    sim.models.attach("grasp", "hand::link", "held::link")
+    sim.clock.advance(10)
+    sim.models.detach("grasp")
+    sim.models.hold("hand", False)
+    sim.clock.advance(2000)
+    assert pose(sim, "hand").position[2] > 0.15
+
+
+def test_a_reset_lets_go(sim):
+    sim.models.attach("grasp", "hand::link", "held::link")
+    sim.resets.reset_simulation()
+    sim.models.hold("hand", True)
+    sim.clock.advance(1000)
+    assert pose(sim, "held").position[2] == pytest.approx(0.05, abs=1e-3)
+
+
+def test_a_new_engine_holds_on():
+    sim = world(ProcessEngine)
+    try:
+        sim.models.attach("grasp", "hand::link", "held::link")
+        os.kill(sim.engine_pid, signal.SIGKILL)
+        sim.states.fresh()  # waits for the new one
+        sim.clock.advance(500)
+        assert pose(sim, "held").position == pytest.approx((0.0, 0.0, 0.849), abs=1e-4)
+    finally:
+        sim.close()
+
+
+def test_links_that_are_not_there_are_refused(sim):
+    with pytest.raises(CommandError, match="nothing"):
+        sim.models.attach("grasp", "hand::nothing", "held::link")
+    sim.states.set_model_state("held", Pose((0.0, 0.0, 2.0)), STILL)
+    sim.models.attach("grasp", "world", "held::link")
+    sim.clock.advance(300)
+    assert pose(sim, "held").position[2] == pytest.approx(2.0, abs=1e-4)

@@ -1,0 +1,138 @@
+"""Plugins that hold objects, in a world without physics."""
+from __future__ import annotations
+
+import pytest
+
+from my_simulations.description.model import Link, Model
+from my_simulations.engine.commands import Contact
+from my_simulations.geometry import Pose
+from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.gripping.grasp_fix import GraspFix
+from my_simulations.plugins.gripping.link_attacher import LinkAttacher
+from my_simulations.plugins.gripping.vacuum_gripper import VacuumGripper
+from my_simulations.plugins.testing import FakeContext, Message
+
+ARM = """<plugin><arm><arm_name>arm</arm_name><palm_link>palm</palm_link>
+<gripper_link> left </gripper_link><gripper_link>right</gripper_link></arm>
+<forces_angle_tolerance>100</forces_angle_tolerance><update_rate>10</update_rate>
+<grip_count_threshold>3</grip_count_threshold><release_tolerance>0.002</release_tolerance>
+</plugin>"""
+
+
+def world(context):
+    context.others = {"robot": Model("robot", links=[Link("palm")]),
+                      "cube": Model("cube", links=[Link("link")]),
+                      "table": Model("table", static=True, links=[Link("top")])}
+    context.model_link("cube::link").pose = Pose((0.03, 0.0, 0.0))
+    context.model_link("table::top").pose = Pose((0.01, 0.0, 0.0))
+
+
+def test_a_vacuum_gripper_holds_what_is_near_while_it_is_on():
+    context = FakeContext("<plugin><bodyName>palm</bodyName><topicName>grasping</topicName>"
+                          "<robotNamespace>/r</robotNamespace></plugin>")
+    world(context)
+    VacuumGripper(context).load()
+    context.advance(0.1)
+    assert not context.attached and context.published["r/grasping"][-1].data is False
+    context.services["r/on"](None, None)
+    context.advance(0.1)
+    assert list(context.attached.values()) == [("robot::palm", "cube::link")]
+    assert context.published["r/grasping"][-1].data is True
+    context.services["r/on"](None, None)
+    assert context.said == ["it is on already"]
+    context.services["r/off"](None, None)
+    context.advance(0.1)
+    assert not context.attached and context.published["r/grasping"][-1].data is False
+
+
+def test_a_vacuum_gripper_does_not_reach_further_than_5_cm():
+    context = FakeContext("<plugin><bodyName>palm</bodyName><topicName>t</topicName></plugin>")
+    world(context)
+    context.model_link("cube::link").pose = Pose((0.051, 0.0, 0.0))
+    VacuumGripper(context).load()
+    context.services["on"](None, None)
+    context.advance(0.1)
+    assert not context.attached
+
+
+def press(one, other, normal, force=5.0):
+    return (one, other, Contact(0, 1, (0.0, 0.0, 0.0), normal, 0.0, force))
+
+
+def squeezed(other="cube::link"):
+    """The normal points from the second link to the first; one contact names the cube first."""
+    return [press("robot::left", other, (0.0, 1.0, 0.0)),
+            press(other, "robot::right", (0.0, 1.0, 0.0))]
+
+
+@pytest.fixture
+def gripper():
+    context = FakeContext(ARM, links=("palm", "left", "right"))
+    world(context)
+    GraspFix(context).load()
+    return context
+
+
+def test_what_is_pressed_from_opposite_sides_is_fixed_to_the_palm(gripper):
+    gripper.touching = squeezed()
+    gripper.advance(0.3)
+    assert not gripper.attached
+    gripper.advance(0.1)
+    assert gripper.attached == {"robot::arm::grasp": ("robot::palm", "cube::link")}
+
+
+@pytest.mark.parametrize("touching", [
+    [press("robot::left", "cube::link", (0.0, 1.0, 0.0))],
+    [press("robot::left", "cube::link", (0.0, 1.0, 0.0)),
+     press("robot::right", "cube::link", (1.0, 0.5, 0.0))],
+    squeezed("table::top"), squeezed("robot::other")])
+def test_one_side_or_what_cannot_move_is_not_held(gripper, touching):
+    gripper.touching = touching
+    gripper.advance(2.0)
+    assert not gripper.attached
+
+
+def test_a_short_loss_of_contact_costs_a_count(gripper):
+    gripper.touching = squeezed()
+    gripper.advance(0.3)
+    gripper.touching = []
+    gripper.advance(0.1)
+    gripper.touching = squeezed()
+    gripper.advance(0.1)
+    assert not gripper.attached
+    gripper.advance(0.1)
+    assert gripper.attached
+
+
+def test_an_opened_finger_lets_go_and_a_closing_one_does_not(gripper):
+    gripper.touching = squeezed()
+    gripper.advance(0.4)
+    gripper.touching = []
+    gripper.links["left"].pose = Pose((0.0, -0.01, 0.0))  # it presses along -y
+    gripper.advance(0.1)
+    assert gripper.attached
+    gripper.links["left"].pose = Pose((0.0, 0.003, 0.0))
+    gripper.advance(0.1)
+    assert not gripper.attached and "lets go" in gripper.said[-1]
+
+
+def test_a_gripper_without_an_arm_is_the_users_fault():
+    with pytest.raises(PluginError, match="no <arm>"):
+        GraspFix(FakeContext("<plugin/>")).load()
+    with pytest.raises(PluginError, match="no link 'nowhere'"):
+        GraspFix(FakeContext(ARM.replace("palm<", "nowhere<"), links=("palm",))).load()
+
+
+def test_the_link_attacher_attaches_and_detaches_by_the_same_names():
+    context = FakeContext()
+    LinkAttacher(context).load()
+    attach, detach = (context.services[f"/link_attacher_node/{name}"]
+                      for name in ("attach", "detach"))
+    request = Message(model_name_1="a", link_name_1="b", model_name_2="c", link_name_2="d")
+    response = Message()
+    attach(request, response)
+    assert response.ok and list(context.attached.values()) == [("a::b", "c::d")]
+    detach(request, response)
+    assert response.ok and not context.attached
+    detach(request, response)
+    assert not response.ok and "not attached" in context.said[-1]

@@ -1,0 +1,159 @@
+"""Plugins that set the state of a robot, in a world without physics."""
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from my_simulations.description.model import Inertial
+from my_simulations.geometry import Pose, Twist, quat_from_rpy
+from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.state.hand_of_god import HandOfGod
+from my_simulations.plugins.state.initial_velocity import InitialVelocity
+from my_simulations.plugins.state.joint_pose_trajectory import JointPoseTrajectory
+from my_simulations.plugins.state.mimic_joint import MimicJoint
+from my_simulations.plugins.testing import FakeContext, Message
+
+STILL_FRAME = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+
+
+def stamp(seconds):
+    return Message(secs=int(seconds), nsecs=round((seconds - int(seconds)) * 1e9))
+
+
+def point(seconds, *positions):
+    return Message(positions=list(positions), time_from_start=stamp(seconds))
+
+
+def play(context, *points, frame="world", names=("a", "b"), at=0.0):
+    context.hear("set_joint_trajectory", header=Message(frame_id=frame, stamp=stamp(at)),
+                 joint_names=list(names), points=list(points))
+
+
+@pytest.fixture
+def arm():
+    context = FakeContext(joints=("a", "b"))
+    JointPoseTrajectory(context).load()
+    return context
+
+
+def positions(context):
+    return [context.joints[name].position for name in "ab"]
+
+
+def test_points_are_set_at_their_times_from_the_start(arm):
+    play(arm, point(0.0, 0.1, 0.2), point(0.5, 0.3, 0.4), point(0.7, 0.5, 0.6), at=1.0)
+    arm.advance(0.999)
+    assert positions(arm) == [0.0, 0.0]
+    arm.advance(0.001)
+    assert positions(arm) == [0.1, 0.2] and arm.held
+    arm.advance(0.499)
+    assert positions(arm) == [0.1, 0.2]
+    arm.advance(0.001)
+    assert positions(arm) == [0.3, 0.4]
+    arm.advance(0.2)
+    assert positions(arm) == [0.5, 0.6] and not arm.held
+    assert arm.joints["a"].motor == (0.0, 0.0)
+
+
+def test_another_trajectory_replaces_the_rest_of_the_first(arm):
+    play(arm, point(0.0, 0.1, 0.1), point(0.5, 0.9, 0.9))
+    arm.advance(0.2)
+    play(arm, point(0.1, 0.2, 0.2))
+    arm.advance(1.0)
+    assert positions(arm) == [0.2, 0.2]
+
+
+def test_joints_that_are_not_there_are_told_and_skipped(arm):
+    play(arm, point(0.0, 7.0, 0.2), names=("c", "b"))
+    assert positions(arm) == [0.0, 0.2]
+    assert "no joint 'c'" in arm.said[0]
+
+
+def test_a_point_of_another_length_is_refused_whole(arm):
+    play(arm, point(0.0, 0.1, 0.1), point(0.1, 0.1))
+    assert positions(arm) == [0.0, 0.0] and "point 1 of the trajectory has 1" in arm.said[0]
+
+
+def test_the_service_answers_and_sets_the_pose(arm):
+    response = Message()
+    request = Message(model_name="robot", set_model_pose=True, disable_physics_updates=False,
+                      model_pose={"position": {"x": 1.0, "y": 2.0, "z": 3.0},
+                                  "orientation": STILL_FRAME},
+                      joint_trajectory=Message(
+                          header=Message(frame_id="map", stamp=stamp(0.0)),
+                          joint_names=["a"], points=[point(0.0, 0.4)]))
+    arm.services["set_joint_trajectory"](request, response)
+    assert response.success and arm.pose.position == (1.0, 2.0, 3.0)
+    assert arm.joints["a"].position == 0.4 and not arm.held
+    request.model_name = "other"
+    arm.services["set_joint_trajectory"](request, response)
+    assert not response.success and "this is model 'robot'" in response.status_message
+
+
+def test_the_link_of_the_frame_stays_where_it_is():
+    context = FakeContext(joints=("a", "b"), links=("tip",))
+    JointPoseTrajectory(context).load()
+    tip = context.links["tip"]
+
+    def turned(values, before=context.set_joint_positions):
+        before(values)
+        tip.pose = Pose((0.0, 0.0, 0.5), quat_from_rpy(0, 0, math.pi / 2))
+
+    context.set_joint_positions = turned
+    tip.pose = Pose((1.0, 0.0, 0.5))
+    play(context, point(0.0, 0.1, 0.2), frame="tip")
+    assert context.pose.position == pytest.approx((1.0, 0.0, 0.0))
+    assert context.pose.orientation == pytest.approx(quat_from_rpy(0, 0, -math.pi / 2))
+
+
+def test_a_reset_ends_it(arm):
+    plugin = JointPoseTrajectory(arm)
+    plugin.load()
+    play(arm, point(0.0, 0.1, 0.1), point(0.5, 0.9, 0.9))
+    plugin.reset()
+    arm.advance(1.0)
+    assert positions(arm) == [0.1, 0.1] and not arm.held
+
+
+def transform(parent, child, x=0.0, yaw=0.0):
+    qx, qy, qz, qw = quat_from_rpy(0.0, 0.0, yaw)
+    return Message(header=Message(frame_id=parent), child_frame_id=child, transform={
+        "translation": {"x": x, "y": 0.0, "z": 0.0},
+        "rotation": {"x": qx, "y": qy, "z": qz, "w": qw}})
+
+
+def test_the_hand_of_god_pulls_like_a_critically_damped_spring():
+    context = FakeContext("<plugin><linkName>hand</linkName><kl>50</kl><ka>8</ka></plugin>",
+                          links=("hand",))
+    hand = context.links["hand"]
+    hand.inertial = Inertial(mass=2.0, ixx=0.5)
+    hand.twist = Twist((0.1, 0.0, 0.0), (0.0, 0.0, 0.2))
+    HandOfGod(context).load()
+    context.advance(0.002)
+    assert not context.pushes and len(context.said) == 1
+    context.hear("/tf", transforms=[transform("base", "hog_desired", 0.5, 0.4),
+                                    transform("/world", "base", 1.0)])
+    context.advance(0.001)
+    force, torque = context.pushes["hand"]
+    assert force == pytest.approx((50 * 1.5 - 2 * math.sqrt(100.0) * 0.1, 0.0, 2 * 9.8))
+    assert torque == pytest.approx((0.0, 0.0, 8 * 0.2 - 2 * math.sqrt(4.0) * 0.2))
+    assert context.transforms[-1][:2] == ("world", "hog_actual")
+
+
+def test_a_mimic_joint_is_coupled_with_the_defaults_of_the_original():
+    context = FakeContext("<plugin><joint>a</joint><mimicJoint>b</mimicJoint><hasPID/></plugin>",
+                          joints=("a", "b"))
+    MimicJoint(context).load()
+    assert context.followers == {"b": ("a", 1.0, 0.0)}
+    with pytest.raises(PluginError, match="mimicJoint"):
+        MimicJoint(FakeContext("<plugin><joint>a</joint></plugin>", joints=("a",))).load()
+
+
+def test_an_initial_velocity_comes_back_with_a_reset():
+    context = FakeContext("<plugin><linear>1 2 3</linear><angular>0 0 1</angular></plugin>")
+    plugin = InitialVelocity(context)
+    plugin.load()
+    context.twist = Twist((0.0,) * 3, (0.0,) * 3)
+    plugin.reset()
+    assert context.twist == Twist((1.0, 2.0, 3.0), (0.0, 0.0, 1.0))

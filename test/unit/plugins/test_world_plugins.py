@@ -1,0 +1,93 @@
+"""Plugins of what surrounds a model: their forces against closed forms."""
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from my_simulations.description.model import Inertial, Link
+from my_simulations.description.shapes import Box, Collision, Cylinder, Mesh, Sphere
+from my_simulations.geometry import Pose, Twist, quat_from_rpy
+from my_simulations.plugins.testing import FakeContext
+from my_simulations.plugins.world.buoyancy import Buoyancy
+from my_simulations.plugins.world.lift_drag import LiftDrag
+
+WING = """<plugin><link_name>wing</link_name><cla>4.75</cla><cda>0.6</cda>
+<alpha_stall>0.34</alpha_stall>
+<cla_stall>-3.85</cla_stall><cda_stall>-0.9</cda_stall><area>0.5</area>
+<air_density>1.2</air_density>
+<cp>-0.05 0 0</cp></plugin>"""
+
+
+def wing(speed, alpha, xml=WING, **options):
+    context = FakeContext(xml, links=("wing",), **options)
+    link = context.links["wing"]
+    link.pose = Pose((0.0, 0.0, 5.0), quat_from_rpy(0.0, -alpha, 0.0))  # the nose up
+    link.twist = Twist((speed, 0.0, 0.0), (0.0, 0.0, 0.0))
+    LiftDrag(context).load()
+    context.advance(0.001)
+    return context.pushes["wing"]
+
+
+@pytest.mark.parametrize("alpha", [-0.3, -0.1, 0.0, 0.2, 0.33])
+def test_lift_and_drag_of_a_wing_that_is_not_stalled(alpha):
+    force, torque = wing(20.0, alpha)
+    pressure = 0.5 * 1.2 * 20.0 ** 2 * 0.5
+    assert force == pytest.approx((-abs(0.6 * alpha) * pressure, 0.0, 4.75 * alpha * pressure))
+    arm = (-0.05 * math.cos(alpha), 0.0, -0.05 * math.sin(alpha))
+    assert torque == pytest.approx((0.0, arm[2] * force[0] - arm[0] * force[2], 0.0))
+
+
+def test_lift_falls_past_the_stall_and_never_turns_its_sign():
+    pressure = 0.5 * 1.2 * 20.0 ** 2 * 0.5
+    assert wing(20.0, 0.5)[0][2] == pytest.approx((4.75 * 0.34 - 3.85 * 0.16) * pressure)
+    assert wing(20.0, 1.2)[0][2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_standing_air_lifts_nothing():
+    assert wing(0.005, 0.2)[0] == (0.0, 0.0, 0.0)
+
+
+def test_a_control_joint_adds_lift():
+    xml = WING.replace("<cp>", "<control_joint_name>flap</control_joint_name><cp>")
+    context = FakeContext(xml, links=("wing",), joints=("flap",))
+    context.links["wing"].twist = Twist((10.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    context.joints["flap"].position = 0.1
+    LiftDrag(context).load()
+    context.advance(0.001)
+    assert context.pushes["wing"][0][2] == pytest.approx(4.0 * 0.1 * 0.5 * 1.2 * 100.0 * 0.5)
+
+
+def buoy(inside, *collisions, com=(0.0, 0.0, 0.0)):
+    context = FakeContext(f"<plugin>{inside}</plugin>")
+    inertial = Inertial(mass=2.0, pose=Pose(com))
+    context.description.links.append(Link("hull", inertial=inertial, collisions=list(collisions)))
+    context.link("hull").inertial = inertial
+    Buoyancy(context).load()
+    return context
+
+
+def test_a_hull_is_lifted_by_the_weight_of_the_water_in_its_place():
+    context = buoy("", Collision("a", geometry=Box((1.0, 0.5, 0.2))),
+                   Collision("b", Sphere(0.1), Pose((1.0, 0.0, 0.0))))
+    volume, ball = 0.1, 4 / 3 * math.pi * 0.1 ** 3
+    force, torque = context.pushes["hull"]
+    lift = 999.1026 * (volume + ball) * 9.8
+    assert force == pytest.approx((0.0, 0.0, lift))
+    assert torque == pytest.approx((0.0, -lift * ball / (volume + ball), 0.0))
+
+
+def test_a_given_volume_counts_and_turns_with_the_link():
+    context = buoy('<fluid_density>1000</fluid_density><link name="hull"><center_of_volume>0 0 0.2'
+                   "</center_of_volume><volume>0.01</volume></link>",
+                   Collision("a", geometry=Cylinder(5.0, 1.0)))
+    context.links["hull"].pose = Pose((0.0, 0.0, 0.0), quat_from_rpy(math.pi / 2, 0.0, 0.0))
+    context.advance(0.001)
+    force, torque = context.pushes["hull"]
+    assert force == pytest.approx((0.0, 0.0, 98.0))
+    assert torque == pytest.approx((-0.2 * 98.0, 0.0, 0.0))
+
+
+def test_a_mesh_without_a_volume_is_told():
+    context = buoy("", Collision("a", geometry=Mesh("model://boat.dae")))
+    assert not context.pushes and "give its <volume>" in context.said[0]
