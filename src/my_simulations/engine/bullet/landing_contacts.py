@@ -131,6 +131,8 @@ class LandingContacts:
             self._moving.add(body.uid)
             if not body.is_ball and body.base is not None:
                 self._bodies[body.uid] = body
+                self._flights[body.uid] = _Flight(body)
+                self._next = 0
                 self._meets.setdefault(body.uid, []).append(
                     (part.index, collision_groups.moving(link)))
         self._order = None
