@@ -80,7 +80,6 @@ class BulletBackend:
         self._residual = ResidualFriction()
         self._rolling = RollingContacts()
         self._sliding = Sliding()
-        self._landing = LandingContacts(self._rolling.landed)
         self._waker = WakeUp(self._bodies, self._touched)
         self._forces = Forces(self._waker.around,
                               lambda rows: self._motors.yield_to(rows))
@@ -90,6 +89,7 @@ class BulletBackend:
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
         self._settling = ContactSettling(lambda: self._forces.loaded_bodies)
+        self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)

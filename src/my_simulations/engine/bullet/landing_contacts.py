@@ -109,10 +109,14 @@ class LandingContacts:
 
     Args:
         landed: is told which body lands, and the normal of what it lands on.
+        solve_impact: is told whether the next step solves landings.
     """
 
-    def __init__(self, landed: Callable[[int, Vec3], None]) -> None:
+    def __init__(self, landed: Callable[[int, Vec3], None],
+                 solve_impact: Callable[[bool], None]) -> None:
         self._landed = landed
+        self._solve_impact = solve_impact
+        self._impact = False
         self._bodies: Dict[int, Body] = {}
         self._meets: Dict[int, _Filters] = {}
         self._order: Optional[List[int]] = None
@@ -178,6 +182,9 @@ class LandingContacts:
             if flight.look <= step:
                 touches += self._look(flight, step, dt, gravity)
         self._plan()
+        if touches:
+            self._impact = True
+            self._solve_impact(True)
         while touches:
             # Two that land on each other would tilt together; so one after the other.
             now: Dict[int, _Touch] = {}
@@ -188,7 +195,10 @@ class LandingContacts:
             touches = [touch for touch in touches if touch.uid not in now]
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
+        """Solve the next steps as is usual."""
+        if self._impact:
+            self._impact = False
+            self._solve_impact(False)
 
     def _ask(self, uids: List[int]) -> None:
         """Find out which bodies may fly; what sleeps is asked less often."""
