@@ -22,7 +22,7 @@ from server import Server, children, master, processor, wait
 
 Row = Tuple[str, str, str, bool]
 WORLD = scenes.world("boxes", 0, True, 1000.0)
-ROBOT = pathlib.Path(__file__).resolve().parents[1] / "rostest" / "robo_with_laser.urdf.xacro"
+ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf.xacro"
 SECONDS = 15.0
 
 
