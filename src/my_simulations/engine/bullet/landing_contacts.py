@@ -37,6 +37,7 @@ _BOUNCE = 8        # steps until one that has landed is looked at again
 _BOUNCES = 4       # such looks until it is one of those that are asked now and then
 _PATIENCE = 7      # turns that one that sleeps is left out
 _SOFT = 2e-3       # m/s: what comes slower tilts nothing
+_SETTLES = 2.5     # steps of falling: what was put down at rest falls no longer
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
 _TILT = 2e-3       # rad: of the first round
 _HINT = 1e-4       # rad: of the landing step, in which Bullet finds one more point: a corner too
@@ -256,7 +257,7 @@ class LandingContacts:
                 continue
             normal: Vec3 = nearest[7]
             speed_in = _approach(uid, other if moves else None, nearest[5], normal)
-            if speed_in - dot(gravity, normal) * dt > _SOFT and not self._lies_in(flight, other):
+            if speed_in > max(_SOFT, _SETTLES * fall) and not self._lies_in(flight, other):
                 at, turn = pybullet.getBasePositionAndOrientation(uid)
                 width, breadth = _across(low, high, normal)
                 touches.append(_Touch(uid, other, gap, nearest[6], normal, at, turn,
