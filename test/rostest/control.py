@@ -42,6 +42,14 @@ def manager(name, kind):
     return rospy.ServiceProxy(name, kind)
 
 
+def dynparam(*words):
+    done = subprocess.run(["rosrun", "dynamic_reconfigure", "dynparam", *words],
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60, text=True,
+                          check=False)
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
 class Control(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -153,6 +161,15 @@ class Control(unittest.TestCase):
     def test_types_are_listed(self):
         types = manager("list_controller_types", ListControllerTypes)().types
         self.assertIn("diff_drive_controller/DiffDriveController", types)
+
+    def test_gains_are_seen_and_set_by_dynparam(self):
+        gains = "/arm/trajectory/gains/shoulder"
+        self.assertIn(gains, dynparam("list").split())
+        self.assertIn("400", dynparam("get", gains))
+        dynparam("set", gains, "p", "350.0")
+        self.assertIn("350", dynparam("get", gains))
+        self.assertIn("'d': 30", dynparam("get", gains))
+        dynparam("set", gains, "p", "400.0")
 
     def test_the_command_lists_controllers(self):
         done = subprocess.run(["rosrun", "controller_manager", "controller_manager", "list",

@@ -22,7 +22,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_skid_steer_drive.so": "drive.skid_steer_drive:SkidSteerDrive",
     "libgazebo_ros_planar_move.so": "drive.planar_move:PlanarMove",
     "libgazebo_ros_tricycle_drive.so": "drive.tricycle_drive:TricycleDrive",
-    "libgazebo_ros_wheel_slip.so": "drive.wheel_slip:WheelSlip",
+    "libgazebo_ros_wheel_slip.so": "drive.wheel_slip:RosWheelSlip",
     "libWheelSlipPlugin.so": "drive.wheel_slip:WheelSlip",
     "libgazebo_ros_force_based_move.so": "drive.force_based_move:ForceBasedMove",
     "librobotnik_force_based_move.so": "drive.force_based_move:ForceBasedMove",
