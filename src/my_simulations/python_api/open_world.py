@@ -15,10 +15,13 @@ from ..formats.mesh.loading import collision_meshes
 from ..formats.reading import Entity, LoadedWorld, Text, read_entity, read_file
 from ..geometry import ZERO3, Pose, Twist, Vec3, compose
 from ..resources.resolver import Resolver
+from ..sensing.api import CameraSpec
 from ..simulator.saving import save_world
+from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from ..simulator.world_loading import load_world
 from .object_placement import Alter, place_objects
+from .pictures import Photographer, Picture, camera_pose
 from .readings import (
     ContactReading,
     JointReadings,
@@ -111,6 +114,7 @@ class OpenWorld:
         loaded = self._load()
         self.simulator = Simulator(loaded.world, engine_factory=engine, paused=True, log=self._log,
                                    meshes=loaded.meshes)
+        self._photographer = Photographer(self.simulator, SceneSensing(self.simulator, self._log))
         try:
             self.simulator.start()
             self._furnish()
@@ -127,6 +131,7 @@ class OpenWorld:
 
     def close(self) -> None:
         """End the engine. Nothing else may be called afterwards."""
+        self._photographer.close()
         self.simulator.close()
 
     # -- time --------------------------------------------------------------------------------------
@@ -207,6 +212,37 @@ class OpenWorld:
         """Positions and rates of all joint axes."""
         self._refuse_lost()
         return joint_readings(*self.simulator.states.latest())
+
+    def render(self, pose: Sequence[float], *, frame: str = "",
+               look_at: Optional[Sequence[float]] = None, width: int = 320, height: int = 240,
+               hfov: float = 1.047, near: float = 0.05, far: float = 100.0,
+               outputs: Sequence[str] = ("rgb",)) -> Picture:
+        """A picture of the world as it is now, without screen or graphics card.
+
+        The process that draws starts with the first picture and takes what `pip install
+        my_simulations[sensors]` and EGL bring. Same world, same picture.
+
+        Args:
+            pose: of the camera in `frame`: +x looks forward, y is left, z up.
+            frame: model or link that carries the camera; "" for the world.
+            look_at: point of `frame` that the camera is turned to; only the position of `pose`
+                counts then.
+            width: pixels.
+            height: pixels.
+            hfov: horizontal angle of view, rad.
+            near: m along the optical axis; what is nearer is not drawn.
+            far: m along the optical axis; what is farther is not drawn.
+            outputs: some of "rgb", "depth" and "labels".
+
+        Raises:
+            CommandError: also if nothing is installed to draw with; it says what is missing.
+        """
+        self._refuse_lost()
+        at = pose_of(pose)
+        if look_at is not None:
+            at = camera_pose(at.position, _vector(look_at, "look_at"))
+        camera = CameraSpec(int(width), int(height), float(hfov), float(near), float(far))
+        return self._photographer.take(frame, at, camera, outputs)
 
     def contacts(self) -> List[ContactReading]:
         """The contact points of the last step."""
