@@ -42,6 +42,7 @@ def requirements() -> Tuple[List[str], Dict[str, List[str]]]:
         return [line for line in lines if name_of(line) in names]
 
     extras = {extra: named(names) for extra, names in EXTRAS.items()}
+    extras["gym"] = ["gymnasium>=1.1.1"]  # what the ROS package needs not
     others = {name for names in EXTRAS.values() for name in names}
     return SYSTEM + [line for line in lines if name_of(line) not in others], extras
 
@@ -64,7 +65,10 @@ def for_pip() -> Dict[str, Any]:
         "install_requires": required,
         "extras_require": extras,
         "data_files": data_files(),
-        "entry_points": {"console_scripts": ["study = my_simulations.studies.command:main"]},
+        "entry_points": {
+            "console_scripts": ["study = my_simulations.studies.command:main"],
+            "gymnasium.envs": [
+                "__root__ = my_simulations.gym.example_registry:register_environments"]},
     }
 
 

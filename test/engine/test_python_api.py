@@ -13,7 +13,7 @@ import pytest
 
 import my_simulations
 from my_simulations.errors import CommandError, EngineLostError, InputError
-from my_simulations.python_api.arguments import pose_of
+from my_simulations.python_api.plain_values import pose_of
 
 ROOT = Path(__file__).resolve().parents[2]
 LIST = str(ROOT / "config/test/object_locations.yaml")

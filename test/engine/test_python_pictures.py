@@ -8,7 +8,7 @@ import pytest
 
 import my_simulations
 from my_simulations.errors import CommandError
-from my_simulations.python_api.pictures import camera_pose
+from my_simulations.python_api.world_pictures import camera_pose
 
 RED_BOX = """<sdf version="1.7"><model name="box"><static>1</static><link name="link">
 <visual name="v"><geometry><box><size>0.2 0.2 0.2</size></box></geometry>

@@ -20,9 +20,8 @@ from ..simulator.saving import save_world
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from ..simulator.world_loading import load_world
-from .arguments import nanoseconds_of, pose_of, twist_of, vector_of
 from .object_placement import Alter, place_objects
-from .pictures import Photographer, Picture, camera_pose
+from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
 from .readings import (
     ContactReading,
     JointReadings,
@@ -34,6 +33,7 @@ from .readings import (
     model_readings,
 )
 from .world_choice import WorldChoice
+from .world_pictures import Photographer, Picture, camera_pose
 
 Log = Callable[[Issue], None]
 
