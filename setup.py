@@ -65,10 +65,7 @@ def for_pip() -> Dict[str, Any]:
         "install_requires": required,
         "extras_require": extras,
         "data_files": data_files(),
-        "entry_points": {
-            "console_scripts": ["study = my_simulations.studies.command:main"],
-            "gymnasium.envs": [
-                "__root__ = my_simulations.gym.example_registry:register_environments"]},
+        "entry_points": {"console_scripts": ["study = my_simulations.studies.command:main"]},
     }
 
 

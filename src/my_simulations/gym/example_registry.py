@@ -1,7 +1,7 @@
 """Names of the example environments for `gymnasium.make`."""
 from __future__ import annotations
 
-from gymnasium.envs.registration import register, registry
+import gymnasium
 
 EXAMPLES = {"my_simulations/PushBox-v0": ("push_box:make", 300),
             "my_simulations/StackBoxes-v0": ("stack_boxes:make", 400)}
@@ -9,7 +9,8 @@ EXAMPLES = {"my_simulations/PushBox-v0": ("push_box:make", 300),
 
 
 def register_environments() -> None:
-    """Register the example environments, once; also called by gymnasium's plugin mechanism."""
+    """Register the example environments, once."""
     for name, (place, steps) in EXAMPLES.items():
-        if name not in registry:
-            register(id=name, entry_point=f"{__package__}.{place}", max_episode_steps=steps)
+        if name not in gymnasium.registry:
+            gymnasium.register(id=name, entry_point=f"{__package__}.{place}",
+                               max_episode_steps=steps)
