@@ -24,6 +24,7 @@ import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
+import {mountHints} from './hint_line.js';
 import {InsertTab} from './insert_tab.js';
 import {JointsPanel} from './joints_panel.js';
 import {mountLayers} from './layers_tab.js';
@@ -84,6 +85,7 @@ export function mountPanels(document, parts) {
     ),
   );
   mountConnectionNote(byId('centre'), page);
+  mountHints(byId('view'));
   return page;
 }
 

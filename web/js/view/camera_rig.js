@@ -1,5 +1,5 @@
 /** The camera: the user's moves, flights between views, following, the two projections. */
-import {Matrix4, Vector3} from 'three';
+import {Box3, Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
 import {add, length, scale, subtract} from '../pose.js';
 /** @import {GuiCamera} from '../protocol.js' */
@@ -32,6 +32,11 @@ export class CameraRig {
   #followed = null;
   /** File and name of the world. @type {string|null} */
   #world = null;
+  /** Models that the first view shall show, until the user has moved the camera. @type {string[]} */
+  #toFrame = [];
+  /** The first view as it was set: another one is the user's. @type {View|null} */
+  #framed = null;
+  #whole = new Box3();
 
   /** @param {Pick<ViewParts, 'stage'|'store'|'models'>} viewParts */
   constructor({stage, store, models}) {
@@ -228,16 +233,50 @@ export class CameraRig {
     if (!this.#store.document) return;
     const {gui_camera: camera, file, name} = this.#store.document;
     const which = JSON.stringify([file, name]);
-    if (which === this.#world) return;
+    if (which === this.#world) {
+      if (this.view === this.#framed) this.#beginWithAll();
+      return;
+    }
     this.#world = which;
-    this.#home = camera ? views.fromPose(camera.pose) : views.HOME;
     this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
-    this.set(this.#home);
+    if (camera) {
+      this.#toFrame = [];
+      this.#home = views.fromPose(camera.pose);
+      this.set(this.#home);
+    } else this.#beginWithAll();
     this.#store.setCamera({
       projection: camera?.projection_type === 'orthographic' ? 'orthographic' : 'perspective',
       controller: camera?.view_controller === 'fps' ? 'fps' : 'orbit',
       following: camera?.track && this.#store.model(camera.track) ? camera.track : null,
     });
+  }
+
+  /** A world without a camera is seen as a whole, save grounds; an empty one as in Gazebo. */
+  #beginWithAll() {
+    const isGround = (/** @type {import('../protocol.js').Model} */ model) =>
+      model.links.every((link) => link.visuals.every(({geometry}) => geometry.type === 'plane'));
+    this.#toFrame = (this.#store.document?.models ?? []).filter((model) => !isGround(model))
+      .map((model) => model.name);
+    this.#home = views.HOME;
+    this.set(this.#home);
+    this.#framed = this.view;
+    this.frameAll();
+  }
+
+  /** Shows more of the world as its meshes arrive, unless the user has begun to look round. */
+  frameAll() {
+    if (!this.#toFrame.length || this.view !== this.#framed) return;
+    const whole = new Box3();
+    for (const name of this.#toFrame) {
+      const box = this.#models.bounds(name);
+      if (box) whole.union(box);
+    }
+    if (whole.isEmpty() || whole.equals(this.#whole)) return;
+    this.#whole.copy(whole);
+    this.#home = views.first({min: whole.min.toArray(), max: whole.max.toArray()}, this.fov,
+      this.#stage.aspect);
+    this.set(this.#home);
+    this.#framed = this.view;
   }
 
   #applyChoices() {

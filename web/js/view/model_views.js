@@ -4,6 +4,7 @@ import {canonicalLink} from '../store.js';
 import {compose, inverse} from '../pose.js';
 import {matrixOf} from './three_convert.js';
 import {boxOf, visualParts} from './shape_meshes.js';
+import {tinted} from './tints.js';
 /** @import {Batches, Item} from './batches.js' */
 /** @import {Link, Model, Visual} from '../protocol.js' */
 /** @import {Part, Stock} from './shape_meshes.js' */
@@ -76,6 +77,8 @@ export class Models {
    * @type {(ids: Set<number>|null) => void}
    */
   onMoved = () => {};
+  /** Called when a mesh that was waited for can be seen. */
+  onArrived = () => {};
 
   rebuildAll() {
     for (const name of [...this.#views.keys()]) this.#replace(name, null);
@@ -266,13 +269,14 @@ export class Models {
       }
       this.#moveLink(view, linkView);
     };
-    const parts = visualParts(visual, this.#stock, look);
+    const parts = visualParts(tinted(view.document, visual), this.#stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {
         if (view.gone) return;
         add(ready);
         this.#changed(null);
+        this.onArrived();
       });
     }
   }

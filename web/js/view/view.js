@@ -100,6 +100,7 @@ class View {
   #overlays;
   #pointer;
   #actors;
+  #surroundings;
   #marks;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
@@ -133,7 +134,7 @@ class View {
     this.#lights = lights;
     this.#rig = rig;
     this.#picker = picker;
-    new Surroundings({stage, store, materials});
+    this.#surroundings = new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
     this.#marks = new TopicMarks({...shared, topics});
@@ -162,6 +163,7 @@ class View {
   }
 
   #connect() {
+    this.#models.onArrived = () => this.#rig.frameAll();
     this.#models.onMoved = (ids) => {
       this.#rig.follow();
       this.#boxes.follow(ids);
@@ -199,6 +201,7 @@ class View {
       : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
     const centre = position.map((part, index) => part + ahead[index] * distance);
     this.#lights.cover(centre, Math.max(distance * 1.3, 4));
+    this.#surroundings.cover(centre, distance);
   }
 
   // ---- what actions ask
