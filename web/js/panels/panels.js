@@ -201,6 +201,8 @@ class Windows {
   #open = new Set();
   /** @type {{close: () => Promise<boolean>}|null} */
   #building = null;
+  /** @type {import('../model_editor/model_editor.js').ModelEditor|null} */
+  #model = null;
 
   /** @param {DialogRequest} detail */
   show(detail) {
@@ -219,6 +221,8 @@ class Windows {
       joints: () => this.#toggleSide('joints'),
       topics: () => this.#toggleSide('topics'),
       building: () => this.#toggleBuilding(),
+      modelEditor: () => this.#toggleModelEditor(detail.target ?? null),
+      saveModel: () => this.#model?.save(),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
       rename: () => this.#inWorld((world) => world.rename()),
@@ -289,7 +293,32 @@ class Windows {
     this[name].show(!section.hidden);
   }
 
+  /** @param {string|null} name  of the model to edit */
+  async #toggleModelEditor(name) {
+    if (this.#model) {
+      await this.#model.close();
+      return;
+    }
+    if (this.#building) {
+      this.page.notices.say('Leave the building editor first (Ctrl+B).');
+      return;
+    }
+    const {ModelEditor} = await import('../model_editor/model_editor.js');
+    const {store, request, actions, notices} = this.page;
+    this.#model = new ModelEditor({store, request, actions, notices});
+    this.#model.onExit = () => {
+      closeDialogs();
+      this.#model = null;
+      byId('view').focus();
+    };
+    await this.#model.open(name);
+  }
+
   async #toggleBuilding() {
+    if (this.#model) {
+      this.page.notices.say('Leave the model editor first (Ctrl+M).');
+      return;
+    }
     const element = byId('building');
     if (this.#building) {
       const closed = await this.#building.close();

@@ -110,7 +110,10 @@ export class Models {
   hold(poses) {
     for (const [name, pose] of Object.entries(poses)) {
       const view = this.#views.get(name);
-      if (!view) continue;
+      if (!view) {
+        this.#holdLink(name, pose);
+        continue;
+      }
       const here = this.#store.worldPose(name);
       if (!here) continue;
       const toModel = inverse(here);
@@ -129,10 +132,8 @@ export class Models {
    */
   release(names, {keep = false} = {}) {
     for (const name of names) {
-      const view = this.#views.get(name);
       this.#stretched.delete(name);
-      if (!view) continue;
-      for (const [id, linkView] of view.links) {
+      for (const [view, id, linkView] of this.#linksOf(name)) {
         const pose = this.#held.get(id);
         if (keep && pose) this.#store.poses.get(id)?.set(pose);
         this.#held.delete(id);
@@ -140,6 +141,28 @@ export class Models {
       }
     }
     this.#changed(null);
+  }
+
+  /** One link of a model that is being built. @param {string} name @param {Pose7} pose */
+  #holdLink(name, pose) {
+    for (const [view, id, linkView] of this.#linksOf(name)) {
+      this.#held.set(id, pose);
+      this.#moveLink(view, linkView);
+    }
+  }
+
+  /**
+   * The links of a model, or the one that is named.
+   * @param {string} name
+   * @returns {[ModelView, number, LinkView][]}
+   */
+  #linksOf(name) {
+    const view = this.#views.get(name);
+    if (view) return [...view.links].map(([id, linkView]) => [view, id, linkView]);
+    const entity = this.#store.entity(name);
+    const owner = entity?.kind === 'link' ? this.#views.get(entity.model.name) : null;
+    const linkView = entity?.kind === 'link' ? owner?.links.get(entity.link.id) : null;
+    return entity?.kind === 'link' && owner && linkView ? [[owner, entity.link.id, linkView]] : [];
   }
 
   /**
