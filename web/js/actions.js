@@ -33,7 +33,7 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
  *   ShownWrench
  */
 
-/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
+/** @typedef {'newWorld'|'open'|'saveAs'|'cloneWorld'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
  *            'building'|'modelEditor'|'saveModel'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
 
 /** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
@@ -108,6 +108,18 @@ export function createActions({store, connection}) {
     /** @param {string} [path] @param {{overwrite?: boolean}} [options] */
     saveAs: (path, options = {}) =>
       path ? ask('save', {path, ...options}, {quiet: true}) : dialog('saveAs'),
+    /** A copy of the world as it is now, for another simulator. */
+    cloneWorld: () => dialog('cloneWorld'),
+    /** Remembers the camera and what is shown, for this browser's next visits. */
+    saveConfiguration() {
+      view?.saveConfiguration();
+      note('Saved the camera and the View menu\'s choices for this browser.');
+    },
+    /** Forgets them. */
+    resetConfiguration() {
+      view?.resetConfiguration();
+      note('The next world opens with the default camera and View menu.');
+    },
     /** @param {string} [path] */
     folders: (path) => ask('folders', path ? {path} : {}),
     /** @param {'restore'|'discard'} action */

@@ -498,7 +498,7 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {step: number}},
  *  save: {fields: {
  *      path?: string|null, overwrite?: boolean|null, format?: 'full'|'includes'|null,
- *      state?: boolean|null, launched?: boolean|null
+ *      state?: boolean|null, launched?: boolean|null, copy?: boolean|null
  *    },
  *    reply: {path: string, left_out: string[]}},
  *  open: {fields: {path: string, discard?: boolean|null},

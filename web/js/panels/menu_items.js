@@ -80,6 +80,10 @@ export function menus(page) {
         item('Save World As…', 'saveAs'),
         LINE,
         item('Recover…', 'recover'),
+        LINE,
+        item('Save Configuration', 'saveConfiguration'),
+        item('Reset Configuration', 'resetConfiguration'),
+        item('Clone World…', 'cloneWorld'),
       ],
     },
     {

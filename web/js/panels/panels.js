@@ -18,7 +18,7 @@
 import {HOTKEYS} from '../hotkeys.js';
 import {ask, closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
-import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
+import {cloneDialog, newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
@@ -210,6 +210,7 @@ class Windows {
     const windows = {
       open: () => this.#files(openDialog, 'Opened'),
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
+      cloneWorld: () => cloneDialog(this.page),
       newWorld: () => newWorld(this.page),
       recover: () => recoverDialog(this.page),
       importFiles: () => importDialog(this.page, detail.entries ?? [], detail.place ?? [0, 0, 0]),

@@ -1,11 +1,21 @@
 /** The camera: the user's moves, flights between views, following, the two projections. */
 import {Box3, Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
+import {remembered} from '../panels/dom.js';
 import {add, length, scale, subtract} from '../pose.js';
 /** @import {GuiCamera} from '../protocol.js' */
 /** @import {Vec3} from '../pose.js' */
 /** @import {View} from '../camera_math.js' */
 /** @import {ViewParts} from './view.js' */
+
+/**
+ * What Save Configuration has kept in this browser.
+ * @typedef {View & {projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
+ *   overlays: Partial<Record<import('../store.js').OverlayFlag, boolean>>}} Configuration
+ */
+
+/** @returns {Configuration|null} */
+export const savedConfiguration = () => remembered.get('configuration', null);
 
 const FLIGHT = 500;
 const TURN_FLIGHT = 1000;
@@ -239,14 +249,20 @@ export class CameraRig {
     }
     this.#world = which;
     this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
+    const kept = savedConfiguration();
     if (camera) {
       this.#toFrame = [];
       this.#home = views.fromPose(camera.pose);
       this.set(this.#home);
+    } else if (kept) {
+      this.#toFrame = [];
+      this.#home = {position: kept.position, yaw: kept.yaw, pitch: kept.pitch};
+      this.set(this.#home);
     } else this.#beginWithAll();
     this.#store.setCamera({
-      projection: camera?.projection_type === 'orthographic' ? 'orthographic' : 'perspective',
-      controller: camera?.view_controller === 'fps' ? 'fps' : 'orbit',
+      projection: camera ? (camera.projection_type === 'orthographic' ? 'orthographic' : 'perspective')
+        : kept?.projection ?? 'perspective',
+      controller: camera ? (camera.view_controller === 'fps' ? 'fps' : 'orbit') : kept?.controller ?? 'orbit',
       following: camera?.track && this.#store.model(camera.track) ? camera.track : null,
     });
   }

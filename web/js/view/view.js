@@ -1,9 +1,10 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
 import {Vector3} from 'three';
+import {remembered} from '../panels/dom.js';
 import {subtract} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
-import {CameraRig} from './camera_rig.js';
+import {CameraRig, savedConfiguration} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
 import {Forces} from './force_arrows.js';
@@ -146,6 +147,8 @@ class View {
       selector: new Selector(shared), pivotMark: new PivotMark(shared)});
     this.#connect();
     actions.attachView(this);
+    const kept = savedConfiguration();
+    if (kept) Object.assign(store.overlays.scene, kept.overlays);
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
@@ -271,6 +274,17 @@ class View {
   carry(poses, asked) {
     this.setPreviewPoses(null);
     return this.#models.carry(poses, asked);
+  }
+
+  /** Remembers camera and overlays for worlds that have no camera of their own. */
+  saveConfiguration() {
+    const {projection, controller} = this.#store.camera;
+    remembered.set('configuration', {...this.#rig.view, projection, controller,
+      overlays: this.#store.overlays.scene});
+  }
+
+  resetConfiguration() {
+    remembered.set('configuration', null);
   }
 
   cancelDrag() {
