@@ -27,7 +27,9 @@ const VERTEX = `
 varying vec3 ahead;
 void main() {
   ahead = position;
-  vec4 place = projectionMatrix * vec4(mat3(viewMatrix) * position, 1.0);
+  // An orthographic camera looks the same way everywhere.
+  float radius = projectionMatrix[3][3] == 1.0 ? 1.0e5 : 1.0;
+  vec4 place = projectionMatrix * vec4(radius * (mat3(viewMatrix) * position), 1.0);
   gl_Position = place.xyww;
 }`;
 
