@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ...description.compare import BUILT_IN
 from ...description.model import WORLD, Joint, Link, Model
@@ -18,7 +18,7 @@ from ...description.shapes import (
     Sphere,
 )
 from ...errors import CommandError, Issue
-from ...geometry import IDENTITY, Pose, compose, inverse
+from ...geometry import IDENTITY, Pose, compose, inverse, normalised
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.operations import AddModel, EditModel, Operation
 from ...simulator.simulator import Simulator
@@ -64,7 +64,7 @@ class ModelBuilding:
     # -- links and shapes ------------------------------------------------------------------------
 
     def _add_link(self, op: Dict[str, Any]) -> Planned:
-        pose = pose_from(op["pose"]) if op.get("pose") else IDENTITY
+        pose = _pose(op) or IDENTITY
         geometry = self._geometry(op)
         if not op.get("model"):
             return self._new_model(geometry, pose)
@@ -162,7 +162,7 @@ class ModelBuilding:
             raise CommandError(f"{op['uri']} is no model")
         taken = parts.part_names(model)
         name = nested.name if nested.name not in taken else parts.numbered(nested.name, taken)
-        pose = pose_from(op["pose"]) if op.get("pose") else nested.pose
+        pose = _pose(op) or nested.pose
         changed = parts.with_nested(model, replace(nested, name=name,
                                                    pose=self._in_model(model, pose)))
         return self._edited(f"Add {name} to {model.name}", model, changed, model.name)
@@ -225,6 +225,14 @@ def _check_xml(text: str) -> None:
         # The first line is ours.
         line, _ = fault.position
         raise CommandError(f"line {max(line - 1, 1)}: {fault.msg}") from None
+
+
+def _pose(op: Dict[str, Any]) -> Optional[Pose]:
+    """The pose of an operation with a unit quaternion; None without one."""
+    if not op.get("pose"):
+        return None
+    pose = pose_from(op["pose"])
+    return Pose(pose.position, normalised(pose.orientation))
 
 
 def _grey() -> Material:
