@@ -18,12 +18,13 @@
 import {HOTKEYS} from '../hotkeys.js';
 import {ask, closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
-import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
+import {cloneDialog, newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
+import {mountHints} from './hint_line.js';
 import {InsertTab} from './insert_tab.js';
 import {JointsPanel} from './joints_panel.js';
 import {mountLayers} from './layers_tab.js';
@@ -84,6 +85,7 @@ export function mountPanels(document, parts) {
     ),
   );
   mountConnectionNote(byId('centre'), page);
+  mountHints(byId('view'));
   return page;
 }
 
@@ -199,6 +201,8 @@ class Windows {
   #open = new Set();
   /** @type {{close: () => Promise<boolean>}|null} */
   #building = null;
+  /** @type {import('../model_editor/model_editor.js').ModelEditor|null} */
+  #model = null;
 
   /** @param {DialogRequest} detail */
   show(detail) {
@@ -206,6 +210,7 @@ class Windows {
     const windows = {
       open: () => this.#files(openDialog, 'Opened'),
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
+      cloneWorld: () => cloneDialog(this.page),
       newWorld: () => newWorld(this.page),
       recover: () => recoverDialog(this.page),
       importFiles: () => importDialog(this.page, detail.entries ?? [], detail.place ?? [0, 0, 0]),
@@ -217,6 +222,8 @@ class Windows {
       joints: () => this.#toggleSide('joints'),
       topics: () => this.#toggleSide('topics'),
       building: () => this.#toggleBuilding(),
+      modelEditor: () => this.#toggleModelEditor(detail.target ?? null),
+      saveModel: () => this.#model?.save(),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
       rename: () => this.#inWorld((world) => world.rename()),
@@ -287,7 +294,32 @@ class Windows {
     this[name].show(!section.hidden);
   }
 
+  /** @param {string|null} name  of the model to edit */
+  async #toggleModelEditor(name) {
+    if (this.#model) {
+      await this.#model.close();
+      return;
+    }
+    if (this.#building) {
+      this.page.notices.say('Leave the building editor first (Ctrl+B).');
+      return;
+    }
+    const {ModelEditor} = await import('../model_editor/model_editor.js');
+    const {store, request, actions, notices} = this.page;
+    this.#model = new ModelEditor({store, request, actions, notices});
+    this.#model.onExit = () => {
+      closeDialogs();
+      this.#model = null;
+      byId('view').focus();
+    };
+    await this.#model.open(name);
+  }
+
   async #toggleBuilding() {
+    if (this.#model) {
+      this.page.notices.say('Leave the model editor first (Ctrl+M).');
+      return;
+    }
     const element = byId('building');
     if (this.#building) {
       const closed = await this.#building.close();

@@ -4,6 +4,7 @@ import {canonicalLink} from '../store.js';
 import {compose, inverse} from '../pose.js';
 import {matrixOf} from './three_convert.js';
 import {boxOf, visualParts} from './shape_meshes.js';
+import {tinted} from './tints.js';
 /** @import {Batches, Item} from './batches.js' */
 /** @import {Link, Model, Visual} from '../protocol.js' */
 /** @import {Part, Stock} from './shape_meshes.js' */
@@ -76,6 +77,8 @@ export class Models {
    * @type {(ids: Set<number>|null) => void}
    */
   onMoved = () => {};
+  /** Called when a mesh that was waited for can be seen. */
+  onArrived = () => {};
 
   rebuildAll() {
     for (const name of [...this.#views.keys()]) this.#replace(name, null);
@@ -107,7 +110,10 @@ export class Models {
   hold(poses) {
     for (const [name, pose] of Object.entries(poses)) {
       const view = this.#views.get(name);
-      if (!view) continue;
+      if (!view) {
+        this.#holdLink(name, pose);
+        continue;
+      }
       const here = this.#store.worldPose(name);
       if (!here) continue;
       const toModel = inverse(here);
@@ -126,10 +132,8 @@ export class Models {
    */
   release(names, {keep = false} = {}) {
     for (const name of names) {
-      const view = this.#views.get(name);
       this.#stretched.delete(name);
-      if (!view) continue;
-      for (const [id, linkView] of view.links) {
+      for (const [view, id, linkView] of this.#linksOf(name)) {
         const pose = this.#held.get(id);
         if (keep && pose) this.#store.poses.get(id)?.set(pose);
         this.#held.delete(id);
@@ -137,6 +141,28 @@ export class Models {
       }
     }
     this.#changed(null);
+  }
+
+  /** One link of a model that is being built. @param {string} name @param {Pose7} pose */
+  #holdLink(name, pose) {
+    for (const [view, id, linkView] of this.#linksOf(name)) {
+      this.#held.set(id, pose);
+      this.#moveLink(view, linkView);
+    }
+  }
+
+  /**
+   * The links of a model, or the one that is named.
+   * @param {string} name
+   * @returns {[ModelView, number, LinkView][]}
+   */
+  #linksOf(name) {
+    const view = this.#views.get(name);
+    if (view) return [...view.links].map(([id, linkView]) => [view, id, linkView]);
+    const entity = this.#store.entity(name);
+    const owner = entity?.kind === 'link' ? this.#views.get(entity.model.name) : null;
+    const linkView = entity?.kind === 'link' ? owner?.links.get(entity.link.id) : null;
+    return entity?.kind === 'link' && owner && linkView ? [[owner, entity.link.id, linkView]] : [];
   }
 
   /**
@@ -266,13 +292,14 @@ export class Models {
       }
       this.#moveLink(view, linkView);
     };
-    const parts = visualParts(visual, this.#stock, look);
+    const parts = visualParts(tinted(view.document, visual), this.#stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {
         if (view.gone) return;
         add(ready);
         this.#changed(null);
+        this.onArrived();
       });
     }
   }

@@ -1,9 +1,10 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
 import {Vector3} from 'three';
+import {remembered} from '../panels/dom.js';
 import {subtract} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
-import {CameraRig} from './camera_rig.js';
+import {CameraRig, savedConfiguration} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
 import {Forces} from './force_arrows.js';
@@ -100,6 +101,7 @@ class View {
   #overlays;
   #pointer;
   #actors;
+  #surroundings;
   #marks;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
@@ -133,7 +135,7 @@ class View {
     this.#lights = lights;
     this.#rig = rig;
     this.#picker = picker;
-    new Surroundings({stage, store, materials});
+    this.#surroundings = new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
     this.#marks = new TopicMarks({...shared, topics});
@@ -145,6 +147,8 @@ class View {
       selector: new Selector(shared), pivotMark: new PivotMark(shared)});
     this.#connect();
     actions.attachView(this);
+    const kept = savedConfiguration();
+    if (kept) Object.assign(store.overlays.scene, kept.overlays);
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
@@ -162,6 +166,7 @@ class View {
   }
 
   #connect() {
+    this.#models.onArrived = () => this.#rig.frameAll();
     this.#models.onMoved = (ids) => {
       this.#rig.follow();
       this.#boxes.follow(ids);
@@ -199,6 +204,8 @@ class View {
       : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
     const centre = position.map((part, index) => part + ahead[index] * distance);
     this.#lights.cover(centre, Math.max(distance * 1.3, 4));
+    this.#surroundings.cover(centre, this.#rig.orthographic
+      ? Math.max(distance, this.#stage.width / this.#rig.zoomLevel) : distance);
   }
 
   // ---- what actions ask
@@ -268,6 +275,17 @@ class View {
   carry(poses, asked) {
     this.setPreviewPoses(null);
     return this.#models.carry(poses, asked);
+  }
+
+  /** Remembers camera and overlays for worlds that have no camera of their own. */
+  saveConfiguration() {
+    const {projection, controller} = this.#store.camera;
+    remembered.set('configuration', {...this.#rig.view, projection, controller,
+      overlays: this.#store.overlays.scene});
+  }
+
+  resetConfiguration() {
+    remembered.set('configuration', null);
   }
 
   cancelDrag() {

@@ -46,6 +46,7 @@ from .inserts import (
     taken_names,
     world_of,
 )
+from .model_building import ModelBuilding
 from .model_scaling import resized
 from .property_path import made
 from .property_target import property_change
@@ -80,6 +81,7 @@ class Edits:
         self._protocol = protocol
         self._tell = tell
         self._dragged = dragged
+        self._building = ModelBuilding(simulator, resolver, tell)
 
     def do(self, op: Dict[str, Any]) -> Dict[str, Any]:
         """Carry out one operation as one step of the history; returns the reply's value.
@@ -112,7 +114,7 @@ class Edits:
             "insert": self._insert, "insert_light": self._insert_light, "delete": self._delete,
             "move": self._move, "scale": self._scale, "rename": self._rename, "set": self._set,
             "paste": self._paste, "wrench": self._wrench, "reset": self._reset,
-            "joint": self._joint,
+            "joint": self._joint, **self._building.planners(),
         }
         return planners[kind](op)
 
