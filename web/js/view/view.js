@@ -125,6 +125,7 @@ class View {
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
     const rig = new CameraRig({stage, store, models});
+    models.unitAt = (point) => rig.unitAt(Array.from(point));
     const picker = new Picker(stage);
     const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
       picker};
@@ -174,6 +175,7 @@ class View {
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
+      this.#models.catchUp();
       const moving = this.#rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();
