@@ -119,9 +119,9 @@ export function createActions({store, connection}) {
 
     // ---- editing
     /** @param {number} [to]  steps more than one */
-    undo: (to) => ask('undo', to === undefined ? {} : {to}),
+    undo: (to) => moveInHistory('undo', to),
     /** @param {number} [to]  steps more than one */
-    redo: (to) => ask('redo', to === undefined ? {} : {to}),
+    redo: (to) => moveInHistory('redo', to),
     /** @returns {Promise<Outcome>} */
     remove(names = store.selection) {
       const whole = [...new Set(names.map((name) => store.entity(name)?.model?.name ?? name))];
@@ -376,6 +376,22 @@ export function createActions({store, connection}) {
      */
     previewPick: (clientX, clientY) => view?.previewPick(clientX, clientY) ?? null,
   };
+
+  /**
+   * One history for everybody: whose edit it was is said.
+   * @param {'undo'|'redo'} which
+   * @param {number} [to]
+   */
+  async function moveInHistory(which, to) {
+    const outcome = await ask(which, to === undefined ? {} : {to});
+    const {label, by = []} = outcome.value ?? {};
+    if (label && by.length) {
+      const done = {undo: 'Undid', redo: 'Redid'}[which];
+      note(to ? `${done} ${to + 1} edits, some of ${by.join(' and ')}`
+        : `${done} an edit of ${by.join(' and ')}: ${label}`);
+    }
+    return outcome;
+  }
 
   /** @param {Mode} mode */
   function manipulate(mode) {

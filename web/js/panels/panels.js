@@ -32,6 +32,7 @@ import {contextMenu, menus} from './menu_items.js';
 import {Notices} from './notices.js';
 import {Plots} from './plots.js';
 import {openMenu} from './popup.js';
+import {mountPeople} from './people_bar.js';
 import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
@@ -66,6 +67,7 @@ export function mountPanels(document, parts) {
     theme: mountTheme(),
   });
   mountMenuBar(byId('menubar'), menus(page));
+  mountPeople(byId('people'), page);
   mountToolBar(byId('toolbar'), page);
   const tabs = mountTabs(byId('left'), page);
   new TimeBar(byId('timebar'), page);

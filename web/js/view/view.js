@@ -13,6 +13,7 @@ import {Materials} from './materials.js';
 import {Meshes} from './mesh_files.js';
 import {Models} from './model_views.js';
 import {Overlays} from './overlays.js';
+import {PeopleMarks} from './people_marks.js';
 import {Picker} from './picking.js';
 import {Placer} from './insert_ghost.js';
 import {PivotMark} from './markers.js';
@@ -101,6 +102,7 @@ class View {
   #pointer;
   #actors;
   #marks;
+  #people;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
@@ -139,6 +141,7 @@ class View {
     this.#overlays = new Overlays(shared);
     this.#marks = new TopicMarks({...shared, topics});
     this.#boxes = new SelectionBoxes(shared);
+    this.#people = new PeopleMarks(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
@@ -152,6 +155,9 @@ class View {
 
   /** Names of the topics that are drawn, for tests. */
   get drawnTopics() { return this.#marks.drawn; }
+
+  /** Names of what others hold or have selected, for tests. */
+  get sharedMarks() { return this.#people.shown; }
 
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
@@ -168,6 +174,7 @@ class View {
       this.#boxes.follow(ids);
       this.#overlays.follow(ids);
       this.#marks.follow(ids);
+      this.#people.follow(ids);
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();

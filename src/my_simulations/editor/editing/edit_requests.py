@@ -81,13 +81,13 @@ class Edits:
         self._tell = tell
         self._dragged = dragged
 
-    def do(self, op: Dict[str, Any]) -> Dict[str, Any]:
-        """Carry out one operation as one step of the history; returns the reply's value.
+    def do(self, op: Dict[str, Any], author: str = "") -> Dict[str, Any]:
+        """Carry out one operation as one step of its author's; returns the reply's value.
 
         Raises CommandError, InputError; then nothing has changed.
         """
         label, operation, value = self._planned(op, 0)
-        self._history.do(label, operation)
+        self._history.do(label, operation, author)
         return value
 
     def copy(self, names: List[str]) -> str:
