@@ -160,6 +160,8 @@ export class Connection extends Emitter {
       this.emit('open', welcome);
     } catch (error) {
       for (const issue of error instanceof RequestError ? error.issues : []) {
+        // The page says all the time that there is no line.
+        if (issue.code === 'connection-lost') continue;
         this.emit('message', {type: 'issue', issue});
       }
     }

@@ -74,8 +74,8 @@ class Requests:
         return {"type": "history", "undo": self._history.undo_labels[:_LISTED],
                 "redo": self._history.redo_labels[:_LISTED],
                 "undo_by": names(self._history.undo_authors[:_LISTED]),
-                "redo_by": names(self._history.redo_authors[:_LISTED]), "dirty": self._history.dirty,
-                "file": self._files.file}
+                "redo_by": names(self._history.redo_authors[:_LISTED]),
+                "dirty": self._history.dirty, "file": self._files.file}
 
     # -- greeting --------------------------------------------------------------------------------
 

@@ -41,7 +41,7 @@ import {TopicsPanel} from './topics_panel.js';
 import {TopicWindows} from './topic_windows.js';
 import {WorldTab} from './world_tab.js';
 /** @import {Actions, DialogName, DialogRequest} from '../actions.js' */
-/** @import {AutosavePush, Requests} from '../protocol.js' */
+/** @import {AutosavePush, LoadingPush, Requests} from '../protocol.js' */
 /** @import {Connection, RequestFunction} from '../connection.js' */
 /** @import {SceneView} from '../view/view.js' */
 /** @import {Store} from '../store.js' */
@@ -350,19 +350,43 @@ async function offerRestore(page, {found, file, time, others}) {
   }
 }
 
-/** @param {HTMLElement} element @param {Page} page */
+/**
+ * What is waited for: the line, the simulator that reads its world, meshes and textures.
+ * @param {HTMLElement} element
+ * @param {Page} page
+ */
 function mountConnectionNote(element, {store}) {
-  const note = h('div', {class: 'connection-note', role: 'status', hidden: true});
+  const text = h('span');
+  const detail = h('span', {class: 'soft'});
+  const bar = h('progress', {'aria-label': 'Progress'});
+  const note = h('div', {class: 'connection-note', role: 'status', hidden: true}, text, detail, bar);
   element.append(note);
   let begun = false;
+  /** @type {LoadingPush|null} */
+  let loading = null;
+  const words = () => {
+    if (loading) return loading.title || 'Loading the world';
+    return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';
+  };
   const show = () => {
     begun ||= store.connected;
-    note.hidden = store.connected;
-    note.textContent = begun
-      ? 'Connection to the simulator lost. Reconnecting…'
-      : 'Connecting to the simulator…';
+    note.hidden = store.connected && !loading;
+    text.textContent = words();
+    const {done = 0, of = 0} = loading ?? {};
+    const count = of ? `${done} of ${of}` : '';
+    detail.textContent = [loading?.text, count].filter(Boolean).join(' · ');
+    bar.hidden = !loading;
+    if (of) Object.assign(bar, {max: of, value: done});
+    else bar.removeAttribute('value');
   };
-  store.listen('connection', show);
+  store.listen('connection', () => {
+    loading = null;
+    show();
+  });
+  store.listen('loading', ({detail: news}) => {
+    loading = news.of && news.done >= news.of && store.connected ? null : news;
+    show();
+  });
   // A page that connects at once need not say so.
   setTimeout(show, 600);
 }

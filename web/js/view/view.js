@@ -59,6 +59,9 @@ const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs 
   acceleration in the browser's settings, update the graphics driver, or allow software rendering
   (Chromium: --enable-unsafe-swiftshader).`;
 
+/** Milliseconds after which it is told that meshes and textures are on their way. */
+const SLOW_FILES = 500;
+
 /** What stands in for the view where there is no WebGL. @param {HTMLElement} element */
 function withoutWebGL(element) {
   const text = document.createElement('p');
@@ -69,6 +72,33 @@ function withoutWebGL(element) {
   return {
     fps: 0, available: false, thumbnail: async () => null, redraw: () => {},
     dispose: () => text.remove(),
+  };
+}
+
+/**
+ * Tells of a number that grows, once it has taken so long that somebody waits, and of its end.
+ * @param {(done: number, of: number) => void} tell
+ */
+function counted(tell) {
+  /** @type {ReturnType<typeof setTimeout>|undefined} */
+  let timer;
+  /** @type {[number, number]} */
+  let news = [0, 0];
+  let shown = false;
+  return (/** @type {number} */ done, /** @type {number} */ of) => {
+    news = [done, of];
+    if (done < of) {
+      timer ??= setTimeout(() => {
+        timer = undefined;
+        shown = news[0] < news[1];
+        if (shown) tell(...news);
+      }, shown ? 100 : SLOW_FILES);
+      return;
+    }
+    clearTimeout(timer);
+    timer = undefined;
+    if (shown) tell(done, of);
+    shown = false;
   };
 }
 
@@ -121,6 +151,8 @@ class View {
     const meshes = new Meshes((message) =>
       store.addIssue({severity: 'warning', code: 'resource', message}));
     meshes.onArrived = () => stage.invalidate();
+    meshes.onCount = counted((done, of) => store.emit('loading', {
+      type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
     const batches = new Batches(stage.scene);
