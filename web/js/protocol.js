@@ -398,11 +398,13 @@ export const FRAME_RECORD_BYTES = 32;
  *  gains?: Gains|null
  *}} JointOperation */
 
+/** @typedef {{kind: 'compute_inertia', link: string}} ComputeInertiaOperation */
+
 /** @typedef {{kind: 'group', ops: Operation[], label?: string|null}} GroupOperation */
 
 /** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
- *  GroupOperation} Operation */
+ *  ComputeInertiaOperation|GroupOperation} Operation */
 
 /** @typedef {{
  *  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null
