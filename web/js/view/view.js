@@ -121,6 +121,8 @@ class View {
   #store;
   #stage;
   #stock;
+  /** For pictures of the library. @type {Stock} */
+  #gallery;
   #models;
   #lights;
   #rig;
@@ -155,6 +157,9 @@ class View {
       type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
+    // Pictures of models that nobody has asked for say nothing of what they lack.
+    const unseen = new Meshes(() => {});
+    this.#gallery = {meshes: unseen, materials: new Materials(unseen.manager)};
     const batches = new Batches(stage.scene);
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
@@ -378,7 +383,7 @@ class View {
   async #drawThumbnail(uri, address) {
     const found = await this.#connection.request('library_get', {uri}).catch(() => null);
     const model = found?.model;
-    const blob = model && await thumbnail(this.#stage, model, this.#stock);
+    const blob = model && await thumbnail(this.#stage, model, this.#gallery);
     if (!blob) return null;
     if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);
     return URL.createObjectURL(blob);
