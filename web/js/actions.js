@@ -133,9 +133,9 @@ export function createActions({store, connection}) {
 
     // ---- editing
     /** @param {number} [to]  steps more than one */
-    undo: (to) => ask('undo', to === undefined ? {} : {to}),
+    undo: (to) => moveInHistory('undo', to),
     /** @param {number} [to]  steps more than one */
-    redo: (to) => ask('redo', to === undefined ? {} : {to}),
+    redo: (to) => moveInHistory('redo', to),
     /** @returns {Promise<Outcome>} */
     remove(names = store.selection) {
       const parts = linkRemovals(edited(), names);
@@ -424,6 +424,22 @@ export function createActions({store, connection}) {
     if (!store.modelEditing) return run();
     note('Leave the model editor (Ctrl+M) to run the simulation.');
     return NOTHING;
+  }
+
+  /**
+   * One history for everybody: whose edit it was is said.
+   * @param {'undo'|'redo'} which
+   * @param {number} [to]
+   */
+  async function moveInHistory(which, to) {
+    const outcome = await ask(which, to === undefined ? {} : {to});
+    const {label, by = []} = outcome.value ?? {};
+    if (label && by.length) {
+      const done = {undo: 'Undid', redo: 'Redid'}[which];
+      note(to ? `${done} ${to + 1} edits, some of ${by.join(' and ')}`
+        : `${done} an edit of ${by.join(' and ')}: ${label}`);
+    }
+    return outcome;
   }
 
   /** @param {Mode} mode */

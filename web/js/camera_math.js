@@ -179,8 +179,7 @@ export function framing(view, {min, max}, fov, aspect) {
   const radius = Math.max(length(subtract(max, min)) / 2, 0.1);
   const narrow = 2 * Math.atan(Math.tan(fov / 2) * Math.min(1, aspect));
   const distance = radius / Math.sin(narrow / 2) * 1.1;
-  const towards = lookAt(view.position, centre);
-  return {...towards, position: subtract(centre, scale(forward(towards), distance))};
+  return {...view, position: subtract(centre, scale(forward(view), distance))};
 }
 
 /** How steeply the first view of a world looks down, rad. */

@@ -301,6 +301,10 @@ export const FRAME_RECORD_BYTES = 32;
  *  mount?: Mount|null, driven?: boolean|null, hz?: number|null, bytes_per_s?: number|null
  *}} Topic */
 
+/** @typedef {{
+ *  number: number, name: string, selected: string[], held: string[]
+ *}} Person */
+
 /** @typedef {{parent: string, child: string, pose: pose}} Transform */
 
 /** @typedef {{
@@ -424,13 +428,15 @@ export const FRAME_RECORD_BYTES = 32;
  *  kind: 'compute_inertial', target: string, density?: number|null
  *}} ComputeInertialOperation */
 
+/** @typedef {{kind: 'compute_inertia', link: string}} ComputeInertiaOperation */
+
 /** @typedef {{kind: 'group', ops: Operation[], label?: string|null}} GroupOperation */
 
 /** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
  *  AddLinkOperation|AddShapeOperation|RenameLinkOperation|AddJointOperation|EditJointOperation|
  *  AddModelOperation|SetPluginsOperation|RemovePartOperation|ComputeInertialOperation|
- *  GroupOperation} Operation */
+ *  ComputeInertiaOperation|GroupOperation} Operation */
 
 /** @typedef {{
  *  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null
@@ -449,8 +455,15 @@ export const FRAME_RECORD_BYTES = 32;
  *}} StatsPush */
 
 /** @typedef {{
- *  type: 'history', undo: string[], redo: string[], dirty: boolean, file: string
+ *  type: 'history', undo: string[], redo: string[], undo_by: string[], redo_by: string[],
+ *  dirty: boolean, file: string
  *}} HistoryPush */
+
+/** @typedef {{type: 'people', people: Person[]}} PeoplePush */
+
+/** @typedef {{
+ *  type: 'loading', title: string, text: string, done: number, of: number
+ *}} LoadingPush */
 
 /** @typedef {{type: 'issue', issue: Issue}} IssuePush */
 
@@ -476,20 +489,24 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{type: 'shutdown', reason: string}} ShutdownPush */
 
-/** @typedef {ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|IssuePush|LibraryPush|DownloadPush|
- *  WatchPush|AutosavePush|LogPush|ShutdownPush} Push */
+/** @typedef {ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|PeoplePush|LoadingPush|IssuePush|
+ *  LibraryPush|DownloadPush|WatchPush|AutosavePush|LogPush|ShutdownPush} Push */
 
 /** @typedef {{
- *  hello: {fields: {version: number, session?: string|null},
- *    reply: {session: string, version: number, app: string}},
+ *  hello: {fields: {
+ *      version: number, session?: string|null, person?: string|null, name?: string|null
+ *    },
+ *    reply: {
+ *      session: string, version: number, app: string, number: number
+ *    }},
  *  edit: {fields: {op: Operation},
  *    reply: {name?: string|null, names?: string[]|null}},
  *  copy: {fields: {names: string[]},
  *    reply: {text: string}},
  *  undo: {fields: {to?: number|null},
- *    reply: {label: string}},
+ *    reply: {label: string, by: string[]}},
  *  redo: {fields: {to?: number|null},
- *    reply: {label: string}},
+ *    reply: {label: string, by: string[]}},
  *  play: {fields: {},
  *    reply: {}},
  *  pause: {fields: {},
@@ -564,4 +581,5 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {{
  *  drag: {names: string[], poses: pose[]},
  *  drag_end: {},
+ *  presence: {name?: string|null, selected?: string[]|null},
  *  viewed: {topic: string}}} Notices */

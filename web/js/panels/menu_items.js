@@ -89,10 +89,10 @@ export function menus(page) {
     {
       title: 'Edit',
       items: () => [
-        item(labelOf('Undo', store.history.undo), 'undo', {
+        item(labelOf('Undo', store, 'undo'), 'undo', {
           enabled: () => store.history.undo.length > 0,
         }),
-        item(labelOf('Redo', store.history.redo), 'redo', {
+        item(labelOf('Redo', store, 'redo'), 'redo', {
           enabled: () => store.history.redo.length > 0,
         }),
         LINE,
@@ -174,9 +174,17 @@ export function menus(page) {
   ];
 }
 
-/** @param {string} verb @param {string[]} labels */
-function labelOf(verb, labels) {
-  return labels.length ? `${verb}: ${labels[0]}` : verb;
+/**
+ * A step of the history, with its author where it is another's.
+ * @param {string} verb
+ * @param {Page['store']} store
+ * @param {'undo'|'redo'} which
+ */
+function labelOf(verb, store, which) {
+  const [label] = store.history[which];
+  if (!label) return verb;
+  const author = store.authorOf(which);
+  return `${verb}: ${label}${author && ` by ${author}`}`;
 }
 
 /**

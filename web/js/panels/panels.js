@@ -33,6 +33,7 @@ import {contextMenu, menus} from './menu_items.js';
 import {Notices} from './notices.js';
 import {Plots} from './plots.js';
 import {openMenu} from './popup.js';
+import {mountPeople} from './people_bar.js';
 import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
@@ -41,7 +42,7 @@ import {TopicsPanel} from './topics_panel.js';
 import {TopicWindows} from './topic_windows.js';
 import {WorldTab} from './world_tab.js';
 /** @import {Actions, DialogName, DialogRequest} from '../actions.js' */
-/** @import {AutosavePush, Requests} from '../protocol.js' */
+/** @import {AutosavePush, LoadingPush, Requests} from '../protocol.js' */
 /** @import {Connection, RequestFunction} from '../connection.js' */
 /** @import {SceneView} from '../view/view.js' */
 /** @import {Store} from '../store.js' */
@@ -67,6 +68,7 @@ export function mountPanels(document, parts) {
     theme: mountTheme(),
   });
   mountMenuBar(byId('menubar'), menus(page));
+  mountPeople(byId('people'), page);
   mountToolBar(byId('toolbar'), page);
   const tabs = mountTabs(byId('left'), page);
   new TimeBar(byId('timebar'), page);
@@ -380,19 +382,43 @@ async function offerRestore(page, {found, file, time, others}) {
   }
 }
 
-/** @param {HTMLElement} element @param {Page} page */
+/**
+ * What is waited for: the line, the simulator that reads its world, meshes and textures.
+ * @param {HTMLElement} element
+ * @param {Page} page
+ */
 function mountConnectionNote(element, {store}) {
-  const note = h('div', {class: 'connection-note', role: 'status', hidden: true});
+  const text = h('span');
+  const detail = h('span', {class: 'soft'});
+  const bar = h('progress', {'aria-label': 'Progress'});
+  const note = h('div', {class: 'connection-note', role: 'status', hidden: true}, text, detail, bar);
   element.append(note);
   let begun = false;
+  /** @type {LoadingPush|null} */
+  let loading = null;
+  const words = () => {
+    if (loading) return loading.title || 'Loading the world';
+    return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';
+  };
   const show = () => {
     begun ||= store.connected;
-    note.hidden = store.connected;
-    note.textContent = begun
-      ? 'Connection to the simulator lost. Reconnecting…'
-      : 'Connecting to the simulator…';
+    note.hidden = store.connected && !loading;
+    text.textContent = words();
+    const {done = 0, of = 0} = loading ?? {};
+    const count = of ? `${done} of ${of}` : '';
+    detail.textContent = [loading?.text, count].filter(Boolean).join(' · ');
+    bar.hidden = !loading;
+    if (of) Object.assign(bar, {max: of, value: done});
+    else bar.removeAttribute('value');
   };
-  store.listen('connection', show);
+  store.listen('connection', () => {
+    loading = null;
+    show();
+  });
+  store.listen('loading', ({detail: news}) => {
+    loading = news.of && news.done >= news.of && store.connected ? null : news;
+    show();
+  });
   // A page that connects at once need not say so.
   setTimeout(show, 600);
 }

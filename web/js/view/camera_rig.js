@@ -161,7 +161,13 @@ export class CameraRig {
 
   /** @param {string} side  or "home" @param {number[]} centre  what it looks at */
   flyToSide(side, centre) {
-    this.fly(side === 'home' ? this.#home : views.fromSide(this.view, side, centre), TURN_FLIGHT);
+    if (side !== 'home') {
+      this.fly(views.fromSide(this.view, side, centre), TURN_FLIGHT);
+      return;
+    }
+    this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
+    if (this.#store.camera.following) this.#store.setCamera({following: null});
+    this.fly(this.#home, TURN_FLIGHT);
   }
 
   /**

@@ -25,6 +25,8 @@ const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
 const QUALITY = {card: {start: 1, best: 1}, processor: {start: COARSEST, best: 1.5}};
 /** Milliseconds of rest before the full picture. */
 const REST = 600;
+/** Milliseconds between pictures of what creeps: they are drawn in full, for the rest goes on. */
+const CREEP = 1000;
 
 /** The name of what draws. @throws {NoWebGL} */
 function driver() {
@@ -70,6 +72,8 @@ export class Stage {
   /** @type {ReturnType<typeof setTimeout>|undefined} */
   #restTimer;
   #lost = false;
+  #creeping = false;
+  #crept = -CREEP;
   /** @type {WebGLSync|null} */
   #fence = null;
   #begun = 0;
@@ -134,6 +138,24 @@ export class Stage {
     this.#wanted = requestAnimationFrame((time) => this.#frame(time));
   }
 
+  /**
+   * Something has moved by a pixel or two. A picture at rest shows it in full, now and then.
+   * @returns {boolean} whether it does now; else it comes with the next picture
+   */
+  creep() {
+    const now = performance.now();
+    if (this.fps || this.#wanted || this.#lost || now - this.#crept < CREEP) return false;
+    this.#crept = now;
+    this.#creeping = this.#shadowsWanted = true;
+    this.invalidate();
+    return true;
+  }
+
+  /** Something has changed that nobody can see yet: the picture at rest will show it. */
+  owe() {
+    this.#shadowsWanted = true;
+  }
+
   /** Something that throws a shadow, or its light, has changed. */
   shadowsChanged() {
     this.#shadowsWanted = true;
@@ -182,6 +204,11 @@ export class Stage {
     // Pictures that wait behind others would only make the mouse feel late.
     if (this.#isDrawing()) {
       this.invalidate();
+      return;
+    }
+    if (this.#creeping) {
+      this.#creeping = false;
+      this.#drawInFull();
       return;
     }
     if (this.#next !== null) {

@@ -14,6 +14,7 @@ import {Materials} from './materials.js';
 import {Meshes} from './mesh_files.js';
 import {Models} from './model_views.js';
 import {Overlays} from './overlays.js';
+import {PeopleMarks} from './people_marks.js';
 import {Picker} from './picking.js';
 import {Placer} from './insert_ghost.js';
 import {PivotMark} from './markers.js';
@@ -59,6 +60,9 @@ const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs 
   acceleration in the browser's settings, update the graphics driver, or allow software rendering
   (Chromium: --enable-unsafe-swiftshader).`;
 
+/** Milliseconds after which it is told that meshes and textures are on their way. */
+const SLOW_FILES = 500;
+
 /** What stands in for the view where there is no WebGL. @param {HTMLElement} element */
 function withoutWebGL(element) {
   const text = document.createElement('p');
@@ -69,6 +73,33 @@ function withoutWebGL(element) {
   return {
     fps: 0, available: false, thumbnail: async () => null, redraw: () => {},
     dispose: () => text.remove(),
+  };
+}
+
+/**
+ * Tells of a number that grows, once it has taken so long that somebody waits, and of its end.
+ * @param {(done: number, of: number) => void} tell
+ */
+function counted(tell) {
+  /** @type {ReturnType<typeof setTimeout>|undefined} */
+  let timer;
+  /** @type {[number, number]} */
+  let news = [0, 0];
+  let shown = false;
+  return (/** @type {number} */ done, /** @type {number} */ of) => {
+    news = [done, of];
+    if (done < of) {
+      timer ??= setTimeout(() => {
+        timer = undefined;
+        shown = news[0] < news[1];
+        if (shown) tell(...news);
+      }, shown ? 100 : SLOW_FILES);
+      return;
+    }
+    clearTimeout(timer);
+    timer = undefined;
+    if (shown) tell(done, of);
+    shown = false;
   };
 }
 
@@ -91,6 +122,8 @@ class View {
   #store;
   #stage;
   #stock;
+  /** For pictures of the library. @type {Stock} */
+  #gallery;
   #models;
   #lights;
   #rig;
@@ -103,6 +136,7 @@ class View {
   #actors;
   #surroundings;
   #marks;
+  #people;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
@@ -121,12 +155,18 @@ class View {
     const meshes = new Meshes((message) =>
       store.addIssue({severity: 'warning', code: 'resource', message}));
     meshes.onArrived = () => stage.invalidate();
+    meshes.onCount = counted((done, of) => store.emit('loading', {
+      type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
+    // Pictures of models that nobody has asked for say nothing of what they lack.
+    const unseen = new Meshes(() => {});
+    this.#gallery = {meshes: unseen, materials: new Materials(unseen.manager)};
     const batches = new Batches(stage.scene);
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
     const rig = new CameraRig({stage, store, models});
+    models.unitAt = (point) => rig.unitAt(Array.from(point));
     const picker = new Picker(stage);
     const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
       picker};
@@ -140,6 +180,7 @@ class View {
     this.#overlays = new Overlays(shared);
     this.#marks = new TopicMarks({...shared, topics});
     this.#boxes = new SelectionBoxes(shared);
+    this.#people = new PeopleMarks(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
@@ -155,6 +196,9 @@ class View {
 
   /** Names of the topics that are drawn, for tests. */
   get drawnTopics() { return this.#marks.drawn; }
+
+  /** Names of what others hold or have selected, for tests. */
+  get sharedMarks() { return this.#people.shown; }
 
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
@@ -172,6 +216,7 @@ class View {
       this.#boxes.follow(ids);
       this.#overlays.follow(ids);
       this.#marks.follow(ids);
+      this.#people.follow(ids);
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();
@@ -179,6 +224,7 @@ class View {
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
+      this.#models.catchUp();
       const moving = this.#rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();
@@ -355,7 +401,7 @@ class View {
   async #drawThumbnail(uri, address) {
     const found = await this.#connection.request('library_get', {uri}).catch(() => null);
     const model = found?.model;
-    const blob = model && await thumbnail(this.#stage, model, this.#stock);
+    const blob = model && await thumbnail(this.#stage, model, this.#gallery);
     if (!blob) return null;
     if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);
     return URL.createObjectURL(blob);
