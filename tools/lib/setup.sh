@@ -120,33 +120,45 @@ apt_install() {
     failed "apt-install$name" "$?" "$advice"
 }
 
+# system_packages PURPOSE: the names of what apt must have installed here: `run` for what a workspace
+# that is built needs, `all` for what sets it up, too.
+system_packages() {
+  local lists=(packages) list
+  [ "$1" = run ] || lists+=(packages-build)
+  case $(ros_source) in
+    apt)
+      lists+=(packages-ros)
+      [ "$1" = run ] || lists+=(packages-ros-build) ;;
+    noetic) lists+=(packages-noetic) ;;
+  esac
+  [ "$WITH_TEST_TOOLS" = 0 ] || lists+=(packages-test)
+  [ "$PYTHON_NAME" = 0 ] || lists+=(packages-python)
+  # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
+  [ "$1" = run ] || [ -n "${BUNDLED:-}" ] || command -v npm >/dev/null || lists+=(packages-page)
+  for list in "${lists[@]}"; do packages_of "$CLONE/tools/apt-$list.txt"; done
+}
+
 install_system_packages() {
   begin "System packages"
-  local lists=("$CLONE/tools/apt-packages.txt") wanted missing
-  if [ -f "$ROS_PREFIX/setup.bash" ]; then
-    source_setup "$ROS_PREFIX/setup.bash"
-  else
-    lists+=("$CLONE/tools/apt-packages-ros.txt")
-  fi
-  [ "$WITH_TEST_TOOLS" = 0 ] || lists+=("$CLONE/tools/apt-packages-test.txt")
-  [ "$PYTHON_NAME" = 0 ] || lists+=("$CLONE/tools/apt-packages-python.txt")
-  # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
-  command -v npm >/dev/null || lists+=("$CLONE/tools/apt-packages-page.txt")
-  mapfile -t wanted < <(for list in "${lists[@]}"; do packages_of "$list"; done)
+  local wanted missing
+  [ ! -f "$ROS_PREFIX/setup.bash" ] || source_setup "$ROS_PREFIX/setup.bash"
+  mapfile -t wanted < <(system_packages all)
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   SYSTEM_REMARK="all there"
   if [ "${#missing[@]}" -gt 0 ]; then
-    may_install || stop "${#missing[@]} system packages are missing, and there is neither root nor \
-sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
+    may_install || ask_administrator "there is neither root nor sudo" "${missing[@]}"
     say "installing ${#missing[@]}, a few minutes"
     # Asks for the password now, while the screen is free for it.
-    [ "$(id -u)" = 0 ] || sudo true || stop "sudo did not let the system packages be installed." \
-      "As root: apt-get install --no-install-recommends ${missing[*]}"
-    apt_install "" "Is there a network, and room on the disk (df -h)? Then run $COMMAND again." \
+    [ "$(id -u)" = 0 ] || sudo true || ask_administrator "sudo does not let this user install them" \
       "${missing[@]}"
+    apt_get apt-update update ||
+      failed apt-update "$?" "Is there a network? Then run $COMMAND again."
+    refuse_unknown "${missing[@]}"
+    apt_get apt-install -y --no-install-recommends install "${missing[@]}" ||
+      failed apt-install "$?" "Is there room on the disk (df -h)? Then run $COMMAND again."
     SYSTEM_REMARK="${#missing[@]} installed"
   fi
-  if [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; then
+  if [ "$COMMON_PACKAGES" = 1 ] && [ "$(ros_source)" = apt ]; then
     install_optional common "other packages"
   fi
   [ "$WITH_TEST_TOOLS" = 0 ] || install_optional sdformat "some tests"
