@@ -23,6 +23,8 @@ sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
 from server import Server, children, master, processor, wait
 
+from my_simulations.editor.transport import address_file
+
 Row = Tuple[str, str, str, bool]
 EMPTY = scenes.world("boxes", 0, True, 1000.0)
 CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
@@ -53,7 +55,7 @@ def editor_url() -> str:
     from my_simulations_msgs.srv import OpenEditor
 
     rospy.wait_for_service("/gazebo/open_editor", 30)
-    return str(rospy.ServiceProxy("/gazebo/open_editor", OpenEditor)().url)
+    return address_file.whole(rospy.ServiceProxy("/gazebo/open_editor", OpenEditor)().url)
 
 
 @contextlib.contextmanager

@@ -13,6 +13,8 @@ from unittest import mock
 
 from playwright.sync_api import sync_playwright
 
+from my_simulations.editor.transport import address_file
+
 SECONDS = 30.0
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
@@ -54,7 +56,9 @@ class Node:
             ["roslaunch", "-p", str(port), "gazebo_ros", "empty_world.launch", "gui:=true",
              "paused:=true", f"world_name:={world}", *arguments],
             env=environment, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
-        self.url = wait_for(self._editor_url, "the editor's address")
+        self.url = address_file.whole(
+            wait_for(self._editor_url, "the editor's address"),
+            os.path.join(self.home, ".cache", "my_simulations"))
 
     def _editor_url(self):
         assert self.process.poll() is None, self.said()

@@ -255,3 +255,32 @@ def test_a_plan_that_was_not_saved_is_offered_again(drawn):
     sheet.open()
     editor.page.get_by_role("button", name="Restore", exact=True).click()
     sheet.shows(walls=5)
+
+
+def test_a_floor_plan_is_calibrated_by_two_clicks_and_typing(launch, browser, tmp_path):
+    editor = browser.open(launch("worlds/empty.world").url)
+    sheet = Sheet(editor)
+    sheet.open()
+    picture = tmp_path / "plan.png"
+    Image.new("RGB", (400, 400), "white").save(picture)
+    editor.page.get_by_role("button", name="Import", exact=True).click()
+    asked = editor.page.get_by_role("dialog", name="Import Floor Plan")
+    asked.get_by_label("Image", exact=True).set_input_files(str(picture))
+    asked.get_by_role("button", name="Import").click()
+    asked.wait_for(state="detached")
+    sheet.click((-1.0, 0.0), (1.0, 0.0))
+    length = editor.page.get_by_role("dialog", name="Length of the line")
+    length.wait_for()
+    editor.page.wait_for_timeout(100)  # the click is over, with all that browsers do after it
+    editor.page.keyboard.press("Control+x")  # belongs to the field, not to the building editor
+    editor.page.keyboard.type("4")
+    length.get_by_text("Length (m)").click()
+    editor.page.keyboard.press("Enter")
+    length.wait_for(state="detached")
+    assert editor.page.locator(".plan-sheet").is_visible()
+    drawn = editor.page.locator(".plan-sheet image")
+    # 400 pixels, of which 200 are 4 m; 100 units a metre.
+    wait_for(lambda: drawn.evaluate("(image) => image.width.baseVal.value") ==
+             approx(800, rel=0.02), "the new size")
+    assert editor.faults == []
+    editor.close()

@@ -1,9 +1,12 @@
 """The bars, panels and dialogs around the view, against a real node."""
 from __future__ import annotations
 
+import base64
+import math
 import os
 
 import pytest
+import trimesh
 from gazebo_msgs.srv import GetModelState, GetPhysicsProperties
 from pytest import approx
 from support import Node, wait_for
@@ -477,3 +480,52 @@ def test_dark_and_light_follow_the_browser_until_the_user_chooses(node, browser)
     light.until("Boolean(window.editor && editor.store.document)", "the world again")
     assert brightness() < 200
     light.close()
+
+
+DROP = """([name, data, x, y]) => {
+  const moved = new DataTransfer();
+  moved.items.add(new File([Uint8Array.from(atob(data), (one) => one.charCodeAt(0))], name));
+  const canvas = document.querySelector('#view canvas');
+  for (const type of ['dragover', 'drop']) {
+    canvas.dispatchEvent(new DragEvent(type, {dataTransfer: moved, clientX: x, clientY: y,
+      bubbles: true, cancelable: true}));
+  }
+}"""
+
+
+def drop(editor, name, data, point):
+    editor.page.evaluate(DROP, [name, base64.b64encode(data).decode(), *editor.pixel(point)])
+
+
+def test_a_card_of_the_gallery_is_dragged_to_its_place(editor):
+    editor.page.get_by_role("tab", name="Insert").click()
+    card = editor.page.get_by_role("button", name="crate", exact=True).or_(
+        editor.page.locator(".model-card")).first
+    card.wait_for()
+    before = set(editor.names())
+    box = editor.page.locator("#view").bounding_box()
+    x, y = editor.pixel((1.0, -1.0, 0.0))
+    card.drag_to(editor.page.locator("#view canvas"),
+                 target_position={"x": x - box["x"], "y": y - box["y"]})
+    [name] = wait_for(lambda: set(editor.names()) - before, "the model")
+    assert editor.model(name)["pose"][:2] == approx([1.0, -1.0], abs=0.05)
+
+
+def test_an_sdf_file_that_is_dropped_stands_where_it_was_dropped(editor):
+    drop(editor, "gate.sdf", HINGED.encode(), (1.0, 0.5, 0.0))
+    wait_for(lambda: "gate" in editor.names(), "the gate")
+    assert editor.model("gate")["pose"][:2] == approx([1.0, 0.5], abs=0.05)
+    drop(editor, "bad.sdf", b"<sdf version='1.6'><model name='m'>", (1.0, 0.5, 0.0))
+    editor.page.locator(".notice").get_by_text("cut off").wait_for()
+
+
+def test_a_mesh_that_is_dropped_becomes_a_body_of_the_density_asked_for(editor):
+    drop(editor, "ball.stl", trimesh.creation.icosphere(4, 0.25).export(file_type="stl"),
+         (-1.0, 0.0, 0.0))
+    asked = editor.page.get_by_role("dialog", name="Import Mesh")
+    asked.get_by_label("Density").fill("500")
+    asked.get_by_role("button", name="Import").click()
+    wait_for(lambda: "ball" in editor.names(), "the ball")
+    assert editor.model("ball")["pose"][:3] == approx([-1.0, 0.0, 0.25], abs=0.05)
+    mass = editor.model("ball")["links"][0]["inertial"]["mass"]
+    assert mass == approx(500 * 4 / 3 * math.pi * 0.25 ** 3, rel=0.01)

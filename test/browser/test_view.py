@@ -223,7 +223,7 @@ def test_the_picture_comes_back_after_the_graphics_were_lost(editor):
 
 def test_the_page_finds_a_node_that_was_started_again(launch, browser):
     port = free_port()
-    first = launch("worlds/empty.world", f"editor_port:={port}")
+    first = launch("worlds/empty.world", f"editor_port:={port}", "editor_token:=false")
     editor = browser.open(first.url)
     insert(editor, "box", standing(0, 0))
     editor.get("editor.actions.viewFrom('top')")
@@ -231,7 +231,7 @@ def test_the_page_finds_a_node_that_was_started_again(launch, browser):
              "the view from the top")
     first.close()
     editor.until("!editor.store.connected", "the loss of the line")
-    launch("worlds/empty.world", f"editor_port:={port}")
+    launch("worlds/empty.world", f"editor_port:={port}", "editor_token:=false")
     editor.until("editor.store.connected && !editor.store.model('box')", "the new node's world")
     insert(editor, "other", standing(0, 0))
     ground = pixel_of(editor, "ground_plane")

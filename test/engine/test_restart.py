@@ -11,7 +11,7 @@ from conftest import Lab, arm, ball, box, ground, inertial_of_box
 from test_contact import _cube_mesh
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
-from my_simulations.description.shapes import Box, Collision, Mesh, mesh_key
+from my_simulations.description.shapes import Box, Collision, Cylinder, Mesh, Sphere, mesh_key
 from my_simulations.engine.api import CommandRefusedError, EngineBrokenError
 from my_simulations.engine.commands import Clear, Restart, SetAxes, SetJoints
 from my_simulations.geometry import Pose
@@ -59,6 +59,21 @@ def test_a_world_restarted_gives_the_same_bits(lab):
     for times in (1, 1, 3):
         for _ in range(times):
             lab.apply(Restart(starts))
+        assert _run(lab) == expected
+
+
+def test_a_heap_that_is_restarted_falls_as_it_fell_first(lab):
+    shapes = [Box((1.0, 1.0, 1.0)), Cylinder(0.3, 0.6), Sphere(0.3), Box((1.0, 1.0, 1.0))]
+    tilt = (0.0, 0.3826834, 0.0, 0.9238795)
+    starts = [(lab.load(ground()), Pose())]
+    for n, shape in enumerate(shapes):
+        pose = Pose((0.4 * (n % 3), 0.37 * (n % 2), 0.6 + 0.7 * n), tilt)
+        link = Link("link", inertial=inertial_of_box(1, 1, 1, 1),
+                    collisions=[Collision("c", shape)])
+        starts.append((lab.load(Model(f"m{n}", links=[link]), pose.position, tilt), pose))
+    expected = _run(lab)
+    for _ in range(2):
+        lab.apply(Restart(tuple(starts)))
         assert _run(lab) == expected
 
 

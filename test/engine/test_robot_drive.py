@@ -11,6 +11,7 @@ from plugin_graph import Graph
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
+from my_simulations.engine.commands import JointPid
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.formats.reading import read_file
 from my_simulations.geometry import rpy_from_quat
@@ -18,6 +19,8 @@ from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message
 from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.joint_gains import default_gains
+from my_simulations.simulator.operations import DriveJoint
 from my_simulations.simulator.simulator import Simulator
 
 ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf"
@@ -31,12 +34,14 @@ class Drive:
                              paused=True, log=lambda issue: None)
         self.sim.start()
         self.graph = Graph()
+        self.graph.ignored |= {"scan", "camera/image_raw", "camera/image_raw/compressed"}
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(), lambda issue: None)
         self.host.start()
         self.sim.clock.advance(200)
 
     def go(self, forward, turn, seconds):
-        """Command, and settle: the command is heard by the host before time goes on."""
+        """Command, and settle: it is heard between the step that time stands at and the next."""
+        self.odometry()
         self.graph.heard["cmd_vel"](Message(linear={"x": forward}, angular={"z": turn}))
         deadline = time.monotonic() + 10.0
         while any(one.context.inbox for one in self.host._all()):
@@ -100,3 +105,33 @@ def test_the_same_run_gives_the_same_messages():
             drive.close()
 
     assert run() == run()
+
+
+def test_wheels_that_follow_a_velocity_with_default_gains_drive_a_metre():
+    """As the editor's Joints panel drives them: 5 rad/s on wheels of 0.05 m, for 4 s.
+
+    The drive plugin, whose motors would hold the wheels, gives way; then it holds them again.
+    """
+    drive = Drive()
+    try:
+        model = drive.sim.models.get("robo")
+        for name in ("left_wheel_joint", "right_wheel_joint"):
+            joint = next(one for one in model.joints if one.name == name)
+            gains = default_gains(model, joint, True, 0.001)
+            DriveJoint(f"robo::{name}", (JointPid(5.0, True, **gains),)).apply(drive.sim)
+        start = drive.truth()[0]
+        rates = []
+        for _ in range(40):
+            drive.sim.clock.advance(100)
+            rates.append(drive.sim.joints.states("robo::left_wheel_joint")[0][1])
+        assert drive.truth()[0] - start == pytest.approx(1.0, abs=0.06)
+        assert abs(drive.truth()[1]) < 0.02
+        assert rates[-1] == pytest.approx(5.0, rel=0.02)
+        for name in ("left_wheel_joint", "right_wheel_joint"):
+            DriveJoint(f"robo::{name}", ()).apply(drive.sim)
+        drive.sim.clock.advance(1000)
+        before = drive.truth()[0]
+        drive.sim.clock.advance(500)
+        assert drive.truth()[0] == pytest.approx(before, abs=1e-3)
+    finally:
+        drive.close()

@@ -29,6 +29,8 @@ async function everything({actions, store, connection}) {
   await actions.folders();
   await actions.folders('/w');
   await actions.autosave('restore');
+  await actions.recoverable();
+  await actions.recoverEntry('1-2');
   await actions.undo();
   await actions.redo(2);
   await actions.rename('a', 'c');
@@ -55,6 +57,7 @@ async function everything({actions, store, connection}) {
   await actions.wrench({link: 'a::link', force: [0, 0, 1], torque: [0, 0, 0]});
   await actions.joint({joint: 'a::hinge', mode: 'velocity', value: 1});
   await actions.watch(['contacts']);
+  await actions.drive('a', {linear: [1, 0, 0], angular: [0, 0, 0]});
   await actions.logStart();
   await actions.logStop();
   await actions.logList();

@@ -81,7 +81,7 @@ test("numbers out of a field's range are refused in words", () => {
 
 test('every entry of every menu that has a hotkey or an action exists', async () => {
   const {store, actions, connection} = await connected();
-  const page = {store, actions, theme: {get: () => 'auto'}, notices: {}};
+  const page = {store, actions, theme: {get: () => 'auto'}, notices: {}, topics: {sensing: true}};
   globalThis.document = {body: {classList: {contains: () => false}}};
   for (const menu of menus(page)) {
     for (const item of menu.items().filter(({separator}) => !separator)) {

@@ -6,17 +6,22 @@ import signal
 import socket
 import sys
 import tempfile
+import time
 import unittest
+from pathlib import Path
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(HERE, os.pardir, "unit", "support"))
 
 import aiohttp
+import rospkg
 import rospy
 import support
 from editor_case import Browser
 from support import Program, executable, wait_for
+
+from my_simulations.editor.transport import address_file
 
 WORLD = '<sdf version="1.7"><world name="default">{}</world></sdf>'
 BALL = ("<sdf version='1.7'><model name='ball'><link name='link'><collision name='c'><geometry>"
@@ -50,14 +55,21 @@ async def position(gazebo, name):
 class EditorNode(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        cls.started = time.time()
         cls.gazebo = support.Gazebo(persistent=False)
-        cls.url = wait_for(lambda: rospy.get_param("/gazebo/my_simulations/editor_url", ""),
-                           "the editor")
+        cls.public = wait_for(lambda: rospy.get_param("/gazebo/my_simulations/editor_url", ""),
+                              "the editor")
+        cls.url = address_file.whole(cls.public)
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
+
+    def opened(self, node):
+        """The whole address of the editor of a node with this test's folder as its cache."""
+        url = support.Gazebo(node, persistent=False).open_editor().url
+        return address_file.whole(url, os.path.join(self.folder, "my_simulations"))
 
     def world(self, text=""):
         path = os.path.join(self.folder, "a.world")
@@ -119,7 +131,27 @@ class EditorNode(unittest.TestCase):
         browse(self.url, touch)
 
     def test_the_service_tells_the_same_address(self):
-        self.assertEqual(self.gazebo.open_editor().url, self.url)
+        self.assertEqual(self.gazebo.open_editor().url, self.public)
+
+    def test_what_others_can_read_holds_no_token(self):
+        token = self.url.partition("?token=")[2]
+        self.assertGreaterEqual(len(token), 20)
+        master = rospy.get_master()
+        self.assertNotIn(token, str(master.getParam("/")[2]))
+        answer = self.gazebo.open_editor()
+        self.assertNotIn(token, answer.url + answer.status_message)
+        for pid in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                with open(f"/proc/{pid}/cmdline", "rb") as stream:
+                    self.assertNotIn(token.encode(), stream.read(), pid)
+            except OSError:
+                continue
+        logs = [path for path in map(str, Path(rospkg.get_log_dir()).rglob("*.log"))
+                if os.path.getmtime(path) > self.started]
+        self.assertTrue(logs)
+        for path in logs:
+            with open(path, "rb") as stream:
+                self.assertNotIn(token.encode(), stream.read(), path)
 
     def test_without_a_wish_for_it_nothing_of_the_editor_is_loaded(self):
         server = executable("gazebo_ros", "gzserver")
@@ -156,12 +188,12 @@ class EditorNode(unittest.TestCase):
             await browser.until(lambda: browser.model("unit_cylinder"))
 
         with Program([server, world, "__name:=doomed"], XDG_CACHE_HOME=self.folder) as program:
-            browse(support.Gazebo("/doomed", persistent=False).open_editor().url, edit)
+            browse(self.opened("/doomed"), edit)
             wait_for(entries, "the autosave")
             program.process.send_signal(signal.SIGKILL)
             program.process.wait()
         with Program([server, world, "__name:=doomed"], XDG_CACHE_HOME=self.folder) as program:
-            browse(support.Gazebo("/doomed", persistent=False).open_editor().url, restore)
+            browse(self.opened("/doomed"), restore)
             program.interrupt()
             self.assertEqual(program.ended(), 0)
         rospy.delete_param("/doomed")

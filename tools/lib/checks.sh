@@ -4,7 +4,7 @@
 PASSED=0
 FAILED=0
 FAULTS=()         # the names of what failed, for the end
-MARK="$$.$(date +%s)"
+MARK="$$.$(date +%s)."   # every lane adds its number (lanes.sh)
 RESULTS=          # folder of the result files, set once the workspace is known
 
 # marked: the processes that a check started, told by a variable in their environment.
@@ -14,7 +14,7 @@ marked() {
     # A process that has ended and waits for its parent is none.
     grep -q '^State:[[:space:]]*Z' "${file%/environ}/status" 2>/dev/null ||
       basename "${file%/environ}"
-  done < <(grep -lz "^MY_SIMULATIONS_TEST_RUN=$MARK\$" /proc/[0-9]*/environ 2>/dev/null)
+  done < <(grep -lz "^MY_SIMULATIONS_TEST_RUN=${MARK//./\\.}" /proc/[0-9]*/environ 2>/dev/null)
 }
 
 # end_leftovers: end every process that a check started and did not end; says how many it had to.
@@ -91,6 +91,7 @@ pytest_folder() {
   shift 2
   begin "$folder"
   attempt "$name" "$limit" env PYTHONPATH="$CLONE/src${PYTHONPATH:+:$PYTHONPATH}" \
+    MY_SIMULATIONS_LONG="${LONG:-0}" MY_SIMULATIONS_RELIABILITY="$RESULTS/reliability.jsonl" \
     "$VENV/bin/python3" -m pytest -p no:cacheprovider --junitxml="$results" "${chosen[@]}" "$@" || status=$?
   head=$(grep -o '<testsuite [^>]*>' "$results" 2>/dev/null | head -n 1 || true)
   judge "$folder" $(($(attribute tests "$head") - $(attribute skipped "$head"))) \

@@ -21,11 +21,16 @@ begin() {
   STEP=$((STEP + 1))
   STEP_TEXT="$1"
   STEP_BEGAN=$SECONDS
+  [ -z "${IN_LANE:-}" ] || return 0
   printf '[%d/%d] %s ... ' "$STEP" "$STEPS" "$STEP_TEXT"
 }
 
 # finish [REMARK]: close the step that began last.
 finish() {
+  if [ -n "${IN_LANE:-}" ]; then
+    REMARK="${1:-}" SPAN=$((SECONDS - STEP_BEGAN))
+    return
+  fi
   [ ! -t 1 ] || printf '\r\033[K[%d/%d] %s ... ' "$STEP" "$STEPS" "$STEP_TEXT"
   printf '%s(%d s)\n' "${1:+$1 }" "$((SECONDS - STEP_BEGAN))"
 }

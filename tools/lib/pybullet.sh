@@ -49,6 +49,8 @@ about $minutes minutes; this user's next workspace will find it in $(pybullet_wh
 # Debian 12 has none of that name.
 compile_packages() {
   packages_of "$CLONE/tools/apt-packages-compile.txt"
+  # Elsewhere glcontext has no wheel either, and needs the headers of X11.
+  [ "$(uname -m)" = x86_64 ] || printf 'libx11-dev\n'
   ! apt-cache show python3-numpy-dev >/dev/null 2>&1 || printf 'python3-numpy-dev\n'
 }
 

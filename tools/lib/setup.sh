@@ -21,6 +21,7 @@ source_setup() {
 
 set_up() {
   find_workspace
+  [ -z "${BUNDLE_FILE:-}" ] || open_bundle "$BUNDLE_FILE"
   install_system_packages
   prepare_workspace
   prepare_python "$CLONE/requirements.txt"
@@ -136,6 +137,7 @@ system_packages() {
   # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
   [ "$1" = run ] || [ -n "${BUNDLED:-}" ] || command -v npm >/dev/null || lists+=(packages-page)
   for list in "${lists[@]}"; do packages_of "$CLONE/tools/apt-$list.txt"; done
+  embree_packages
 }
 
 install_system_packages() {
@@ -255,6 +257,11 @@ pip_install() {
     --only-binary pybullet -r "$2")
   wheels=$(pybullet_wheels)
   [ ! -d "$wheels" ] || command+=(--find-links "$wheels")
+  if [ -n "$BUNDLED" ]; then
+    command+=(--no-index --find-links "$BUNDLED/wheels")
+    logged "pip-$1" "The archive lacks what is named: make it again from this clone." "${command[@]}"
+    return 0
+  fi
   recorded "pip-$1" "${command[@]}" || status=$?
   [ "$status" -ne 0 ] || return 0
   pybullet_lacks_wheel "pip-$1" || failed "pip-$1" "$status" "$advice"
@@ -273,6 +280,14 @@ prepare_page() {
     return
   fi
   mkdir -p -- "$place"
+  if [ -n "$BUNDLED" ]; then
+    [ "$(cat "$BUNDLED/page/.page")" = "$stamp" ] || stop "the archive has modules of another version." \
+      "Make it again from this clone."
+    rm -rf -- "$place/node_modules"
+    cp -a -- "$BUNDLED/page/." "$place/"
+    finish "taken from the archive"
+    return
+  fi
   rm -f -- "$place/.page"
   cp -- "$CLONE/web/package.json" "$CLONE/web/package-lock.json" "$place/"
   logged npm "Is there a network? Then run $COMMAND again." \

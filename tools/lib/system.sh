@@ -55,3 +55,8 @@ ask_administrator() {
     "As root: apt-get update && apt-get install --no-install-recommends $* ${compiled[*]}" \
     "Everything else is installed below this user's home: then run $COMMAND again."
 }
+
+# embree_packages: Embree 4 where no wheel brings it, for lasers; nothing where apt has no such version.
+embree_packages() {
+  [ "$(uname -m)" = x86_64 ] || ! apt-cache show libembree4-4 >/dev/null 2>&1 || printf 'libembree4-4\n'
+}

@@ -101,7 +101,8 @@ forget_build() {
 link_companions() {
   local name target place real
   COMPANIONS=
-  for name in gazebo_msgs gazebo_ros my_simulations_msgs teleop_twist_keyboard xacro; do
+  for name in control_msgs controller_manager controller_manager_msgs gazebo_msgs gazebo_ros \
+    my_simulations_msgs teleop_twist_keyboard xacro; do
     target="$CLONE/compat/$name"
     place="$WORKSPACE/src/$name"
     real=$(real_package "$name" "$WORKSPACE/src")

@@ -10,6 +10,7 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
 /** @import {AlignChoice} from './align.js' */
 /** @import {CameraChoices, CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js' */
 /** @import {Issue, RequestFunction} from './connection.js' */
+/** @import {Dropped} from './dropped_files.js' */
 /** @import {LightType, ShapeName} from './new_entities.js' */
 /** @import {Operation, Requests} from './protocol.js' */
 /** @import {Pose7, Vec3} from './pose.js' */
@@ -31,10 +32,10 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
  *   ShownWrench
  */
 
-/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|
+/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
  *            'building'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
 
-/** @typedef {{name: DialogName, target?: string}} DialogRequest */
+/** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
 
 /** @typedef {ReturnType<typeof createActions>} Actions */
 
@@ -64,7 +65,7 @@ export function createActions({store, connection}) {
    * @param {AskOptions} [options]
    */
   const edit = (op, options) => ask('edit', {op}, options);
-  /** @param {DialogName} name @param {{target?: string}} [fields] */
+  /** @param {DialogName} name @param {Omit<DialogRequest, 'name'>} [fields] */
   const dialog = (name, fields = {}) => store.emit('dialog', {name, ...fields});
   /** @param {string} message */
   const note = (message) => store.addIssue({severity: 'note', code: 'editor', message});
@@ -109,6 +110,12 @@ export function createActions({store, connection}) {
     folders: (path) => ask('folders', path ? {path} : {}),
     /** @param {'restore'|'discard'} action */
     autosave: (action) => ask('autosave', {action}),
+
+    /** What can be recovered. */
+    recoverable: () => ask('autosave', {action: 'list'}, {quiet: true}),
+    /** @param {string} name  of what can be recovered */
+    recoverEntry: (name) => ask('autosave', {action: 'restore', name}, {quiet: true}),
+    recover: () => dialog('recover'),
 
     // ---- editing
     /** @param {number} [to]  steps more than one */
@@ -216,6 +223,14 @@ export function createActions({store, connection}) {
       else if (name) store.select([name]);
       return outcome;
     },
+    /**
+     * Files or folders of the desktop that were dropped on the ground; a dialog asks.
+     * @param {Dropped[]} entries
+     * @param {Vec3} place
+     */
+    dropFiles: (entries, place) => dialog('importFiles', {entries, place}),
+    /** @param {Requests['import_model']['fields']} fields */
+    importModel: (fields) => ask('import_model', fields, {quiet: true}),
     library: () => ask('library'),
     /** @param {string} path */
     libraryAdd: (path) => ask('library_add', {path}),
@@ -327,6 +342,15 @@ export function createActions({store, connection}) {
     logSeek: (time) => ask('log_seek', {time}),
     logPlay: (rate = 1) => ask('log_play', {rate}),
     logClose: () => ask('log_close'),
+
+    // ---- robots
+    /**
+     * Velocities for a robot, in its own axes; m/s, rad/s.
+     * @param {string} model
+     * @param {{linear: number[], angular: number[]}} velocity
+     */
+    drive: (model, {linear, angular}) => ask('drive', {model, linear, angular}),
+    topics: () => dialog('topics'),
 
     // ---- windows of the panels
     applyForce: (name = store.selection.at(-1)) => dialog('applyForce', name ? {target: name} : {}),

@@ -11,7 +11,7 @@
  *   tells of a key that is held, or of the mouse
  */
 
-/** Ctrl+N and Ctrl+T belong to the browser: New is Alt+N here. @type {readonly Hotkey[]} */
+/** Ctrl+N and Ctrl+T belong to the browser: New is Alt+N here, Topics Alt+T. @type {readonly Hotkey[]} */
 export const HOTKEYS = Object.freeze([
   {keys: 'Alt+N', title: 'New world', group: 'File', action: 'newWorld'},
   {keys: 'Ctrl+O', title: 'Open world', group: 'File', action: 'open'},
@@ -51,6 +51,8 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Alt held', title: 'Detach the end of a wall from linked walls', group: 'Building editor'},
   {keys: 'F, G', title: 'Show or hide floor plan (F), features (G)', group: 'Building editor'},
   {keys: 'Ctrl+X', title: 'Exit building editor', group: 'Building editor'},
+  {keys: 'Arrow keys', title: 'Drive the selected robot; with Shift twice as fast', group: 'Robots'},
+  {keys: 'Alt+T', title: 'Topics', group: 'Window', action: 'topics'},
   {keys: 'Ctrl+D', title: 'Log data', group: 'Window', action: 'logs'},
   {keys: 'Ctrl+P', title: 'Plot', group: 'Window', action: 'plot'},
   {keys: 'Ctrl+H', title: 'Show or hide panels', group: 'Window', action: 'togglePanels'},
@@ -95,7 +97,9 @@ export const hotkey = (event) => BY_KEYS.get(spelled(event));
 function belongsToControl(event) {
   const {target} = event;
   if (!(target instanceof Element)) return false;
-  if (target.closest('dialog, [role="dialog"]')) return true;
+  if (target.closest('dialog, [role="dialog"]') || document.querySelector('dialog:modal')) return true;
+  // A check box needs the space bar alone.
+  if (target.closest('input[type="checkbox"]')) return event.key === ' ';
   if (target.closest('input, textarea, select, [contenteditable="true"]')) {
     return !(event.ctrlKey || event.metaKey) || 'acvxyz'.includes(event.key.toLowerCase());
   }

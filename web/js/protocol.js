@@ -9,11 +9,11 @@ export const PROTOCOL_VERSION = 1;
 /** Sizes in bytes, rates in Hz. */
 export const LIMITS = Object.freeze({
   request_bytes: 33554432, upload_bytes: 67108864, frames_hz: 30, drags_hz: 30, stats_hz: 5,
-  watch_hz: 20
+  watch_hz: 20, view_hz: 15
 });
 
 /** The kinds of binary frames. */
-export const FRAME_KINDS = Object.freeze({poses: 1, log: 2});
+export const FRAME_KINDS = Object.freeze({poses: 1, log: 2, topic: 3});
 
 /** Offsets of the fields of a frame's head, in bytes; little endian. */
 export const FRAME_HEAD = Object.freeze({
@@ -216,6 +216,8 @@ export const FRAME_RECORD_BYTES = 32;
  *  uri: string, name: string, title: string, description: string, thumb: string
  *}} LibraryModel */
 
+/** @typedef {{path: string, data: string}} ImportFile */
+
 /** @typedef {{
  *  id: string, title: string, kind: 'built-in'|'home'|'environment'|'added'|'fuel'|'remote',
  *  path: string, models: LibraryModel[], problem?: string|null
@@ -228,6 +230,10 @@ export const FRAME_RECORD_BYTES = 32;
  *}} File */
 
 /** @typedef {{state: boolean, launched: boolean}} SaveChoices */
+
+/** @typedef {{
+ *  name: string, file: string, time: number, discarded: boolean
+ *}} Recoverable */
 
 /** @typedef {{name: string, bytes: number, modified: number}} LogFile */
 
@@ -286,6 +292,62 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{name: string, path: string, title: string}} Building */
 
+/** @typedef {{link: string, pose: pose}} Mount */
+
+/** @typedef {{
+ *  name: string, type: string, publishers: number, subscribers: number, model?: string|null,
+ *  mount?: Mount|null, driven?: boolean|null, hz?: number|null, bytes_per_s?: number|null
+ *}} Topic */
+
+/** @typedef {{parent: string, child: string, pose: pose}} Transform */
+
+/** @typedef {{
+ *  id: string, shape: string, frame: string, pose: pose, scale: vec3, color: color,
+ *  points: vec3[], colors: color[], text: string, lifetime: number
+ *}} Marker */
+
+/** @typedef {{
+ *  type: 'scan', angle_min: number, angle_increment: number, range_min: number,
+ *  range_max: number, count: number
+ *}} ScanView */
+
+/** @typedef {{
+ *  type: 'points', count: number, of: number, colored: boolean
+ *}} PointsView */
+
+/** @typedef {{
+ *  type: 'image', format: string, width: number, height: number, encoding: string,
+ *  near?: number|null, far?: number|null
+ *}} ImageView */
+
+/** @typedef {{
+ *  type: 'odometry', child: string, pose: pose, linear: vec3, angular: vec3
+ *}} OdometryView */
+
+/** @typedef {{type: 'path', poses: pose[], line: boolean}} PathView */
+
+/** @typedef {{
+ *  type: 'range', range?: number|null, range_min: number, range_max: number,
+ *  field_of_view: number
+ *}} RangeView */
+
+/** @typedef {{type: 'transforms', transforms: Transform[]}} TransformsView */
+
+/** @typedef {{type: 'markers', markers: Marker[]}} MarkersView */
+
+/** @typedef {{type: 'contacts', positions: vec3[], normals: vec3[]}} ContactsView */
+
+/** @typedef {{
+ *  type: 'map', width: number, height: number, resolution: number, pose: pose
+ *}} MapView */
+
+/** @typedef {{type: 'text', text: string}} TextView */
+
+/** @typedef {ScanView|PointsView|ImageView|OdometryView|PathView|RangeView|TransformsView|MarkersView|
+ *  ContactsView|MapView|TextView} View */
+
+/** @typedef {{topic: string, frame: string, stamp: number, view: View}} TopicHead */
+
 /** @typedef {{p?: number|null, i?: number|null, d?: number|null}} Gains */
 
 /** @typedef {{
@@ -293,7 +355,8 @@ export const FRAME_RECORD_BYTES = 32;
  *}} Drive */
 
 /** @typedef {{
- *  name: string, axis: number, position: number, rate: number, drive?: Drive|null
+ *  name: string, axis: number, position: number, rate: number, drive?: Drive|null,
+ *  default_gains?: Record<string, Gains>|null
  *}} JointState */
 
 /** @typedef {{
@@ -371,7 +434,7 @@ export const FRAME_RECORD_BYTES = 32;
  *}} WatchPush */
 
 /** @typedef {{
- *  type: 'autosave', found: boolean, file: string, time: number
+ *  type: 'autosave', found: boolean, file: string, time: number, others: number
  *}} AutosavePush */
 
 /** @typedef {{
@@ -415,20 +478,28 @@ export const FRAME_RECORD_BYTES = 32;
  *      path: string, parent?: string|null, roots: string[], folders: Folder[], files: File[],
  *      launched: string[], chosen: SaveChoices
  *    }},
- *  autosave: {fields: {action: 'restore'|'discard'},
- *    reply: {file?: string|null}},
+ *  autosave: {fields: {action: 'restore'|'discard'|'list', name?: string|null},
+ *    reply: {file?: string|null, entries?: Recoverable[]|null}},
  *  library: {fields: {},
  *    reply: {locations: Location[]}},
  *  library_add: {fields: {path: string},
  *    reply: {locations: Location[]}},
  *  library_remove: {fields: {path: string},
  *    reply: {locations: Location[]}},
+ *  import_model: {fields: {
+ *      name: string, files: ImportFile[], density?: number|null, overwrite?: boolean|null
+ *    },
+ *    reply: {uri: string, path: string}},
  *  library_get: {fields: {uri: string},
  *    reply: {model?: Model|null, light?: Light|null}},
  *  preview: {fields: {sdf: string},
  *    reply: {model?: Model|null, light?: Light|null}},
  *  watch: {fields: {topics: string[]},
  *    reply: {topics: string[]}},
+ *  topics: {fields: {},
+ *    reply: {available: boolean, topics: Topic[]}},
+ *  drive: {fields: {model: string, linear: vec3, angular: vec3},
+ *    reply: {topic: string}},
  *  log_start: {fields: {name?: string|null},
  *    reply: {name: string}},
  *  log_stop: {fields: {},
@@ -456,4 +527,5 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{
  *  drag: {names: string[], poses: pose[]},
- *  drag_end: {}}} Notices */
+ *  drag_end: {},
+ *  viewed: {topic: string}}} Notices */

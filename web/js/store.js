@@ -88,6 +88,8 @@ function initialOverlays() {
     scene: {...off, grid: true, origin: true},
     /** @type {Record<string, Partial<Record<OverlayFlag, boolean>>>} */
     models: {},
+    /** Of what is selected. @type {Partial<Record<OverlayFlag, boolean>>} */
+    selection: {},
     /** @type {Set<number>} */
     hiddenLayers: new Set(),
   };
@@ -378,7 +380,23 @@ export class Store extends Emitter {
    * @returns {boolean}
    */
   overlay(flag, model) {
+    if (model && this.overlays.selection[flag] && this.#isSelected(model)) return true;
     return (model ? this.overlays.models[model]?.[flag] : undefined) ?? this.overlays.scene[flag];
+  }
+
+  /** @param {string} model */
+  #isSelected(model) {
+    return this.selection.some((name) => this.split(name)[0]?.name === model);
+  }
+
+  /**
+   * Shows something of the selected models, whatever the scene's flags say.
+   * @param {OverlayFlag} flag
+   * @param {boolean} on
+   */
+  setOverlayOfSelection(flag, on) {
+    this.overlays.selection[flag] = on;
+    this.emit('overlays', {flag});
   }
 
   /**

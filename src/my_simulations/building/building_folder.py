@@ -18,6 +18,7 @@ from ..formats.reading import read_file
 from ..formats.sdf.writer.entities import write_entity
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
+from ..xml_characters import check_characters
 from .building_plan import FloorImage, Level, Plan
 from .model_to_plan import plan_from_model
 from .plan_check import check_plan
@@ -55,6 +56,7 @@ def checked_name(name: str) -> str:
     Raises:
         CommandError: it is empty or not a plain file name.
     """
+    check_characters(name, "the name of the building")
     made = model_name(name)
     if not made:
         raise CommandError("the name of the building must not be empty")

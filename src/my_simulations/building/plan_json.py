@@ -11,6 +11,7 @@ from dataclasses import MISSING, asdict, fields
 from typing import Any, Callable, Dict, List, Optional, Tuple, Type, Union
 
 from ..errors import InputError, Issue, error
+from ..xml_characters import forbidden_character
 from .building_plan import Floor, FloorImage, Level, Opening, Plan, Roof, Stairs, Wall
 
 FORMAT = 1
@@ -94,6 +95,9 @@ def _loops(value: Any) -> List[List[Tuple[float, float]]]:
 def _text(value: Any) -> str:
     if not isinstance(value, str) or not _NO_CONTROL.match(value):
         raise _UnexpectedValueError("a string of at most 200 characters")
+    if forbidden_character(value):
+        raise _UnexpectedValueError("a string without the character "
+                                    f"{forbidden_character(value)}")
     return value
 
 

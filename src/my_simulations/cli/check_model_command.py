@@ -20,6 +20,7 @@ from ..objects.object_documents import run_xacro
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
+from ..resources.ros_packages import is_in_workspace
 from ..ros.arguments import Parser
 
 NAME = "check_model"
@@ -39,6 +40,8 @@ def parser() -> argparse.ArgumentParser:
                       help=".world, .sdf, .urdf or .xacro file, or a model folder")
     made.add_argument("--strict", action="store_true", help="report as errors what Gazebo accepts"
                       " although the format forbids it")
+    made.add_argument("--run-xacro", action="store_true", help="run also xacro files outside of the"
+                      " workspace's packages: xacro may run any Python code of the file")
     made.add_argument("--json", action="store_true", help="print one JSON object per file, one per"
                       " line, with counts and issues")
     made.add_argument("--explain", metavar="CODE", help="print meaning and remedy of an issue code"
@@ -64,7 +67,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     resolver = Resolver.from_environment(DownloadNotes(lambda note: print(note, file=sys.stderr)))
     failed = False
     for file in options.files:
-        loaded, issues = check(file, resolver)
+        loaded, issues = check(file, resolver, options.run_xacro)
         if options.strict:
             issues = strictly(issues)
         failed = failed or bool(errors_of(issues))
@@ -86,16 +89,47 @@ def _explain(code: str, made: argparse.ArgumentParser) -> int:
     return 0
 
 
-def check(file: str, resolver: Resolver) -> Tuple[Optional[Loaded], List[Issue]]:
-    """The content of a file, None if it is unusable, and all issues found in it."""
+def check(file: str, resolver: Resolver,
+          any_xacro: bool = False) -> Tuple[Optional[Loaded], List[Issue]]:
+    """The content of a file, None if it is unusable, and all issues found in it.
+
+    `any_xacro`: whether to run xacro files that lie in no package of the workspace.
+    """
     try:
-        path, text = _document(file)
-        return read_any(text, resolver, path)
+        path, text = _document(file, any_xacro)
+        loaded, issues = read_any(text, resolver, path)
     except InputError as fault:
         return None, fault.issues
+    return loaded, [*issues, *unknown_plugins(loaded)]
 
 
-def _document(file: str) -> Tuple[str, Union[str, bytes]]:
+def unknown_plugins(loaded: Loaded) -> List[Issue]:
+    """Plugins of models and sensors that nobody brings, each library once."""
+    models = [flattened(model) for model in _models(loaded)]
+    if not any(_with_plugins(model) for model in models):
+        return []
+    from ..plugins.host import plugins_of
+    from ..plugins.registry import PluginRegistry, library_name
+    from ..resources.ros_packages import PackageIndex
+
+    registry, told, found = PluginRegistry(folders=PackageIndex().folders), set(), []
+    for one in (plugin for model in models for plugin in plugins_of(model)):
+        name = library_name(one.spec.filename)
+        if name not in told and not registry.knows(one.spec.filename):
+            told.add(name)
+            found.append(Issue(
+                Severity.NOTE, "not-simulated", f"<plugin {one.spec.name}> does nothing: there is"
+                f" none for {name or 'a library without a name'}", one.spec.file, one.spec.line,
+                hint="a package can bring one: see doc/plugins.md"))
+    return found
+
+
+def _with_plugins(model: Model) -> bool:
+    return bool(_plugins(model)) or any(
+        sensor.plugins for link in model.links for sensor in link.sensors)
+
+
+def _document(file: str, any_xacro: bool) -> Tuple[str, Union[str, bytes]]:
     path = file
     if os.path.isdir(file):
         found = description_in(file)
@@ -104,6 +138,11 @@ def _document(file: str) -> Tuple[str, Union[str, bytes]]:
                                     " that names a file nor a model.sdf", file=file)])
         path = found
     if path.endswith(".xacro"):
+        if not any_xacro and os.path.isfile(path) and not is_in_workspace(path):
+            raise InputError([error(
+                "xacro-consent", "xacro was not run: it may run any Python code of the file, which "
+                "lies in no package of the workspace", file=path,
+                hint="read the file, then use --run-xacro")])
         return path, run_xacro(path, XACRO_SECONDS)
     try:
         return path, content(path)

@@ -1,9 +1,16 @@
-"""Prints the URL of the editor, and opens it in a browser if there is a display."""
+"""Prints the URL of the editor, and opens it in a browser if there is a display.
+
+The token of the URL is for this user alone: the browser is started with a local page that holds it,
+because all users can read command lines, and a log file that others can read gets none.
+"""
 from __future__ import annotations
 
 import os
+import stat
 import sys
-from typing import Mapping
+from typing import Mapping, TextIO
+
+from ..editor.transport import address_file
 
 NO_BROWSER = "MY_SIMULATIONS_NO_BROWSER"
 """Environment variable; if set, no browser is started."""
@@ -16,15 +23,34 @@ def has_display(environment: Mapping[str, str] = os.environ) -> bool:
     return bool(environment.get("DISPLAY") or environment.get("WAYLAND_DISPLAY"))
 
 
+def is_private(stream: TextIO) -> bool:
+    """False for a file that other users may read; terminals and pipes have one reader."""
+    try:
+        status = os.fstat(stream.fileno())
+    except (OSError, ValueError):  # no file at all
+        return True
+    return not stat.S_ISREG(status.st_mode) or not status.st_mode & 0o077
+
+
 def show(url: str, program: str) -> None:
-    """Print the URL, and open it if there is a display."""
-    print(f"{program}: the world editor is at {url}", flush=True)
+    """Print the URL with its token, and open it if there is a display.
+
+    `url`: of an editor, with or without its token.
+    """
+    whole = address_file.whole(url)
+    if is_private(sys.stdout):
+        print(f"{program}: the world editor is at {whole}", flush=True)
+    else:
+        print(f"{program}: the world editor is at {address_file.without_token(whole)}; others can "
+              "read this output, so run gzclient in a terminal for the address with the token",
+              flush=True)
     if not has_display():
         return
     import webbrowser
 
+    shown = whole if whole == address_file.without_token(whole) else address_file.page(whole)
     try:
-        opened = webbrowser.open(url)
+        opened = bool(shown) and webbrowser.open(shown)
     except webbrowser.Error:
         opened = False
     if not opened:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import List, Optional
+from typing import List, Optional, Tuple
 
 from ..geometry import IDENTITY, Pose, Vec3
 from .plugin import PluginSpec as PluginSpec
@@ -74,6 +74,27 @@ class Link:
     extra: List[str] = field(default_factory=list)
 
 
+@dataclass(frozen=True)
+class SoftLimits:
+    """Within these the rate gets smaller towards the limits (URDF, safety_controller).
+
+    Attributes:
+        lower, upper: rad or m.
+        k_position: rate by distance to the limit, 1/s.
+        k_velocity: effort by what the rate is too high, N m s/rad or N s/m.
+    """
+
+    lower: float
+    upper: float
+    k_position: float
+    k_velocity: float
+
+    def rates(self, position: float, most: float) -> Tuple[float, float]:
+        """The least and the greatest rate that may be commanded at a position."""
+        return (max(-most, min(most, -self.k_position * (position - self.lower))),
+                max(-most, min(most, -self.k_position * (position - self.upper))))
+
+
 @dataclass
 class JointAxis:
     """One degree of freedom of a joint. Source: SDF spec 1.7, joint/axis.
@@ -93,6 +114,7 @@ class JointAxis:
         mimic: makes the axis follow another joint; None for a free axis.
         motor_rate: rate to which the friction drives the axis, rad/s or m/s. With a value other
             than 0 it is ODE's joint motor (`vel` and `fmax`), which no file can describe.
+        soft: soft limits, which controllers keep (URDF); None without.
     """
 
     xyz: Vec3 = (0.0, 0.0, 1.0)
@@ -106,6 +128,7 @@ class JointAxis:
     spring_stiffness: float = 0.0
     mimic: Optional["Mimic"] = None
     motor_rate: float = 0.0
+    soft: Optional[SoftLimits] = None
 
 
 @dataclass

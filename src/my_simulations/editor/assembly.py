@@ -21,6 +21,7 @@ from .library.model_library import Library
 from .library.world_files import WorldFiles
 from .logs.replay import Logs
 from .scene.scene_json import Documents
+from .topics.topic_requests import TopicRequests
 from .transport.access_guard import Guard
 from .transport.browser_client import Client
 from .transport.error_messages import EditRefusedError
@@ -64,9 +65,10 @@ class Assembly:
                                   self._autosave, self.tell_all)
         self._models = LibraryRequests(self.hub, resolver, library, self._pool, self.tell_all)
         self._logs = Logs(self.hub, options.data_dir, self.tell_all, options.more_logs)
+        self._topics = TopicRequests(self.hub, options.topics)
         self.routes: Dict[str, Route] = {
             **self._requests.routes(), **self._models.routes(), **self._logs.routes(),
-            **Watching(self.hub).routes(),
+            **Watching(self.hub, self._topics.live).routes(), **self._topics.routes(),
             **BuildingRequests(self.hub, library, self._pool, self._files).routes(),
         }
         sockets = Sockets(self.hub, self.routes, self._leave, options.check_outgoing)
@@ -88,6 +90,7 @@ class Assembly:
         await asyncio.sleep(0.05)  # the farewell goes out
         for task in self._tasks:
             task.cancel()
+        self._topics.close()
         with contextlib.suppress(CommandError):  # nobody is left to be told
             self._logs.close()
         clients = list(self.hub.clients.values())
@@ -128,6 +131,7 @@ class Assembly:
     def _leave(self, client: Client) -> None:
         self._requests.leave(client)
         self._logs.leave(client)
+        self._topics.leave(client)
 
     def _downloading(self, name: str, done: int, expected: int) -> None:
         self.hub.push_soon({"type": "download", "name": name, "done": done,

@@ -7,9 +7,14 @@ from dataclasses import dataclass, field
 from typing import Callable, List, Optional, Tuple
 
 from ..errors import Issue
+from .topic_source import TopicSource
 
 DEFAULT_PORT = 11346
 """Beside Gazebo's master port, 11345."""
+
+
+TOKEN_VARIABLE = "MY_SIMULATIONS_EDITOR_TOKEN"
+"""Environment variable: the token, or `off` for none at addresses of this machine."""
 
 
 def _ignore(_issue: Issue) -> None:
@@ -21,10 +26,10 @@ class EditorOptions:
     """Settings of one server.
 
     Attributes:
-        host: address or name to listen at; other than this machine's own needs a token in the URL,
-            which is made up when `token` is "".
+        host: address or name to listen at.
         port: to listen at; 0 takes a free one, and so does `DEFAULT_PORT` when it is taken.
-        token: what requests from elsewhere must show.
+        token: what every request must show; None for what the variable `TOKEN_VARIABLE` says, else
+            a random one; "" for none, which holds for addresses of this machine only.
         save_roots: folders below which worlds are opened and saved; None for the usual ones.
         caller: folder in which the simulator's command was typed, among the usual ones; "" for the
             working directory.
@@ -34,20 +39,22 @@ class EditorOptions:
         cache_dir: keeps autosaves and thumbnails.
         data_dir: keeps state logs.
         more_logs: state logs that lie elsewhere.
+        topics: the ROS topics; None in a world without ROS.
         check_outgoing: hold what is sent to the protocol too (tests).
     """
 
     host: str = "127.0.0.1"
     port: int = DEFAULT_PORT
-    token: str = ""
+    token: Optional[str] = None
     save_roots: Optional[List[str]] = None
     caller: str = ""
     log: Callable[[Issue], None] = _ignore
     web: str = ""
     config_dir: str = field(default_factory=lambda: _xdg("XDG_CONFIG_HOME", "~/.config"))
-    cache_dir: str = field(default_factory=lambda: _xdg("XDG_CACHE_HOME", "~/.cache"))
+    cache_dir: str = field(default_factory=lambda: cache_folder())
     data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
     more_logs: Tuple[str, ...] = ()
+    topics: Optional[TopicSource] = None
     check_outgoing: bool = False
 
 
@@ -59,6 +66,11 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host.strip("[]")).is_loopback
     except ValueError:
         return False
+
+
+def cache_folder() -> str:
+    """Where editors of this user keep what can be made anew."""
+    return _xdg("XDG_CACHE_HOME", "~/.cache")
 
 
 def _xdg(variable: str, default: str) -> str:

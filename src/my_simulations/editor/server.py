@@ -7,15 +7,16 @@ import socket
 import threading
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as TimeoutError_
-from typing import Optional
+from typing import List, Optional
 
 from aiohttp import web
 
-from ..errors import CommandError, Issue
+from ..errors import CommandError, Issue, warning
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 from .assembly import Assembly
 from .editor_options import DEFAULT_PORT, EditorOptions
+from .transport import address_file
 from .transport.access_guard import Guard
 
 _START_S = 10.0
@@ -26,7 +27,8 @@ class EditorServer:
     """Serves one simulator until `stop`.
 
     Attributes:
-        url: what to open in a browser; holds the token where one is needed.
+        url: what to open in a browser; with the token, so it is for the user alone.
+        public_url: the same without the token.
 
     Raises:
         CommandError: it cannot listen there, or the page is not installed.
@@ -48,11 +50,14 @@ class EditorServer:
         except TimeoutError_ as slow:
             raise CommandError(f"the editor did not start within {_START_S:g} s") from slow
         self.url = _url(self._listener, options.host, self._guard.token)
+        self.public_url = address_file.without_token(self.url)
+        self._address_files = self._keep_address() if self._guard.token else []
 
     def stop(self, reason: str = "the simulator ends") -> None:
         """Tell the pages, and end; unsaved edits stay in the autosave."""
         if self._loop is None or not self._thread.is_alive():
             return
+        address_file.remove(self._address_files)
         try:
             self._loop.call_soon_threadsafe(self._end, reason)
         except RuntimeError:
@@ -63,6 +68,15 @@ class EditorServer:
         """Show an issue on all pages; safe from any thread."""
         if self._editor is not None:
             self._editor.tell(issue)
+
+    def _keep_address(self) -> List[str]:
+        try:
+            return address_file.write(self.url, self._options.cache_dir)
+        except OSError as fault:
+            self._options.log(warning(
+                "editor-address", "cannot keep the editor's address with its token: "
+                f"{fault}; gzclient cannot open it (start with editor_token:=false)"))
+            return []
 
     def _main(self) -> None:
         try:
@@ -84,10 +98,13 @@ class EditorServer:
         runner = web.AppRunner(self._editor.application, access_log=None, handle_signals=False,
                                shutdown_timeout=0.5)
         await runner.setup()
-        await web.SockSite(runner, self._listener).start()
+        assert runner.server is not None
+        factory = self._guard.silent.watched(runner.server, self._loop)
+        server = await self._loop.create_server(factory, sock=self._listener, backlog=64)
         self._editor.start()
         self._started.set_result(None)
         reason = await self._stopping
+        server.close()
         await self._editor.close(reason, runner)
 
 

@@ -79,8 +79,9 @@ class Requests:
         client.session = given or secrets.token_hex(8)
         await self._hub.welcome(client, new=not given)
         self._hub.push(self.history_push(), [client])
-        if self._autosave.found is not None:
-            self._hub.push(self._autosave.push(), [client])
+        found = self._autosave.push()
+        if found["found"] or (found["others"] and not given):
+            self._hub.push(found, [client])
         return {"session": client.session, "version": version, "app": __version__}
 
     # -- editing ---------------------------------------------------------------------------------
@@ -156,10 +157,17 @@ class Requests:
         return self._filed(self._files.save, message)
 
     def _open(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        self._set_aside(message)
         return self._filed(self._files.open, message)
 
     def _new(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        self._set_aside(message)
         return self._filed(self._files.new, message)
+
+    def _set_aside(self, message: Dict[str, Any]) -> None:
+        """What is discarded can be recovered."""
+        if message.get("discard"):
+            self._autosave.set_aside()
 
     def _folders(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return self._files.folders(message)
@@ -172,9 +180,11 @@ class Requests:
             self._changed()
 
     def _restore(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        if message["action"] == "list":
+            return {"entries": self._autosave.entries()}
         try:
             if message["action"] == "restore":
-                return {"file": self._autosave.restore()}
+                return {"file": self._autosave.restore(message.get("name") or "")}
             self._autosave.discard()
             return {"file": ""}
         finally:

@@ -5,12 +5,14 @@ link by its row in the ring's link table, a joint axis by its row in the joint t
 """
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Dict, Optional, Tuple, TypeVar, Union
 
-from ..description.model import Joint, Model
+from ..description.model import Joint, Model, SoftLimits
 from ..description.shapes import MeshData
 from ..geometry import IDENTITY_QUAT, STILL, ZERO3, Pose, Quat, Twist, Vec3
+from .spline import Spline
 
 FOREVER = 1 << 62
 """A step count that is never reached: no horizon."""
@@ -268,6 +270,86 @@ class SetMotors(Command):
     """Set motors of some joint axes; others are unchanged. A motor replaces joint friction."""
 
     motors: Tuple[JointMotor, ...]
+
+
+@dataclass(frozen=True)
+class PidGains:
+    """Gains of a loop, and the limits of its integral term; control_toolbox's parameters.
+
+    Attributes:
+        p, i, d: output by error, by its integral over time, and by its rate.
+        i_min, i_max: limits of the integral term.
+        antiwindup: the integral itself stays within the limits.
+    """
+
+    p: float
+    i: float = 0.0
+    d: float = 0.0
+    i_min: float = 0.0
+    i_max: float = 0.0
+    antiwindup: bool = False
+
+
+@dataclass(frozen=True)
+class JointServo:
+    """A controller of a joint axis, which the engine evaluates in every step.
+
+    A target, or a loop about it (`gains`), commands a drive: an effort, the rate of a motor, or
+    the position that a motor follows; or, with `drive_gains`, the target of a loop that gives an
+    effort. Sources: ros_control's controllers, gazebo_ros_control. Units: rad or m, s, N m or N.
+
+    Attributes:
+        row: joint row.
+        drive: "effort", "velocity" or "position"; "" ends the servo.
+        target: a position, with `of_rate` or as the command of a velocity drive a rate, as the
+            command of an effort drive an effort.
+        target_rate: the rate at the target.
+        spline: the target as a function of time, instead of `target`.
+        gains: of the loop about the target; None passes it on.
+        of_rate: that loop is about the rate, else about the position.
+        by_rates: its d is about the difference of the rates, else that of errors in time.
+        feedforward: what is commanded a target rate.
+        drive_gains: of the loop of the drive.
+        wraps: position errors are angles in -pi to pi.
+        lower, upper, most_rate, most_effort: limits of commands.
+        soft: soft limits.
+    """
+
+    row: int
+    drive: str
+    target: float = 0.0
+    target_rate: float = 0.0
+    spline: Optional[Spline] = None
+    gains: Optional[PidGains] = None
+    of_rate: bool = False
+    by_rates: bool = False
+    feedforward: float = 0.0
+    drive_gains: Optional[PidGains] = None
+    wraps: bool = False
+    lower: float = -math.inf
+    upper: float = math.inf
+    most_rate: float = math.inf
+    most_effort: float = math.inf
+    soft: Optional[SoftLimits] = None
+
+    def same_loops(self, other: "JointServo") -> bool:
+        """Whether it differs in its target alone."""
+        return self == replace(other, target=self.target, target_rate=self.target_rate,
+                               spline=self.spline)
+
+
+@dataclass(frozen=True)
+class SetServos(Command):
+    """Set the servos of some joint axes; those of others stay, and so do integrals of loops."""
+
+    servos: Tuple[JointServo, ...]
+
+
+@dataclass(frozen=True)
+class ReadEfforts(Command):
+    """Reply value: what servos and motors spent in the last step, N m or N, by joint row."""
+
+    rows: Tuple[int, ...]
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from .commands import (
     ConnectModels,
     DisconnectModels,
     JointMotor,
+    JointServo,
     JointWrench,
     LinkState,
     LoadModel,
@@ -23,6 +24,7 @@ from .commands import (
     PinModels,
     PlanarVelocity,
     ReadContacts,
+    ReadEfforts,
     ReadJointWrenches,
     RemoveModel,
     Restart,
@@ -32,6 +34,7 @@ from .commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
     SetWheelSlips,
     WheelSlip,
 )
@@ -54,6 +57,7 @@ class KinematicBackend:
         self.connected: Dict[str, ConnectModels] = {}
         self.motors: Dict[int, JointMotor] = {}
         self.planar: Dict[int, PlanarVelocity] = {}
+        self.servos: Dict[int, JointServo] = {}
         self.wheel_slips: Dict[int, WheelSlip] = {}
         self.joint_wrenches: Dict[Tuple[int, str], JointWrench] = {}
         self._dirty = True
@@ -71,6 +75,8 @@ class KinematicBackend:
             PinModels: self._hold,
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
             SetPlanarVelocities: self._set_planar,
+            SetServos: lambda c: self.servos.update({servo.row: servo for servo in c.servos}),
+            ReadEfforts: lambda c: (0.0,) * len(c.rows),
             SetWheelSlips: lambda c: self.wheel_slips.update(
                 {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
@@ -143,6 +149,7 @@ class KinematicBackend:
         self.timed_forces.clear()
         self.motors.clear()
         self.planar.clear()
+        self.servos.clear()
 
     def _restart(self, command: Restart) -> None:
         before = {number: self.models[number] for number, _ in command.models}

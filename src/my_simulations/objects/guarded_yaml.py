@@ -1,19 +1,17 @@
 """A YAML loader for untrusted files: plain values only, with limits of size and depth."""
 from __future__ import annotations
 
-import re
 from typing import Any, Dict, List
 
 import yaml
+
+from ..xml_characters import forbidden_character
 
 DEEPEST = 64
 MOST_VALUES = 100_000
 """Largest number of values in a document, with aliases expanded."""
 LARGEST = 8 << 20
 """Largest file in bytes."""
-
-# Characters that XML does not allow: names and paths of a list are written to XML.
-_BAD = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 class GuardedLoader(yaml.SafeLoader):
@@ -67,8 +65,10 @@ class GuardedLoader(yaml.SafeLoader):
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
         """A node's value; exceptions of conversions are reported as faults of the file."""
-        if isinstance(node, yaml.ScalarNode) and _BAD.search(node.value):
-            raise _fault("text contains a control character or an unpaired surrogate",
+        # Names and paths of a list are written to XML.
+        bad = forbidden_character(node.value) if isinstance(node, yaml.ScalarNode) else ""
+        if bad:
+            raise _fault(f"text contains the character {bad}, which an XML file cannot hold",
                          node.start_mark)
         try:
             return super().construct_object(node, deep)

@@ -6,19 +6,33 @@ thread, with the world standing still at the step they belong to.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Protocol
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence, Tuple
 
 from ..description.model import Inertial, Model
+from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
-from ..engine.commands import JointWrench
+from ..description.surroundings import SphericalCoordinates
+from ..description.transmission import Transmission
+from ..engine.commands import JointServo, JointWrench
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
-from ..sensing.api import RayFan, RayReturns
+from ..sensing.api import CameraSpec, Pictures, RayFan, RayReturns
 from .parameters import Parameters
 
 
 class PluginError(SimulationError):
     """A plugin cannot work as its element says; the message is one sentence for the user."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What a camera at `pose` in the frame of a link is to give: `outputs` of `sensing.api`."""
+
+    link: str
+    pose: Pose
+    camera: CameraSpec
+    outputs: Tuple[str, ...]
 
 
 class Link(Protocol):
@@ -54,6 +68,13 @@ class Joint(Protocol):
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor: to `rate` with `effort` at most; 0 effort turns it off."""
 
+    @property
+    def spec(self) -> JointSpec:
+        """Its description."""
+
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo of the engine, from the next step on; its `row` is filled in."""
+
 
 class Ending(Protocol):
     """Something that goes on until it is ended."""
@@ -71,6 +92,23 @@ class Publication(Protocol):
 
     def publish(self, message: Any) -> None:
         """Publish a message once the world goes on; it must not be changed any more."""
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what `make` returns; another thread calls it, in order.
+
+        For messages that take more than a millisecond to make: neither the world nor other plugins
+        wait for them. `make` must use nothing but what was handed to it.
+        """
+
+    def close(self) -> None:
+        """Take the topic off the graph."""
+
+
+class Handle(Protocol):
+    """Something that was begun, and goes on until it is closed, or the plugin ends."""
+
+    def close(self) -> None:
+        """End it."""
 
 
 class Context(Protocol):
@@ -99,6 +137,10 @@ class Context(Protocol):
     @property
     def step_size(self) -> float:
         """Of the simulation, s."""
+
+    @property
+    def step(self) -> int:
+        """The step count: how many steps were made before this moment."""
 
     def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
         """Be called at a rate in Hz of sim time, the first time one period from now.
@@ -131,8 +173,19 @@ class Context(Protocol):
     def seed(self) -> int:
         """Of what is drawn at random."""
 
+    @property
+    def magnetic_field(self) -> Vec3:
+        """Of the world, T, world axes."""
+
+    @property
+    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+        """Where the world's origin is; None where the world does not say."""
+
     def link(self, name: str) -> Link:
-        """A link of the model. Raises PluginError with the names that there are."""
+        """A link of the model; "" for the canonical one.
+
+        Raises PluginError with the names that there are.
+        """
 
     def joint(self, name: str) -> Joint:
         """A joint of the model that moves. Raises PluginError with the names that there are."""
@@ -143,6 +196,12 @@ class Context(Protocol):
     @property
     def description(self) -> Model:
         """The flattened description of the model."""
+
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """The transmissions of the model's description, else of the URDF in a parameter.
+
+        The parameter is looked for in the namespace and those above. Raises PluginError.
+        """
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench on a link from now on, instead of the one given before.
@@ -184,6 +243,9 @@ class Context(Protocol):
     def detach(self, name: str) -> bool:
         """Let go of what `attach` has joined; returns whether it held."""
 
+    def efforts(self, joints: Sequence[str]) -> List[float]:
+        """What motors and servos spent on joints in the last step, N m or N; asks the engine."""
+
     def set_joint_positions(self, positions: "dict[str, float]") -> None:
         """Move joints (rad or m) at once, at rest."""
 
@@ -208,6 +270,23 @@ class Context(Protocol):
         collides.
         """
 
+    def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
+                   stream: str = "") -> bool:
+        """Take pictures of the world as of now.
+
+        `call` gets them in the order of the views, and the sim time (ns) they show. One call of a
+        stream is on its way at a time: while the one before is not published, pictures are late.
+        The world then goes on, these are left out (False), and the user is told; a world that is
+        stepped manually waits instead. `stream` names cameras of a plugin that take turns of their
+        own.
+        """
+
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """The sensors of the model's links: (name of the link, sensor)."""
+
+    def link_names(self) -> "dict[int, str]":
+        """Scoped names of all links of the world, by the numbers that `Pictures.labels` has."""
+
     # -- topics, services, parameters ------------------------------------------------------------
 
     def use_namespace(self, namespace: str) -> None:
@@ -223,14 +302,17 @@ class Context(Protocol):
         """Offer a topic. Raises PluginError where the type's package is not installed."""
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> None:
+                  queue: int = 1) -> Handle:
         """Hear a topic. Of more messages than `queue` between two steps the oldest are lost.
 
         Raises PluginError where the type's package is not installed.
         """
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Handle:
         """Offer a service; `call` gets the request and a response to fill."""
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace, a dictionary where it has parts."""
 
     def search_parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace, or of the next one above that has it (`tf_prefix`)."""

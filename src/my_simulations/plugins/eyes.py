@@ -1,31 +1,33 @@
-"""Looking at the world for plugins: the sensing process, told of the models that there are."""
+"""Looking at the world for plugins: the sensing process, told of what there is."""
 from __future__ import annotations
 
 from concurrent.futures import Future
-from typing import TYPE_CHECKING, Callable, Dict, Optional
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from ..errors import Issue, warning
-from ..geometry import Pose
 from ..sensing.api import (
     COLLISIONS,
     VISUALS,
     AddBody,
-    Body,
     CastRays,
     Mount,
+    Pictures,
     RayFan,
     RayReturns,
     RemoveBody,
+    RenderCamera,
+    SetLights,
 )
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
+from .context import View
 
 if TYPE_CHECKING:
     from ..sensing.process import SensingProcess
 
 
 class Eyes:
-    """Casts rays; nothing is started before the first one. For one thread.
+    """Casts rays and takes pictures; nothing is started before the first. For one thread.
 
     Args:
         simulator: the world that is looked at.
@@ -35,18 +37,25 @@ class Eyes:
     def __init__(self, simulator: Simulator, log: Callable[[Issue], None]) -> None:
         self._simulator, self._log = simulator, log
         self._process: "Optional[SensingProcess]" = None
+        self._materials: Any = None
         self._known: Dict[str, Entity] = {}
         self._revision = -1
+        self._surroundings: Tuple[Any, ...] = ()
 
-    def cast(self, row: int, mount: Pose, fan: RayFan, visuals: bool) -> "Future[RayReturns]":
-        """Ranges as of now, of a sensor at `mount` in the frame of the link of a row.
-
-        `visuals`: rays see what is drawn, else what collides.
-        """
+    def cast(self, mount: Mount, fan: RayFan, visuals: bool) -> "Future[RayReturns]":
+        """Ranges as of now. `visuals`: rays see what is drawn, else what collides."""
         process = self._running()
-        rows = self._simulator.feed.states()[2]
-        return process.cast(CastRays(
-            Mount(row, mount), fan, VISUALS if visuals else COLLISIONS, rows))
+        return process.cast(CastRays(mount, fan, VISUALS if visuals else COLLISIONS, self._now()))
+
+    def render(self, views: Sequence[Tuple[Mount, View]]) -> "List[Future[Pictures]]":
+        """Pictures as of now, one of each view."""
+        process, now = self._running(), self._now()
+        self._tell_surroundings()
+        return [process.render(RenderCamera(mount, view.camera, view.outputs, now))
+                for mount, view in views]
+
+    def _now(self) -> bytes:
+        return self._simulator.feed.states()[2]
 
     def close(self) -> None:
         """End the process, if there is one."""
@@ -56,8 +65,13 @@ class Eyes:
 
     def _running(self) -> "SensingProcess":
         if self._process is None:
+            from ..appearance.materials import Materials
+            from ..appearance.textures import TextureFiles
+            from ..resources.resolver import Resolver
             from ..sensing.process import SensingProcess
 
+            resolver = Resolver.from_environment()
+            self._materials = Materials(resolver, TextureFiles(resolver))
             process = self._process = SensingProcess()
             process.on_trouble(lambda text: self._log(warning("sensing", text)))
         revision, entities = self._simulator.models.inventory()
@@ -67,11 +81,23 @@ class Eyes:
         return self._process
 
     def _tell(self, present: Dict[str, Entity]) -> None:
+        from ..sensing.scene import body
+
         assert self._process is not None
         change = self._process.change
         for name in [name for name in self._known if name not in present]:
             change(RemoveBody(name))
         for name, entity in present.items():
             if self._known.get(name) is not entity:
-                change(AddBody(Body(name, entity.model, entity.first_link_row)))
+                change(AddBody(body(name, entity.model, entity.first_link_row, self._materials)))
         self._known = present
+
+    def _tell_surroundings(self) -> None:
+        """Lights and the scene, where others were set."""
+        assert self._process is not None
+        world = self._simulator.world
+        lights, scene = world.lights, world.scene
+        if not self._surroundings or self._surroundings[0] is not lights \
+                or self._surroundings[1] is not scene:
+            self._surroundings = (lights, scene)
+            self._process.change(SetLights(list(lights), scene))

@@ -1,6 +1,7 @@
 """What plugins need of ROS: the interface that the front end of ROS satisfies."""
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Callable, List, Protocol, Tuple
 
 from ..errors import SimulationError
@@ -8,6 +9,29 @@ from ..geometry import Pose
 
 TransformOf = Tuple[str, str, Pose]
 """Parent frame, child frame, pose of the child in the parent."""
+
+
+@dataclass(frozen=True)
+class TopicUse:
+    """A topic that a plugin offers or hears.
+
+    Attributes:
+        name: as the plugin has it, before remapping.
+        kind: type, such as `sensor_msgs/LaserScan`.
+        heard: the plugin hears it; else it offers it.
+        model: the plugin's model.
+        link: the link that carries the plugin's sensor; "" for a plugin of the model.
+        sensor: the sensor's type; "" likewise.
+        pose: where in that link the sensor is.
+    """
+
+    name: str
+    kind: str
+    heard: bool
+    model: str
+    link: str
+    sensor: str
+    pose: Pose
 
 
 class MissingTypeError(SimulationError):
@@ -55,6 +79,9 @@ class Graph(Protocol):
 
         Raises MissingTypeError.
         """
+
+    def parameter(self, namespace: str, name: str, default: Any) -> Any:
+        """A parameter of a namespace."""
 
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
         """A parameter of a namespace or of the next one above that has it."""

@@ -13,7 +13,7 @@ from collections import deque
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..description.model import WORLD, Model
-from ..engine.commands import JointMotor, PlanarVelocity
+from ..engine.commands import JointMotor, JointServo, PlanarVelocity
 from ..errors import CommandError, Issue, Severity, warning
 from ..geometry import IDENTITY
 from ..simulator.appointments import Consumer, Moment
@@ -22,7 +22,8 @@ from ..simulator.simulator import Simulator
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
-from .graph import Graph
+from .graph import Graph, TopicUse
+from .message_maker import Later, MessageMaker
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import Found, Running, plugins_of
 from .simulated_context import SimulatedContext
@@ -50,6 +51,7 @@ class PluginHost:
                  log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._eyes = Eyes(simulator, log)
+        self._messages = MessageMaker()
         self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
         self._told: Dict[str, bool] = {}
         self._revision = self._followed = -1
@@ -97,6 +99,11 @@ class PluginHost:
         if self._thread.is_alive():
             self._thread.join(_END_S)
 
+    def topic_uses(self) -> List[TopicUse]:
+        """The topics of all plugins; from any thread."""
+        return [use for _, all_running in list(self._models.values())
+                for running in list(all_running) for use in running.context.topic_uses()]
+
     # -- the thread --------------------------------------------------------------------------------
 
     def _run(self) -> None:
@@ -120,6 +127,7 @@ class PluginHost:
         self._stop.set()
         self._watch.stop()
         self._eyes.close()
+        self._messages.stop()
         if self._consumer is not None:
             self._consumer.leave()
             self._consumer = None
@@ -185,17 +193,20 @@ class PluginHost:
 
     def _ordered(self) -> bool:
         motors: List[JointMotor] = []
+        servos: List[JointServo] = []
         planar: List[PlanarVelocity] = []
         contexts = [running.context for _, all_running in self._models.values()
                     for running in all_running]
         for context in contexts:
             motors += context.motors.values()
+            servos += context.servos.values()
             if context.planar is not None:
                 planar.append(context.planar)
-        if (motors or planar) and not self._simulator.drives.set(motors, planar, self._followed):
+        if (motors or servos or planar) and not self._simulator.drives.set(
+                motors, planar, self._followed, servos):
             return False
         for context in contexts:
-            context.motors, context.planar = {}, None
+            context.motors, context.servos, context.planar = {}, {}, None
         return self._pushed([context for context in contexts if context.pushes])
 
     def _pushed(self, contexts: List[SimulatedContext]) -> bool:
@@ -218,20 +229,22 @@ class PluginHost:
 
     def _go_on(self, moment: Moment) -> None:
         """Let the engine run to the next appointment of anybody."""
-        steps = [appointment.next for running in self._all()
-                 for appointment in running.context.appointments]
+        steps = self._next_steps()
         if steps and self._consumer is None:
             self._consumer = self._simulator.appointments.join()
             moment = self._consumer.now()
             self._make_anew(moment)
-            steps = [appointment.next for running in self._all()
-                     for appointment in running.context.appointments]
+            steps = self._next_steps()
         if self._consumer is not None and steps:
             self._consumer.allow(moment, min(steps))
         elif self._consumer is not None:
             self._consumer.leave()
             self._consumer = None
         self._moment = moment
+
+    def _next_steps(self) -> List[int]:
+        return [appointment.next for running in self._all()
+                for appointment in running.context.appointments]
 
     def _make_anew(self, moment: Moment) -> None:
         for running in self._all():
@@ -250,11 +263,24 @@ class PluginHost:
                 context = running.context
                 outbox, context.outbox = context.outbox, []
                 for topic, message in outbox:
-                    self._guarded(running, topic.send, message)
+                    if isinstance(message, Later):
+                        self._messages.put(topic, message, self._failing(running))
+                    else:
+                        self._guarded(running, topic.send, message)
                 transforms += context.transforms
                 context.transforms = []
         if transforms:
             self._graph.send_transforms(transforms, moment.sim_ns)
+
+    def _failing(self, running: Running) -> Callable[[Exception], None]:
+        """What tells the plugins' thread of a fault in another one."""
+        def fail(fault: Exception) -> None:
+            def again() -> None:
+                raise fault
+
+            running.context.inbox.append(again)
+            self.wake()
+        return fail
 
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
@@ -268,6 +294,8 @@ class PluginHost:
         calls: List[str] = []
         if before is not None and moment.clock_sets != before.clock_sets:
             self._make_anew(moment)
+            for running in self._all():
+                running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:
                 calls.append("reset")
             elif moment.sim_ns < before.sim_ns:

@@ -27,6 +27,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_force_based_move.so": "drive.force_based_move:ForceBasedMove",
     "librobotnik_force_based_move.so": "drive.force_based_move:ForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
+    "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
     "libgazebo_ros_force.so": "state.force:Force",
     "libgazebo_ros_joint_pose_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
@@ -44,12 +45,32 @@ BUILT_IN: Mapping[str, str] = {
     "libBuoyancyPlugin.so": "world.buoyancy:Buoyancy",
     "libgazebo_ros_laser.so": "sensors.laser:Laser",
     "libgazebo_ros_gpu_laser.so": "sensors.laser:Laser",
+    "libgazebo_ros_block_laser.so": "sensors.laser_points:BlockLaser",
+    "libgazebo_ros_velodyne_laser.so": "sensors.laser_points:Velodyne",
+    "libgazebo_ros_velodyne_gpu_laser.so": "sensors.laser_points:Velodyne",
     "libgazebo_ros_range.so": "sensors.range:Range",
     "libgazebo_ros_imu.so": "sensors.imu:ModelImu",
     "libgazebo_ros_imu_sensor.so": "sensors.imu:SensorImu",
+    "libhector_gazebo_ros_imu.so": "sensors.hector_imu:HectorImu",
+    "libhector_gazebo_ros_gps.so": "sensors.hector:Gps",
+    "libhector_gazebo_ros_magnetic.so": "sensors.hector:Magnetic",
+    "libhector_gazebo_ros_baro.so": "sensors.hector:Baro",
+    "libhector_gazebo_ros_sonar.so": "sensors.hector:Sonar",
     "libgazebo_ros_bumper.so": "sensors.bumper:Bumper",
+    "libgazebo_ros_camera.so": "sensors.camera:Camera",
+    "libgazebo_ros_triggered_camera.so": "sensors.camera:TriggeredCamera",
+    "libgazebo_ros_multicamera.so": "sensors.camera:MultiCamera",
+    "libgazebo_ros_prosilica.so": "sensors.camera:Camera",
+    "libgazebo_ros_depth_camera.so": "sensors.depth_camera:DepthCamera",
+    "librealsense_gazebo_plugin.so": "sensors.realsense:RealSense",
+    "libgazebo_ros_realsense.so": "sensors.realsense:RealSense",
+    "libgazebo_ros_openni_kinect.so": "sensors.depth_camera:OpenniKinect",
+    "libmy_simulations_segmentation_camera.so": "sensors.segmentation:SegmentationCamera",
+    "libmy_simulations_gps.so": "sensors.environment:GpsSensor",
+    "libmy_simulations_magnetometer.so": "sensors.environment:MagnetometerSensor",
+    "libmy_simulations_altimeter.so": "sensors.environment:AltimeterSensor",
 }
-"""Classes in this package, by library."""
+"""Classes in this package, by library. Those called libmy_simulations are not in Gazebo."""
 
 PROVIDED = ("libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so",
             "libgazebo_ros_init.so", "libgazebo_ros_factory.so",
@@ -91,6 +112,12 @@ class PluginRegistry:
     def is_provided(self, filename: str) -> bool:
         """Whether the simulator does by itself what the library does."""
         return library_name(filename) in PROVIDED
+
+    def knows(self, filename: str) -> bool:
+        """Whether somebody does what the library does; nothing is imported."""
+        name = library_name(filename)
+        return (name in PROVIDED or name in self._extra or name in BUILT_IN
+                or name in self._of_packages())
 
     def find(self, filename: str) -> Type[Plugin]:
         """The class for a library.

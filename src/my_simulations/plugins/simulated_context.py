@@ -3,31 +3,32 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from concurrent.futures import Future
-from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import replace
-from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Inertial, Mimic, Model
 from ..description.model import Joint as JointSpec
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
-from ..engine.commands import JointMotor, JointWrench, PlanarVelocity, WheelSlip
-from ..errors import CommandError, Issue, Severity
+from ..description.surroundings import SphericalCoordinates
+from ..description.transmission import Transmission
+from ..engine.commands import JointMotor, JointServo, JointWrench, PlanarVelocity, WheelSlip
+from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
-from ..sensing.api import RayFan, RayReturns, SensingError
+from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
 from ..simulator.wrenches import first_step
-from .context import PluginError
+from .context import PluginError, View
 from .eyes import Eyes
-from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .graph import Closing, Graph, MissingTypeError, Topic, TopicUse, TransformOf
+from .message_maker import Later
 from .parameters import Parameters
+from .sensing_requests import SensingRequests
 
 Report = Callable[[Issue], None]
 
-_SCAN_S = 10.0  # of wall time, for rays
 _LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
 
 
@@ -89,6 +90,8 @@ class SimulatedJoint:
         self._context = context
         self.row = -1
         self.motor: Optional[JointMotor] = None
+        self.servo: Optional[JointServo] = None
+        self.spec = spec
 
     @property
     def position(self) -> float:
@@ -104,6 +107,11 @@ class SimulatedJoint:
         """Turn the motor."""
         self.motor = JointMotor(self.row, rate, effort)
         self._context.motors[self.row] = self.motor
+
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo."""
+        self.servo = replace(servo, row=self.row)
+        self._context.servos[self.row] = self.servo
 
 
 class Offer:
@@ -121,16 +129,42 @@ class Offer:
         """Publish."""
         self._context.outbox.append((self._topic, message))
 
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what another thread makes."""
+        self._context.outbox.append((self._topic, Later(make, self._context.sensing.unsent)))
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        waiting = [one for one in self._context.outbox if one[0] is self._topic]
+        self._context.outbox = [one for one in self._context.outbox if one[0] is not self._topic]
+        for _, message in waiting:
+            self._topic.send(message.make() if isinstance(message, Later) else message)
+        self._context.close_one(self._topic)
+
+
+class OpenEnd:
+    """A subscription or service of a plugin."""
+
+    def __init__(self, context: "SimulatedContext", end: Closing) -> None:
+        self._context, self._end = context, end
+        context.opened.append(end)
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        self._context.close_one(self._end)
+
 
 class SimulatedContext:
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
 
     Attributes:
         appointments: when the plugin wants to be called.
-        motors, planar, pushes: what it has ordered since they were last taken.
+        motors, servos, planar, pushes: what it has ordered since they were last taken.
         push_ids: the wrenches that act now, by link.
         outbox, transforms: what it has published since they were last taken.
         inbox: what has come for it: functions to be called.
+        sensing: what it has asked of the sensing process.
+        opened: what it has on the graph.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
@@ -147,6 +181,7 @@ class SimulatedContext:
         self.moment: Optional[Moment] = None
         self.appointments: List[Appointment] = []
         self.motors: Dict[int, JointMotor] = {}
+        self.servos: Dict[int, JointServo] = {}
         self.planar: Optional[PlanarVelocity] = None
         self.level: Optional[PlanarVelocity] = None
         self.outbox: List[Tuple[Topic, Any]] = []
@@ -154,17 +189,15 @@ class SimulatedContext:
         self.inbox: Deque[Callable[[], None]] = deque()
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
-        self._scan_fault = ""
         self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
         self.push_ids: Dict[str, int] = {}
         self._closed = threading.Event()
         self._attached: List[str] = []
         self._held = False
-        self._eyes = eyes
-        self._scan: "Optional[Tuple[Future[RayReturns], Callable[[RayReturns, int], None], int]]" \
-            = None
+        self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
         self._namespace = ""
-        self._open: List[Closing] = []
+        self.opened: List[Closing] = []
+        self._topics: List[Tuple[str, str, bool]] = []
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -173,27 +206,38 @@ class SimulatedContext:
         self.entity, self.model = entity, entity.model.name
         for link in self._links.values():
             self._find(link)
-        self.motors = {}
+        self.motors, self.servos = {}, {}
         for joint in self._joints.values():
             joint.row = self._axis_row(joint.spec_name)
             if joint.motor is not None:
                 joint.drive(joint.motor.rate, joint.motor.effort)
+            if joint.servo is not None:
+                joint.steer(joint.servo)
         if self.level is not None:
             self.drive_level(self.level.x, self.level.y, self.level.yaw_rate)
 
     def close(self) -> None:
         """Take everything off the graph, and switch off what was driven."""
-        for one in self._open:
+        for one in self.opened:
             one.close()
-        self._open.clear()
+        self.opened.clear()
+        self._topics.clear()
         self.appointments.clear()
         self._closed.set()
+
+    def close_one(self, end: Closing) -> None:
+        """Take one thing off the graph."""
+        if end in self.opened:
+            self.opened.remove(end)
+            end.close()
 
     def stop(self) -> None:
         """Switch off what the plugin drives, in a world that still has the model."""
         for joint in self._joints.values():
             if joint.motor is not None:
                 joint.drive(0.0, 0.0)
+            if joint.servo is not None:
+                joint.steer(JointServo(joint.row, ""))
         if self.level is not None:
             self.simulator.drives.stop(self.entity)
         if self._held:
@@ -220,6 +264,11 @@ class SimulatedContext:
     def step_size(self) -> float:
         """Of the simulation, s."""
         return self.simulator.physics.settings.max_step_size
+
+    @property
+    def step(self) -> int:
+        """The step count."""
+        return self.moment.step if self.moment is not None else self.simulator.clock.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
         """Be called at a rate."""
@@ -261,8 +310,20 @@ class SimulatedContext:
         """Of what is drawn at random."""
         return self.simulator.world.seed
 
+    @property
+    def magnetic_field(self) -> Vec3:
+        """T, world axes."""
+        return self.simulator.world.magnetic_field
+
+    @property
+    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+        """Where the world's origin is."""
+        return self.simulator.world.spherical_coordinates
+
     def link(self, name: str) -> SimulatedLink:
         """A link of the model."""
+        if not name and self.entity.link_names:
+            name = self.entity.link_names[self.entity.canonical_row - self.entity.first_link_row]
         if name not in self._links:
             link = SimulatedLink(self, name)
             self._find(link)
@@ -315,6 +376,19 @@ class SimulatedContext:
     def description(self) -> Model:
         """The flattened description."""
         return self.entity.model
+
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """Those of the description, else of a parameter."""
+        own = self.entity.model.transmissions
+        text = "" if own else self.search_parameter(parameter, "")
+        if not isinstance(text, str) or not text.strip():
+            return own
+        from ..formats.urdf.transmission import transmissions_of
+
+        try:
+            return transmissions_of(text, f"parameter {parameter}")
+        except InputError as fault:
+            raise PluginError(str(fault)) from fault
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
@@ -382,6 +456,10 @@ class SimulatedContext:
         self._attached = [one for one in self._attached if one != name]
         return self.simulator.models.detach(name)
 
+    def efforts(self, joints: Sequence[str]) -> List[float]:
+        """What was spent on joints in the last step."""
+        return self.simulator.drives.efforts([self.joint(name).row for name in joints])
+
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Move joints at once."""
         self.simulator.joints.set_positions(
@@ -390,29 +468,24 @@ class SimulatedContext:
 
     def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
         """Cast rays from the plugin's sensor."""
-        self._end_scan()
         assert self.sensor is not None
-        future = self._eyes.cast(self._link_row(self.sensor_link), self.sensor.pose, fan, visuals)
-        self._scan = (future, call, self.now_ns)
-        future.add_done_callback(self._scanned)
+        self.sensing.scan(Mount(self._link_row(self.sensor_link), self.sensor.pose), fan, visuals,
+                          call, self.now_ns)
 
-    def _scanned(self, future: "Future[RayReturns]") -> None:
-        self.inbox.append(lambda: self._end_scan(future))
-        self._wake()
+    def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
+                   stream: str = "") -> bool:
+        """Take pictures."""
+        mounted = [(Mount(self._link_row(view.link), view.pose), view) for view in views]
+        return self.sensing.photograph(mounted, call, self.now_ns, self.simulator.clock.by_hand,
+                                       stream)
 
-    def _end_scan(self, only: "Optional[Future[RayReturns]]" = None) -> None:
-        """Wait for the scan on its way, if there is one, and hand it over."""
-        if self._scan is None or only not in (None, self._scan[0]):
-            return
-        (future, call, ns), self._scan = self._scan, None
-        try:
-            found = future.result(_SCAN_S)
-        except (SensingError, FutureTimeoutError) as fault:
-            if str(fault) != self._scan_fault:
-                self._scan_fault = str(fault)
-                self.warn(f"a scan is left out: {fault or 'it took too long'}")
-            return
-        call(found, ns)
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """The sensors of the model's links."""
+        return [(link.name, sensor) for link in self.entity.model.links for sensor in link.sensors]
+
+    def link_names(self) -> Dict[int, str]:
+        """Scoped names by row."""
+        return self.simulator.states.link_names()
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""
@@ -446,10 +519,12 @@ class SimulatedContext:
             topic = self._graph.publish(self._name(name), kind, queue, latch)
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
-        self._open.append(topic)
+        self.opened.append(topic)
+        self._topics.append((self._name(name), kind, False))
         return Offer(self, topic)
 
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int = 1) -> "OpenEnd":
         """Hear a topic."""
         waiting: Deque[Any] = deque(maxlen=max(1, queue))
 
@@ -463,11 +538,24 @@ class SimulatedContext:
             self._wake()
 
         try:
-            self._open.append(self._graph.subscribe(self._name(name), kind, arrived, queue))
+            heard = OpenEnd(self, self._graph.subscribe(self._name(name), kind, arrived, queue))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
+        self._topics.append((self._name(name), kind, True))
+        return heard
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+    def topic_uses(self) -> List[TopicUse]:
+        """The topics it offers and hears; from any thread."""
+        link, pose = "", IDENTITY
+        if self.sensor is not None:
+            link, pose = self._scope + self.sensor_link, self.sensor.pose
+            if link not in self.entity.link_names:
+                link = self.sensor_link
+        kind = self.sensor.type if self.sensor is not None else ""
+        return [TopicUse(name, message, heard, self.model, link, kind, pose)
+                for name, message, heard in list(self._topics)]
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> "OpenEnd":
         """Offer a service."""
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
@@ -493,9 +581,13 @@ class SimulatedContext:
                 raise PluginError(fault[0])
 
         try:
-            self._open.append(self._graph.serve(self._name(name), kind, asked))
+            return OpenEnd(self, self._graph.serve(self._name(name), kind, asked))
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace."""
+        return self._graph.parameter(self._namespace, name, default)
 
     def search_parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace or above."""

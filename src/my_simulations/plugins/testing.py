@@ -9,12 +9,16 @@ assert context.published["odom"][-1].pose.pose.position.x == 0.5
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
-from ..description.model import Inertial, Model
+from ..description.model import Inertial, JointAxis, Model
+from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
-from ..engine.commands import JointWrench
+from ..description.surroundings import SphericalCoordinates
+from ..description.transmission import Transmission
+from ..engine.commands import JointServo, JointWrench
 from ..engine.ring import Clock
+from ..engine.servo_law import FOLLOW, ServoLaw
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
 from ..simulator.appointments import Rate
 from .context import PluginError
@@ -45,28 +49,90 @@ class FakeLink:
 
 
 class FakeJoint:
-    """A joint that turns as its motor says, without delay.
+    """A joint that turns as its motor says, without delay; a servo's effort turns 1 kg m^2.
 
     Attributes:
         motor: rate and effort that it was driven with; None before.
+        servo: what it was steered with; None before.
+        spec: its description.
+        effort: what the servo spent in the last step.
+        stuck: something holds it.
     """
 
     def __init__(self, name: str) -> None:
         self.name, self.parent, self.child = name, "base", name
         self.position = self.velocity = 0.0
         self.motor: Optional[Tuple[float, float]] = None
+        self.servo: Optional[JointServo] = None
+        self.spec = JointSpec(name, "revolute", "base", name, axis=JointAxis())
+        self.effort = 0.0
+        self.stuck = False
+        self._law: Optional[ServoLaw] = None
 
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor."""
         self.motor = (rate, effort)
 
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo."""
+        before, self.servo = self.servo, servo
+        if not servo.drive:
+            self._law = None
+        elif self._law is not None and before is not None and before.same_loops(servo):
+            self._law.change(servo)
+        else:
+            self._law = None
+
+    def step(self, step: int, dt: float) -> None:
+        """Turn for one step."""
+        if self.stuck:
+            self.velocity = 0.0
+            return
+        if self.motor is not None and self.motor[1] > 0.0:
+            self.velocity = self.motor[0]
+        elif self.servo is not None and self.servo.drive:
+            self._law = self._law or ServoLaw(self.servo, dt)
+            self._follow(self._law, step, dt)
+        else:
+            return
+        self.position += self.velocity * dt
+
+    def _follow(self, law: ServoLaw, step: int, dt: float) -> None:
+        servo = law.servo
+        if not law.steady:
+            asked = law.advance(self.position, self.velocity, step)
+            self.effort = asked if law.gives_effort else 0.0
+            self.velocity = self.velocity + asked * dt if law.gives_effort else asked
+        elif servo.drive == "velocity":
+            self.velocity = max(-servo.most_rate, min(servo.most_rate, servo.target))
+        elif servo.drive == "position":
+            way = max(servo.lower, min(servo.upper, servo.target)) - self.position
+            self.velocity = max(-servo.most_rate, min(servo.most_rate, FOLLOW * way / dt))
+
 
 class _Topic:
-    def __init__(self, messages: List[Any]) -> None:
-        self._messages, self.wanted = messages, True
+    def __init__(self, messages: List[Any], wanted: Callable[[], bool]) -> None:
+        self._messages, self._wanted = messages, wanted
+
+    @property
+    def wanted(self) -> bool:
+        return self._wanted()
 
     def publish(self, message: Any) -> None:
         self._messages.append(message)
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        self._messages.append(make())
+
+    def close(self) -> None:
+        """Nothing: what was published can still be looked at."""
+
+
+class FakeHandle:
+    """Something that a test can see closed."""
+
+    def __init__(self, close: Callable[[], Any] = lambda: None) -> None:
+        self.close = close
 
 
 class _Call:
@@ -100,6 +166,9 @@ class FakeContext:
         pushes: the last wrench of each link.
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
+        pictures: what each view sees; `views`: the views of each moment. `late`: nothing is ready.
+        unwanted: topics that nobody listens to.
+        model_sensors, labels: what `sensors` and `link_names` give.
         touching: the contacts.
         wrenches: what joints transmit.
         held: whether the model is held.
@@ -126,6 +195,8 @@ class FakeContext:
         self.pose: Pose = IDENTITY
         self.twist: Twist = STILL
         self.gravity: Vec3 = (0.0, 0.0, -9.8)
+        self.magnetic_field: Vec3 = (0.0, 0.0, 0.0)
+        self.place_on_earth: Optional[SphericalCoordinates] = None
         self.seed = 0
         self.step_size, self.step = step_size, 0
         self.published: Dict[str, List[Any]] = {}
@@ -142,6 +213,12 @@ class FakeContext:
         self.ros_parameters: Dict[str, Any] = {}
         self.returns: Any = None
         self.fans: List[Any] = []
+        self.pictures: List[Any] = []
+        self.views: List[Any] = []
+        self.late = False
+        self.unwanted: Set[str] = set()
+        self.model_sensors: List[Tuple[str, Sensor]] = []
+        self.labels: Dict[int, str] = {}
         self._namespace = ""
         self._heard: Dict[str, Callable[[Any], None]] = {}
         self.services: Dict[str, Callable[[Any, Any], None]] = {}
@@ -154,9 +231,7 @@ class FakeContext:
         clock = Clock(0, 0, round(self.step_size * 1e12))
         for _ in range(round(seconds / self.step_size)):
             for joint in self.joints.values():
-                if joint.motor is not None and joint.motor[1] > 0.0:
-                    joint.velocity = joint.motor[0]
-                    joint.position += joint.velocity * self.step_size
+                joint.step(self.step, self.step_size)
             self.step += 1
             for one in list(self._calls):
                 if one in self._calls and one.is_due(self.step, self.now_ns, clock):
@@ -185,6 +260,7 @@ class FakeContext:
 
     def link(self, name: str) -> FakeLink:
         """A link."""
+        name = name or "base"
         if self._closed_links and name not in self.links:
             raise PluginError(f"model '{self.model}' has no link '{name}'")
         return self.links.setdefault(name, FakeLink(name))
@@ -194,6 +270,10 @@ class FakeContext:
         if name not in self.joints:
             raise PluginError(f"model '{self.model}' has no joint '{name}'")
         return self.joints[name]
+
+    def transmissions(self, parameter: str) -> List[Transmission]:
+        """Those of the description."""
+        return self.description.transmissions
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Noted."""
@@ -236,6 +316,10 @@ class FakeContext:
         """Noted."""
         return self.attached.pop(name, None) is not None
 
+    def efforts(self, joints: Sequence[str]) -> List[float]:
+        """What was spent on joints."""
+        return [self.joint(name).effort for name in joints]
+
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Joints jump."""
         for name, value in positions.items():
@@ -245,6 +329,22 @@ class FakeContext:
         """Rays meet what a test says (`returns`)."""
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
+
+    def photograph(self, views: Any, call: Callable[[Any, int], None], stream: str = "") -> bool:
+        """Cameras see what a test says (`pictures`)."""
+        if self.late:
+            return False
+        self.views.append(list(views))
+        call(self.pictures[:len(views)], self.now_ns)
+        return True
+
+    def sensors(self) -> List[Tuple[str, Sensor]]:
+        """What a test says."""
+        return self.model_sensors
+
+    def link_names(self) -> Dict[int, str]:
+        """What a test says."""
+        return self.labels
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
         """What a test says."""
@@ -271,15 +371,28 @@ class FakeContext:
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
         """Offer a topic."""
-        return _Topic(self.published.setdefault(self._name(name), []))
+        name = self._name(name)
+        return _Topic(self.published.setdefault(name, []), lambda: name not in self.unwanted)
 
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int = 1) -> None:
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int = 1) -> "FakeHandle":
         """Hear a topic."""
         self._heard[self._name(name)] = call
+        return FakeHandle(lambda: self._heard.pop(self._name(name)))
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> "FakeHandle":
         """Offer a service."""
         self.services[self._name(name)] = call
+        return FakeHandle(lambda: self.services.pop(self._name(name)))
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """What a test says, by the name with its namespace, or of parts of dictionaries."""
+        found: Any = self.ros_parameters
+        for part in self._name(name).strip("/").split("/"):
+            if not isinstance(found, dict) or part not in found:
+                return default
+            found = found[part]
+        return found
 
     def search_parameter(self, name: str, default: Any) -> Any:
         """What a test says."""

@@ -66,6 +66,16 @@ class PackageIndex:
         return self._rospack
 
 
+def is_in_workspace(path: str) -> bool:
+    """Whether a file lies, links followed, below an entry of ROS_PACKAGE_PATH: among what the user
+    has chosen to work with.
+    """
+    real = os.path.realpath(path)
+    entries = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
+    return any(real.startswith(os.path.realpath(entry).rstrip(os.sep) + os.sep)
+               for entry in entries if entry)
+
+
 def package_name(folder: str) -> str:
     """The `<name>` in a folder's package.xml; "" if there is none."""
     try:

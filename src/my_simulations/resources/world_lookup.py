@@ -12,9 +12,9 @@ ENDINGS = (".world", ".sdf")
 """File extensions of worlds."""
 
 SHIPPED = (
-    "empty_world.world", "lab_course.world", "lab_room.world", "worlds/elevator_ros.world",
-    "worlds/empty.world", "worlds/gazebo_ros_range.world", "worlds/mud.world",
-    "worlds/rubble.world", "worlds/shapes.world", "worlds/willowgarage.world",
+    "empty_world.world", "exercises.world", "lab_course.world", "lab_room.world",
+    "worlds/elevator_ros.world", "worlds/empty.world", "worlds/gazebo_ros_range.world",
+    "worlds/mud.world", "worlds/rubble.world", "worlds/shapes.world", "worlds/willowgarage.world",
 )
 """The worlds of this package, in its folder `world`; all other files there are the user's."""
 

@@ -11,6 +11,7 @@ import rospy
 from rospy.exceptions import TransportException, TransportTerminated
 
 from ..errors import CommandError, InputError
+from ..xml_characters import check_characters
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
     def answer(request: Any) -> Any:
         response = response_class()
         try:
+            check_texts(request)
             text = endpoint.handler(request, response)
             succeeded = True
         except (CommandError, InputError) as fault:
@@ -61,6 +63,25 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
         return response
 
     return answer
+
+
+def check_texts(message: Any, path: str = "") -> None:
+    """Refuse texts of a request that no world file could hold: names stay in the world.
+
+    Documents are left to their reader, which knows the line.
+
+    Raises:
+        CommandError: with field and character.
+    """
+    for name, kind in zip(message.__slots__, message._slot_types):
+        value, field = getattr(message, name), f"{path}{name}"
+        if kind == "string" and not name.endswith("_xml"):
+            check_characters(value, field)
+        elif kind.startswith("string["):
+            for n, text in enumerate(value):
+                check_characters(text, f"{field}[{n}]")
+        elif "/" in kind and not kind.endswith("]"):
+            check_texts(value, f"{field}.")
 
 
 class LastingService(rospy.Service):

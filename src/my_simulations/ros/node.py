@@ -44,6 +44,7 @@ class Node:
         """
         self._simulator = simulator
         self._clock = clock
+        self._master_uri = master_uri
         self._resolver = resolver
         self._open_editor = open_editor
         self._launch = launch or Launch.of(())
@@ -59,6 +60,16 @@ class Node:
         self._announce_editor = announce_editor
         self._membership = Membership(master_uri, rospy.get_name(),
                                       self._set_parameters) if master_uri else None
+
+    def topic_graph(self) -> Optional[Any]:
+        """The ROS topics, for the world editor; None without `~enable_ros_network`."""
+        if not self._network:
+            return None
+        from .lifecycle import master_api
+        from .plugins.topic_graph import TopicGraph
+
+        return TopicGraph(self._plugins.topic_uses, lambda method: master_api.call(
+            self._master_uri, method, rospy.get_name()))
 
     def advertise(self) -> None:
         """Advertise topics and services, and set parameters."""

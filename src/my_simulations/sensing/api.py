@@ -127,7 +127,8 @@ class CameraSpec:
         width, height: pixels.
         hfov: rad, the whole angle.
         near, far: metres along +x; what lies outside is not drawn.
-        samples: of a pixel, for smooth edges of RGB: 1 or 4.
+        samples: of a pixel, for smooth edges of RGB: 1 or 4; 0 for 4 where a graphics card draws,
+            else 1.
         distortion: of RGB, depth and labels alike; None for an ideal lens.
         shadows: False leaves out those the world asks for.
     """

@@ -1,6 +1,7 @@
 """Poses of many links at once, as NumPy arrays."""
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Union
 
 import numpy as np
@@ -16,24 +17,40 @@ def rows_of(raw: Union[bytes, memoryview]) -> np.ndarray:
     return np.frombuffer(raw, dtype=np.float64).reshape(-1, LINK_WIDTH)[:, :POSE_WIDTH].copy()
 
 
+def _rotation_table() -> np.ndarray:
+    """(16, 9): a rotation matrix less identity, row by row, of the products x x, x y, ... w w."""
+    x, y, z, w = range(4)
+    table = np.zeros((4, 4, 3, 3))
+    for at, terms in {
+            (0, 0): ((y, y, -2), (z, z, -2)), (0, 1): ((x, y, 2), (z, w, -2)),
+            (0, 2): ((x, z, 2), (y, w, 2)), (1, 0): ((x, y, 2), (z, w, 2)),
+            (1, 1): ((x, x, -2), (z, z, -2)), (1, 2): ((y, z, 2), (x, w, -2)),
+            (2, 0): ((x, z, 2), (y, w, -2)), (2, 1): ((y, z, 2), (x, w, 2)),
+            (2, 2): ((x, x, -2), (y, y, -2))}.items():
+        for one, other, factor in terms:
+            table[(one, other, *at)] = factor
+    return table.reshape(16, 9)
+
+
+_ROTATION = _rotation_table()
+_STILL = np.eye(3)
+
+
 def matrices(poses: np.ndarray) -> np.ndarray:
     """(n, 7) poses as (n, 4, 4) float64 matrices, parent from child."""
-    x, y, z, w = poses[:, 3:].T
-    found = np.zeros((len(poses), 4, 4))
-    found[:, 0, 0] = 1 - 2 * (y * y + z * z)
-    found[:, 0, 1] = 2 * (x * y - z * w)
-    found[:, 0, 2] = 2 * (x * z + y * w)
-    found[:, 1, 0] = 2 * (x * y + z * w)
-    found[:, 1, 1] = 1 - 2 * (x * x + z * z)
-    found[:, 1, 2] = 2 * (y * z - x * w)
-    found[:, 2, 0] = 2 * (x * z - y * w)
-    found[:, 2, 1] = 2 * (y * z + x * w)
-    found[:, 2, 2] = 1 - 2 * (x * x + y * y)
+    count = len(poses)
+    turn = poses[:, 3:]
+    found = np.zeros((count, 4, 4))
+    products = (turn[:, :, None] * turn[:, None, :]).reshape(count, 16)
+    np.add(np.dot(products, _ROTATION).reshape(count, 3, 3), _STILL, out=found[:, :3, :3])
     found[:, :3, 3] = poses[:, :3]
     found[:, 3, 3] = 1.0
     return found
 
 
+@lru_cache(maxsize=1024)
 def matrix(pose: Pose) -> np.ndarray:
-    """A pose as a (4, 4) matrix, parent from child."""
-    return matrices(np.array([[*pose.position, *pose.orientation]]))[0]
+    """A pose as a (4, 4) matrix, parent from child; nobody may write to it."""
+    made: np.ndarray = matrices(np.array([[*pose.position, *pose.orientation]]))[0]
+    made.flags.writeable = False
+    return made

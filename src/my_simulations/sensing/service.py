@@ -44,7 +44,9 @@ class Service:
         self._wire = wire
         self._ring = ring
         self._sending = threading.Lock()
-        self._rays = _Worker("rays", _Rays(self.trouble), self._reply)
+        # Rays are short: a request that brings its rows is spared the way to another thread. One
+        # that names a state of the ring is copied from there while others are cast.
+        self._rays = _Worker("rays", _Rays(self.trouble), self._reply, at_once=ring is None)
         self._camera = _Worker("camera", _Camera(self.trouble), self._reply)
 
     def run(self) -> None:
@@ -96,17 +98,24 @@ class Service:
 
 
 class _Worker:
-    """A thread with a queue; it begins with the first request, and sums up changes before."""
+    """A thread with a queue; it begins with the first request, and sums up changes before.
+
+    `at_once`: there is no thread, whoever puts something in does the work.
+    """
 
     def __init__(self, name: str, viewer: "Union[_Rays, _Camera]",
-                 reply: Callable[[int, object], None]) -> None:
+                 reply: Callable[[int, object], None], at_once: bool = False) -> None:
         self._name = name
         self._viewer = viewer
         self._reply = reply
+        self._at_once = at_once
         self._queue: "queue.Queue[Tuple[int, Any, Optional[State]]]" = queue.Queue()
         self._thread: Optional[threading.Thread] = None
 
     def put(self, number: int, message: object, state: Optional[State]) -> None:
+        if self._at_once:
+            self._work(number, message, state)
+            return
         if number and self._thread is None:
             self._thread = threading.Thread(target=self._run, name=self._name, daemon=True)
             self._thread.start()
@@ -114,17 +123,19 @@ class _Worker:
 
     def _run(self) -> None:
         while True:
-            number, message, state = self._queue.get()
-            try:
-                if state is None:
-                    self._viewer.change(message)
-                else:
-                    self._reply(number, self._viewer.answer(message, state))
-            except SensingError as fault:
-                self._reply(number, fault)
-            except Exception:  # a fault of ours: the parent starts another process
-                traceback.print_exc()
-                os._exit(_FAULT)
+            self._work(*self._queue.get())
+
+    def _work(self, number: int, message: Any, state: Optional[State]) -> None:
+        try:
+            if state is None:
+                self._viewer.change(message)
+            else:
+                self._reply(number, self._viewer.answer(message, state))
+        except SensingError as fault:
+            self._reply(number, fault)
+        except Exception:  # a fault of ours: the parent starts another process
+            traceback.print_exc()
+            os._exit(_FAULT)
 
 
 class _Rays:

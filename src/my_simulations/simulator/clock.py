@@ -51,6 +51,11 @@ class SimClock:
         """Whether time was paused on request. Manual stepping does not count as paused."""
         return self._paused
 
+    @property
+    def by_hand(self) -> bool:
+        """Whether the world goes on by `advance` alone: paused, or stepped manually."""
+        return self._paused or self._manual_stepping
+
     def pause(self) -> int:
         """Pause after the running step; returns the step count."""
         with self._session.structure_lock:

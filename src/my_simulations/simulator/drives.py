@@ -2,15 +2,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence
 
 from ..engine.commands import (
     Batch,
     Command,
     JointMotor,
+    JointServo,
     PlanarVelocity,
+    ReadEfforts,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
     SetWheelSlips,
     WheelSlip,
 )
@@ -25,6 +28,7 @@ class Drives:
         self._session = session
         self._motors: Dict[int, JointMotor] = {}
         self._planar: Dict[int, PlanarVelocity] = {}
+        self._servos: Dict[int, JointServo] = {}
         self._slips: Dict[int, WheelSlip] = {}
 
     def set_wheel_slips(self, wheels: Sequence[WheelSlip]) -> None:
@@ -37,13 +41,15 @@ class Drives:
             self._slips.update({wheel.row: wheel for wheel in wheels})
 
     def set(self, motors: Sequence[JointMotor] = (),
-            planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None) -> bool:
-        """Set motors by joint row and planar velocities by model id; others keep their values.
+            planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None,
+            servos: Sequence[JointServo] = ()) -> bool:
+        """Set motors and servos by joint row, planar velocities by model id; others stay.
 
         Args:
             motors: joint motors by row; rate in rad/s or m/s, maximum effort in N m or N.
             planar: planar velocities by model id, m/s and rad/s.
             revision: `Models.revision` when the rows were looked up.
+            servos: joint servos by row; one with an empty `drive` ends the servo.
 
         Returns:
             False if the models have changed since then; nothing is set.
@@ -60,12 +66,24 @@ class Drives:
             moved = {one.model_id: one for one in planar}
             if any(self._planar.get(number) != one for number, one in moved.items()):
                 commands.append(SetPlanarVelocities(tuple({**self._planar, **moved}.values())))
+            steered = [servo for servo in servos if self._servos.get(servo.row) != servo]
+            if steered:
+                commands.append(SetServos(tuple(steered)))
             if not commands:
                 return True
             self._session.call(Batch(tuple(commands)) if len(commands) > 1 else commands[0])
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
+            self._keep(steered)
             return True
+
+    def efforts(self, rows: Sequence[int]) -> List[float]:
+        """What servos and motors spent on joint axes in the last step, N m or N.
+
+        Raises CommandError.
+        """
+        found: Any = self._session.call(ReadEfforts(tuple(rows))).value
+        return list(found)
 
     def stop(self, entity: Entity) -> None:
         """Switch off the motors and the planar velocity of a model."""
@@ -77,6 +95,9 @@ class Drives:
             if entity.model_id in self._planar:
                 commands.append(SetPlanarVelocities(tuple(
                     one for number, one in self._planar.items() if number != entity.model_id)))
+            steered = [servo for row, servo in self._servos.items() if entity.has_joint_row(row)]
+            if steered:
+                commands.append(SetServos(tuple(replace(servo, drive="") for servo in steered)))
             self.forget_entity(entity)
             if commands:
                 self._session.call(Batch(tuple(commands)))
@@ -90,6 +111,8 @@ class Drives:
             commands.append(SetMotors(tuple(self._motors.values())))
         if self._planar:
             commands.append(SetPlanarVelocities(tuple(self._planar.values())))
+        if self._servos:
+            commands.append(SetServos(tuple(self._servos.values())))
         if self._slips:
             commands.append(SetWheelSlips(tuple(self._slips.values())))
         return commands
@@ -99,6 +122,8 @@ class Drives:
         self._motors = {row: motor for row, motor in self._motors.items()
                         if not entity.has_joint_row(row)}
         self._planar.pop(entity.model_id, None)
+        self._servos = {row: servo for row, servo in self._servos.items()
+                        if not entity.has_joint_row(row)}
         self._slips = {row: wheel for row, wheel in self._slips.items()
                        if not entity.has_link_row(row)}
 
@@ -106,6 +131,7 @@ class Drives:
         """Remove all drives, after the engine was cleared."""
         self._motors.clear()
         self._planar.clear()
+        self._servos.clear()
         self._slips.clear()
 
     def transferred(self, old: Entity, new: Entity) -> List[Command]:
@@ -113,8 +139,12 @@ class Drives:
         names = {old.first_joint_row + n: name for n, name in enumerate(old.joint_names)}
         motors = [replace(motor, row=new.first_joint_row + new.joint_names.index(names[row]))
                   for row, motor in self._motors.items() if names.get(row) in new.joint_names]
+        servos = [replace(servo, row=new.first_joint_row + new.joint_names.index(names[row]))
+                  for row, servo in self._servos.items() if names.get(row) in new.joint_names]
         planar = self._planar.get(old.model_id)
         commands: List[Command] = [SetMotors(tuple(motors))] if motors else []
+        if servos:
+            commands.append(SetServos(tuple(servos)))
         if planar is not None:
             moved = replace(planar, model_id=new.model_id)
             others = [one for one in self._planar.values() if one is not planar]
@@ -138,3 +168,12 @@ class Drives:
                 self._planar = {one.model_id: one for one in command.velocities}
             elif isinstance(command, SetWheelSlips):
                 self._slips.update({wheel.row: wheel for wheel in command.wheels})
+            elif isinstance(command, SetServos):
+                self._keep(command.servos)
+
+    def _keep(self, servos: Sequence[JointServo]) -> None:
+        for servo in servos:
+            if servo.drive:
+                self._servos[servo.row] = servo
+            else:
+                self._servos.pop(servo.row, None)

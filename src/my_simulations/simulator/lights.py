@@ -9,7 +9,7 @@ from ..errors import CommandError
 from ..geometry import Pose, compose, normalised, pose_is_finite
 from .order_slot import OrderSlot
 from .registry import UnknownEntityError
-from .session import Session
+from .session import Session, check_name
 
 
 class Lights:
@@ -35,8 +35,7 @@ class Lights:
 
         Raises CommandError for an empty or existing name, an unknown frame, or a non-finite pose.
         """
-        if not light.name:
-            raise CommandError("the name of a light must not be empty")
+        check_name(light.name, "light")
         session = self._session
         with session.structure_lock, session.registry_lock:
             session.check_name_is_free(light.name)
@@ -54,8 +53,7 @@ class Lights:
         session = self._session
         with session.structure_lock, session.registry_lock:
             self.get(name)
-            if not light.name:
-                raise CommandError("the name of a light must not be empty")
+            check_name(light.name, "light")
             if light.name != name:
                 session.check_name_is_free(light.name)
             light = replace(light, pose=_usable_pose(light))

@@ -28,7 +28,7 @@ from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .order_slot import OrderSlot
 from .registry import Entity
-from .session import Session
+from .session import Session, check_name
 from .wrenches import Wrenches
 
 
@@ -140,8 +140,7 @@ class Models:
         Raises:
             CommandError: empty or existing name, unknown frame, or rejected by the engine.
         """
-        if not model.name:
-            raise CommandError("the name of a model must not be empty")
+        check_name(model.name, "model")
         model = flattened(model)
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
@@ -230,8 +229,7 @@ class Models:
         Raises:
             CommandError: unknown or existing name, or rejected by the engine; nothing has changed.
         """
-        if not model.name:
-            raise CommandError("the name of a model must not be empty")
+        check_name(model.name, "model")
         model = flattened(model)
         session = self._session
         with session.structure_lock:

@@ -15,6 +15,7 @@ from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
 from ..geometry import Pose
+from ..xml_characters import check_characters
 from .registry import Entity, Registry
 from .row_allocator import RowAllocator
 from .supervisor import Supervisor
@@ -127,3 +128,10 @@ class Session:
         if row is None:
             raise CommandError(f"joint '{joint}' of type {found.type} has no axis")
         return row
+
+
+def check_name(name: str, kind: str) -> None:
+    """Refuse a name that nothing can have; `kind` is `model` or `light`. Raises CommandError."""
+    if not name:
+        raise CommandError(f"the name of a {kind} must not be empty")
+    check_characters(name, f"the name of the {kind}")

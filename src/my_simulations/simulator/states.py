@@ -1,7 +1,7 @@
 """Poses, twists and contacts of a running world: read from snapshots, set by commands."""
 from __future__ import annotations
 
-from typing import List, Tuple
+from typing import Dict, List, Tuple
 
 from ..engine.commands import (
     Batch,
@@ -91,12 +91,16 @@ class States:
         """States of all models and the clock, for `restore`."""
         return WorldState.of(*self.latest(), self._clock.now())
 
+    def link_names(self) -> Dict[int, str]:
+        """Scoped names of all links, by row."""
+        return {entity.first_link_row + n: f"{entity.model.name}::{link}"
+                for entity in self._session.entities()
+                for n, link in enumerate(entity.link_names)}
+
     def contacts(self) -> List[Tuple[str, str, Contact]]:
         """The contacts of the last step, with the scoped names of both links."""
         found = self._session.call(ReadContacts()).value
-        names = {entity.first_link_row + n: f"{entity.model.name}::{link}"
-                 for entity in self._session.entities()
-                 for n, link in enumerate(entity.link_names)}
+        names = self.link_names()
         return [(names[contact.row_a], names[contact.row_b], contact)
                 for contact in (found if isinstance(found, tuple) else ())
                 if contact.row_a in names and contact.row_b in names]

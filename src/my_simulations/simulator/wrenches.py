@@ -16,7 +16,8 @@ from ..engine.commands import (
     TimedWrench,
 )
 from ..engine.ring import Clock
-from ..geometry import ZERO3, Vec3, compose, inverse, rotate, subtract, transform
+from ..errors import CommandError
+from ..geometry import ZERO3, Vec3, compose, inverse, is_finite, rotate, subtract, transform
 from .registry import Entity
 from .session import Session
 
@@ -54,7 +55,10 @@ class Wrenches:
 
         Raises:
             UnknownEntityError, UnknownFrameError: no such link or frame.
+            CommandError: force, torque or point is not finite.
         """
+        if not is_finite(*force, *torque, *point):
+            raise CommandError(f"the wrench for link '{link}' contains NaN or infinity")
         session = self._session
         with session.structure_lock:
             with session.registry_lock:

@@ -201,3 +201,44 @@ def test_the_strict_count_what_is_tolerated_as_an_error(capsys):
     assert main(["check_model", "--json", path]) == 0
     (issue,) = json.loads(capsys.readouterr().out)["issues"]
     assert issue["tolerated"] and issue["severity"] == "warning"
+
+
+HOSTILE_XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:property name="x" value="${[c for c in ().__class__.__base__.__subclasses__()]}"/></robot>"""
+
+
+def test_xacro_outside_of_the_workspace_is_not_run_without_consent(tmp_path, monkeypatch, capsys):
+    path = tmp_path / "downloads" / "r.xacro"
+    path.parent.mkdir()
+    path.write_text(HOSTILE_XACRO)
+    inside = tmp_path / "ws" / "src" / "p"
+    inside.mkdir(parents=True)
+    (inside / "r.xacro").write_text(HOSTILE_XACRO)
+    (inside / "link.xacro").symlink_to(path)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", f"{tmp_path}/ws/src:/nowhere")
+    run = []
+    monkeypatch.setattr("my_simulations.cli.check_model_command.run_xacro",
+                        lambda path, seconds: run.append(path) or "<robot name='r'/>")
+    assert main(["check_model", str(path)]) == 1
+    assert main(["check_model", str(inside / "link.xacro")]) == 1
+    told = capsys.readouterr().out
+    assert f"{path}: error: xacro was not run" in told and "--run-xacro" in told
+    assert run == []
+    main(["check_model", "--run-xacro", str(path)])
+    main(["check_model", str(inside / "r.xacro")])
+    assert run == [str(path), str(inside / "r.xacro")]
+
+
+def test_plugins_that_nobody_brings_are_named_once(tmp_path):
+    path = tmp_path / "robot.sdf"
+    plugins = "".join(f'<plugin name="{name}" filename="{name}.so"/>\n' for name in (
+        "libmystery", "libgazebo_ros_p3d", "libmystery"))
+    camera = ('<sensor name="s" type="camera"><camera/>'
+              '<plugin name="c" filename="libgazebo_ros_camera.so"/>'
+              '<plugin name="u" filename="libunseen.so"/></sensor>')
+    path.write_text(sdf('<model name="m"><static>1</static>\n'
+                        f'<link name="l">{camera}</link>\n{plugins}</model>'))
+    found = [(issue.severity, issue.line, issue.message.rpartition(" ")[2])
+             for issue in check(str(path), Resolver())[1] if "plugin" in issue.message]
+    assert sorted(found, key=lambda one: one[2]) == [
+        (Severity.NOTE, 3, "libmystery.so"), (Severity.NOTE, 2, "libunseen.so")]

@@ -9,6 +9,7 @@ from editor_case import Refused, arm, box, cases, sun
 from my_simulations.description.compare import differences
 from my_simulations.engine.commands import JointPid
 from my_simulations.geometry import STILL, Pose
+from my_simulations.simulator.joint_gains import default_gains
 
 case = pytest.fixture(cases)
 
@@ -162,9 +163,12 @@ REFUSED = {
 
 def test_one_thing_at_a_time_drives_a_joint_and_undo_gives_the_one_before(case):
     made = case(arm("arm"))
+    model = made.sim.models.get("arm")
+    suited = default_gains(model, model.joints[0], True, 0.001)
     asked = [("force", 2.0, {}), ("position", 0.3, {"gains": {"p": 50, "i": 0, "d": 4}}),
              ("velocity", -1.0, {}), ("force", 0.0, {})]
-    wanted = [(2.0,), (JointPid(0.3, False, 50.0, 0.0, 4.0),), (JointPid(-1.0, True),), ()]
+    wanted = [(2.0,), (JointPid(0.3, False, 50.0, 0.0, 4.0),),
+              (JointPid(-1.0, True, **suited),), ()]
 
     async def drive(browser):
         for (mode, value, more), expected in zip(asked, wanted):

@@ -270,25 +270,82 @@ def test_unsaved_edits_of_a_server_that_was_killed_are_offered_and_restored(case
     second.browse(restore)
 
 
-def test_discarded_edits_are_gone(case):
+async def insert_and_keep(browser, made):
+    await browser.edit("insert", shape="box")
+    await kept(lambda: entries(made))
+
+
+def test_discarded_edits_are_not_offered_again_and_can_be_recovered_for_a_week(case):
     first = case(box("a"))
-
-    async def edit(browser):
-        await browser.edit("insert", shape="box")
-        await kept(lambda: entries(first))
-
-    first.browse(edit)
+    first.browse(lambda browser: insert_and_keep(browser, first))
     first.close()
     of_a_dead_process(first)
     second = case(box("a"))
 
     async def discard(browser):
         await browser.ask("autosave", action="discard")
-        assert entries(second) == []
         with pytest.raises(Refused):
             await browser.ask("autosave", action="restore")
 
     second.browse(discard)
+    second.close()
+    third = case(box("a"))
+
+    async def recover(browser):
+        await browser.until(lambda: browser.last("history"))
+        assert browser.last("autosave") is None
+        [entry] = (await browser.ask("autosave", action="list"))["entries"]
+        assert entry["discarded"] is True
+        await browser.ask("autosave", action="restore", name=entry["name"])
+        await browser.until(lambda: browser.model("unit_box"))
+        assert (await browser.ask("autosave", action="list"))["entries"] == []
+
+    third.browse(recover)
+    third.close()
+    [about] = entries(third)
+    data = json.loads(about.read_text())
+    about.write_text(json.dumps({**data, "discarded": data["time"] - 8 * 86400}))
+    case(box("a"))
+    assert entries(third) == []
+
+
+def test_edits_of_another_world_are_mentioned_and_not_offered(case):
+    first = case(box("a"))
+    first.browse(lambda browser: insert_and_keep(browser, first))
+    first.close()
+    of_a_dead_process(first)
+    [about] = entries(first)
+    data = json.loads(about.read_text())
+    about.write_text(json.dumps({**data, "file": "/worlds/other.world"}))
+    second = case(box("a"))
+
+    async def look(browser):
+        await browser.until(lambda: browser.last("autosave"))
+        assert browser.last("autosave")["found"] is False
+        assert browser.last("autosave")["others"] == 1
+        [entry] = (await browser.ask("autosave", action="list"))["entries"]
+        assert entry["file"] == "/worlds/other.world"
+
+    second.browse(look)
+
+
+def test_what_opening_another_world_discards_can_be_recovered(case):
+    made = case(box("a"))
+
+    async def discard(browser):
+        await insert_and_keep(browser, made)
+        await browser.ask("new", discard=True)
+        await browser.until(lambda: browser.model("ground_plane"))
+        [entry] = (await browser.ask("autosave", action="list"))["entries"]
+        await browser.edit("insert", shape="sphere")
+        await browser.ask("autosave", action="restore", name=entry["name"])
+        await browser.until(lambda: browser.model("unit_box"))
+        # What was in its place can be recovered in turn.
+        [entry] = (await browser.ask("autosave", action="list"))["entries"]
+        await browser.ask("autosave", action="restore", name=entry["name"])
+        await browser.until(lambda: browser.model("unit_sphere"))
+
+    made.browse(discard)
 
 
 def test_edits_of_a_server_that_lives_are_not_offered_to_others(case):

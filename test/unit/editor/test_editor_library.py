@@ -18,6 +18,7 @@ from my_simulations.engine.ring import DEMAND_NS, POSE_DEMAND_NS
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist
 from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.joint_gains import default_gains
 
 SDF = ("<sdf version='1.7'><model name='{}'><link name='l'><visual name='v'><geometry>"
        "<box><size>1 1 1</size></box></geometry></visual></link></model></sdf>")
@@ -209,12 +210,15 @@ def test_plots_joints_and_contacts_are_sent_while_they_are_watched(case):
         await browser.until(lambda: all(last(browser, topic) for topic in topics))
         assert last(browser, "plot:a::link.vx")["value"] == 2.0
         assert last(browser, "plot:arm::hinge.position")["value"] == 0.0
+        model = made.sim.models.get("arm")
+        suited = {mode: default_gains(model, model.joints[0], mode == "velocity", 0.001)
+                  for mode in ("position", "velocity")}
         assert last(browser, "joints:arm")["joints"] == [
-            {"name": "hinge", "axis": 0, "position": 0.0, "rate": 0.0}]
+            {"name": "hinge", "axis": 0, "position": 0.0, "rate": 0.0, "default_gains": suited}]
         assert last(browser, "plot:nix.x")["problem"] and last(browser, "joints:nix")["problem"]
         await browser.edit("joint", joint="arm::hinge", mode="position", value=0.5)
         await browser.until(lambda: last(browser, "joints:arm")["joints"][0].get("drive") == {
-            "mode": "position", "value": 0.5, "gains": {"p": 1.0, "i": 0.1, "d": 0.01}})
+            "mode": "position", "value": 0.5, "gains": suited["position"]})
         await browser.edit("joint", joint="arm::hinge", mode="force", value=3)
         await browser.until(lambda: last(browser, "joints:arm")["joints"][0].get("drive") == {
             "mode": "force", "value": 3.0})

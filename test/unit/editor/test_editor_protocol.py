@@ -16,6 +16,7 @@ from my_simulations.building.plan_json import plan_to_json
 from my_simulations.description import actor, light, model, shapes, surroundings, world
 from my_simulations.editor.scene.plain_json import HIDDEN
 from my_simulations.editor.scene.scene_json import NAMES, Documents
+from my_simulations.editor.topics.live_topics import TOPIC
 from my_simulations.editor.transport.http_pages import Pages
 from my_simulations.editor.transport.pose_messages import (
     HEAD,
@@ -70,6 +71,7 @@ def test_every_type_that_is_named_exists(data):
 def test_no_declared_type_is_idle(data):
     used = " ".join(expressions({key: data[key] for key in (
         "types", "operations", "requests", "notices", "pushes")}))
+    used += " " + data["frames"]["topic_head"]
     assert [name for name in data["types"] if not re.search(rf"\b{name}\b", used)] == []
 
 
@@ -77,7 +79,7 @@ def test_every_request_of_the_protocol_is_handled_and_no_other(protocol, tmp_pat
     case = Case(tmp_path)
     try:
         routes = set(case.server._editor.routes)
-        assert routes == set(protocol.requests) | {"drag", "drag_end"}
+        assert routes == set(protocol.requests) | set(protocol.notices)
     finally:
         case.close()
 
@@ -187,7 +189,7 @@ def test_the_frames_layout_is_that_of_the_file(data):
     assert [list(field) for field in RECORD] == frames["record"]
     assert RECORD_BYTES == frames["record_bytes"]
     assert record_type().itemsize == frames["record_bytes"]
-    assert frames["kinds"] == {"poses": LIVE, "log": LOG}
+    assert frames["kinds"] == {"poses": LIVE, "log": LOG, "topic": TOPIC}
 
 
 @pytest.mark.parametrize("value, expected", [

@@ -192,7 +192,7 @@ def test_what_is_known_but_not_simulated_is_kept_with_its_place_and_without_a_wa
 
 
 def test_a_sensor_is_kept_whole():
-    xml = '<sensor name="s" type="camera"><update_rate>30</update_rate></sensor>'
+    xml = '<sensor name="s" type="rfid"><update_rate>30</update_rate></sensor>'
     link, issues = link_of(xml)
     assert link.extra == [xml] and errors(issues) == [] and warnings(issues) == []
     assert codes(issues) == ["not-simulated"]

@@ -195,10 +195,10 @@ def test_what_does_nothing_is_said_once_for_each_kind():
     sensor = '<sensor name="{}" type="{}"/>'
     world, issues = world_of(
         '<model name="m"><link name="l">' + "".join(
-            sensor.format(n, t) for n, t in enumerate(("camera", "camera", "gps")))
+            sensor.format(n, t) for n, t in enumerate(("sonar", "sonar", "rfid")))
         + '</link></model><road name="r"/><road name="s"/>')
-    assert [issue.message.split(">")[0] for issue in issues] == ["<road", "<sensor camera",
-                                                                 "<sensor gps"]
+    assert [issue.message.split(">")[0] for issue in issues] == ["<road", "<sensor sonar",
+                                                                 "<sensor rfid"]
     assert all(issue.code == "not-simulated" and issue.line for issue in issues)
 
 

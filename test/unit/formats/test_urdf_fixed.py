@@ -113,6 +113,18 @@ def test_a_sensor_of_a_lumped_link_moves_along_with_its_pose():
         '<sensor name="s" type="ray"><pose>1 0 2 0 0 0</pose></sensor>']
 
 
+def test_the_frame_of_a_sensors_plugin_stays_and_that_of_the_models_moves():
+    plugin = '<plugin name="p" filename="p.so"><frameName>b</frameName></plugin>'
+    model, issues = robot_of(
+        robot_link("a") + robot_link("b") + robot_joint("j", "a", "b", xyz="0 0 2")
+        + f'<gazebo reference="b"><sensor name="s" type="ray">{plugin}</sensor></gazebo>'
+        f"<gazebo>{plugin}</gazebo>")
+    assert codes(issues) == []
+    (sensor,), (of_model,) = model.links[0].sensors, model.plugins
+    assert "<frameName>b<" in sensor.plugins[0].xml
+    assert "<frameName>a<" in of_model.xml and "<xyzOffset>0 0 2<" in of_model.xml
+
+
 def test_friction_of_a_lumped_link_stays_with_its_own_collisions():
     model, _ = robot_of(
         robot_link("a", URDF_INERTIAL + SHAPES) + robot_link("b", URDF_INERTIAL + SHAPES)

@@ -14,9 +14,9 @@ MERGES = "a0: &a0 {x: 1}\n" + "".join(
 
 FAULTS = {
     "control": (b"lamp:\n  model: a\n  name: \x01\n", 3, "", "special characters"),
-    "escaped-control": (b'lamp:\n  model: "a\\x01b"\n', 2, "/lamp/model", "control character"),
-    "escaped-surrogate": (b'lamp:\n  model: "\\uD800"\n', 2, "/lamp/model", "surrogate"),
-    "escaped-nul": (b'lamp:\n  model: "\\0"\n', 2, "/lamp/model", "control character"),
+    "escaped-control": (b'lamp:\n  model: "a\\x01b"\n', 2, "/lamp/model", "U+0001 at position 2"),
+    "escaped-surrogate": (b'lamp:\n  model: "\\uD800"\n', 2, "/lamp/model", "U+D800"),
+    "escaped-nul": (b'lamp:\n  model: "\\0"\n', 2, "/lamp/model", "U+0000"),
     "not-utf8": (b"lamp:\n  model: \xff\n", 2, None, "UTF-8"),
     "python-tag": (b"lamp:\n  model: !!python/object/apply:os.system [ls]\n", 2, "/lamp/model",
                    "could not determine a constructor"),

@@ -152,3 +152,29 @@ def test_a_force_holds_until_the_next_one():
     context.hear("force", force={"x": 1.0, "y": 0.0, "z": 2.0}, torque={"x": 0, "y": 0, "z": 3.0})
     assert context.pushes["base"] == ((1.0, 0.0, 2.0), (0, 0, 3.0))
     assert isinstance(context.message("any/Type").whatever, Message)
+
+
+def test_an_imu_that_nobody_listened_to_begins_anew():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>imu</topicName>"
+                          "<updateRate>100</updateRate></plugin>")
+    context.unwanted = {"imu"}
+    ModelImu(context).load()
+    context.advance(1.0)
+    context.link("base").twist = Twist((5.0, 0.0, 0.0))
+    context.unwanted = set()
+    context.advance(0.02)
+    (sample,) = context.published["imu"]
+    assert sample.linear_acceleration.x == pytest.approx(0.0)
+
+
+def test_the_noise_of_a_scan_does_not_depend_on_scans_before():
+    def second(first_wanted):
+        context = laser(Noise("gaussian", stddev=0.01))
+        Laser(context).load()
+        context.unwanted = set() if first_wanted else {"scan"}
+        context.advance(0.1)
+        context.unwanted = set()
+        context.advance(0.1)
+        return context.published["scan"][-1].ranges
+
+    assert second(True) == second(False)

@@ -12,6 +12,7 @@ from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Visual
 from my_simulations.description.world import World
+from my_simulations.editor.topics.live_topics import TOPIC
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import Pose
@@ -52,7 +53,8 @@ class Case:
                              log=self.issues.append)
         self.sim.start()
         self.options = editor.EditorOptions(**{
-            "port": 0, "save_roots": [str(self.worlds)], "config_dir": str(folder / "config"),
+            "port": 0, "token": "", "save_roots": [str(self.worlds)],
+            "config_dir": str(folder / "config"),
             "cache_dir": str(folder / "cache"), "data_dir": str(folder / "data" / "log"),
             "check_outgoing": True, "log": self.issues.append, **options})
         self.resolver = resolver or Resolver.from_environment()
@@ -103,6 +105,7 @@ class Browser:
         self.socket = socket
         self.pushes = []
         self.frames = []
+        self.views = []
         self.poses = {}
         self.document = None
         self.news = asyncio.Condition()
@@ -112,7 +115,8 @@ class Browser:
 
     @classmethod
     async def open(cls, session, url, hello=True, **headers):
-        socket = await session.ws_connect(url.split("?")[0] + "ws", max_msg_size=0,
+        base, mark, query = url.partition("?")
+        socket = await session.ws_connect(base + "ws" + mark + query, max_msg_size=0,
                                           headers=headers or None)
         browser = cls(session, socket)
         if hello:
@@ -168,6 +172,9 @@ class Browser:
                 self.news.notify_all()
 
     def _frame(self, data):
+        if data[0] == TOPIC:
+            self.views.append(data)
+            return
         kind, revision, step, sim, real, count, _ = HEAD.unpack_from(data)
         assert len(data) == HEAD.size + count * RECORD.size
         self.frames.append((kind, revision, sim, count))

@@ -5,10 +5,11 @@ from my_simulations.plugins.testing import Message
 
 
 class Graph:
-    """Keeps what is published; a test sends what is heard."""
+    """Keeps what is published; a test sends what is heard. Nobody listens to `ignored` topics."""
 
     def __init__(self):
         self.sent, self.heard, self.transforms = [], {}, []
+        self.ignored = set()
 
     def message(self, kind):
         return Message()
@@ -20,7 +21,9 @@ class Graph:
         graph = self
 
         class Topic:
-            wanted = True
+            @property
+            def wanted(self):
+                return name not in graph.ignored
 
             def send(self, message):
                 graph.sent.append((name, message))

@@ -1,5 +1,6 @@
 /** Mouse and keyboard on the sheet, handed to the tool in metres of the plan. */
 import {hotkey} from '../hotkeys.js';
+import {isModalOpen} from '../panels/dialog.js';
 import {isTextInput} from '../panels/dom.js';
 import {menuList, openPopup} from '../panels/popup.js';
 import {hitOf} from './hit_test.js';
@@ -134,7 +135,7 @@ export function listenToKeys(element, {session, files, exit, draw}) {
   const pressed = (event) => {
     const at = document.activeElement;
     const here = !at || at === document.body || element.contains(at);
-    if (!here || event.defaultPrevented || isTextInput(event.target)) return;
+    if (isModalOpen() || !here || event.defaultPrevented || isTextInput(event.target)) return;
     if (type(event)) {
       event.preventDefault();
       return;

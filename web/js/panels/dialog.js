@@ -7,6 +7,17 @@ import {icon} from './icons.js';
 
 let numbers = 0;
 
+/** What is open, the last one on top. @type {Dialog[]} */
+const opened = [];
+
+/** Whether a window is open that takes all keys. */
+export const isModalOpen = () => opened.some(({modal}) => modal);
+
+/** Closes all windows, as Cancel does: what they belong to has ended. */
+export function closeDialogs() {
+  for (const dialog of [...opened].reverse()) dialog.close(undefined);
+}
+
 /**
  * @typedef {Object} DialogButton
  * @property {string} title
@@ -37,6 +48,9 @@ export class Dialog {
       }),
     );
     const primary = buttons.find((button) => button.primary);
+    // A key pressed by chance must lose nothing.
+    const safe = primary && !primary.danger ? primary : buttons.find((button) => !button.danger);
+    this.#safe = safe && this.#buttons[buttons.indexOf(safe)];
     const form = h(
       'form',
       {
@@ -83,11 +97,19 @@ export class Dialog {
     this.closed = new Promise((resolve) => {
       this.#resolve = resolve;
     });
+    // The click that opened it, or one beside its fields, must not take the keys from it.
+    this.element.addEventListener('focusout', (event) => {
+      if (this.modal && event.relatedTarget === null) setTimeout(() => this.#keepFocus());
+    });
     movable(this.element, head);
   }
 
   #note;
   #buttons;
+  /** What has the focus first. @type {HTMLElement|undefined} */
+  #first;
+  /** The button that has the focus first. @type {HTMLButtonElement|undefined} */
+  #safe;
   /** @type {(value: unknown) => void} */
   #resolve = () => {};
   /** What had the focus before. @type {Element|null} */
@@ -97,19 +119,26 @@ export class Dialog {
   open() {
     this.#before = document.activeElement;
     document.body.append(this.element);
+    opened.push(this);
     if (this.modal) this.element.showModal();
     else this.element.show();
-    const first =
+    this.#first =
       elementsOf(this.element, '[autofocus]')[0] ??
       elementsOf(this.element, '.dialog-body input, .dialog-body select')[0] ??
-      this.#buttons[0];
-    first?.focus();
+      this.#safe;
+    this.#first?.focus();
     return this.closed;
+  }
+
+  #keepFocus() {
+    const lost = document.activeElement === document.body || document.activeElement === null;
+    if (lost && opened.at(-1) === this) this.#first?.focus();
   }
 
   /** @param {unknown} value */
   close(value) {
     if (!this.element.isConnected) return;
+    opened.splice(opened.indexOf(this), 1);
     this.element.close();
     this.element.remove();
     if (this.#before instanceof HTMLElement) this.#before.focus();

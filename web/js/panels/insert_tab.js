@@ -163,7 +163,7 @@ export class InsertTab {
         class: 'model-card',
         role: 'button',
         tabindex: 0,
-        draggable: true,
+        draggable: 'true',
         dataset: {uri: model.uri},
         title: model.description || model.title || model.name,
         'aria-label': model.title || model.name,

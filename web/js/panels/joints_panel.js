@@ -23,6 +23,7 @@ import {modelOf} from './world_rows.js';
  * @property {string} unit
  * @property {Drive|null} [drive]   what the simulator drives the joint with
  * @property {(drive: Drive|null|undefined) => void} show
+ * @property {(gains: Gains|undefined) => void} suggest  gains that suit the joint
  */
 
 /** @type {[DriveMode, string][]} */
@@ -31,8 +32,8 @@ const MODES = [
   ['position', 'Position'],
   ['velocity', 'Velocity'],
 ];
-/** As gzclient's. */
-const GAINS = {p: 1, i: 0.1, d: 0.01};
+/** Until the simulator has told what suits the joint. */
+const GAINS = {p: 0, i: 0, d: 0};
 const GAIN_NAMES = /** @type {const} */ (['p', 'i', 'd']);
 
 /**
@@ -188,11 +189,13 @@ export class JointsPanel {
     };
     /** @type {Gains} */
     const gains = mode === 'force' ? {} : {...GAINS};
+    // The simulator's, the user's, or those of the loop at work.
+    let known = false;
     /** @param {number} value */
     const send = async (value) => {
       say('');
       const outcome = await this.page.actions.edit(
-        {kind: 'joint', joint: scoped, mode, value, ...(mode === 'force' ? {} : {gains})}, {quiet: true});
+        {kind: 'joint', joint: scoped, mode, value, ...(known ? {gains} : {})}, {quiet: true});
       if (!outcome.ok) say(outcome.issues[0].message);
       row.show(row.drive);
     };
@@ -207,6 +210,7 @@ export class JointsPanel {
         label(`${name.toUpperCase()} gain`),
         (value) => {
           gains[name] = Number(value);
+          known = true;
           gain.show(value);
           if (row.drive?.mode === mode) send(row.drive.value);
         },
@@ -221,14 +225,22 @@ export class JointsPanel {
       factor,
       unit: degrees ? '°' : units.position,
       drive: undefined,
+      suggest: () => {},
       /** Shows what the simulator says it drives the joint with. */
       show(drive) {
         this.drive = drive;
         const mine = drive?.mode === mode ? drive : null;
+        if (mine?.gains) known = true;
         Object.assign(gains, mine?.gains);
         input.show((mine?.value ?? 0) / factor);
         for (const {name, gain} of gainInputs) gain.show(gains[name]);
       },
+    };
+    row.suggest = (suited) => {
+      if (known || !suited || mode === 'force') return;
+      known = true;
+      Object.assign(gains, suited);
+      for (const {name, gain} of gainInputs) gain.show(gains[name]);
     };
     row.show(undefined);
     this.#rows.set(joint.name, row);
@@ -250,12 +262,13 @@ export class JointsPanel {
   /** @param {WatchPush} watchPush */
   #showStates({topic, joints}) {
     if (!this.#model || topic !== `joints:${this.#model.name}`) return;
-    for (const {name, axis, position, rate, drive} of joints ?? []) {
+    for (const {name, axis, position, rate, drive, default_gains: suited} of joints ?? []) {
       const row = axis === 0 && this.#rows.get(name);
       if (!row) continue;
       /** @param {number} value */
       const at = (value) => numberText(Math.round((value / row.factor) * 1e4) / 1e4);
       row.present.textContent = `${at(position)} ${row.unit}, ${at(rate)} ${row.unit}/s`;
+      row.suggest(suited?.[this.#mode]);
       if (JSON.stringify(drive) !== JSON.stringify(row.drive)) row.show(drive);
     }
   }

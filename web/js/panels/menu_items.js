@@ -31,6 +31,13 @@ const OF_A_MODEL = OVERLAYS.flatMap((row) =>
   row && !['grid', 'origin', 'contacts'].includes(row[0]) ? [row] : [],
 );
 
+/** What can be shown of the selected models alone. @type {[OverlayFlag, string][]} */
+const OF_THE_SELECTION = [
+  ['joints', 'Joints of Selection'],
+  ['frames', 'Link Frames of Selection'],
+  ['contacts', 'Contacts of Selection'],
+];
+
 /** @type {readonly ThemeName[]} */
 const THEMES = ['auto', 'dark', 'light'];
 
@@ -71,6 +78,8 @@ export function menus(page) {
         LINE,
         item('Save World', 'save'),
         item('Save World As…', 'saveAs'),
+        LINE,
+        item('Recover…', 'recover'),
       ],
     },
     {
@@ -109,13 +118,30 @@ export function menus(page) {
         item('Follow Selection', 'follow', {enabled: () => store.selection.length > 0}),
       ],
     },
-    {title: 'View', items: () => OVERLAYS.map((row) => (row ? overlayItem(page, row[0], row[1]) : LINE))},
+    {
+      title: 'View',
+      items: () => [
+        ...OVERLAYS.map((row) => (row ? overlayItem(page, row[0], row[1]) : LINE)),
+        LINE,
+        {
+          title: 'Sensor Data of Selection',
+          checked: () => page.topics.sensing,
+          run: () => page.topics.sense(!page.topics.sensing),
+        },
+        ...OF_THE_SELECTION.map(([flag, title]) => ({
+          title,
+          checked: () => store.overlays.selection[flag] === true,
+          run: () => store.setOverlayOfSelection(flag, !store.overlays.selection[flag]),
+        })),
+      ],
+    },
     {
       title: 'Window',
       items: () => [
         item('Plot', 'plot'),
         item('Log Data', 'logs'),
         item('Joints Panel', 'joints'),
+        item('Topics', 'topics'),
         {title: 'Messages', run: () => page.notices.button.click()},
         LINE,
         item('Screenshot', 'screenshot'),

@@ -8,17 +8,21 @@
  * @property {Connection} connection
  * @property {RequestFunction} request
  * @property {Watches} watches
+ * @property {Topics} topics
+ * @property {{speeds: DriveSpeeds}} driving
  * @property {Notices} notices
  * @property {ReturnType<typeof mountTheme>} theme
  * @property {PageView|null} view  null until it is there
  * @property {Requests['hello']['reply']} [about]  what the server said of itself
  */
 import {HOTKEYS} from '../hotkeys.js';
-import {ask} from './dialog.js';
+import {ask, closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
 import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
+import {importDialog} from './dialogs/import_dialog.js';
+import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
 import {InsertTab} from './insert_tab.js';
 import {JointsPanel} from './joints_panel.js';
@@ -32,12 +36,16 @@ import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
 import {mountToolBar} from './toolbar.js';
+import {TopicsPanel} from './topics_panel.js';
+import {TopicWindows} from './topic_windows.js';
 import {WorldTab} from './world_tab.js';
 /** @import {Actions, DialogName, DialogRequest} from '../actions.js' */
 /** @import {AutosavePush, Requests} from '../protocol.js' */
 /** @import {Connection, RequestFunction} from '../connection.js' */
 /** @import {SceneView} from '../view/view.js' */
 /** @import {Store} from '../store.js' */
+/** @import {DriveSpeeds} from '../drive_keys.js' */
+/** @import {Topics} from '../topics/topics.js' */
 /** @import {Watches} from '../watches.js' */
 
 /**
@@ -168,7 +176,9 @@ class Windows {
   constructor(page, tabs) {
     this.page = page;
     this.tabs = tabs;
-    this.joints = new JointsPanel(byId('right'), page);
+    this.joints = new JointsPanel(byId('joints'), page);
+    this.topics = new TopicsPanel(byId('topics'), page);
+    new TopicWindows(byId('centre'), page);
     splitter(byId('right-splitter'), {
       key: 'right-width',
       initial: 300,
@@ -179,7 +189,8 @@ class Windows {
       apply: (size) =>
         byId('app').style.setProperty('--right-size', `${size}px`),
     });
-    if (remembered.get('joints-shown', false)) this.#toggleJoints();
+    if (remembered.get('joints-shown', false)) this.#toggleSide('joints');
+    if (remembered.get('topics-shown', false)) this.#toggleSide('topics');
   }
 
   /** @type {{panel: Plots, bar: HTMLElement}|null} */
@@ -196,12 +207,15 @@ class Windows {
       open: () => this.#files(openDialog, 'Opened'),
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
       newWorld: () => newWorld(this.page),
+      recover: () => recoverDialog(this.page),
+      importFiles: () => importDialog(this.page, detail.entries ?? [], detail.place ?? [0, 0, 0]),
       applyForce: () => forceDialog(this.page, detail.target ?? this.#target()),
       hotkeys: () => hotkeyDialog(HOTKEYS),
       about: () => aboutDialog(this.page.about ?? {}),
       logs: () => logsDialog(this.page),
       plot: () => this.#togglePlots(),
-      joints: () => this.#toggleJoints(),
+      joints: () => this.#toggleSide('joints'),
+      topics: () => this.#toggleSide('topics'),
       building: () => this.#toggleBuilding(),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
@@ -262,12 +276,15 @@ class Windows {
     }
   }
 
-  #toggleJoints() {
+  /** Opens or closes a panel at the right. @param {'joints'|'topics'} name */
+  #toggleSide(name) {
+    const section = byId(name);
+    section.hidden = !section.hidden;
     const right = byId('right');
-    right.hidden = !right.hidden;
+    right.hidden = ['joints', 'topics'].every((one) => byId(one).hidden);
     byId('right-splitter').hidden = right.hidden;
-    remembered.set('joints-shown', !right.hidden);
-    this.joints.show(!right.hidden);
+    remembered.set(`${name}-shown`, !section.hidden);
+    this[name].show(!section.hidden);
   }
 
   async #toggleBuilding() {
@@ -288,6 +305,7 @@ class Windows {
     element.addEventListener(
       'exit',
       () => {
+        closeDialogs();
         this.#building = null;
         element.hidden = true;
         document.body.classList.remove('building');
@@ -303,12 +321,19 @@ class Windows {
  * @param {Page} page
  * @param {AutosavePush} autosavePush
  */
-async function offerRestore(page, {found, file, time}) {
-  if (!found) return;
+async function offerRestore(page, {found, file, time, others}) {
+  if (!found) {
+    if (others) {
+      page.notices.say(`Unsaved changes to ${others === 1 ? 'another world' :
+        `${others} other worlds`} can be restored: File, Recover.`);
+    }
+    return;
+  }
   const when = time ? ` of ${new Date(time * 1000).toLocaleString()}` : '';
   const choice = await ask(
     'Restore unsaved changes?',
-    `Unsaved changes${file ? ` to ${file}` : ''}${when} were found.`,
+    `Unsaved changes to ${file || 'a world without a file'}${when} were found. They replace the ` +
+      'world as it is now. Discarded changes can be recovered for a week: File, Recover.',
     [
       {title: 'Discard', value: 'discard', danger: true},
       {title: 'Later'},

@@ -240,7 +240,7 @@ export class Plots {
       class: 'plot-variable',
       role: 'option',
       tabindex: -1,
-      draggable: true,
+      draggable: 'true',
       text: variable,
       'aria-selected': String(this.#series.has(variable)),
       title: 'Click to plot, or drag onto a canvas',

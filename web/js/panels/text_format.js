@@ -165,3 +165,9 @@ export function bytesText(bytes) {
   if (bytes < 1e9) return `${(bytes / 1e6).toFixed(1)} MB`;
   return `${(bytes / 1e9).toFixed(1)} GB`;
 }
+
+/** Messages a second in words. @param {number} hz */
+export const rateText = (hz) => `${hz < 9.95 ? hz.toFixed(1) : hz.toFixed(0)} Hz`;
+
+/** Bytes a second in words. @param {number} size */
+export const bandwidthText = (size) => `${bytesText(Math.round(size))}/s`;

@@ -90,6 +90,7 @@ export function mountToolBar(element, page) {
   const log = button('log', 'Log data (Ctrl+D)', () => actions.logs());
   const plot = button('plot', 'Plot (Ctrl+P)', () => actions.plot());
   const joints = button('joints', 'Joints panel', () => actions.joints());
+  const topics = button('topics', 'Topics (Alt+T)', () => actions.topics());
 
   fill(
     element,
@@ -117,6 +118,7 @@ export function mountToolBar(element, page) {
     log,
     plot,
     joints,
+    topics,
   );
   const rove = roving(element, 'button');
 

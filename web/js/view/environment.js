@@ -4,6 +4,7 @@ import {
   Mesh, ShaderMaterial, SphereGeometry, Vector3,
 } from 'three';
 import {colorOf} from './three_convert.js';
+import {SKY} from './palette.js';
 /** @import {Materials} from './materials.js' */
 /** @import {Road, Sky} from '../protocol.js' */
 /** @import {Stage} from './stage.js' */
@@ -88,9 +89,9 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-const DAY = {zenith: new Color(0x3f78c0), horizon: new Color(0xc9dcec)};
-const NIGHT = {zenith: new Color(0x05070f), horizon: new Color(0x141a28)};
-const DUSK = new Color(0xe8a468);
+const DAY = {zenith: new Color(SKY.day_zenith), horizon: new Color(SKY.day_horizon)};
+const NIGHT = {zenith: new Color(SKY.night_zenith), horizon: new Color(SKY.night_horizon)};
+const DUSK = new Color(SKY.dusk);
 
 function makeSky() {
   const dome = new Mesh(new SphereGeometry(1, 32, 24), new ShaderMaterial({

@@ -45,6 +45,11 @@ export class Placer {
     this.#stage.shadowsChanged();
   }
 
+  /** The point of the ground under the mouse. @param {MousePoint} mousePoint */
+  groundAt({clientX, clientY}) {
+    return rayPlane(this.#picker.ray(clientX, clientY), [0, 0, 0], WORLD_AXES.z);
+  }
+
   /** Puts it down where the mouse is. @param {MousePoint} event */
   put(event) {
     const pose = this.#pose(event);

@@ -5,6 +5,7 @@ import {
 } from 'three';
 import {colorOf} from './three_convert.js';
 import {patternCanvas} from './builtin_textures.js';
+import {DULLEST, GREY, GROUND, SHININESS} from './palette.js';
 /** @import {LoadingManager, Texture} from 'three' */
 
 /** @typedef {import('../protocol.js').Material} MaterialDocument */
@@ -16,12 +17,7 @@ import {patternCanvas} from './builtin_textures.js';
  * @typedef {{doubleSided?: boolean, pushed?: boolean}} MaterialUse
  */
 
-/** Grey of what has no material (Gazebo/Grey and Gazebo/White for meshes look alike with light). */
-const GREY = [0.7, 0.7, 0.7, 1];
-const GROUND = 0.8;
 const DULL = [0, 0, 0, 1];
-/** Highlights weaker than this are not worth their computing. */
-const DULLEST = 0.02;
 
 /**
  * @typedef {object} Variant
@@ -87,9 +83,9 @@ export class Materials {
   #make(material, {opacity = 1, wireframe = false}, {doubleSided = false, pushed = false}) {
     const diffuse = material?.diffuse ?? material?.ambient ??
       (material?.texture ? [1, 1, 1, 1] : GREY);
-    const seen = (diffuse[3] ?? 1) * (1 - (material?.transparency ?? 0)) * opacity;
+    // The simulator has put the colour's alpha into the transparency; what is not from there has not.
+    const seen = (1 - (material?.transparency ?? 1 - (diffuse[3] ?? 1))) * opacity;
     const common = {
-      // A ground of one grey with what stands on it would swallow its outlines.
       color: colorOf(diffuse).multiplyScalar(pushed ? GROUND : 1),
       opacity: seen, transparent: seen < 1, depthWrite: seen >= 1, wireframe,
       side: doubleSided ? DoubleSide : FrontSide, map: this.#map(material?.texture),
@@ -101,7 +97,7 @@ export class Materials {
     if (Math.max(...specular.slice(0, 3)) <= DULLEST) {
       return new MeshLambertMaterial({...common, emissive});
     }
-    return new MeshPhongMaterial({...common, shininess: 30, specular: colorOf(specular), emissive});
+    return new MeshPhongMaterial({...common, shininess: SHININESS, specular: colorOf(specular), emissive});
   }
 
   /** @param {TextureDocument|null|undefined} texture */

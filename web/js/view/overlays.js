@@ -123,6 +123,8 @@ export class Overlays {
   #contacts = new Group();
   /** @type {(() => void)|null} */
   #unwatch = null;
+  /** Models that are selected. @type {Set<string>} */
+  #selected = new Set();
 
   /** @param {ViewParts} viewParts */
   constructor({store, models, stage, stock, watches}) {
@@ -133,6 +135,7 @@ export class Overlays {
     this.#watches = watches;
     stage.scene.add(this.#contacts);
     store.listen('document', () => this.#rebuildAll());
+    store.listen('selection', () => this.#selectionChanged());
     store.listen('overlays', (event) => this.#flagsChanged(event.detail ?? {}));
     store.listen('entity', ({detail}) => {
       if (detail.kind === 'model') this.#rebuild(detail.name);
@@ -153,6 +156,16 @@ export class Overlays {
         group.matrixWorldNeedsUpdate = true;
       }
     }
+  }
+
+  /** What is shown of the selection alone goes with it. */
+  #selectionChanged() {
+    const before = this.#selected;
+    this.#selected = new Set(this.#store.selection.flatMap((name) =>
+      this.#store.split(name)[0]?.name ?? []));
+    if (!Object.values(this.#store.overlays.selection).some(Boolean)) return;
+    for (const name of new Set([...before, ...this.#selected])) this.#rebuild(name);
+    this.#watchContacts();
   }
 
   /** @param {{flag?: OverlayFlag, model?: string, layer?: number}} options */
@@ -249,8 +262,8 @@ export class Overlays {
   }
 
   #contactsWanted() {
-    const {scene, models} = this.#store.overlays;
-    return scene.contacts || Object.values(models).some(({contacts}) => contacts);
+    const {scene, models, selection} = this.#store.overlays;
+    return scene.contacts || (selection.contacts && this.#store.selection.length > 0) || Object.values(models).some(({contacts}) => contacts);
   }
 
   /** @param {Contact[]} contacts */

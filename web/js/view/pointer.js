@@ -222,9 +222,16 @@ export class Pointer {
   /** @param {DragEvent} event */
   async #drop(event) {
     event.preventDefault();
-    const uri = event.dataTransfer?.getData('text/x-model-uri');
-    if (!uri) return;
     const {clientX, clientY} = event;
+    const uri = event.dataTransfer?.getData('text/x-model-uri');
+    if (!uri) {
+      // What was dropped must be taken hold of before the event is over.
+      const items = [...event.dataTransfer?.items ?? []].flatMap((item) =>
+        item.webkitGetAsEntry?.() ?? item.getAsFile() ?? []);
+      const place = this.#parts.placer.groundAt({clientX, clientY});
+      if (items.length && place) this.#parts.actions.dropFiles(items, place);
+      return;
+    }
     const outcome = await this.#parts.actions.insertModel(uri);
     if (outcome.ok) this.#parts.placer.put({clientX, clientY});
   }

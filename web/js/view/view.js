@@ -23,12 +23,14 @@ import {standaloneModel} from './standalone_model.js';
 import {NoWebGL, Stage} from './stage.js';
 import {Surroundings} from './environment.js';
 import {thumbnail} from './thumbnails.js';
+import {TopicMarks} from './topic_marks.js';
 /** @import {Actions, Outcome, ShownWrench} from '../actions.js' */
 /** @import {Connection} from '../connection.js' */
 /** @import {Pose7} from '../pose.js' */
 /** @import {Stock} from './shape_meshes.js' */
 /** @import {Store} from '../store.js' */
 /** @import {Turned} from './force_arrows.js' */
+/** @import {Topics} from '../topics/topics.js' */
 /** @import {Watches} from '../watches.js' */
 
 /**
@@ -49,7 +51,7 @@ import {thumbnail} from './thumbnails.js';
 
 /** @typedef {InstanceType<typeof View>} SceneView */
 
-/** @typedef {Pick<ViewParts, 'store'|'actions'|'connection'|'watches'>} ViewOptions */
+/** @typedef {Pick<ViewParts, 'store'|'actions'|'connection'|'watches'> & {topics: Topics}} ViewOptions */
 
 const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs it. The tree, the
   properties, the time bar and saving work without it. To get the 3D view, enable hardware
@@ -98,6 +100,7 @@ class View {
   #overlays;
   #pointer;
   #actors;
+  #marks;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
@@ -108,7 +111,7 @@ class View {
   #connection;
 
   /** @param {HTMLElement} element @param {ViewOptions} viewOptions */
-  constructor(element, {store, actions, connection, watches}) {
+  constructor(element, {store, actions, connection, watches, topics}) {
     this.#store = store;
     this.#connection = connection;
     const stage = new Stage(element);
@@ -133,6 +136,7 @@ class View {
     new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
+    this.#marks = new TopicMarks({...shared, topics});
     this.#boxes = new SelectionBoxes(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
@@ -144,6 +148,9 @@ class View {
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
+
+  /** Names of the topics that are drawn, for tests. */
+  get drawnTopics() { return this.#marks.drawn; }
 
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
@@ -159,6 +166,7 @@ class View {
       this.#rig.follow();
       this.#boxes.follow(ids);
       this.#overlays.follow(ids);
+      this.#marks.follow(ids);
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();

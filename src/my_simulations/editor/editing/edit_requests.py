@@ -14,6 +14,7 @@ from ...formats.sdf.writer.entities import write_world
 from ...geometry import Pose, compose, inverse, normalised, pose_is_finite
 from ...resources.resolver import Resolver
 from ...simulator.history import History
+from ...simulator.joint_gains import default_gains
 from ...simulator.operations import (
     AddLight,
     AddModel,
@@ -269,7 +270,10 @@ class Edits:
         label = history_labels.set_joint(scoped, joint.type, mode, value)
         if mode == "force":
             return label, DriveJoint(scoped, (value,) if value else ()), {}
-        servo = JointPid(value, mode == "velocity", **_gains(op.get("gains") or {}))
+        rate = mode == "velocity"
+        gains = default_gains(self._world.models.get(owner), joint, rate,
+                              self._world.physics.settings.max_step_size, bool(number))
+        servo = JointPid(value, rate, **{**gains, **_gains(op.get("gains") or {})})
         return label, DriveJoint(scoped, (servo,)), {}
 
     # -- several ---------------------------------------------------------------------------------

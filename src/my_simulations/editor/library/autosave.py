@@ -1,7 +1,7 @@
 """Edits that nobody saved, kept on disk, so that a crash of page, node or machine costs nothing.
 
 An entry is a world file and a small JSON file about it, each written whole. An entry whose process
-is gone is offered at the next start.
+is gone is offered at the next start with the same world. What somebody discards stays for a week.
 """
 from __future__ import annotations
 
@@ -16,13 +16,21 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 from ...errors import CommandError, Issue, warning
 from ...simulator.history import History
 from ...simulator.safe_file import write_whole
+from ..transport.error_messages import EditRefusedError
 from .world_files import WorldFiles
+
+_DAY_S = 86400.0
+KEPT_S = 7.0 * _DAY_S
+"""How long discarded changes can be recovered."""
+
+UNCLAIMED_S = 60.0 * _DAY_S
+"""How long changes are kept that nobody has discarded or restored."""
 
 
 @dataclass(frozen=True)
 class Entry:
     """`file`: the world it belongs to, "" for a new one; `saved_at` s since 1970; `launched`: the
-    models of it that a launch file had spawned.
+    models of it that a launch file had spawned; `discarded_at`: 0 unless somebody discarded it.
     """
 
     about: str
@@ -31,6 +39,17 @@ class Entry:
     saved_at: float
     process: str
     launched: Tuple[str, ...] = ()
+    discarded_at: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """Tells entries apart."""
+        return os.path.basename(self.about)[:-len(".json")]
+
+    @property
+    def age_limit(self) -> float:
+        """When it is no longer kept, s since 1970."""
+        return self.discarded_at + KEPT_S if self.discarded_at else self.saved_at + UNCLAIMED_S
 
 
 class Autosave:
@@ -54,13 +73,21 @@ class Autosave:
         self._complained = False
         self._process = process_id(os.getpid())
         self._name = f"{os.getpid()}-{time.time_ns():x}"
-        self.found: Optional[Entry] = self._newest()
+        self._purge()
+        self.found: Optional[Entry] = self._offered()
 
     def push(self) -> Dict[str, Any]:
         """The push `autosave`."""
         found = self.found
         return {"type": "autosave", "found": found is not None,
-                "file": found.file if found else "", "time": found.saved_at if found else 0.0}
+                "file": found.file if found else "", "time": found.saved_at if found else 0.0,
+                "others": sum(not entry.discarded_at for entry in self._left() if entry != found)}
+
+    def entries(self) -> List[Dict[str, Any]]:
+        """What can be recovered, the newest first (`Recoverable` of the protocol)."""
+        return [{"name": entry.name, "file": entry.file, "time": entry.saved_at,
+                 "discarded": bool(entry.discarded_at)}
+                for entry in sorted(self._left(), key=lambda one: -one.saved_at)]
 
     def keep(self) -> None:
         """Write the entry anew if there are edits that are not in it; remove it if there are none.
@@ -78,26 +105,68 @@ class Autosave:
                     self._write()
                 self._kept = state
                 self._complained = False
-            except CommandError as fault:
-                if not self._complained:
-                    self._tell(warning("autosave", f"unsaved changes cannot be kept: {fault}"))
-                self._complained = True
+            except (CommandError, OSError) as fault:
+                self._complain(str(fault))
+            except Exception as defect:  # edits to come must still be kept
+                self._complain(f"internal error: {type(defect).__name__}: {defect}")
 
-    def restore(self) -> str:
-        """Load what was found; returns the file it belongs to. Raises CommandError."""
-        found = self.found
-        if found is None:
-            raise CommandError("no unsaved changes of an earlier session were found")
+    def _complain(self, reason: str) -> None:
+        if not self._complained:
+            self._tell(warning("autosave", f"unsaved changes cannot be kept: {reason}"))
+        self._complained = True
+
+    def restore(self, name: str = "") -> str:
+        """Load an entry, or what was found; returns the file it belongs to.
+
+        Changes of the world that it replaces can be recovered in turn. Raises CommandError.
+        """
+        found = self._entry(name)
+        self.set_aside()
         self._files.restore(found.world, found.file, list(found.launched))
         self.keep()
-        self.discard()
+        self._remove(found.about, found.world)
+        if self.found is not None and self.found.name == found.name:
+            self.found = None
         return found.file
 
     def discard(self) -> None:
-        """Forget what was found."""
+        """Offer what was found no more; it can be recovered for a while."""
         if self.found is not None:
-            self._remove(self.found.about, self.found.world)
+            self._mark_discarded(self.found.about)
             self.found = None
+
+    def set_aside(self) -> None:
+        """The present changes are about to be discarded: keep them to be recovered."""
+        with self._lock:
+            if not self._history.dirty:
+                return
+            self._write()
+            self._mark_discarded(self._path(".json"))
+            self._name = f"{os.getpid()}-{time.time_ns():x}"
+            self._kept = None
+
+    def _entry(self, name: str) -> Entry:
+        if not name:
+            if self.found is None:
+                raise CommandError("no unsaved changes of an earlier session were found")
+            return self.found
+        for entry in self._left():
+            if entry.name == name:
+                return entry
+        raise EditRefusedError("not-found", "these changes can no longer be recovered")
+
+    @staticmethod
+    def _mark_discarded(about: str) -> None:
+        """Raises CommandError."""
+        try:
+            with open(about, encoding="utf-8") as stream:
+                data = json.load(stream)
+        except FileNotFoundError:
+            return  # somebody else has recovered it
+        except (OSError, ValueError) as fault:
+            raise CommandError(f"{about}: {fault}") from fault
+        data["discarded"] = time.time()
+        write_whole(about, json.dumps(data).encode(), overwrite=True)
 
     def _write(self) -> None:
         write_whole(self._path(".world"), self._files.text(), overwrite=True)
@@ -114,13 +183,23 @@ class Autosave:
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(path)
 
-    def _newest(self) -> Optional[Entry]:
-        """The newest entry whose process is gone, of this world's file before others."""
+    def _left(self) -> List[Entry]:
+        """Entries that were discarded, or whose process is gone."""
         entries = [entry for entry in map(self._read, self._listed()) if entry is not None]
-        left = [entry for entry in entries if not _lives(entry.process)]
-        if not left:
-            return None
-        return max(left, key=lambda entry: (entry.file == self._files.file, entry.saved_at))
+        return [entry for entry in entries
+                if entry.discarded_at or not _lives(entry.process)]
+
+    def _offered(self) -> Optional[Entry]:
+        """The newest entry of this world's file that was not discarded."""
+        mine = [entry for entry in self._left()
+                if entry.file == self._files.file and not entry.discarded_at]
+        return max(mine, key=lambda entry: entry.saved_at) if mine else None
+
+    def _purge(self) -> None:
+        """Remove what has been kept for long enough."""
+        for entry in self._left():
+            if entry.age_limit < time.time():
+                self._remove(entry.about, entry.world)
 
     def _listed(self) -> List[str]:
         try:
@@ -137,7 +216,8 @@ class Autosave:
             if not os.path.isfile(world):
                 return None
             return Entry(path, world, str(about["file"]), float(about["time"]),
-                         str(about["process"]), tuple(map(str, about.get("launched", ()))))
+                         str(about["process"]), tuple(map(str, about.get("launched", ()))),
+                         float(about.get("discarded", 0.0)))
         except (OSError, ValueError, KeyError, TypeError):
             return None
 

@@ -14,6 +14,7 @@ from ..scene.scene_json import Documents
 from ..transport.browser_client import Client
 from ..transport.hub import Hub
 from ..transport.web_socket import Route
+from .model_import import import_model
 from .model_library import Library
 
 _LOOK_S = 2.0
@@ -45,6 +46,7 @@ class LibraryRequests:
         handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
             "library": self._list, "library_add": self._add, "library_remove": self._remove,
             "library_get": self._get, "preview": self._preview,
+            "import_model": self._import,
         }
         return {kind: Route(handler, self._pool) for kind, handler in handlers.items()}
 
@@ -93,6 +95,12 @@ class LibraryRequests:
         for issue in issues:
             self._tell(issue)
         return shown(entity, self._hub.documents)
+
+    def _import(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        reply, issues = import_model(message, self._resolver)
+        for issue in issues:
+            self._tell(issue)
+        return reply
 
     def _preview(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         entity, _ = entity_of_text(message["sdf"], self._resolver)

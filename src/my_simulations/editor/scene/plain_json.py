@@ -8,7 +8,8 @@ from typing import Any, Dict
 from ...description.model import INFINITE
 from ...geometry import Pose
 
-HIDDEN = frozenset(("extra", "base_dir", "path", "script_uris", "sensors", "transmissions"))
+HIDDEN = frozenset(("extra", "base_dir", "path", "script_uris", "sensors", "soft",
+                    "transmissions"))
 """Fields that are the files' business, besides those that do not count in comparisons."""
 
 

@@ -1,16 +1,20 @@
-"""Who may talk to the server: pages that it served itself, on names that are its own."""
+"""Who may talk to the server: who has its token, with pages that it served itself."""
 from __future__ import annotations
 
 import hmac
+import os
 import secrets
 from typing import Awaitable, Callable, Optional
 from urllib.parse import urlsplit
 
 from aiohttp import web
 
-from ..editor_options import EditorOptions, is_loopback
+from ..editor_options import TOKEN_VARIABLE, EditorOptions, is_loopback
+from .connection_limits import SilentConnections
 
 COOKIE = "my_simulations_editor"
+"""Before the port: browsers keep cookies for a host, and several editors may run on it."""
+
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 _HEADERS = {
@@ -22,15 +26,21 @@ _NOTHING = "sandbox; default-src 'none'; frame-ancestors 'none'"
 
 
 class Guard:
-    """Checks Host, Origin and, where others can reach the server, a token.
+    """Checks token, Host and Origin.
 
-    A page of another site cannot use a browser on this machine against us: its Origin is foreign,
-    and a name that was made to point here (DNS rebinding) is no name of ours.
+    Other users of this machine, and other machines, do not have the token. A page of another site
+    cannot use a browser on this machine against us: its Origin is foreign, and a name that was made
+    to point here (DNS rebinding) is no name of ours.
+
+    Attributes:
+        token: "" where none is asked for.
+        silent: connections that have not shown a right request yet.
     """
 
     def __init__(self, options: EditorOptions) -> None:
         self._open = is_loopback(options.host)
-        self.token = "" if self._open else options.token or secrets.token_urlsafe(24)
+        self.token = _token(options, self._open)
+        self.silent = SilentConnections()
         self._hosts = {"127.0.0.1", "localhost", "::1", options.host.lower().strip("[]")}
 
     @web.middleware
@@ -44,16 +54,20 @@ class Guard:
         try:
             if problem:
                 raise web.HTTPForbidden(text=problem + "\n")
+            self.silent.heard(request.protocol)
             response = await handler(request)
         except web.HTTPException as refusal:
+            if problem:
+                refusal.force_close()
             refusal.headers.update(_HEADERS)
             refusal.headers[_POLICY] = _NOTHING
             raise
         if not response.prepared:
             response.headers.update(_HEADERS)
             response.headers.setdefault(_POLICY, _NOTHING)
-            if self.token and request.query.get("token"):
-                response.set_cookie(COOKIE, self.token, httponly=True, samesite="Strict")
+            if self.token and self._is_token(request.query.get("token", "")):
+                response.set_cookie(_cookie(request), self.token, httponly=True,
+                                    samesite="Strict")
         return response
 
     def _problem(self, request: web.Request) -> str:
@@ -66,11 +80,28 @@ class Guard:
         if request.headers.get("Sec-Fetch-Site", "none") == "cross-site" and (
                 request.path != "/"):
             return "pages of other sites may not use this server"
-        if self.token:
-            shown = request.query.get("token") or request.cookies.get(COOKIE, "")
-            if not hmac.compare_digest(shown.encode(), self.token.encode()):
-                return "the token is missing or wrong; use the whole address that was printed"
+        shown = (request.query.get("token", ""), request.cookies.get(_cookie(request), ""))
+        if self.token and not any(map(self._is_token, shown)):
+            return ("the token is missing or wrong; run gzclient, or use the whole address that it "
+                    "prints")
         return ""
+
+    def _is_token(self, shown: str) -> bool:
+        return hmac.compare_digest(shown.encode("utf-8", "replace"), self.token.encode())
+
+
+def _token(options: EditorOptions, is_local: bool) -> str:
+    wanted = options.token
+    if wanted is None:
+        wanted = os.environ.get(TOKEN_VARIABLE) or secrets.token_urlsafe(24)
+        if wanted == "off":
+            wanted = ""
+    return wanted if wanted or is_local else secrets.token_urlsafe(24)
+
+
+def _cookie(request: web.Request) -> str:
+    address = request.get_extra_info("sockname") or ("", 0)
+    return f"{COOKIE}_{address[1]}"
 
 
 def _netloc_of(url: str) -> Optional[str]:

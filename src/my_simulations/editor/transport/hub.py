@@ -77,6 +77,11 @@ class Hub:
         for message in messages if self._check else ():
             self.protocol.check_push(message)
 
+    def check_view(self, head: Dict[str, Any]) -> None:
+        """Hold the head of a topic's view to the protocol, as `check`."""
+        if self._check:
+            self.protocol.types.check(head, "TopicHead", "view")
+
     def push_soon(self, message: Dict[str, Any]) -> None:
         """As `push` to all; safe from any thread."""
         self._soon(self.push, message)

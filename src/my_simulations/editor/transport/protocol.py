@@ -8,12 +8,15 @@ import re
 from typing import Any, Callable, Dict, FrozenSet, Iterable, List, Optional, Tuple
 
 from ...errors import CommandError
+from ...xml_characters import check_tree
 
 OPERATION = "Operation"
 """The type of an operation: an object whose `kind` names an entry of `operations`."""
 
 _LIST = re.compile(r"(.*)\[(\d*)\]\Z", re.DOTALL)
 _SOME = "some "
+_SUSPICIOUS = re.compile(r"\\u(00[01]|d[89a-f]|fff[ef])|[\ud800-\udfff\ufffe\uffff]", re.IGNORECASE)
+"""In JSON text: what may be a character that XML cannot hold. Others need no second look."""
 _DEEPEST = 32
 
 Test = Callable[[Any], bool]
@@ -172,6 +175,11 @@ class Protocol:
         return list(self._data["requests"])
 
     @property
+    def notices(self) -> List[str]:
+        """All types of notices."""
+        return list(self._data["notices"])
+
+    @property
     def operations(self) -> List[str]:
         """All kinds of operations."""
         return list(self._data["operations"])
@@ -186,6 +194,20 @@ class Protocol:
         if not isinstance(message, dict) or not isinstance(message.get("type"), str):
             raise ProtocolError("a message is an object with a string `type`")
         return message
+
+    @staticmethod
+    def check_texts(message: Dict[str, Any], text: str) -> None:
+        """Raises ProtocolError where a message holds what no world file could, wherever it stands.
+
+        `text` is the frame that `message` was parsed from.
+        """
+        if not _SUSPICIOUS.search(text):
+            return
+        kind = message["type"]
+        try:
+            check_tree(message, kind if kind.isidentifier() else "the message")
+        except CommandError as fault:
+            raise ProtocolError(str(fault)) from None
 
     def check_message(self, message: Dict[str, Any]) -> None:
         """Raises ProtocolError for a message of a client that does not follow the protocol."""

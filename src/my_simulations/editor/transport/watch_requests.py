@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import asyncio
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Dict, Optional, Set, Tuple
+from typing import Any, Dict, Optional, Protocol, Set, Tuple
 
 from ...errors import CommandError
 from .browser_client import Client, encoded
@@ -12,12 +12,25 @@ from .pose_messages import Poses
 from .watched_values import MOST_TOPICS, Watches, check_topic
 from .web_socket import Route
 
+PREFIX = "ros:"
+"""Begins what a page watches of ROS, before the name of the topic."""
+
+
+class RosTopics(Protocol):
+    """What of ROS pages watch (`editor.topics`)."""
+
+    def want(self, client: Client, names: Set[str]) -> None:
+        """These topics are what a page watches from now on. Raises CommandError."""
+
 
 class Watching:
-    """Reads each topic once for all clients, in a thread of its own, as often as it can."""
+    """Reads each topic once for all clients, in a thread of its own, as often as it can.
 
-    def __init__(self, hub: Hub) -> None:
-        self._hub = hub
+    Topics of ROS are handed on to `live`.
+    """
+
+    def __init__(self, hub: Hub, live: RosTopics) -> None:
+        self._hub, self._live = hub, live
         self._watches = Watches(hub.simulator, hub.clock)
         self._thread = ThreadPoolExecutor(1, "editor watches")
         self._due = 0.0
@@ -32,11 +45,14 @@ class Watching:
 
     async def _watch(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         topics = list(dict.fromkeys(message["topics"]))
+        of_ros = {topic for topic in topics if topic.startswith(PREFIX)}
         if len(topics) > MOST_TOPICS:
             raise CommandError(f"at most {MOST_TOPICS} topics can be watched")
         for topic in topics:
-            check_topic(topic)
-        client.topics = set(topics)
+            if topic not in of_ros:
+                check_topic(topic)
+        self._live.want(client, {topic[len(PREFIX):] for topic in of_ros})
+        client.topics = set(topics) - of_ros
         self._fresh = True
         self._hub.nudge()
         return {"topics": topics}

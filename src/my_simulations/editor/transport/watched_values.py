@@ -8,6 +8,7 @@ from ...engine.commands import JointPid
 from ...engine.ring import Snapshot
 from ...errors import CommandError, SimulationError
 from ...geometry import Pose, Twist, rpy_from_quat
+from ...simulator.joint_gains import default_gains
 from ...simulator.registry import Entity
 from ...simulator.simulator import Simulator
 from ...simulator.wrenches import Effort
@@ -35,7 +36,7 @@ def check_topic(topic: str) -> None:
         if rest in _WORLD or (owner and field in {**_POSE, **_TWIST, **_JOINT}):
             return
     raise CommandError(f"unknown topic {topic!r}; known: contacts, joints:MODEL,"
-                       " plot:sim_time, plot:NAME.x and the like")
+                       " plot:sim_time, plot:NAME.x and the like, ros:/NAME")
 
 
 class Watches:
@@ -45,6 +46,7 @@ class Watches:
         self._world = simulator
         self._clock = clock
         self._step, self._time = 0, 0.0
+        self._gains: Optional[Tuple[Entity, float, List[Dict[str, Dict[str, float]]]]] = None
 
     def pushes(self, topics: Iterable[str]) -> Dict[str, Dict[str, Any]]:
         """The push of each topic, now."""
@@ -73,11 +75,25 @@ class Watches:
 
     def _driven_joints(self, entity: Entity, snapshot: Snapshot) -> List[Dict[str, Any]]:
         found = list(_joints(entity, snapshot))
+        for state, gains in zip(found, self._default_gains(entity)):
+            state["default_gains"] = gains
         for state, row in zip(found, entity.joint_names):
             drive = _drive(self._world.wrenches.efforts_on(f"{entity.model.name}::{row}"))
             if drive is not None:
                 state["drive"] = drive
         return found
+
+    def _default_gains(self, entity: Entity) -> List[Dict[str, Dict[str, float]]]:
+        """By axis and mode; computed once for a model that stays as it is."""
+        dt = self._world.physics.settings.max_step_size
+        if self._gains is None or self._gains[0] is not entity or self._gains[1] != dt:
+            joints = {joint.name: joint for joint in entity.model.joints}
+            rows = [(joints[row[:-3] if row.endswith("::1") else row], row.endswith("::1"))
+                    for row in entity.joint_names]
+            self._gains = (entity, dt, [
+                {mode: default_gains(entity.model, joint, mode == "velocity", dt, second)
+                 for mode in ("position", "velocity")} for joint, second in rows])
+        return self._gains[2]
 
     def _contacts(self) -> List[Dict[str, Any]]:
         return [{"a": a, "b": b, "position": list(one.position), "normal": list(one.normal),

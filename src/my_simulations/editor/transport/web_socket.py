@@ -78,6 +78,7 @@ class Sockets:
             message = self._hub.protocol.parse(text)
             found = message.get("id")
             number = found if isinstance(found, (int, float)) else None
+            self._hub.protocol.check_texts(message, text)
             self._hub.protocol.check_message(message)
             value = await self._answer(client, message)
             if number is not None:

@@ -22,6 +22,7 @@ from ..commands import (
     PhysicsSettings,
     PinModels,
     ReadContacts,
+    ReadEfforts,
     ReadJointWrenches,
     RemoveModel,
     Restart,
@@ -31,6 +32,7 @@ from ..commands import (
     SetModelState,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
     SetWheelSlips,
 )
 from ..ring import JOINTS, LINKS
@@ -78,7 +80,8 @@ class BulletBackend:
         self._rolling = RollingContacts()
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
-        self._forces = Forces(self._waker.around)
+        self._forces = Forces(self._waker.around,
+                              lambda rows: self._motors.yield_to(rows))
         self._friction = FrictionBalance(self._on_misfit)
         self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)
         self._holds = PinnedBodies(self._waker.around)
@@ -104,6 +107,7 @@ class BulletBackend:
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
+        self._is_fresh = True   # nothing has moved since the world began
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
@@ -119,6 +123,9 @@ class BulletBackend:
                 self._bodies, command.limit, self._sliding.friction, self._forces.slip.friction),
             SetWheelSlips: self._set_wheel_slips,
             ReadJointWrenches: self._wrenches.read,
+            SetServos: lambda command: self._forces.servos.set(
+                command.servos, self._settings.step_size),
+            ReadEfforts: lambda command: self._forces.servos.efforts(command.rows),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
         }
@@ -150,6 +157,7 @@ class BulletBackend:
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
         self._settle()
+        self._is_fresh = False
         self._readout.stepped()
         run, dt, gravity = self._loop.run, self._settings.step_size, self._settings.gravity
         if self._wrenches.idle:
@@ -217,7 +225,10 @@ class BulletBackend:
         state = self._inherited(command) if command.inherit else command.state
         if state is not None:
             restore(entry, state)
-        self._waker.around(entry.bodies)
+        # In a fresh world all is awake. Looking for neighbours changes the order in which Bullet
+        # finds contacts, and with it what follows: a restart, which need not look, must repeat it.
+        if not self._is_fresh:
+            self._waker.around(entry.bodies)
 
     def _enter(self, builder: Builder, model: Model, pose: Pose) -> Entry:
         """Build a model and know it."""
@@ -329,6 +340,7 @@ class BulletBackend:
 
     def _clear(self, _: Clear) -> None:
         self._put_off = None
+        self._is_fresh = True
         self._models.clear()
         for keeper in self._keepers:
             keeper.clear()
@@ -357,6 +369,7 @@ class BulletBackend:
     def _set_up_axes(self, body: Body, model: Model) -> None:
         joint_axes.set_up(body, model, self._forces, self._settings.step_size)
         self._motors.set_up(body, model)
+        self._forces.servos.set_up(body, model, self._settings.step_size)
 
     def _set_wheel_slips(self, command: SetWheelSlips) -> None:
         for wheel in command.wheels:

@@ -253,7 +253,8 @@ class Builder:
     def _ease(self, uid: int, axes: Sequence[Axis]) -> None:
         """Work out once how easily the axes of a tree move."""
         if axes and axes[0].row not in self._eases:
-            found = mobility(MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
+            found: Any = mobility(
+                MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
             self._eases.update((axis.row, ease) for axis, ease in zip(axes, found))
         for axis in axes:
             axis.ease = self._eases[axis.row]

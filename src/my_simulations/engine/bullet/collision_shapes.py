@@ -190,8 +190,10 @@ class ShapeFactory:
             for collision in collisions:
                 pose = compose(frame, collision.pose)
                 for points, triangles in _pieces(collision, meshes):
-                    moved = [transform(pose, (p[0], p[1], p[2])) for p in points.tolist()]
-                    _write_part(stream, moved, triangles.tolist(), first)
+                    rows: Any = points.tolist()
+                    corners: Any = triangles.tolist()
+                    moved = [transform(pose, (p[0], p[1], p[2])) for p in rows]
+                    _write_part(stream, moved, corners, first)
                     first += len(moved)
         return {"type": pybullet.GEOM_MESH, "file": path, "pose": IDENTITY}
 

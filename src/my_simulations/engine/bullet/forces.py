@@ -14,6 +14,7 @@ from .bodies import Axis, Body, Part
 from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
+from .joint_servos import JointServos
 from .link_states import place
 from .step_helper import FAR
 
@@ -27,8 +28,11 @@ class Forces:
         slip: links whose surfaces slip.
     """
 
-    def __init__(self, wake: Callable[[List[Body]], None]) -> None:
+    def __init__(self, wake: Callable[[List[Body]], None],
+                 loops_changed: Callable[[Set[int]], None] = lambda rows: None) -> None:
+        """`loops_changed` gets the axis rows that PID loops drive whenever these change."""
         self._wake = wake
+        self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
         self._acting: Dict[int, TimedForce] = {}
         self._loops: Dict[int, PidController] = {}
@@ -38,6 +42,7 @@ class Forces:
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
+        self.servos = JointServos(self._axes, wake)
         self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:
@@ -67,12 +72,14 @@ class Forces:
         self._placed.add(body.uid)
         if body.uid in self._implicit:
             self._implicit[body.uid].disturbed()
+        self.servos.disturbed(body)
 
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
         self.slip.forget(body)
         self._implicit.pop(body.uid, None)
+        self.servos.forget(body)
         for part in body.parts:
             self._parts.pop(part.row, None)
             self._weightless.pop(part.row, None)
@@ -94,18 +101,28 @@ class Forces:
 
     def drop(self, force_ids: Sequence[int]) -> None:
         """Drop timed forces by id."""
+        ended = [self._loops.pop(force_id, None) for force_id in force_ids]
         for force_id in force_ids:
             self._timed.pop(force_id, None)
             self._acting.pop(force_id, None)
-            self._loops.pop(force_id, None)
+        if any(ended):
+            self._tell_loops()
+
+    def _tell_loops(self) -> None:
+        self._loops_changed({self._acting[number].row for number in self._loops
+                             if number in self._acting})
 
     def clear(self) -> None:
         """All bodies are gone, and every timed force with them."""
+        ended = bool(self._loops)
         for table in (self._timed, self._acting, self._loops, self._parts, self._axes,
                       self._weightless, self._implicit, self._limits):
             table.clear()
         self.slip.clear()
         self._placed.clear()
+        if ended:
+            self._tell_loops()
+        self.servos.clear()
 
     @property
     def wrenched_links(self) -> Set[int]:
@@ -133,7 +150,8 @@ class Forces:
     def due(self, step: int) -> int:
         """Each step while something acts anew in it, or was put somewhere before it."""
         return step if (self._timed or self._weightless or self._implicit
-                        or self._placed or not self.slip.idle) else FAR
+                        or self._placed or not self.slip.idle
+                        or not self.servos.idle) else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Forget who was put somewhere before the step."""
@@ -149,6 +167,8 @@ class Forces:
                     self._apply_wrench(force, dt)
                 else:
                     efforts[force.row] = efforts.get(force.row, 0.0) + self._limited(force, dt)
+        if not self.servos.idle:
+            self.servos.add_to(efforts, step)
         for implicit in self._implicit.values():
             implicit.add_to(efforts)
         for row, effort in efforts.items():
@@ -184,6 +204,7 @@ class Forces:
 
     def _begin_and_end(self, step: int) -> None:
         beginning = []
+        loops = len(self._loops)
         for force_id, force in list(self._timed.items()):
             if step >= force.stop:
                 self.drop([force_id])
@@ -192,6 +213,8 @@ class Forces:
                 if isinstance(force, TimedEffort) and force.pid is not None:
                     self._loops[force_id] = PidController(force.pid)
                 beginning.append(force)
+        if len(self._loops) != loops:
+            self._tell_loops()
         if beginning:
             self._wake([self._target(force) for force in beginning])
 

@@ -1,7 +1,7 @@
 """Motors of joint axes: a rate, and the effort that may be spent on it (ODE's `vel` and `fmax`)."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, List, Mapping, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Set, Tuple
 
 import pybullet
 
@@ -20,6 +20,15 @@ class JointMotors:
         self._wake = wake
         self._motors: Dict[int, JointMotor] = {}
         self._specs: Dict[int, JointAxis] = {}
+        self._yielding: Set[int] = set()
+
+    def yield_to(self, rows: Set[int]) -> None:
+        """PID loops drive these axes: their motors rest meanwhile, only friction stays."""
+        changed, self._yielding = rows ^ self._yielding, set(rows)
+        for row in changed:
+            motor = self._motors.get(row)
+            if motor is not None and row in self._axes:
+                self._drive(*self._axes[row], motor)
 
     def set(self, motors: Iterable[JointMotor]) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
@@ -61,7 +70,7 @@ class JointMotors:
 
     def _drive(self, body: Body, axis: Axis, motor: JointMotor) -> None:
         rate, effort = motor.rate, motor.effort
-        if effort <= 0.0:
+        if effort <= 0.0 or motor.row in self._yielding:
             spec = self._specs.get(axis.row) or JointAxis()
             rate, effort = spec.motor_rate, max(0.0, spec.friction)
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,

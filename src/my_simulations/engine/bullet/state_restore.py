@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, List
+from typing import Any, Callable, Dict, List
 
 import numpy as np
 import pybullet
@@ -93,8 +93,9 @@ def inherited(before: Entry, model: Model, frame: Pose, state_of: Callable[[int]
                               twist_at(state.twist, rotate(state.pose.orientation,
                                                            shift.position)))
         states.append(state)
-    axes = {row_name(axis.name, axis.number): axis_table[axis.row].tolist()
-            for body in before.bodies for axis in body.axes}
+    axes: Dict[str, Any] = {
+        row_name(axis.name, axis.number): axis_table[axis.row].tolist()
+        for body in before.bodies for axis in body.axes}
     joints_of = axis_rows(model)
     return ModelState(tuple(states), tuple(
         (values[0], values[1])

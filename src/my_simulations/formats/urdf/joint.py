@@ -4,14 +4,25 @@ from __future__ import annotations
 from typing import Any, Dict, Optional
 from xml.sax.saxutils import quoteattr
 
-from ...description.model import INFINITE, Joint, JointAxis, Mimic
+from ...description.model import INFINITE, Joint, JointAxis, Mimic, SoftLimits
 from ...geometry import Quat, conjugate, norm, rotate, scale
 from ..xml.binding import Found, closest, fill
 from ..xml.source import FaultLevel, Source
 from ..xml.values import FLOAT
 from .kinematic_tree import Body, Connection
 from .link import read_origin
-from .urdf_tables import AXIS, DYNAMICS, JOINT, LIMIT_TABLE, MIMIC, Axis, Ends, Limits
+from .urdf_tables import (
+    AXIS,
+    DYNAMICS,
+    JOINT,
+    LIMIT_TABLE,
+    MIMIC,
+    SAFETY,
+    Axis,
+    Ends,
+    Limits,
+    Safety,
+)
 
 TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
@@ -79,6 +90,10 @@ def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[
         fill(limits, child, LIMIT_TABLE, source, [])
     for child in found.get("dynamics", ()):
         fill(axis, child, DYNAMICS, source, [])
+    for child in found.get("safety_controller", ()):
+        safety = Safety()
+        fill(safety, child, SAFETY, source, [])
+        axis.soft = SoftLimits(safety.lower, safety.upper, safety.k_position, safety.k_velocity)
     if limits is not None:
         _limit(axis, limits, joint, found["limit"][0], source)
     elif joint.type != "continuous":

@@ -1,11 +1,15 @@
 """URDF's transmissions. Source: ROS wiki, urdf/XML/Transmission."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, List, Optional
 
+from ...description.model import Model
 from ...description.transmission import Actuator, Transmission, TransmissionJoint
+from ...resources.resolver import Resolver
+from ..include_overrides import IncludeOverrides
 from ..xml.binding import Kept, Part, Table, Use, Value, fill
-from ..xml.source import FaultLevel, Source
+from ..xml.parsing import parse
+from ..xml.source import FaultLevel, IssueCollector, Source
 from ..xml.values import FLOAT, TEXT
 
 _TYPE = Value("interfaces", TEXT, repeated=True)
@@ -31,6 +35,18 @@ TRANSMISSION = Table("transmission", Transmission, {
         use=Use.IGNORED), "motorTorqueConstant": Kept(use=Use.IGNORED),
 }, attributes={"type": Value("type", TEXT)}, level=FaultLevel.WARNING, use=Use.IGNORED,
     known_attributes=("name",))
+
+
+def transmissions_of(text: str, name: str) -> List[Transmission]:
+    """The transmissions of a URDF document; `name` stands for its file. Raises InputError."""
+    log = IssueCollector()
+    root = parse(text, name, log)
+    source = Source(name, "", Resolver(), _no_robot, log)
+    return [read_transmission(child, source) for child in root.findall("transmission")]
+
+
+def _no_robot(element: Any, source: Source, overrides: Optional[IncludeOverrides]) -> Model:
+    raise NotImplementedError("transmissions include nothing")
 
 
 def read_transmission(element: Any, source: Source) -> Transmission:

@@ -65,6 +65,16 @@ class Limits:
 
 
 @dataclass
+class Safety:
+    """`<safety_controller>`."""
+
+    lower: float = 0.0
+    upper: float = 0.0
+    k_position: float = 0.0
+    k_velocity: float = 0.0
+
+
+@dataclass
 class Axis:
     """`<axis xyz>`; x by default."""
 
@@ -136,12 +146,16 @@ JOINT = Table("joint", Ends, {
     "origin": Part(), "axis": Part(), "limit": Part(), "dynamics": Part(), "mimic": Part(),
     "parent": Group(attributes={"link": Value("parent", TEXT)}),
     "child": Group(attributes={"link": Value("child", TEXT)}),
-    **_ignored("safety_controller", "calibration"),
+    "safety_controller": Part(), **_ignored("calibration"),
 }, known_attributes=("name", "type"), strict=True)
 AXIS = Table("axis", Axis, attributes={"xyz": Value("xyz", VECTOR3)}, level=FATAL, strict=True)
 LIMIT_TABLE = Table("limit", Limits, attributes={
     name: Value(name, LIMIT) for name in ("lower", "upper", "effort", "velocity")
 }, level=FATAL, strict=True)
+SAFETY = Table("safety_controller", Safety, attributes={
+    "soft_lower_limit": Value("lower", FLOAT), "soft_upper_limit": Value("upper", FLOAT),
+    "k_position": Value("k_position", FLOAT), "k_velocity": Value("k_velocity", FLOAT),
+}, level=WARNING, strict=True)
 MIMIC = Table("mimic", Mimic, attributes={
     "joint": Value("joint", TEXT), "multiplier": Value("multiplier", FLOAT),
     "offset": Value("offset", FLOAT),

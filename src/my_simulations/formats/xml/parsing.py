@@ -12,6 +12,7 @@ import re
 from typing import Any, Union
 
 from ...errors import InputError, error
+from ...xml_characters import forbidden_character, without_forbidden
 from .source import IssueCollector
 
 _DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
@@ -24,6 +25,7 @@ LARGEST = 64 << 20
 """Largest size of a document, bytes."""
 
 _MOST_TAGS = 2000000
+_COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _LONG_TAG = re.compile(rb"<[^<]{8000,}")
 
 
@@ -55,7 +57,7 @@ def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
 
     if len(text) > LARGEST:
         raise _too_large(file)
-    data = text.encode("utf-8", "replace") if isinstance(text, str) else text
+    data = _encoded(text, file) if isinstance(text, str) else text
     if len(data) > LARGEST:
         raise _too_large(file)
     if not data.strip(b" \t\r\n\0"):
@@ -78,6 +80,40 @@ def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
 def _fault(code: str, message: str, file: str, line: int = 0, column: int = 0,
            hint: str = "") -> InputError:
     return InputError([error(code, message, file=file, line=line, column=column, hint=hint)])
+
+
+def _encoded(text: str, file: str) -> bytes:
+    try:
+        return text.encode("utf-8")
+    except UnicodeEncodeError:  # a surrogate without its other half
+        _refuse_bad_characters(text, file)
+        raise
+
+
+def _without_bad_characters(text: str, file: str, log: IssueCollector) -> str:
+    """The text, without what XML cannot hold where that is in comments or behind the end.
+
+    Raises InputError where it is elsewhere.
+    """
+    from ...errors import warning
+
+    text = text.rstrip("\0 \t\r\n")
+    if not forbidden_character(text):
+        return text
+    plain = _COMMENT.sub(lambda found: without_forbidden(found.group()), text)
+    _refuse_bad_characters(plain, file)
+    log.add(warning("xml-malformed", "not well formed: a comment contains a character that XML "
+                    "cannot hold", file=file))
+    return plain
+
+
+def _refuse_bad_characters(text: str, file: str) -> None:
+    bad = forbidden_character(text)
+    if bad:
+        before = text[:int(bad.rpartition(" ")[2]) - 1]
+        raise _fault("xml-malformed", f"not well formed: the character {bad.split()[0]}, which an "
+                     "XML file cannot hold", file, before.count("\n") + 1,
+                     len(before) - before.rfind("\n"))
 
 
 def _too_large(file: str) -> InputError:
@@ -176,6 +212,7 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
     line, column = fault.position
     if "Excessive depth" in fault.msg:
         raise _fault("xml-too-deep", "elements are nested too deeply", file, line, column)
+    text = _without_bad_characters(text, file, log)
     text, retypings = retyped(text)
     result = balanced(text)
     result.repairs[:0] = retypings

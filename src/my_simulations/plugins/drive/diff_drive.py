@@ -94,7 +94,10 @@ class DiffDrive(Plugin):
             return wanted
         most = self._acceleration * dt
         for n in (0, 1):
-            self._instructed[n] += max(-most, min(most, wanted[n] - present[n]))
+            before = self._instructed[n]
+            after = before + max(-most, min(most, wanted[n] - present[n]))
+            # Not past what is wanted: a wheel that is held or driven by others winds nothing up.
+            self._instructed[n] = min(max(after, min(before, wanted[n])), max(before, wanted[n]))
         return self._instructed[0], self._instructed[1]
 
     def _drive(self, speeds: Tuple[float, float]) -> None:

@@ -19,7 +19,7 @@ from ..parameters import namespace_or
 from .rays import SampledNoise
 
 
-class _Imu(Plugin):
+class Imu(Plugin):
     """What both have: a link, a place on it, and the velocity at the sample before."""
 
     _link: Link
@@ -27,6 +27,7 @@ class _Imu(Plugin):
     _offset: Quat = IDENTITY_QUAT
     _reference: Quat = IDENTITY_QUAT
     _before: Vec3
+    _idle = False
 
     def _begin(self, topic: str, frame: str, who: str) -> None:
         context, p = self.context, self.context.parameters
@@ -34,19 +35,25 @@ class _Imu(Plugin):
         self._white = WhiteNoise(context.seed, f"{context.model}::{who}::imu", self._stddev)
         self._topic = context.publish(topic, "sensor_msgs/Imu")
         self._offset = p.turn("rpyOffset")
-        self.reset()
+        self.begin_motion()
+
+    def begin_motion(self) -> None:
+        """Accelerations are of what comes."""
+        self._idle = False
+        self._last_ns = self.context.now_ns
+        self._before = self._velocity()
 
     def reset(self) -> None:
         """Accelerations are of what comes."""
-        self._last_ns = self.context.now_ns
-        self._before = self._velocity()
+        self.begin_motion()
 
     clock_set = reset
 
     def _velocity(self) -> Vec3:
         return velocity_at(self._link.pose, self._link.twist, self._mount)
 
-    def _measure(self) -> ImuSample:
+    def measured(self) -> ImuSample:
+        """What it reads at this step, without errors."""
         context, now = self.context, self._velocity()
         elapsed = (context.now_ns - self._last_ns) * 1e-9
         acceleration = acceleration_between(self._before, now, elapsed)
@@ -55,10 +62,14 @@ class _Imu(Plugin):
                        self._mount, self._reference)
 
     def update(self) -> None:
-        """Measure always, publish while somebody listens."""
-        sample = self._noisy(self._measure())
+        """Measure and publish while somebody listens."""
         if not self._topic.wanted:
+            self._idle = True
             return
+        if self._idle:  # the velocity before is too old for an acceleration
+            self.begin_motion()
+            return
+        sample = self._noisy(self.measured())
         context, noise = self.context, self._white.draw(6)
         message = context.message("sensor_msgs/Imu")
         message.header.stamp, message.header.frame_id = context.stamp(), self._frame
@@ -78,7 +89,7 @@ class _Imu(Plugin):
         return sample
 
 
-class ModelImu(_Imu):
+class ModelImu(Imu):
     """On the link `<bodyName>`."""
 
     def load(self) -> None:
@@ -96,7 +107,7 @@ class ModelImu(_Imu):
         context.every(p.number("updateRate", 0.0), self.update)
 
 
-class SensorImu(_Imu):
+class SensorImu(Imu):
     """Of a `<sensor type="imu">`, with the noise of its block."""
 
     def load(self) -> None:

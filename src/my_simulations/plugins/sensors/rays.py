@@ -43,15 +43,16 @@ class SampledNoise:
             noise.dynamic_bias_stddev, noise.dynamic_bias_correlation_time, noise.precision),
             context.seed, name, quantity)
         self._last_ns = context.now_ns
-        self._sample = 0
 
     def apply(self, values: Any, ns: int) -> Any:
-        """Values of the sample taken at a sim time, with their noise."""
-        self._sample += 1
+        """Values of the sample taken at a sim time, with their noise.
+
+        The time counts the samples: one that nobody asked for shifts no other's noise.
+        """
         elapsed, self._last_ns = (ns - self._last_ns) * 1e-9, ns
-        return self._noise.apply(values, self._sample, max(0.0, elapsed))
+        return self._noise.apply(values, ns, max(0.0, elapsed))
 
     def reset(self, ns: int) -> None:
         """The world begins anew."""
         self._noise.reset()
-        self._last_ns, self._sample = ns, 0
+        self._last_ns = ns

@@ -12,13 +12,13 @@ from ...simulator.simulator import Simulator
 from ..issue_logging import log_issue
 
 URL = "~my_simulations/editor_url"
-"""Parameter: URL of the editor while it runs."""
+"""Parameter: URL of the editor while it runs; without its token, as others can read it."""
 
 
 class RunningEditor(Protocol):
     """Interface of a running editor."""
 
-    url: str
+    public_url: str
 
     def stop(self, reason: str = "") -> None:
         """Stop it; `reason` is shown on open pages."""
@@ -34,6 +34,9 @@ StartEditor = Callable[[Simulator, Resolver, Dict[str, Any]], RunningEditor]
 class EditorLauncher:
     """Starts the editor on first use, with settings from the parameter server.
 
+    Attributes:
+        topics: makes what the editor knows of ROS topics (`ros.plugins.topic_graph`).
+
     Args:
         start: starts it.
         simulator: the world it shows.
@@ -48,6 +51,7 @@ class EditorLauncher:
         self._world = (simulator, resolver)
         self._listen = listen
         self._caller = caller
+        self.topics: Callable[[], Any] = lambda: None
         self._lock = threading.Lock()
         self._editor: Optional[RunningEditor] = None
         if rospy.has_param(URL):  # left behind by a node that was killed
@@ -63,21 +67,23 @@ class EditorLauncher:
         threading.Thread(target=self._try, name="editor start", daemon=True).start()
 
     def open(self) -> str:
-        """Start the editor unless it runs; returns its URL. Raises CommandError."""
+        """Start the editor unless it runs; returns its public URL. Raises CommandError."""
         with self._lock:
             if self._editor is None:
                 self._editor = self._start(*self._world, {
-                    **_settings(), "log": log_issue, "caller": self._caller})
+                    **_settings(), "log": log_issue, "caller": self._caller,
+                    "topics": self.topics()})
                 self._listen(self._editor.tell)
-                rospy.set_param(URL, self._editor.url)
-                rospy.loginfo("the world editor is at %s", self._editor.url)
-            return self._editor.url
+                rospy.set_param(URL, self._editor.public_url)
+                rospy.loginfo("the world editor is at %s (gzclient opens it)",
+                              self._editor.public_url)
+            return self._editor.public_url
 
     def announce(self) -> None:
         """Set the parameter with its URL again, if it runs."""
         with self._lock:
             if self._editor is not None:
-                rospy.set_param(URL, self._editor.url)
+                rospy.set_param(URL, self._editor.public_url)
 
     def close(self) -> None:
         """Stop it."""
@@ -100,7 +106,7 @@ class EditorLauncher:
 
 
 def _settings() -> Dict[str, Any]:
-    """Settings from `~editor_host`, `~editor_port` and `~save_roots`. Raises CommandError."""
+    """Settings from `~editor_…` and `~save_roots`. Raises CommandError."""
     found: Dict[str, Any] = {}
     host = rospy.get_param("~editor_host", "")
     if host:
@@ -111,6 +117,12 @@ def _settings() -> Dict[str, Any]:
             raise CommandError(f"parameter {rospy.resolve_name('~editor_port')} must be a port"
                                f" number (0 for any free port), is {port!r}")
         found["port"] = port
+    token = rospy.get_param("~editor_token", True)
+    if not isinstance(token, bool):
+        raise CommandError(f"parameter {rospy.resolve_name('~editor_token')} must be true or false"
+                           ": whether the editor asks for a token")
+    if not token:
+        found["token"] = ""
     roots = rospy.get_param("~save_roots", None)
     if isinstance(roots, list) and all(isinstance(root, str) for root in roots):
         found["save_roots"] = roots

@@ -259,6 +259,8 @@ class Server:
             loader.simulator, loader.resolver, self._clock,
             None if launcher is None else launcher.open, self._master,
             (lambda: None) if launcher is None else launcher.announce, self._launch)
+        if launcher is not None:
+            launcher.topics = node.topic_graph
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import threading
-from typing import Any, Callable, Iterator, Mapping, Optional
+from typing import Any, Callable, Iterator, List, Mapping, Optional
 
 from ...description.model import Model
 from ...errors import Issue
@@ -55,6 +55,10 @@ class PluginStarter:
         """Start the host if a model has come that needs it; for models from the editor."""
         if self._host is None:
             self.settle()
+
+    def topic_uses(self) -> List[Any]:
+        """The topics of all plugins (`plugins.graph.TopicUse`)."""
+        return self._host.topic_uses() if self._host is not None else []
 
     def stop(self) -> None:
         """End all plugins."""

@@ -84,6 +84,12 @@ class RosGraph:
 
         return _Closing(rospy.Service(name, service, answer).shutdown)
 
+    def parameter(self, namespace: str, name: str, default: Any) -> Any:
+        """A parameter of a namespace."""
+        at = rospy.resolve_name(namespace) if namespace else rospy.get_namespace()
+        return rospy.get_param(name if name.startswith("/") else f"{at.rstrip('/')}/{name}",
+                               default)
+
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
         """A parameter of a namespace or of the next one above that has it."""
         at = rospy.resolve_name(namespace) if namespace else rospy.get_namespace()

@@ -20,4 +20,4 @@ class EditorService:
         if self._open is None:
             raise CommandError("this node was started without a world editor")
         response.url = self._open()
-        return f"the world editor is at {response.url}"
+        return f"the world editor is at {response.url}; gzclient opens it"

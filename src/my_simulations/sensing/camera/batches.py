@@ -5,9 +5,10 @@ from typing import Any, Dict, List, Tuple
 
 import numpy as np
 
+from .sky import linear
 from .surfaces import Piece, Surface
 
-_INSTANCE = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
+_INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
 
 
 class Batch:
@@ -15,13 +16,15 @@ class Batch:
 
     Attributes:
         owners: name of the model of each instance.
+        uniforms: of its surface.
         rows: link row of each; local: (n, 4, 4) link from shape.
     """
 
     def __init__(self, context: Any, programs: Dict[str, Any], piece: Piece, shadows: bool) -> None:
         self.surface: Surface = piece.surface
+        self.uniforms = _uniforms(piece.surface)
         self.casts_shadow = shadows and piece.surface.opacity >= 1.0
-        places = piece.rows[:, :3].astype(np.float64)
+        places: np.ndarray = piece.rows[:, :3].astype(np.float64)
         low, high = places.min(axis=0), places.max(axis=0)
         self.center = (low + high) / 2
         self.radius = float(np.linalg.norm(places - self.center, axis=1).max())
@@ -85,6 +88,13 @@ class Batch:
         self._release_arrays()
         self._vertices.release()
         self._index.release()
+
+
+def _uniforms(surface: Surface) -> Dict[str, Tuple[float, ...]]:
+    """What a surface says to its program."""
+    return {"diffuse": (*(linear(surface.diffuse) * surface.brightness), surface.opacity),
+            "specular": tuple(linear(surface.specular)),
+            "emissive": tuple(linear(surface.emissive)), "repeats": surface.repeats}
 
 
 def _inputs(program: Any, names: Tuple[str, ...], widths: Tuple[int, ...], kind: str,

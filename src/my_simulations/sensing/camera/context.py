@@ -30,6 +30,12 @@ def new_context() -> Any:
     return context
 
 
+def draws_with_a_card(context: Any) -> bool:
+    """Whether it is not the processor that draws."""
+    name = str(context.info.get("GL_RENDERER", "")).lower()
+    return not any(word in name for word in ("llvmpipe", "softpipe", "swrast", "software"))
+
+
 def finisher() -> Callable[[], object]:
     """glFinish that lets other threads run while it waits; moderngl's does not."""
     egl = ctypes.CDLL("libEGL.so.1")

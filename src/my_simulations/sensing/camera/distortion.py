@@ -30,7 +30,7 @@ def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
                               np.arange(spec.height, dtype=float))
     x_seen, y_seen = (column - middle[0]) / f, (row - middle[1]) / f
     if lens.crop:
-        share = _crop(lens, spec, f)
+        share = crop_share(spec)
         x_seen, y_seen = x_seen * share, y_seen * share
     x, y = x_seen.copy(), y_seen.copy()
     for _ in range(_ROUNDS):
@@ -43,8 +43,9 @@ def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
     return x * f + middle[0], y * f + middle[1]
 
 
-def _crop(lens: Distortion, spec: CameraSpec, f: float) -> float:
+def crop_share(spec: CameraSpec) -> float:
     """How much smaller the part is that a barrel distortion fills."""
+    lens, f = spec.distortion or Distortion(), spec.focal_length
     if lens.k1 >= 0.0:
         return 1.0
     x = np.array([spec.width / 2 / f])
@@ -59,7 +60,8 @@ def blended(picture: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndar
     height, width = picture.shape[:2]
     inside = (column >= 0) & (row >= 0) & (column <= width - 1) & (row <= height - 1)
     column, row = np.where(inside, column, 0.0), np.where(inside, row, 0.0)
-    left, top = column.astype(np.int64), row.astype(np.int64)
+    left: np.ndarray = column.astype(np.int64)
+    top: np.ndarray = row.astype(np.int64)
     right, bottom = np.minimum(left + 1, width - 1), np.minimum(top + 1, height - 1)
     u, v = (column - left)[..., None], (row - top)[..., None]
     upper = picture[top, left] * (1 - u) + picture[top, right] * u

@@ -38,20 +38,25 @@ def shadow_lights(lights: List[Light]) -> List[int]:
     return wanted[:MOST_SHADOWS]
 
 
-def light_uniforms(lights: List[Light], view: np.ndarray, shadows: List[int]) -> List[
-        Tuple[str, Any]]:
+def light_kinds(lights: List[Light], shadows: List[int]) -> Tuple[Tuple[str, int], ...]:
+    """Type of each light, and its shadow map or -1, as `shaders.LitKind` wants them."""
+    return tuple((light.type if light.type in ("point", "spot") else "directional",
+                  shadows.index(n) if n in shadows else -1)
+                 for n, light in enumerate(lights[:MOST_LIGHTS]))
+
+
+def light_uniforms(lights: List[Light], view: np.ndarray) -> List[Tuple[str, Any]]:
     """Values of the shader's light arrays; `view` is camera from world."""
     at = np.zeros((MOST_LIGHTS, 4), np.float32)
     color = np.zeros((MOST_LIGHTS, 3), np.float32)
     way = np.zeros((MOST_LIGHTS, 3), np.float32)
     fade = np.zeros((MOST_LIGHTS, 4), np.float32)
     cone = np.full((MOST_LIGHTS, 3), -2.0, np.float32)
-    shadow = np.full(MOST_LIGHTS, -1, np.int32)
     for n, light in enumerate(lights[:MOST_LIGHTS]):
         ahead = view[:3, :3] @ _direction(light)
         color[n] = light.diffuse[:3]
         way[n] = ahead
-        if light.type == "directional":
+        if light.type not in ("point", "spot"):
             at[n] = (*-ahead, 0.0)
         else:
             at[n] = (*(view @ np.array([*light.pose.position, 1.0]))[:3], 1.0)
@@ -60,10 +65,8 @@ def light_uniforms(lights: List[Light], view: np.ndarray, shadows: List[int]) ->
             outer = min(light.outer_angle or math.pi, math.pi * 0.98) / 2
             inner = min(light.inner_angle / 2, outer)
             cone[n] = (math.cos(inner), math.cos(outer), light.falloff or 1.0)
-        if n in shadows:
-            shadow[n] = shadows.index(n)
     return [("light_at", at), ("light_color", color), ("light_way", way), ("light_fade", fade),
-            ("light_cone", cone), ("light_shadow", shadow)]
+            ("light_cone", cone)]
 
 
 def _direction(light: Light) -> np.ndarray:

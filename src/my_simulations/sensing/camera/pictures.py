@@ -5,6 +5,7 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
+from ...appearance.palette import PATTERNS
 from ...appearance.textures import existing, places_of_mesh
 
 LARGEST = 1024
@@ -29,8 +30,9 @@ def read_picture(picture: Any) -> Optional[np.ndarray]:
         if max(image.size) > LARGEST:
             image.draft("RGB", (LARGEST, LARGEST))
             image = image.convert("RGBA")
-            image.thumbnail((LARGEST, LARGEST), Image.BILINEAR)
-        image = image.convert("RGBA").transpose(Image.FLIP_TOP_BOTTOM)
+            image.thumbnail((LARGEST, LARGEST), Image.BILINEAR)  # type: ignore[attr-defined]
+        upwards = Image.FLIP_TOP_BOTTOM  # type: ignore[attr-defined]
+        image = image.convert("RGBA").transpose(upwards)
     except (OSError, ValueError, UnidentifiedImageError, Image.DecompressionBombError):
         return None
     return np.asarray(image)
@@ -38,12 +40,12 @@ def read_picture(picture: Any) -> Optional[np.ndarray]:
 
 def draw_pattern(name: str) -> Optional[np.ndarray]:
     """uint8 (256, 256, 4) like the page's pattern of that name; None for one it does not know."""
-    painter = _PATTERNS.get(name)
-    if painter is None:
+    pattern = PATTERNS.get(name)
+    if pattern is None:
         return None
-    kind, colors, count, grain = painter
-    canvas = np.zeros((_PATTERN, _PATTERN, 3))
-    _PAINTERS[kind](canvas, colors, count)
+    canvas, grain = np.zeros((_PATTERN, _PATTERN, 3)), pattern.grain
+    colors = tuple((color >> 16, color >> 8 & 255, color & 255) for color in pattern.colors)
+    _PAINTERS[pattern.painter](canvas, colors, pattern.count)
     if grain:
         noise = np.random.Generator(np.random.Philox(11)).random((_PATTERN, _PATTERN, 1))
         canvas += (noise - 0.5) * grain
@@ -103,17 +105,3 @@ def _checker(canvas: np.ndarray, colors: Tuple[Rgb, ...], _count: int) -> None:
 
 _PAINTERS = {"plain": _plain, "planks": _planks, "bricks": _bricks, "tiles": _tiles,
              "road": _road, "checker": _checker}
-_WOOD = ((169, 116, 63), (158, 106, 55))
-_FLOOR = ((185, 138, 84), (169, 123, 71), (194, 147, 92))
-_ROAD = ("road", ((75, 75, 77), (233, 231, 221)), 2, 16)
-_PATTERNS = {
-    "wood": ("planks", _WOOD, 4, 14), "wood_floor": ("planks", _FLOOR, 8, 12),
-    "bricks": ("bricks", ((185, 178, 166), (150, 74, 56)), 8, 22),
-    "ceiling_tiled": ("tiles", ((233, 232, 226), (165, 163, 155)), 2, 16),
-    "painted_wall": ("plain", ((230, 224, 207),), 1, 8), "road": _ROAD,
-    "sidewalk": ("tiles", ((181, 177, 168), (143, 139, 131)), 4, 18),
-    "steps": ("tiles", ((168, 163, 154), (124, 120, 112)), 3, 18),
-    "grass": ("plain", ((95, 138, 58),), 1, 60),
-    "granite": ("plain", ((119, 114, 109),), 1, 90),
-    "com": ("checker", ((244, 214, 22), (17, 17, 17)), 1, 0),
-}

@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from dataclasses import dataclass, field
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 import numpy as np
 
@@ -13,14 +14,31 @@ from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures
 from ..poses import matrices, matrix
 from . import distortion, shaders
 from .batches import Batch
-from .context import finisher, new_context
-from .lamps import SHADOW_SIZE, ShadowView, light_uniforms, shadow_lights, shadow_view
+from .context import draws_with_a_card, finisher, new_context
+from .lamps import (
+    SHADOW_SIZE,
+    ShadowView,
+    light_kinds,
+    light_uniforms,
+    shadow_lights,
+    shadow_view,
+)
 from .pictures import draw_pattern, read_picture
 from .sky import linear, sky_uniforms
 from .surfaces import Surface, pieces_of
 
 _SRGB = 0x8C43  # GL_SRGB8_ALPHA8
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
+
+
+@dataclass
+class _Lighting:
+    """What all surfaces of one picture share; `told`: the programs that know it."""
+
+    fog: str
+    kinds: Tuple[Tuple[str, int], ...]
+    values: Dict[str, np.ndarray]
+    told: Set[str] = field(default_factory=set)
 
 
 class Renderer:
@@ -36,9 +54,9 @@ class Renderer:
         self._trouble = trouble
         self._context = new_context()
         self._finish = finisher()
+        self._smooth = 4 if draws_with_a_card(self._context) else 1
         program = self._context.program
         self._programs = {
-            "lit": program(shaders.LIT_VERTEX, shaders.LIT_FRAGMENT),
             "range": program(shaders.RANGE_VERTEX, shaders.RANGE_FRAGMENT),
             "shadow": program(shaders.SHADOW_VERTEX, shaders.SHADOW_FRAGMENT),
             "sky": program(shaders.SKY_VERTEX, shaders.SKY_FRAGMENT)}
@@ -141,11 +159,12 @@ class Renderer:
     def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, clip: np.ndarray,
                   shadows: List[Tuple[int, ShadowView]]) -> np.ndarray:
         context = self._context
-        target = self._target("rgb", spec.width, spec.height, spec.samples)
+        samples = spec.samples or self._smooth
+        target = self._target("rgb", spec.width, spec.height, samples)
         target.use()
         background = self._scene.background[:3]
         target.clear(*background, 1.0, depth=1.0)
-        self._set_lit(view, clip, shadows)
+        lighting = self._lighting(view, clip, shadows)
         context.enable_only(context.DEPTH_TEST)
         clear: List[Batch] = []
         # Small ones first: walls and grounds are mostly behind them, and need not be lit there.
@@ -153,12 +172,12 @@ class Renderer:
             if batch.surface.opacity < 1.0:
                 clear.append(batch)
             else:
-                self._draw_lit(batch)
+                self._draw_lit(batch, lighting)
         if self._scene.sky is not None:
             self._draw_sky(spec, view)
         if clear:
-            self._draw_clear(clear, target)
-        if spec.samples > 1:
+            self._draw_clear(clear, target, lighting)
+        if samples > 1:
             whole = self._target("rgb", spec.width, spec.height, 1)
             context.copy_framebuffer(whole, target)
             target = whole
@@ -166,60 +185,73 @@ class Renderer:
         made = np.frombuffer(target.read(components=3, alignment=1), dtype=np.uint8)
         return made.reshape(spec.height, spec.width, 3)
 
-    def _draw_clear(self, batches: List[Batch], target: Any) -> None:
+    def _draw_clear(self, batches: List[Batch], target: Any, lighting: "_Lighting") -> None:
         context = self._context
         context.enable_only(context.DEPTH_TEST | context.BLEND)
         context.blend_func = context.SRC_ALPHA, context.ONE_MINUS_SRC_ALPHA
         target.depth_mask = False
         for batch in batches:
-            self._draw_lit(batch)
+            self._draw_lit(batch, lighting)
         target.depth_mask = True
 
-    def _set_lit(self, view: np.ndarray, clip: np.ndarray,
-                 shadows: List[Tuple[int, ShadowView]]) -> None:
-        program = self._programs["lit"]
-        _set(program, "clip", clip.T)
-        _set(program, "ambient", np.array(self._scene.ambient[:3]))
-        _set(program, "up", view[:3, 2])
-        program["lights"] = min(len(self._lights), shaders.MOST_LIGHTS)
-        for name, values in light_uniforms(self._lights, view, [n for n, _ in shadows]):
-            program[name].write(np.ascontiguousarray(values).tobytes())
+    def _lighting(self, view: np.ndarray, clip: np.ndarray,
+                  shadows: List[Tuple[int, ShadowView]]) -> "_Lighting":
+        """What is the same for all surfaces of a picture."""
+        fog, kind = self._scene.fog, ""
         maps = np.zeros((shaders.MOST_SHADOWS, 4, 4), np.float32)
         pixels = np.zeros(shaders.MOST_SHADOWS, np.float32)
         for n, (_, one) in enumerate(shadows):
             maps[n] = (one.clip @ one.view @ _inverse(view)).T
             pixels[n] = one.pixel
-        program["shadow_from_view"].write(maps.tobytes())
-        program["shadow_pixel"].write(pixels.tobytes())
+        values = {"clip": clip.T, "ambient": np.array(self._scene.ambient[:3]), "up": view[:3, 2],
+                  "shadow_from_view": maps, "shadow_pixel": pixels,
+                  **dict(light_uniforms(self._lights, view))}
+        if fog is not None and fog.type != "none":
+            kind = "linear" if fog.type == "linear" else "exponential"
+            density = fog.density * (0.5 if fog.type == "quadratic" else 1.0) / 10.0
+            values["fog_color"] = linear(fog.color)
+            values["fog"] = np.array([fog.start, fog.end, density])
         for n, texture in enumerate(self._maps):
             texture.use(location=1 + n)
-            program[f"shadow{n}"] = 1 + n
-        program["picture"] = 0
-        fog = self._scene.fog
-        kind, density = 0.0, 0.0
-        if fog is not None and fog.type != "none":
-            kind = 1.0 if fog.type == "linear" else 2.0
-            density = fog.density * (0.5 if fog.type == "quadratic" else 1.0) / 10.0
-            _set(program, "fog_color", linear(fog.color))
-            program["fog"] = (fog.start, fog.end, density, kind)
-        else:
-            program["fog"] = (0.0, 1.0, 0.0, 0.0)
+        return _Lighting(kind, light_kinds(self._lights, [n for n, _ in shadows]), {
+            name: np.ascontiguousarray(value, dtype=np.float32) for name, value in values.items()})
 
-    def _draw_lit(self, batch: Batch) -> None:
+    def _program(self, kind: shaders.LitKind, lighting: "_Lighting") -> str:
+        """The name of the program for surfaces of a kind, with what a picture sets set."""
+        name = repr(kind)
+        if name not in self._programs:
+            made = self._programs[name] = self._context.program(
+                shaders.LIT_VERTEX, shaders.lit_fragment(kind))
+            for unit, sampler in enumerate(("picture", "shadow0", "shadow1")):
+                if sampler in made:
+                    made[sampler] = unit
+        if name not in lighting.told:
+            lighting.told.add(name)
+            program = self._programs[name]
+            for uniform, values in lighting.values.items():
+                if uniform in program:
+                    # Of an array the compiler keeps as much as is used.
+                    member = program[uniform]
+                    size = member.array_length * member.dimension * 4
+                    member.write(values.tobytes()[:size])
+        return name
+
+    def _draw_lit(self, batch: Batch, lighting: "_Lighting") -> None:
         if not batch.count:
             return
-        program, surface = self._programs["lit"], batch.surface
-        program["diffuse"] = (*linear(surface.diffuse), surface.opacity)
-        program["specular"] = tuple(linear(surface.specular))
-        program["emissive"] = tuple(linear(surface.emissive))
-        program["lit"] = surface.lit
+        surface = batch.surface
         texture = self._texture(surface)
-        program["textured"] = texture is not None
+        name = self._program(shaders.LitKind(
+            texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
+            surface.opacity < 1.0 or (texture is not None and texture.extra), lighting.fog,
+            lighting.kinds if surface.lit else ()), lighting)
+        program = self._programs[name]
+        for uniform, values in batch.uniforms.items():
+            if uniform in program:
+                program[uniform] = values
         if texture is not None:
             texture.use(location=0)
-        if "repeats" in program:
-            program["repeats"] = surface.repeats
-        batch.draw("lit")
+        batch.draw(name)
 
     def _texture(self, surface: Surface) -> Any:
         if surface.picture is None and not surface.pattern:
@@ -242,6 +274,7 @@ class Renderer:
         texture.build_mipmaps()
         texture.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)
         texture.repeat_x = texture.repeat_y = True
+        texture.extra = bool((pixels[..., 3] == 0).any())  # holes
         return texture
 
     def _draw_sky(self, spec: CameraSpec, view: np.ndarray) -> None:

@@ -6,6 +6,10 @@ camera, so that a world far from its origin keeps its accuracy.
 """
 from __future__ import annotations
 
+from typing import NamedTuple, Tuple
+
+from ...appearance.palette import SHININESS
+
 MOST_LIGHTS = 8
 MOST_SHADOWS = 2
 
@@ -32,7 +36,30 @@ vec3 encoded(vec3 c) {
 }
 """
 
-LIT_FRAGMENT = f"""#version 330
+class LitKind(NamedTuple):
+    """What a fragment program is made for.
+
+    Where the processor draws, both sides of each condition are computed for all pixels: there is a
+    program for each combination that occurs, without conditions.
+
+    Attributes:
+        textured: has a picture.
+        lit: lights count.
+        shiny: has highlights.
+        clear: may be seen through.
+        fog: "", linear or exponential.
+        lights: type of each light, and the number of its shadow map or -1.
+    """
+
+    textured: bool
+    lit: bool
+    shiny: bool
+    clear: bool
+    fog: str
+    lights: Tuple[Tuple[str, int], ...]
+
+
+_UNIFORMS = f"""#version 330
 #define LIGHTS {MOST_LIGHTS}
 #define SHADOWS {MOST_SHADOWS}
 """ + """in vec3 place; in vec3 out_normal; in vec2 out_uv;
@@ -40,69 +67,79 @@ out vec4 seen;
 uniform vec4 diffuse;
 uniform vec3 specular, emissive, ambient, up;
 uniform sampler2D picture;
-uniform bool textured, lit;
-uniform int lights;
-uniform vec4 light_at[LIGHTS];       // xyz: place, or direction to it with w = 0
+uniform vec4 light_at[LIGHTS];       // xyz: place, or direction to it
 uniform vec3 light_color[LIGHTS];
 uniform vec3 light_way[LIGHTS];      // of a spot
 uniform vec4 light_fade[LIGHTS];     // constant, linear, quadratic, range
-uniform vec3 light_cone[LIGHTS];     // cosines of half the inner and outer angle, falloff; or -2
-uniform int light_shadow[LIGHTS];    // which map, or -1
+uniform vec3 light_cone[LIGHTS];     // of a spot: cosines of half the angles, falloff
 uniform mat4 shadow_from_view[SHADOWS];
 uniform float shadow_pixel[SHADOWS];
 uniform sampler2DShadow shadow0, shadow1;
-uniform vec4 fog;                    // start, end, density, kind
+uniform vec3 fog;                    // start, end, density
 uniform vec3 fog_color;
 """ + COLOR + """
-float lightened(int map, vec3 n) {
-  vec4 p = shadow_from_view[map] * vec4(place + n * shadow_pixel[map] * 1.5, 1.0);
+float lightened(sampler2DShadow map, mat4 from_view, float pixel, vec3 n) {
+  vec4 p = from_view * vec4(place + n * pixel * 1.5, 1.0);
   vec3 at = p.xyz / p.w * 0.5 + 0.5;
-  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
-  at.z -= 0.0004;
-  return map == 0 ? texture(shadow0, at) : texture(shadow1, at);
+  float bright = texture(map, vec3(at.xy, at.z - 0.0004));
+  bool outside = any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)));
+  return outside ? 1.0 : bright;
 }
 void main() {
   vec3 albedo = diffuse.rgb;
   float opacity = diffuse.a;
-  if (textured) { vec4 t = texture(picture, out_uv); albedo *= t.rgb; opacity *= t.a; }
-  if (opacity < 0.004) discard;
-  vec3 color = albedo;
-  if (lit) {
-    vec3 n = normalize(out_normal), eye = -normalize(place);
-    if (dot(n, eye) < 0.0) n = -n;
-    vec3 fallen = ambient * mix(0.6, 1.0, 0.5 * dot(n, up) + 0.5), shine = vec3(0.0);
-    for (int k = 0; k < lights; k++) {
-      vec3 way = light_at[k].xyz - place * light_at[k].w;
-      float far = length(way), strength = 1.0;
-      way /= max(far, 1e-6);
-      float facing = dot(n, way);
-      if (facing <= 0.0) continue;
-      if (light_at[k].w > 0.0) {
-        vec4 fade = light_fade[k];
-        if (far > fade.w) continue;
-        strength = 1.0 / max(fade.x + far * (fade.y + far * fade.z), 1e-6);
-        vec3 cone = light_cone[k];
-        if (cone.x >= -1.0) {
-          float part = (dot(-way, light_way[k]) - cone.y) / max(cone.x - cone.y, 1e-6);
-          if (part <= 0.0) continue;
-          strength *= pow(min(part, 1.0), cone.z);
-        }
-      }
-      if (light_shadow[k] >= 0) strength *= lightened(light_shadow[k], n);
-      vec3 falling = light_color[k] * (strength * facing);
-      fallen += falling;
-      if (specular.r + specular.g + specular.b > 0.06)
-        shine += falling * specular * 4.0 * pow(max(dot(n, normalize(way + eye)), 0.0), 30.0);
-    }
-    color = albedo * fallen + shine + emissive;
-  }
-  if (fog.w > 0.0) {
-    float d = -place.z, clear = fog.w < 1.5
-      ? clamp((fog.y - d) / max(fog.y - fog.x, 1e-6), 0.0, 1.0) : exp(-fog.z * fog.z * d * d);
-    color = mix(fog_color, color, clear);
-  }
-  seen = vec4(encoded(clamp(color, 0.0, 1.0)), opacity);
-}"""
+"""
+
+_SURROUNDED = """  vec3 n = normalize(out_normal), eye = -normalize(place);
+  n = dot(n, eye) < 0.0 ? -n : n;
+  vec3 fallen = ambient * mix(0.6, 1.0, 0.5 * dot(n, up) + 0.5), shine = vec3(0.0);
+"""
+
+
+def lit_fragment(kind: LitKind) -> str:
+    """The program of a surface under some lights."""
+    parts = [_UNIFORMS]
+    if kind.textured:
+        parts.append("  vec4 t = texture(picture, out_uv); albedo *= t.rgb; opacity *= t.a;\n")
+    if kind.clear:
+        parts.append("  if (opacity < 0.004) discard;\n")
+    parts.append("  vec3 color = albedo;\n")
+    if kind.lit:
+        parts.append(_SURROUNDED)
+        parts += [_light(n, *one, kind.shiny) for n, one in enumerate(kind.lights)]
+        parts.append("  color = albedo * fallen + shine + emissive;\n")
+    if kind.fog:
+        clear = ("clamp((fog.y - d) / max(fog.y - fog.x, 1e-6), 0.0, 1.0)" if kind.fog == "linear"
+                 else "exp(-fog.z * fog.z * d * d)")
+        parts.append(f"  float d = -place.z;\n  color = mix(fog_color, color, {clear});\n")
+    return "".join([*parts, "  seen = vec4(encoded(clamp(color, 0.0, 1.0)), opacity);\n}"])
+
+
+def _light(k: int, kind: str, shadow: int, shiny: bool) -> str:
+    """What a light adds."""
+    lines = []
+    if kind == "directional":
+        lines += [f"vec3 way = light_at[{k}].xyz;", "float strength = 1.0;"]
+    else:
+        lines += [f"vec3 way = light_at[{k}].xyz - place;", "float far = length(way);",
+                  "way /= max(far, 1e-6);", f"vec4 fade = light_fade[{k}];",
+                  "float strength = step(far, fade.w)"
+                  " / max(fade.x + far * (fade.y + far * fade.z), 1e-6);"]
+    if kind == "spot":
+        lines += [f"vec3 cone = light_cone[{k}];",
+                  f"float part = (dot(-way, light_way[{k}]) - cone.y)"
+                  " / max(cone.x - cone.y, 1e-6);",
+                  "strength *= part > 0.0 ? pow(min(part, 1.0), cone.z) : 0.0;"]
+    lines.append("float facing = max(dot(n, way), 0.0);")
+    if shadow >= 0:
+        lines.append(f"strength *= lightened(shadow{shadow}, shadow_from_view[{shadow}], "
+                     f"shadow_pixel[{shadow}], n);")
+    lines += [f"vec3 falling = light_color[{k}] * (strength * facing);", "fallen += falling;"]
+    if shiny:
+        lines.append(f"shine += falling * specular * {(SHININESS / 2 + 1) / 4}"
+                     f" * pow(max(dot(n, normalize(way + eye)), 0.0), {SHININESS});")
+    return "  { " + "\n    ".join(lines) + " }\n"
+
 
 SHADOW_VERTEX = _INSTANCE + "void main() { gl_Position = clip * vec4(placed(), 1.0); }"
 SHADOW_FRAGMENT = "#version 330\nvoid main() {}"

@@ -6,6 +6,7 @@ from typing import Any, Dict, Sequence
 
 import numpy as np
 
+from ...appearance.palette import SKY
 from ...description.surroundings import Sky
 
 
@@ -19,9 +20,9 @@ def _hex(value: int) -> np.ndarray:
     return linear([(value >> shift & 255) / 255.0 for shift in (16, 8, 0)])
 
 
-_DAY = _hex(0x3F78C0), _hex(0xC9DCEC)
-_NIGHT = _hex(0x05070F), _hex(0x141A28)
-_DUSK = _hex(0xE8A468)
+_DAY = _hex(SKY.day_zenith), _hex(SKY.day_horizon)
+_NIGHT = _hex(SKY.night_zenith), _hex(SKY.night_horizon)
+_DUSK = _hex(SKY.dusk)
 
 
 def sky_uniforms(sky: Sky) -> Dict[str, Any]:

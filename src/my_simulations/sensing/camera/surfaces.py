@@ -1,18 +1,18 @@
 """Visuals as what is drawn: triangles with a surface each."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
 from ...appearance.looks import Look
-from ...description.shapes import SOLIDS, Color, Mesh, Visual
+from ...appearance.palette import DULLEST, GREY, GROUND
+from ...description.shapes import SOLIDS, Color, Mesh, Plane, Visual
 from ...formats.mesh.loading import load_solid
 from ...formats.mesh.painted import flat, painted_parts
 from ..tessellation import triangles_of
 
-_GREY: Color = (0.7, 0.7, 0.7, 1.0)
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
 _DULL: Color = (0.0, 0.0, 0.0, 1.0)
 _SIDES = 48
@@ -22,10 +22,11 @@ _SIDES = 48
 class Surface:
     """How triangles look; colours sRGB.
 
-    `picture`: a path, a PIL image, or None; `pattern`: a drawn one.
+    `picture`: a path, a PIL image, or None; `pattern`: a drawn one; `brightness`: times the
+    diffuse colour in linear units.
     """
 
-    diffuse: Color = _GREY
+    diffuse: Color = GREY
     specular: Color = _DULL
     emissive: Color = _DULL
     picture: Any = None
@@ -33,6 +34,7 @@ class Surface:
     repeats: Tuple[float, float] = (1.0, 1.0)
     opacity: float = 1.0
     lit: bool = True
+    brightness: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -64,8 +66,10 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     made = triangles_of(shape, _SIDES)
     if made is None or made.normals is None or made.uv is None:
         return []
-    return [_piece(made.vertices, made.normals, made.uv, made.triangles,
-                   surface_of(look, opacity))]
+    surface = surface_of(look, opacity)
+    if isinstance(shape, Plane):
+        surface = replace(surface, brightness=GROUND)
+    return [_piece(made.vertices, made.normals, made.uv, made.triangles, surface)]
 
 
 def _piece(vertices: np.ndarray, normals: np.ndarray, uv: np.ndarray, triangles: np.ndarray,
@@ -81,7 +85,10 @@ def surface_of(look: Optional[Look], opacity: float) -> Surface:
         return Surface(opacity=opacity)
     textured = bool(look.texture or look.pattern)
     white: Color = (1.0, 1.0, 1.0, 1.0)
-    diffuse = look.diffuse or look.ambient or (white if textured else _GREY)
-    return Surface(diffuse, look.specular or _DULL, look.emissive or _DULL, look.texture or None,
+    diffuse = look.diffuse or look.ambient or (white if textured else GREY)
+    specular = look.specular or _DULL
+    if max(specular[:3]) <= DULLEST:
+        specular = _DULL
+    return Surface(diffuse, specular, look.emissive or _DULL, look.texture or None,
                    look.pattern, (1.0 / (look.scale[0] or 1.0), 1.0 / (look.scale[1] or 1.0)),
                    (1.0 - look.transparency) * opacity, look.lit)

@@ -38,6 +38,7 @@ from .embree import (
 )
 
 _ALIGNED = 64
+_PARALLEL = -1e-300
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,10 @@ class _PlaneOnLink:
     point: np.ndarray  # in the link frame
     normal: np.ndarray
     retro: float
+    # Where it is in the world, as long as its link stands still.
+    place: bytes = b""
+    world_point: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    world_normal: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
 
 @dataclass
@@ -260,14 +265,20 @@ class RayScene:
         """An endless plane, from both sides (Gazebo's ODE), to the last digit."""
         if plane.row >= len(self._poses):
             return
-        frame = matrices(self._poses[plane.row:plane.row + 1])[0]
-        normal = frame[:3, :3] @ plane.normal
-        height = (origins - (frame[:3, :3] @ plane.point + frame[:3, 3])) @ normal
+        place = self._poses[plane.row].tobytes()
+        if place != plane.place:
+            frame = matrices(self._poses[plane.row:plane.row + 1])[0]
+            plane.place, plane.world_normal = place, frame[:3, :3] @ plane.normal
+            plane.world_point = frame[:3, :3] @ plane.point + frame[:3, 3]
+        height = (origins - plane.world_point) @ plane.world_normal
+        along = directions @ plane.world_normal
         ranges, retro, rows = found
-        with np.errstate(divide="ignore", invalid="ignore"):
-            distance = -height / (directions @ normal)
+        # What runs along the plane never meets it.
+        distance = -height / np.where(along == 0.0, _PARALLEL, along)
         nearer = (distance >= near) & (distance <= far) & (distance < ranges)
-        ranges[nearer], retro[nearer], rows[nearer] = distance[nearer], plane.retro, plane.row
+        if nearer.any():
+            ranges[nearer], retro[nearer] = distance[nearer], plane.retro
+            rows[nearer] = plane.row
 
 
 def _packets(count: int) -> np.ndarray:

@@ -291,7 +291,7 @@ async function saveTo(request, wanted) {
   }
   const overwrite = await ask('Overwrite the file?', `${said}.`, [
     {title: 'Cancel'},
-    {title: 'Overwrite', value: true, primary: true},
+    {title: 'Overwrite', value: true, primary: true, danger: true},
   ]);
   return overwrite ? (await request('save', {...wanted, overwrite: true})).path : false;
 }

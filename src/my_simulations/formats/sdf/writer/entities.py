@@ -6,8 +6,9 @@ descriptions give equal bytes. Source: SDF specification 1.7.
 """
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
-from typing import Any, Callable, Iterable, List, Optional, Union
+from typing import Any, Callable, Iterable, Iterator, List, Optional, Union
 
 from ....description.compare import differences
 from ....description.light import Light
@@ -15,6 +16,7 @@ from ....description.model import Joint, JointAxis, Link, Mimic, Model, PluginSp
 from ....description.saved_state import SavedState
 from ....description.shapes import Collision, Visual
 from ....description.world import World
+from ....errors import CommandError
 from ....geometry import Vec3
 from ...xml.values import FLOAT, VECTOR3
 from ..model_tables import (
@@ -62,21 +64,28 @@ def write_world(world: World, state: Optional[SavedState] = None,
 
     Returns:
         UTF-8 text with an XML declaration.
+
+    Raises:
+        CommandError: a text that XML cannot hold; the message names the model or light.
     """
     writer = _Writer(included)
-    return document(_version(world.models), lambda root: writer.world(root, world, state))
+    with _naming("the world"):
+        return document(_version(world.models), lambda root: writer.world(root, world, state))
 
 
 def write_entity(entity: Union[Model, Light]) -> bytes:
     """A whole document with one model or light, in full; UTF-8, with an XML declaration.
 
     `reading.read_entity` reads it as an equal object. Relative URIs are written as absolute paths,
-    so that the document does not depend on its location.
+    so that the document does not depend on its location. Raises
+    CommandError, as `write_world`.
     """
     writer = _Writer(None)
     if isinstance(entity, Light):
-        return document(VERSION, lambda root: writer.light(root, entity))
-    return document(_version([entity]), lambda root: writer.model(root, entity))
+        light = entity
+        return document(VERSION, lambda root: writer.light(root, light))
+    model = entity
+    return document(_version([model]), lambda root: writer.model(root, model))
 
 
 def _version(models: Iterable[Model]) -> str:
@@ -126,8 +135,9 @@ class _Writer:
 
     def light(self, parent: Any, light: Light) -> None:
         """`<light>`."""
-        element = _element(parent, "light", light)
-        fill_element(element, light, LIGHT, {}, light.extra, required=("@type",))
+        with _naming(f"light {light.name!r}"):
+            element = _element(parent, "light", light)
+            fill_element(element, light, LIGHT, {}, light.extra, required=("@type",))
 
     def model_or_include(self, parent: Any, model: Model) -> None:
         """`<model>`, or the `<include>` of an unchanged included model."""
@@ -146,13 +156,14 @@ class _Writer:
 
     def model(self, parent: Any, model: Model) -> None:
         """`<model>`, in full."""
-        element = _element(parent, "model", model)
-        fill_element(element, model, MODEL, {
-            "link": lambda at: write_each(self.link, at, model.links),
-            "joint": lambda at: write_each(self.joint, at, model.joints),
-            "model": lambda at: write_each(self.model_or_include, at, model.models),
-            "plugin": lambda at: write_plugins(at, model.plugins, MODEL),
-        }, model.extra)
+        with _naming(f"model {model.name!r}"):
+            element = _element(parent, "model", model)
+            fill_element(element, model, MODEL, {
+                "link": lambda at: write_each(self.link, at, model.links),
+                "joint": lambda at: write_each(self.joint, at, model.joints),
+                "model": lambda at: write_each(self.model_or_include, at, model.models),
+                "plugin": lambda at: write_plugins(at, model.plugins, MODEL),
+            }, model.extra)
 
     def link(self, parent: Any, link: Link) -> None:
         """`<link>`."""
@@ -213,6 +224,15 @@ class _Writer:
             element = etree.SubElement(parent, "mimic", joint=mimic.joint)
             write_value(element, "multiplier", FLOAT, mimic.multiplier)
             write_value(element, "offset", FLOAT, mimic.offset)
+
+
+@contextlib.contextmanager
+def _naming(what: str) -> Iterator[None]:
+    """Say what it was that lxml refused to write: a text with characters that XML cannot hold."""
+    try:
+        yield
+    except ValueError as fault:
+        raise CommandError(f"{what} cannot be written: {fault}") from fault
 
 
 def _element(parent: Any, tag: str, named: Any) -> Any:

@@ -1,0 +1,5 @@
+"""Tells catkin where the Python module is; not to be called by hand."""
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(packages=["controller_manager"], package_dir={"": "src"}))

@@ -1,0 +1,68 @@
+"""Numbers of looks that the editor's page and the cameras share.
+
+The page gets them as a module: tools/generate/page_palette.py writes web/js/view/palette.js, and a
+test compares it.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, NamedTuple, Tuple
+
+GREY = (0.7, 0.7, 0.7, 1.0)
+"""Of what has no material."""
+
+GROUND = 0.8
+"""How bright planes are: a ground of one grey with what stands on it would swallow its outlines."""
+
+DULLEST = 0.02
+"""Highlights weaker than this are not worth their computing."""
+
+SHININESS = 30.0
+"""Exponent of highlights."""
+
+
+class Sky(NamedTuple):
+    """Colours of the sky, sRGB as 0xrrggbb."""
+
+    day_zenith: int = 0x3F78C0
+    day_horizon: int = 0xC9DCEC
+    night_zenith: int = 0x05070F
+    night_horizon: int = 0x141A28
+    dusk: int = 0xE8A468
+
+
+SKY = Sky()
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A picture that is drawn.
+
+    Attributes:
+        painter: plain, planks, bricks, tiles, road or checker.
+        colors: sRGB as 0xrrggbb; the first is the ground's, save of tiles and planks.
+        count: of planks, rows of bricks, tiles along a side, or lanes.
+        grain: strength of the noise put over it, of 255.
+    """
+
+    painter: str
+    colors: Tuple[int, ...]
+    count: int = 1
+    grain: int = 0
+
+
+PATTERNS: Dict[str, Pattern] = {
+    "wood": Pattern("planks", (0xA9743F, 0x9E6A37), 4, 14),
+    "wood_floor": Pattern("planks", (0xB98A54, 0xA97B47, 0xC2935C), 8, 12),
+    "bricks": Pattern("bricks", (0xB9B2A6, 0x964A38), 8, 22),
+    "ceiling_tiled": Pattern("tiles", (0xE9E8E2, 0xA5A39B), 2, 16),
+    "painted_wall": Pattern("plain", (0xE6E0CF,), 1, 8),
+    "concrete": Pattern("tiles", (0x8FA9BD, 0xD8D4C8), 4, 6),
+    "road": Pattern("road", (0x4B4B4D, 0xE9E7DD), 2, 16),
+    "sidewalk": Pattern("tiles", (0xB5B1A8, 0x8F8B83), 4, 18),
+    "steps": Pattern("tiles", (0xA8A39A, 0x7C7870), 3, 18),
+    "grass": Pattern("plain", (0x5F8A3A,), 1, 60),
+    "granite": Pattern("plain", (0x77726D,), 1, 90),
+    "com": Pattern("checker", (0xF4D616, 0x111111)),
+}
+"""By the names that `gazebo_materials` uses."""

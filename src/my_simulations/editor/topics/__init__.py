@@ -1,0 +1,1 @@
+"""Live views of what is published on ROS topics, and driving robots with the keys."""

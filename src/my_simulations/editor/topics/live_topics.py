@@ -1,0 +1,249 @@
+"""Topics that pages look at: subscribed to while somebody does, sent as often as each page takes.
+
+Of what comes faster than it is shown only the newest message is converted. A page gets the next
+view of a topic when it has shown the one before, so a slow page costs nobody anything.
+"""
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import struct
+from concurrent.futures import Executor
+from typing import Any, Callable, Dict, List, Optional, Set
+
+from ...errors import CommandError, SimulationError
+from ..topic_source import Subscription, TopicSource
+from ..transport.browser_client import Client, encoded
+from ..transport.hub import Hub
+from ..transport.watch_requests import PREFIX
+from .message_views import Viewer
+
+TOPIC = 3
+"""Kind of the frames (`frames` of the protocol)."""
+
+_HEAD = struct.Struct("<II")
+_LOOK_S = 1.0
+"""How soon a topic is found that nobody published before."""
+
+
+def frame_of(head: Dict[str, Any], payload: bytes) -> bytes:
+    """A frame of a page; the payload begins at a multiple of 8."""
+    text = json.dumps(head, separators=(",", ":"), allow_nan=False).encode()
+    text += b" " * (-(len(text) + _HEAD.size) % 8)
+    return _HEAD.pack(TOPIC, len(text)) + text + payload
+
+
+class LiveTopic:
+    """One topic, and who looks at it. Of the loop, but for `take`."""
+
+    def __init__(self, name: str, ring: Callable[["LiveTopic"], None]) -> None:
+        self.name = name
+        self.clients: Dict[int, int] = {}
+        self.unshown: Set[int] = set()
+        self.viewer: Optional[Viewer] = None
+        self.subscription: Optional[Subscription] = None
+        self.opening = self.closed = False
+        self.problem = ""
+        self.received = 0
+        self.due = 0.0
+        self.frame: bytes = b""
+        self.shown = 0
+        self.task: "Optional[asyncio.Future[None]]" = None
+        self.hz, self.bytes_per_s = 0.0, 0.0
+        self._counted = (0.0, 0, 0)
+        self._rung = False
+        self._ring = ring
+
+    def take(self, message: Any) -> None:
+        """A message has come; from any thread."""
+        if self.viewer is None:
+            return
+        self.viewer.take(message)
+        self.received += 1
+        if not self._rung:
+            self._rung = True
+            self._ring(self)
+
+    def answer(self) -> None:
+        """The ring was heard."""
+        self._rung = False
+
+    def count(self, now: float) -> None:
+        """Measure rate and bandwidth since the last call."""
+        before, received, size = self._counted
+        total = self.subscription.received_bytes if self.subscription is not None else 0
+        if before and now > before:
+            self.hz = (self.received - received) / (now - before)
+            self.bytes_per_s = max(0.0, (total - size) / (now - before))
+        self._counted = (now, self.received, total)
+
+
+class LiveTopics:
+    """All topics that pages look at.
+
+    Args:
+        hub: knows the pages.
+        source: the topics; None in a world without ROS.
+        pool: for what may wait.
+    """
+
+    def __init__(self, hub: Hub, source: Optional[TopicSource], pool: Executor) -> None:
+        self._hub, self._source, self._pool = hub, source, pool
+        self._loop = asyncio.get_running_loop()
+        self._topics: Dict[str, LiveTopic] = {}
+        self._period = 1.0 / hub.protocol.limits["view_hz"]
+
+    def want(self, client: Client, names: Set[str]) -> None:
+        """These topics are what a page looks at from now on. Raises CommandError without ROS."""
+        if names and self._source is None:
+            raise CommandError("there are no ROS topics: the simulator runs without ROS")
+        for name in names:
+            topic = self._topics.get(name)
+            if topic is None:
+                topic = self._topics[name] = LiveTopic(name, self._rung)
+                self._open(topic)
+            if client.number not in topic.clients:
+                topic.clients[client.number] = 0
+                if topic.problem:
+                    self._tell_problem(topic, [client])
+                self._serve(topic)
+        for topic in list(self._topics.values()):
+            if topic.name not in names:
+                self._unwant(topic, client)
+
+    def leave(self, client: Client) -> None:
+        """A page has gone."""
+        for topic in list(self._topics.values()):
+            self._unwant(topic, client)
+
+    def viewed(self, client: Client, name: str) -> None:
+        """A page has shown what it was sent of a topic."""
+        topic = self._topics.get(name)
+        if topic is not None:
+            topic.unshown.discard(client.number)
+            self._serve(topic)
+
+    def traffic(self) -> Dict[str, LiveTopic]:
+        """The topics that are heard, with what comes on them."""
+        now = self._loop.time()
+        for topic in self._topics.values():
+            topic.count(now)
+        return self._topics
+
+    def close(self) -> None:
+        """Hear nothing any more."""
+        for topic in list(self._topics.values()):
+            self._drop(topic)
+
+    # -- subscribing -----------------------------------------------------------------------------
+
+    def _unwant(self, topic: LiveTopic, client: Client) -> None:
+        topic.clients.pop(client.number, None)
+        topic.unshown.discard(client.number)
+        if not topic.clients:
+            self._drop(topic)
+
+    def _drop(self, topic: LiveTopic) -> None:
+        topic.closed = True
+        self._topics.pop(topic.name, None)
+        if topic.subscription is not None:
+            self._pool.submit(topic.subscription.close)
+
+    def _open(self, topic: LiveTopic) -> None:
+        asyncio.ensure_future(self._subscribe(topic))
+
+    async def _subscribe(self, topic: LiveTopic) -> None:
+        """Look for the topic's type until it is known, then hear it."""
+        while not topic.closed:
+            try:
+                found = await self._loop.run_in_executor(self._pool, self._heard, topic)
+            except OSError as fault:
+                self._fail(topic, f"the ROS master does not respond: {fault}")
+            except SimulationError as fault:
+                self._fail(topic, str(fault))
+                return
+            else:
+                if found is not None:
+                    topic.subscription = found
+                    if topic.closed:
+                        self._pool.submit(found.close)
+                    return
+                self._fail(topic, "nobody publishes it yet")
+            await asyncio.sleep(_LOOK_S)
+
+    def _heard(self, topic: LiveTopic) -> Optional[Subscription]:
+        """In a thread of the pool."""
+        assert self._source is not None
+        kind = next((one.kind for one in self._source.topics() if one.name == topic.name), "")
+        if not kind or kind == "*":
+            return None
+        topic.viewer = Viewer(kind)
+        return self._source.hear(topic.name, kind, topic.take)
+
+    def _fail(self, topic: LiveTopic, problem: str) -> None:
+        if topic.problem != problem:
+            topic.problem = problem
+            self._tell_problem(topic, self._clients_of(topic))
+
+    def _tell_problem(self, topic: LiveTopic, clients: List[Client]) -> None:
+        push = {"type": "watch", "topic": PREFIX + topic.name, "time": 0.0,
+                "problem": topic.problem}
+        self._hub.check([push])
+        for client in clients:
+            client.append(encoded(push))
+
+    def _clients_of(self, topic: LiveTopic) -> List[Client]:
+        known = self._hub.clients
+        return [known[number] for number in topic.clients if number in known]
+
+    # -- sending ---------------------------------------------------------------------------------
+
+    def _rung(self, topic: LiveTopic) -> None:
+        with contextlib.suppress(RuntimeError):  # the server has ended
+            self._loop.call_soon_threadsafe(self._heard_ring, topic)
+
+    def _heard_ring(self, topic: LiveTopic) -> None:
+        topic.answer()
+        self._serve(topic)
+
+    def _serve(self, topic: LiveTopic) -> None:
+        """Send the newest view to who may have it, now or when it is time."""
+        if topic.closed or (topic.task is not None and not topic.task.done()):
+            return
+        if any(topic.clients[client.number] < topic.received for client in self._ready(topic)):
+            topic.task = asyncio.ensure_future(self._send(topic))
+
+    def _ready(self, topic: LiveTopic) -> List[Client]:
+        return [client for client in self._clients_of(topic)
+                if client.number not in topic.unshown and not client.full]
+
+    async def _send(self, topic: LiveTopic) -> None:
+        await asyncio.sleep(max(0.0, topic.due - self._loop.time()))
+        number = topic.received
+        if number != topic.shown:
+            topic.due = self._loop.time() + self._period
+            try:
+                topic.frame = await self._loop.run_in_executor(self._pool, self._frame, topic)
+            except SimulationError as fault:
+                topic.frame = b""
+                self._fail(topic, str(fault))
+            else:
+                topic.problem = ""
+            topic.shown = number
+        for client in self._ready(topic):
+            if topic.clients[client.number] < number:
+                topic.clients[client.number] = number
+                if topic.frame:
+                    topic.unshown.add(client.number)
+                    client.append(topic.frame)
+        if topic.received > number:
+            self._loop.call_soon(self._serve, topic)
+
+    def _frame(self, topic: LiveTopic) -> bytes:
+        """In a thread of the pool."""
+        assert topic.viewer is not None
+        frame, stamp, (fields, payload) = topic.viewer.view()
+        head = {"topic": topic.name, "frame": frame, "stamp": stamp, "view": fields}
+        self._hub.check_view(head)
+        return frame_of(head, payload)

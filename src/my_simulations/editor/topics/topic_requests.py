@@ -1,0 +1,76 @@
+"""The requests about ROS topics."""
+from __future__ import annotations
+
+import asyncio
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Dict, List, Optional
+
+from ...errors import CommandError
+from ..scene.plain_json import plain
+from ..topic_source import ListedTopic, TopicSource
+from ..transport.browser_client import Client
+from ..transport.hub import Hub
+from ..transport.web_socket import Route
+from .driving import Driving
+from .live_topics import LiveTopic, LiveTopics
+
+
+class TopicRequests:
+    """Lists topics, views them, drives robots.
+
+    Attributes:
+        live: the topics that pages look at.
+    """
+
+    def __init__(self, hub: Hub, source: Optional[TopicSource]) -> None:
+        self._source = source
+        self._pool = ThreadPoolExecutor(3, "editor topics")
+        self.live = LiveTopics(hub, source, self._pool)
+        self._driving = Driving(source, self._pool)
+
+    def routes(self) -> Dict[str, Route]:
+        """By type of message."""
+        return {"topics": Route(self._topics, None), "drive": Route(self._driving.drive, None),
+                "viewed": Route(self._viewed, None)}
+
+    def leave(self, client: Client) -> None:
+        """A page has gone."""
+        self.live.leave(client)
+        self._driving.leave(client)
+
+    def close(self) -> None:
+        """Stop what is driven; hear nothing any more."""
+        self._driving.close()
+        self.live.close()
+        self._pool.shutdown(wait=False)
+
+    async def _viewed(self, client: Client, message: Dict[str, Any]) -> None:
+        self.live.viewed(client, message["topic"])
+
+    async def _topics(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
+        if self._source is None:
+            return {"available": False, "topics": []}
+        loop = asyncio.get_running_loop()
+        try:
+            listed = await loop.run_in_executor(self._pool, self._source.topics)
+        except OSError as fault:
+            raise CommandError(f"the ROS master does not respond: {fault}") from fault
+        heard = self.live.traffic()
+        return {"available": True,
+                "topics": [_document(one, heard.get(one.name)) for one in _ordered(listed)]}
+
+
+def _ordered(listed: List[ListedTopic]) -> List[ListedTopic]:
+    return sorted(listed, key=lambda one: one.name)
+
+
+def _document(one: ListedTopic, heard: Optional[LiveTopic]) -> Dict[str, Any]:
+    found: Dict[str, Any] = {"name": one.name, "type": one.kind, "publishers": one.publishers,
+                             "subscribers": one.subscribers}
+    if one.model:
+        found.update(model=one.model, driven=one.driven)
+    if one.link:
+        found["mount"] = {"link": one.link, "pose": plain(one.pose)}
+    if heard is not None and heard.subscription is not None:
+        found.update(hz=heard.hz, bytes_per_s=heard.bytes_per_s)
+    return found

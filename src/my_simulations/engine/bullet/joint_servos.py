@@ -1,0 +1,177 @@
+"""Servos of joint axes: loops and trajectories that are evaluated in every step."""
+from __future__ import annotations
+
+import math
+from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Tuple
+
+import pybullet
+
+from ...description.model import JointAxis, Model
+from ..api import CommandRefusedError
+from ..commands import JointServo
+from ..servo_law import FOLLOW, ServoLaw
+from .bodies import Axis, Body
+
+_STRONG = 1e7   # N or N m, of a motor without a limit
+_FAST = 1e5     # rad/s or m/s, likewise
+
+
+class _Loops:
+    """The servos of one body that must be computed in every step."""
+
+    def __init__(self, uid: int) -> None:
+        self.uid = uid
+        self.indices: List[int] = []
+        self.efforts: List[Tuple[int, int, ServoLaw]] = []   # place in `indices`, row, law
+        self.motors: List[Tuple[int, ServoLaw]] = []
+        self.motor_indices: List[int] = []
+        self.forces: List[float] = []
+
+    def add(self, axis: Axis, law: ServoLaw) -> None:
+        place = len(self.indices)
+        self.indices.append(axis.index)
+        if law.gives_effort:
+            self.efforts.append((place, axis.row, law))
+        else:
+            self.motors.append((place, law))
+            self.motor_indices.append(axis.index)
+            self.forces.append(_strength(law.servo))
+
+
+class JointServos:
+    """Keeps servos; what needs no computing is left to PyBullet's motors."""
+
+    def __init__(self, axes: Mapping[int, Tuple[Body, Axis]],
+                 wake: Callable[[List[Body]], None]) -> None:
+        self._axes, self._wake = axes, wake
+        self._laws: Dict[int, ServoLaw] = {}
+        self._friction: Dict[int, Tuple[float, float]] = {}
+        self._busy: Dict[int, _Loops] = {}
+        self._dt = 0.0
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing must be computed."""
+        return not self._busy
+
+    def set(self, servos: Iterable[JointServo], dt: float) -> None:
+        """Set these; others stay. Raises CommandRefusedError, and then none is set."""
+        self._dt = dt
+        changed = list(servos)
+        for servo in changed:
+            if servo.row not in self._axes:
+                raise CommandRefusedError("the joint of the servo does not exist")
+        woken: Dict[int, Body] = {}
+        for servo in changed:
+            body, axis = self._axes[servo.row]
+            law = self._laws.get(servo.row)
+            if law is not None and law.servo == servo:
+                continue
+            if not servo.drive:
+                self._laws.pop(servo.row, None)
+                self._release(body, axis)
+            elif law is not None and law.servo.same_loops(servo):
+                law.change(servo)
+            else:
+                self._laws[servo.row] = ServoLaw(servo, dt)
+                self._release(body, axis)
+            self._drive(body, axis)
+            woken[body.uid] = body
+        self._sort()
+        if woken:
+            self._wake(list(woken.values()))
+
+    def set_up(self, body: Body, model: Model, dt: float) -> None:
+        """The axes of a body got their limits and friction (anew): servos go on."""
+        specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
+        for axis in body.axes:
+            spec = specs[axis.name][axis.number] or JointAxis()
+            self._friction[axis.row] = (spec.motor_rate, max(0.0, spec.friction))
+            law = self._laws.get(axis.row)
+            if law is not None:
+                if dt != self._dt:
+                    self._laws[axis.row] = ServoLaw(law.servo, dt)
+                self._drive(body, axis)
+        self._dt = dt
+        self._sort()
+
+    def disturbed(self, body: Body) -> None:
+        """The joints of a body were set."""
+        for axis in body.axes:
+            if axis.row in self._laws:
+                self._laws[axis.row].disturbed()
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        self._busy.pop(body.uid, None)
+        for axis in body.axes:
+            self._laws.pop(axis.row, None)
+            self._friction.pop(axis.row, None)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        for table in (self._laws, self._friction, self._busy):
+            table.clear()
+
+    def add_to(self, efforts: Dict[int, float], step: int) -> None:
+        """Add the efforts of the step that begins at a count, N m or N by row; set motors."""
+        for loops in self._busy.values():
+            states = pybullet.getJointStates(loops.uid, loops.indices)
+            for place, row, law in loops.efforts:
+                position, rate, _, _ = states[place]
+                efforts[row] = efforts.get(row, 0.0) + law.advance(position, rate, step)
+            if loops.motors:
+                rates = [law.advance(states[place][0], states[place][1], step)
+                         for place, law in loops.motors]
+                pybullet.setJointMotorControlArray(
+                    loops.uid, loops.motor_indices, pybullet.VELOCITY_CONTROL,
+                    targetVelocities=rates, forces=loops.forces)
+
+    def efforts(self, rows: Sequence[int]) -> Tuple[float, ...]:
+        """What was spent on axes in the last step; 0 without a servo or motor."""
+        found: List[float] = []
+        for row in rows:
+            law = self._laws.get(row)
+            if row not in self._axes:
+                found.append(0.0)
+            elif law is not None and law.gives_effort:
+                found.append(law.last)
+            else:
+                body, axis = self._axes[row]
+                found.append(float(pybullet.getJointState(body.uid, axis.index)[3]))
+        return tuple(found)
+
+    def _sort(self) -> None:
+        """Find out anew what must be computed for which body."""
+        self._busy = {}
+        for row, law in self._laws.items():
+            if not law.steady:
+                body, axis = self._axes[row]
+                self._busy.setdefault(body.uid, _Loops(body.uid)).add(axis, law)
+
+    def _release(self, body: Body, axis: Axis) -> None:
+        """The axis has its friction again."""
+        rate, effort = self._friction.get(axis.row, (0.0, 0.0))
+        pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
+                                       targetVelocity=rate, force=effort)
+
+    def _drive(self, body: Body, axis: Axis) -> None:
+        """Hand over what PyBullet does by itself."""
+        law = self._laws.get(axis.row)
+        if law is None or not law.steady or law.gives_effort:
+            return
+        servo = law.servo
+        if servo.drive == "velocity":
+            rate = max(-servo.most_rate, min(servo.most_rate, servo.target))
+            pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
+                                           targetVelocity=rate, force=_strength(servo))
+        else:
+            pybullet.setJointMotorControl2(
+                body.uid, axis.index, pybullet.POSITION_CONTROL,
+                targetPosition=max(servo.lower, min(servo.upper, servo.target)),
+                positionGain=FOLLOW, velocityGain=1.0, force=_strength(servo),
+                maxVelocity=servo.most_rate if servo.most_rate < math.inf else _FAST)
+
+
+def _strength(servo: JointServo) -> float:
+    return servo.most_effort if servo.most_effort < math.inf else _STRONG

@@ -1,0 +1,173 @@
+"""Action servers: goals, cancels, status, feedback and results as topics. Source: actionlib."""
+from __future__ import annotations
+
+from typing import Any, Callable, List, Optional
+
+from .context import Context, Ending, Handle
+
+PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED = range(9)
+_STATUS_HZ = 5.0
+_KEEP_NS = 5_000_000_000    # how long the status of a goal is told after its end, sim time
+_QUEUE = 50
+
+
+class Goal:
+    """A goal on its way.
+
+    Attributes:
+        message: what is asked for, e.g. control_msgs/FollowJointTrajectoryGoal.
+        status: one of actionlib_msgs/GoalStatus.
+    """
+
+    def __init__(self, server: "ActionServer", goal_id: Any, message: Any) -> None:
+        self._server, self.goal_id, self.message = server, goal_id, message
+        self.status, self.text = PENDING, ""
+        self.ended_ns: Optional[int] = None
+
+    @property
+    def active(self) -> bool:
+        """Whether it has neither ended nor is waiting."""
+        return self.status in (ACTIVE, PREEMPTING)
+
+    def accept(self, text: str = "") -> None:
+        """Begin."""
+        self.status = PREEMPTING if self.status == RECALLING else ACTIVE
+        self._server.told(self, text)
+
+    def reject(self, result: Any, text: str = "") -> None:
+        """Refuse it."""
+        self._end(REJECTED, result, text)
+
+    def succeed(self, result: Any, text: str = "") -> None:
+        """Reached."""
+        self._end(SUCCEEDED, result, text)
+
+    def abort(self, result: Any, text: str = "") -> None:
+        """Given up."""
+        self._end(ABORTED, result, text)
+
+    def cancel(self, result: Any, text: str = "") -> None:
+        """Ended because of another goal, or because its client asked for it."""
+        self._end(PREEMPTED if self.status in (ACTIVE, PREEMPTING) else RECALLED, result, text)
+
+    def feedback(self, feedback: Any) -> None:
+        """Tell the client how it goes."""
+        self._server.send_feedback(self, feedback)
+
+    def _end(self, status: int, result: Any, text: str) -> None:
+        self.status = status
+        self._server.ended(self, result, text)
+
+
+class ActionServer:
+    """One action.
+
+    Args:
+        context: of the plugin.
+        name: the namespace of its topics.
+        kind: e.g. `control_msgs/FollowJointTrajectory`.
+        asked: gets each new goal, and must accept or reject it.
+        cancelled: gets each goal whose client does not want it any more, while it is active.
+    """
+
+    def __init__(self, context: Context, name: str, kind: str, asked: Callable[[Goal], None],
+                 cancelled: Callable[[Goal], None]) -> None:
+        self._context, self._kind = context, kind
+        self._asked, self._cancelled = asked, cancelled
+        self._goals: List[Goal] = []
+        self._early: List[Any] = []   # ids that were cancelled before they came
+        self._status = context.publish(f"{name}/status", "actionlib_msgs/GoalStatusArray", _QUEUE,
+                                       latch=True)
+        self._results = context.publish(f"{name}/result", f"{kind}ActionResult", _QUEUE)
+        self._feedback = context.publish(f"{name}/feedback", f"{kind}ActionFeedback", _QUEUE)
+        self._handles: List[Handle] = [
+            self._status, self._results, self._feedback,
+            context.subscribe(f"{name}/goal", f"{kind}ActionGoal", self._hear_goal, _QUEUE),
+            context.subscribe(f"{name}/cancel", "actionlib_msgs/GoalID", self._hear_cancel,
+                              _QUEUE)]
+        self._timer: Ending = context.every(_STATUS_HZ, self._tell)
+        self._tell()
+
+    def result(self) -> Any:
+        """An empty result."""
+        return self._context.message(f"{self._kind}Result")
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        self._timer.end()
+        for handle in self._handles:
+            handle.close()
+
+    # -- for goals ---------------------------------------------------------------------------------
+
+    def told(self, goal: Goal, text: str) -> None:
+        """The status of a goal has changed."""
+        goal.text = text
+        self._tell()
+
+    def ended(self, goal: Goal, result: Any, text: str) -> None:
+        """A goal has come to its end."""
+        goal.text, goal.ended_ns = text, self._context.now_ns
+        self._send_result(goal, result)
+        self._tell()
+
+    def send_feedback(self, goal: Goal, feedback: Any) -> None:
+        """Publish."""
+        if self._feedback.wanted:
+            message = self._context.message(f"{self._kind}ActionFeedback")
+            message.header.stamp = self._context.stamp()
+            message.status, message.feedback = self._status_of(goal), feedback
+            self._feedback.publish(message)
+
+    # -- inside ------------------------------------------------------------------------------------
+
+    def _hear_goal(self, message: Any) -> None:
+        goal_id = message.goal_id
+        if not goal_id.id:
+            goal_id.id = f"goal-{self._context.now_ns}-{len(self._goals)}"
+        for known in self._goals:
+            if known.goal_id.id == goal_id.id:
+                return   # a goal is sent once; a later copy changes nothing
+        goal = Goal(self, goal_id, message.goal)
+        self._goals.append(goal)
+        if any(_meant(one, goal) for one in self._early):
+            goal.cancel(self.result(), "cancelled before it came")
+            return
+        self._asked(goal)
+
+    def _hear_cancel(self, wanted: Any) -> None:
+        found = [goal for goal in self._goals if _meant(wanted, goal)]
+        if wanted.id and not found:
+            self._early.append(wanted)
+        for goal in found:
+            if goal.status == ACTIVE:
+                goal.status = PREEMPTING
+                self._cancelled(goal)
+
+    def _tell(self) -> None:
+        now = self._context.now_ns
+        self._goals = [goal for goal in self._goals if goal.ended_ns is None
+                       or 0 <= now - goal.ended_ns <= _KEEP_NS]
+        message = self._context.message("actionlib_msgs/GoalStatusArray")
+        message.header.stamp = self._context.stamp()
+        message.status_list = [self._status_of(goal) for goal in self._goals]
+        self._status.publish(message)
+
+    def _status_of(self, goal: Goal) -> Any:
+        status = self._context.message("actionlib_msgs/GoalStatus")
+        status.goal_id, status.status, status.text = goal.goal_id, goal.status, goal.text
+        return status
+
+    def _send_result(self, goal: Goal, result: Any) -> None:
+        message = self._context.message(f"{self._kind}ActionResult")
+        message.header.stamp = self._context.stamp()
+        message.status, message.result = self._status_of(goal), result
+        self._results.publish(message)
+
+
+def _meant(wanted: Any, goal: Goal) -> bool:
+    """Whether a cancel message means a goal: by id, by time, or all of them."""
+    stamp = wanted.stamp.to_nsec()
+    if wanted.id:
+        return bool(wanted.id == goal.goal_id.id)
+    return bool(stamp == 0 or goal.goal_id.stamp.to_nsec() <= stamp)

@@ -1,0 +1,1 @@
+"""ros_control in the simulator: hardware interfaces, a controller manager, controllers."""

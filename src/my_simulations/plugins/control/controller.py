@@ -1,0 +1,108 @@
+"""The base class of controllers, and what they see."""
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, List
+
+from ..context import Context, Ending, Handle, Publication
+from .hardware import Hardware, HardwareJoint
+from .settings import Settings
+
+INITIALIZED, RUNNING, STOPPED = "initialized", "running", "stopped"
+
+
+class Controller:
+    """A controller of some joints of one robot.
+
+    `load` reads parameters and takes joints; `start` and `stop` are called when it is switched;
+    what it begins with `every` while running ends with it. Raise PluginError for what the user
+    did wrong.
+
+    Attributes:
+        name: below the namespace of the robot; topics and parameters are below it.
+        context, hardware: of the robot.
+        settings: its parameters.
+        period: s between updates that the user has asked for; 0 for none.
+        state: "initialized", "running" or "stopped".
+        claimed: joints by interface.
+    """
+
+    def __init__(self, name: str, context: Context, hardware: Hardware, period: float) -> None:
+        self.name, self.context, self.hardware, self.period = name, context, hardware, period
+        self.settings = Settings(context, name)
+        self.state = INITIALIZED
+        self.claimed: Dict[str, List[str]] = {}
+        self._handles: List[Handle] = []
+        self._timers: List[Ending] = []
+        self._told = ""
+
+    # -- for subclasses ----------------------------------------------------------------------------
+
+    def load(self) -> None:
+        """Read parameters, take joints, offer topics."""
+        raise NotImplementedError
+
+    def start(self) -> None:
+        """Begin: from now on its joints are its own."""
+
+    def stop(self) -> None:
+        """End; joints are released afterwards."""
+
+    def take(self, interface: str, name: str) -> HardwareJoint:
+        """Claim a joint. Raises PluginError."""
+        joint = self.hardware.joint(interface, name)
+        self.claimed.setdefault(interface, []).append(name)
+        return joint
+
+    def publish(self, topic: str, kind: str, queue: int = 1, latch: bool = False) -> Publication:
+        """Offer a topic below its name."""
+        made = self.context.publish(f"{self.name}/{topic}", kind, queue, latch)
+        self._handles.append(made)
+        return made
+
+    def subscribe(self, topic: str, kind: str, call: Callable[[Any], None]) -> None:
+        """Hear a topic below its name; while it does not run, the user is told of commands."""
+        def heard(message: Any) -> None:
+            if self.state == RUNNING:
+                call(message)
+            elif self._told != topic:
+                self._told = topic
+                self.context.warn(f"controller '{self.name}' does not run, and ignores what comes"
+                                  f" on {topic}")
+
+        self._handles.append(self.context.subscribe(f"{self.name}/{topic}", kind, heard))
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
+        """Offer a service below its name."""
+        self._handles.append(self.context.serve(f"{self.name}/{name}", kind, call))
+
+    def keep(self, handle: Handle) -> None:
+        """Something else that ends with the controller."""
+        self._handles.append(handle)
+
+    def every(self, hertz: float, call: Callable[[], None]) -> None:
+        """Be called at a rate in Hz of sim time while it runs."""
+        self._timers.append(self.context.every(hertz, call))
+
+    # -- for the manager ---------------------------------------------------------------------------
+
+    def switch_on(self) -> None:
+        """Start."""
+        self.state, self._told = RUNNING, ""
+        self.start()
+
+    def switch_off(self) -> None:
+        """Stop, and release its joints."""
+        for timer in self._timers:
+            timer.end()
+        self._timers = []
+        self.stop()
+        self.state = STOPPED
+        for names in self.claimed.values():
+            for name in names:
+                self.hardware.release(name)
+
+    def close(self) -> None:
+        """Take everything off the graph."""
+        for handle in self._handles:
+            handle.close()
+        self._handles = []

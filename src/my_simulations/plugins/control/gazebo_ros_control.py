@@ -1,0 +1,53 @@
+"""libgazebo_ros_control.so: the joints of a robot for ros_control, and its controller manager."""
+from __future__ import annotations
+
+from typing import Any
+
+from ..base import Plugin
+from ..context import PluginError
+from .hardware import Hardware
+from .manager import ControllerManager
+
+_KNOWN = ("", "gazebo_ros_control/DefaultRobotHWSim")
+
+
+class GazeboRosControl(Plugin):
+    """Reads transmissions; controllers do the rest."""
+
+    def load(self) -> None:
+        """Find the joints; offer the controller manager."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(p.text("robotNamespace") or context.model)
+        simulated = p.text("robotSimType")
+        if simulated not in _KNOWN:
+            context.warn(f"<robotSimType> {simulated} is not simulated; {_KNOWN[1]} is used")
+        transmissions = context.transmissions(p.text("robotParam") or "robot_description")
+        if not transmissions:
+            raise PluginError("the robot has no <transmission>: no joint can be controlled")
+        self._hardware = Hardware(context, transmissions)
+        period = p.number("controlPeriod", 0.0)
+        self._manager = ControllerManager(context, self._hardware, period)
+        self._stopped = False
+        topic = p.text("eStopTopic")
+        if topic:
+            context.subscribe(topic, "std_msgs/Bool", self._hear_stop)
+        self._hardware.rest()
+
+    def reset(self) -> None:
+        """Joints are where they began: controllers start anew there."""
+        self._manager.restart()
+
+    def clock_set(self) -> None:
+        """What was planned by the clock counts no more."""
+        self._manager.restart()
+
+    def close(self) -> None:
+        """The robot goes, and with it its controllers."""
+        self._manager.close()
+
+    def _hear_stop(self, message: Any) -> None:
+        """Stopped, positions are held and nothing else is driven; then controllers start anew."""
+        if bool(message.data) == self._stopped:
+            return
+        self._stopped = bool(message.data)
+        self._manager.halt(self._stopped)

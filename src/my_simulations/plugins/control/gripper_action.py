@@ -1,0 +1,107 @@
+"""gripper_action_controller: control_msgs/GripperCommand. Parameters and ends as the original."""
+from __future__ import annotations
+
+import math
+from typing import Any, Optional
+
+from ..actions import ActionServer, Goal
+from .controller import RUNNING, Controller
+from .hardware import EFFORT, POSITION
+
+_LOOK_HZ = 100.0
+
+
+class Gripper(Controller):
+    """One joint that opens and closes."""
+
+    interface = ""
+
+    def load(self) -> None:
+        """Read parameters; take the joint; offer the action."""
+        s = self.settings
+        self._joint = self.take(self.interface, s.text("joint"))
+        self._gains = s.needed_gains(f"gains/{self._joint.name}") if self.interface == EFFORT \
+            else None
+        self._tolerance = abs(s.number("goal_tolerance", 0.01))
+        self._default_effort = abs(s.number("max_effort", 0.0))
+        self._still = s.number("stall_velocity_threshold", 0.001)
+        self._patience = s.number("stall_timeout", 1.0)
+        self._goal: Optional[Goal] = None
+        self._wanted, self._most = 0.0, self._default_effort
+        self._moved_ns = 0
+        self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
+                                    "control_msgs/GripperCommand", self._asked, self._cancelled)
+        self.keep(self._action)
+
+    def start(self) -> None:
+        """Hold."""
+        self._hold()
+        self.every(min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ, self._look)
+
+    def stop(self) -> None:
+        """The goal ends."""
+        self._preempt("the controller was stopped")
+
+    def _asked(self, goal: Goal) -> None:
+        if self.state != RUNNING:
+            goal.reject(self._result(False, False), "the controller is not running")
+            return
+        self._preempt("another goal came")
+        goal.accept()
+        self._goal, self._moved_ns = goal, self.context.now_ns
+        self._go(float(goal.message.command.position), float(goal.message.command.max_effort))
+
+    def _cancelled(self, goal: Goal) -> None:
+        if self._goal is goal:
+            self._goal = None
+            self._hold()
+            goal.cancel(self._result(False, False))
+
+    def _preempt(self, why: str) -> None:
+        if self._goal is not None:
+            goal, self._goal = self._goal, None
+            goal.cancel(self._result(False, False), why)
+
+    def _hold(self) -> None:
+        self._go(self._joint.position, self._default_effort)
+
+    def _go(self, wanted: float, most: float) -> None:
+        """To a position; a maximum effort of 0 is none of an effort joint, as in the original."""
+        self._wanted, self._most = wanted, abs(most)
+        if self._gains is None:
+            self._joint.follow(wanted, most_effort=self._most or math.inf)
+        else:
+            self._joint.follow(wanted, gains=self._gains, by_rates=True, most_effort=self._most)
+
+    def _look(self) -> None:
+        """Whether it is there, or holds something."""
+        goal = self._goal
+        if goal is None or not goal.active:
+            return
+        if abs(self._wanted - self._joint.position) < self._tolerance:
+            self._goal = None
+            goal.succeed(self._result(False, True))
+        elif abs(self._joint.velocity) > self._still:
+            self._moved_ns = self.context.now_ns
+        elif (self.context.now_ns - self._moved_ns) * 1e-9 > self._patience:
+            self._goal = None
+            goal.abort(self._result(True, False))
+
+    def _result(self, stalled: bool, reached: bool) -> Any:
+        result = self._action.result()
+        result.position = self._joint.position
+        result.effort = self.hardware.efforts([self._joint.name])[0]
+        result.stalled, result.reached_goal = stalled, reached
+        return result
+
+
+class PositionGripper(Gripper):
+    """position_controllers/GripperActionController."""
+
+    interface = POSITION
+
+
+class EffortGripper(Gripper):
+    """effort_controllers/GripperActionController."""
+
+    interface = EFFORT

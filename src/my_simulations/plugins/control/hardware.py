@@ -1,0 +1,152 @@
+"""The joints of a robot as ros_control sees them: a name, an interface, limits, gains.
+
+Source: gazebo_ros_control's DefaultRobotHWSim. Loops run in the engine, in every step.
+"""
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Dict, List, Optional, Sequence, Tuple
+
+from ...description.transmission import Transmission
+from ...engine.commands import JointServo, PidGains
+from ...engine.spline import Spline
+from ..context import Context, Joint, PluginError
+from .limits import JointLimits, holding_effort, limits_of
+from .settings import Settings
+
+STATE, EFFORT, VELOCITY, POSITION = (f"hardware_interface::{kind}Interface" for kind in (
+    "JointState", "EffortJoint", "VelocityJoint", "PositionJoint"))
+DRIVES = {EFFORT: "effort", VELOCITY: "velocity", POSITION: "position"}
+
+
+class HardwareJoint:
+    """One joint through one interface.
+
+    Attributes:
+        name: of the joint.
+        interface: e.g. `hardware_interface::EffortJointInterface`.
+        limits: of the joint.
+    """
+
+    def __init__(self, joint: Joint, interface: str, limits: JointLimits,
+                 gains: Optional[PidGains], holding: float) -> None:
+        self.name, self.interface, self.limits = joint.name, interface, limits
+        self._joint = joint
+        most = limits.effort
+        if interface == POSITION and gains is None:
+            most = max(most, holding) if most > 0.0 else math.inf
+        self._servo = JointServo(
+            0, DRIVES[interface], drive_gains=None if interface == EFFORT else gains,
+            wraps=limits.wraps, lower=limits.lower, upper=limits.upper, most_rate=limits.rate,
+            most_effort=most, soft=limits.soft)
+
+    @property
+    def position(self) -> float:
+        """rad or m."""
+        return self._joint.position
+
+    @property
+    def velocity(self) -> float:
+        """rad/s or m/s."""
+        return self._joint.velocity
+
+    def command(self, value: float) -> None:
+        """An effort, rate or position, as the interface has it."""
+        self._joint.steer(replace(self._servo, target=value))
+
+    def follow(self, target: float = 0.0, *, spline: Optional[Spline] = None,
+               gains: Optional[PidGains] = None, target_rate: float = 0.0, of_rate: bool = False,
+               by_rates: bool = False, feedforward: float = 0.0,
+               most_effort: float = math.inf) -> None:
+        """Have a loop about a target command the interface; see `engine.commands.JointServo`."""
+        self._joint.steer(replace(
+            self._servo, target=target, target_rate=target_rate, spline=spline, gains=gains,
+            of_rate=of_rate, by_rates=by_rates, feedforward=feedforward,
+            most_effort=min(most_effort, self._servo.most_effort)))
+
+    def rest(self) -> None:
+        """What nobody controls: positions are held, rates and efforts are 0."""
+        self.command(self.position if self.interface == POSITION else 0.0)
+
+
+class Hardware:
+    """All joints that have a transmission."""
+
+    def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
+        self._context = context
+        self._all: Dict[Tuple[str, str], HardwareJoint] = {}
+        self.names: List[str] = []
+        self._first: Dict[str, HardwareJoint] = {}
+        gains = Settings(context, "gazebo_ros_control/pid_gains")
+        for transmission in transmissions:
+            self._add(transmission, gains)
+
+    def _add(self, transmission: Transmission, gains: Settings) -> None:
+        context = self._context
+        if len(transmission.joints) != 1:
+            context.warn(f"transmission '{transmission.name}' has {len(transmission.joints)}"
+                         " joints; only those with one are simulated")
+            return
+        spec = transmission.joints[0]
+        named = spec.interfaces or [name for actuator in transmission.actuators
+                                    for name in actuator.interfaces]
+        try:
+            joint = context.joint(spec.name)
+        except PluginError as fault:
+            context.warn(f"transmission '{transmission.name}': {fault}")
+            return
+        if joint.name not in self.names:
+            self.names.append(joint.name)
+        known = [name for name in map(_interface, named) if name in DRIVES]
+        if not known:
+            if any(_interface(name) != STATE for name in named) or not named:
+                context.warn(f"transmission '{transmission.name}' of joint '{joint.name}' has the"
+                             f" interface '{', '.join(named)}', which is not simulated; only the"
+                             " state of the joint is known")
+            return
+        limits = limits_of(joint.spec, context)
+        holding = holding_effort(context.description, joint.spec, context.gravity)
+        for interface in known[:1]:
+            made = HardwareJoint(joint, interface, limits, gains.gains(joint.name), holding)
+            self._all.setdefault((interface, joint.name), made)
+            self._first.setdefault(joint.name, made)
+
+    def joint(self, interface: str, name: str) -> HardwareJoint:
+        """A joint through an interface. Raises PluginError."""
+        found = self._all.get((interface, name))
+        if found is None:
+            others = [one for one, joint in self._all if joint == name]
+            raise PluginError(f"joint '{name}' has no transmission with {interface}" + (
+                f", but one with {', '.join(others)}" if others else ""))
+        return found
+
+    def has(self, interface: str, name: str) -> bool:
+        """Whether `joint` would find one."""
+        return (interface, name) in self._all
+
+    def state(self, name: str) -> Joint:
+        """The state of a joint that has a transmission. Raises PluginError."""
+        if name not in self.names:
+            raise PluginError(f"joint '{name}' has no transmission")
+        return self._context.joint(name)
+
+    def efforts(self, names: Sequence[str]) -> List[float]:
+        """N m or N, in the last step."""
+        return self._context.efforts(list(names))
+
+    def rest(self, but: Sequence[str] = ()) -> None:
+        """Nobody controls any joint, besides those named."""
+        for name, joint in self._first.items():
+            if name not in but:
+                joint.rest()
+
+    def release(self, name: str) -> None:
+        """Nobody controls a joint any more."""
+        if name in self._first:
+            self._first[name].rest()
+
+
+def _interface(name: str) -> str:
+    """`hardware_interface::EffortJointInterface` of any spelling."""
+    return "hardware_interface::" + name.replace("::", "/").rpartition("/")[2].strip()

@@ -1,0 +1,98 @@
+"""Controllers with a PID loop about the position or rate of a joint; the engine runs the loop."""
+from __future__ import annotations
+
+from typing import Dict
+
+from ...engine.commands import PidGains
+from ...engine.servo_law import shortest
+from .controller import Controller
+from .forward import Group
+from .hardware import EFFORT, VELOCITY, HardwareJoint
+
+_STATE_HZ = 100.0   # of sim time: the originals tell each tenth update, at 1 kHz
+
+
+class JointLoop(Controller):
+    """One joint: `joint`, gains in `pid`, topics `command` (Float64) and `state`.
+
+    The state's command is the effort of the last step, so it is 0 for loops that give a rate.
+    """
+
+    interface = EFFORT
+    of_rate = False
+
+    def load(self) -> None:
+        """Take the joint."""
+        self._gains = self.settings.needed_gains("pid")
+        self._joint = self.take(self.interface, self.settings.text("joint"))
+        self._wanted = 0.0
+        self._state = self.publish("state", "control_msgs/JointControllerState")
+        self.subscribe("command", "std_msgs/Float64", lambda message: self._go(message.data))
+
+    def start(self) -> None:
+        """Stay, or stand."""
+        self._go(0.0 if self.of_rate else self._joint.position)
+        self.every(min(_STATE_HZ, 1.0 / self.period) if self.period else _STATE_HZ, self._tell)
+
+    def _go(self, wanted: float) -> None:
+        self._wanted = wanted if self.of_rate else within(self._joint, wanted)
+        self._joint.follow(self._wanted, gains=self._gains, of_rate=self.of_rate)
+
+    def _tell(self) -> None:
+        if not self._state.wanted:
+            return
+        joint, gains = self._joint, self._gains
+        message = self.context.message("control_msgs/JointControllerState")
+        message.header.stamp = self.context.stamp()
+        message.set_point = self._wanted
+        message.process_value = joint.velocity if self.of_rate else joint.position
+        message.process_value_dot = 0.0 if self.of_rate else joint.velocity
+        error = self._wanted - message.process_value
+        message.error = shortest(error) if joint.limits.wraps and not self.of_rate else error
+        message.time_step = self.period or self.context.step_size
+        message.command = self.hardware.efforts([joint.name])[0]
+        message.p, message.i, message.d = gains.p, gains.i, gains.d
+        message.i_clamp, message.antiwindup = gains.i_max, gains.antiwindup
+        self._state.publish(message)
+
+
+class EffortPositionLoop(JointLoop):
+    """effort_controllers/JointPositionController."""
+
+
+class EffortVelocityLoop(JointLoop):
+    """effort_controllers/JointVelocityController."""
+
+    of_rate = True
+
+
+class VelocityPositionLoop(JointLoop):
+    """velocity_controllers/JointPositionController."""
+
+    interface = VELOCITY
+
+
+class EffortPositionGroup(Group):
+    """effort_controllers/JointGroupPositionController: gains in JOINT/pid."""
+
+    interface = EFFORT
+
+    def load(self) -> None:
+        """Take the joints and their gains."""
+        super().load()
+        self._gains: Dict[str, PidGains] = {
+            joint.name: self.settings.needed_gains(f"{joint.name}/pid") for joint in self.joints}
+
+    def start(self) -> None:
+        """Stay."""
+        for joint in self.joints:
+            self.command(joint, joint.position)
+
+    def command(self, joint: HardwareJoint, value: float) -> None:
+        """Follow a position."""
+        joint.follow(within(joint, value), gains=self._gains[joint.name])
+
+
+def within(joint: HardwareJoint, position: float) -> float:
+    """A position within the limits of a joint."""
+    return max(joint.limits.lower, min(joint.limits.upper, position))

@@ -1,0 +1,52 @@
+"""joint_state_controller: publishes `joint_states` of all joints that have a transmission."""
+from __future__ import annotations
+
+from typing import List, Tuple
+
+from ..context import PluginError
+from .controller import Controller
+
+
+class JointStateController(Controller):
+    """Names and extra joints as the original; the topic is in the robot's namespace."""
+
+    def load(self) -> None:
+        """Find the joints, the rate, and joints that are not there but are to be published."""
+        names = self.settings.texts("joints", self.hardware.names)
+        self._joints = [self.hardware.state(name) for name in names]
+        if self.settings.get("publish_rate") is None:
+            raise PluginError(f"parameter {self.name}/publish_rate is missing")
+        self._rate = self.settings.number("publish_rate", 0.0)
+        self._extra = self._extras(names)
+        self._topic = self.context.publish("joint_states", "sensor_msgs/JointState", 4)
+        self.keep(self._topic)
+
+    def start(self) -> None:
+        """Publish from now on."""
+        if self._rate > 0.0:
+            self.every(self._rate, self._tell)
+
+    def _extras(self, known: List[str]) -> List[Tuple[str, float, float, float]]:
+        found: List[Tuple[str, float, float, float]] = []
+        for one in self.settings.get("extra_joints") or []:
+            if isinstance(one, dict) and isinstance(one.get("name"), str):
+                if one["name"] in known:
+                    continue
+                found.append((one["name"], float(one.get("position", 0.0)),
+                              float(one.get("velocity", 0.0)), float(one.get("effort", 0.0))))
+            else:
+                self.context.warn(f"an entry of {self.name}/extra_joints has no name; it is"
+                                  " left out")
+        return found
+
+    def _tell(self) -> None:
+        message = self.context.message("sensor_msgs/JointState")
+        message.header.stamp = self.context.stamp()
+        names = [joint.name for joint in self._joints]
+        extra = self._extra
+        efforts = self.hardware.efforts(names) if self._topic.wanted else [0.0] * len(names)
+        message.name = names + [one[0] for one in extra]
+        message.position = [joint.position for joint in self._joints] + [one[1] for one in extra]
+        message.velocity = [joint.velocity for joint in self._joints] + [one[2] for one in extra]
+        message.effort = efforts + [one[3] for one in extra]
+        self._topic.publish(message)

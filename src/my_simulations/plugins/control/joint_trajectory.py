@@ -1,0 +1,312 @@
+"""joint_trajectory_controller: trajectories by topic and action; the engine follows the splines.
+
+Parameters, topics, rules of joining and tolerances are those of ros_controllers. Tolerances are
+looked at 100 times a second of sim time, or as often as `controlPeriod` says.
+"""
+from __future__ import annotations
+
+from typing import Any, List, Optional, Set, Tuple
+
+from ...engine.commands import PidGains
+from ...engine.servo_law import shortest
+from ...engine.spline import Spline, segment_between, standing
+from ..actions import ActionServer, Goal
+from ..context import Ending
+from .controller import RUNNING, Controller
+from .hardware import EFFORT, POSITION, VELOCITY, HardwareJoint
+from .trajectory import (
+    GOAL_TOLERANCE_VIOLATED,
+    PATH_TOLERANCE_VIOLATED,
+    SUCCESSFUL,
+    Tolerance,
+    TrajectoryError,
+    joined,
+    read_joints,
+    read_points,
+    updated,
+)
+
+_LOOK_HZ = 100.0
+_ACTION = "control_msgs/FollowJointTrajectory"
+
+
+class JointTrajectory(Controller):
+    """The joints in the parameter `joints`."""
+
+    interface = ""
+
+    def load(self) -> None:
+        """Read parameters; take joints; offer topics, the action and the service."""
+        s = self.settings
+        self._names = s.texts("joints")
+        self._joints = [self.take(self.interface, name) for name in self._names]
+        self._gains: List[Optional[PidGains]] = [None] * len(self._names)
+        if self.interface != POSITION:
+            self._gains = [s.needed_gains(f"gains/{name}") for name in self._names]
+        self._feedforward = [s.number(f"velocity_ff/{name}", 0.0) for name in self._names]
+        self._partial = s.flag("allow_partial_joints_goal", False)
+        self._stop_time = s.number("stop_trajectory_duration", 0.0)
+        self._state_hz = s.number("state_publish_rate", 50.0)
+        self._feedback_hz = s.number("action_monitor_rate", 20.0)
+        slow = s.number("constraints/stopped_velocity_tolerance", 0.01)
+        self._path = [Tolerance(s.number(f"constraints/{name}/trajectory", 0.0))
+                      for name in self._names]
+        self._end = [Tolerance(s.number(f"constraints/{name}/goal", 0.0), slow)
+                     for name in self._names]
+        self._late = s.number("constraints/goal_time", 0.0)
+        self._splines: List[Spline] = []
+        self._goal: Optional[_Following] = None
+        self._watch: Optional[Ending] = None
+        self._begun = 0.0
+        self.subscribe("command", "trajectory_msgs/JointTrajectory", self._hear)
+        self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
+        self._action = ActionServer(self.context, f"{self.name}/follow_joint_trajectory", _ACTION,
+                                    self._asked, self._cancelled)
+        self.keep(self._action)
+        self.serve("query_state", "control_msgs/QueryTrajectoryState", self._query)
+
+    def start(self) -> None:
+        """Stay where the joints are."""
+        self._splines = [Spline((standing(joint.position),), self.context.step)
+                         for joint in self._joints]
+        self._send()
+        if self._state_hz > 0.0:
+            self.every(self._state_hz, self._tell)
+
+    def stop(self) -> None:
+        """The goal ends."""
+        self._unwatch()
+        self._preempt("the controller was stopped")
+
+    # -- commands ----------------------------------------------------------------------------------
+
+    def _hear(self, message: Any) -> None:
+        try:
+            self._take_over(message)
+        except TrajectoryError as fault:
+            self.context.warn(f"controller '{self.name}' ignores a trajectory: {fault}")
+            return
+        self._preempt("another trajectory came")
+
+    def _asked(self, goal: Goal) -> None:
+        result = self._action.result()
+        wanted = goal.message
+        try:
+            if self.state != RUNNING:
+                raise TrajectoryError("the controller is not running")
+            self._take_over(wanted.trajectory)
+        except TrajectoryError as fault:
+            result.error_code, result.error_string = fault.code, str(fault)
+            self.context.warn(f"controller '{self.name}' rejects a goal: {fault}")
+            goal.reject(result, str(fault))
+            return
+        self._preempt("another goal came")
+        late = float(wanted.goal_time_tolerance.to_sec())
+        self._goal = _Following(
+            goal, updated(self._path, self._names, wanted.path_tolerance),
+            updated(self._end, self._names, wanted.goal_tolerance),
+            self._late if late == 0.0 else max(0.0, late))
+        goal.accept()
+        self._look()
+
+    def _cancelled(self, goal: Goal) -> None:
+        if self._goal is not None and self._goal.goal is goal:
+            self._goal = None
+            self._hold()
+            goal.cancel(self._action.result())
+
+    def _preempt(self, why: str) -> None:
+        if self._goal is not None:
+            goal, self._goal = self._goal.goal, None
+            goal.cancel(self._action.result(), why)
+
+    def _take_over(self, message: Any) -> None:
+        """Follow a trajectory message. Raises TrajectoryError; then nothing has changed."""
+        if not message.points:
+            self._hold()
+            return
+        places = read_joints(list(message.joint_names), self._names, self._partial)
+        points = read_points(message.points, len(places))
+        now, stamp = self._now, message.header.stamp.to_nsec()
+        start = now if stamp == 0 else now + (stamp - self.context.now_ns) * 1e-9
+        made = {place: joined(self._splines[place], start, now, points, n,
+                              self._joints[place].limits.wraps)
+                for n, place in enumerate(places)}
+        self._splines = [made.get(place, spline) for place, spline in enumerate(self._splines)]
+        self._begun = max(start, now)
+        self._send()
+
+    def _hold(self) -> None:
+        """Stay where the joints are, or come to a stop within `stop_trajectory_duration`."""
+        now = self._now
+        if self._stop_time <= 0.0:
+            self._splines = [Spline((standing(joint.position),), self.context.step)
+                             for joint in self._joints]
+        else:
+            self._splines = [_stopping(spline, now, self._stop_time) for spline in self._splines]
+        self._begun = self._now
+        self._send()
+
+    def _send(self) -> None:
+        for joint, spline, gains, ahead in zip(self._joints, self._splines, self._gains,
+                                               self._feedforward):
+            _follow(joint, spline, gains, ahead, self._time(spline))
+        if self._watch is None and self._moves():
+            self._watch = self.context.every(
+                min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ, self._look)
+
+    # -- while it moves ----------------------------------------------------------------------------
+
+    @property
+    def _now(self) -> float:
+        """The splines' time, s."""
+        return self._time(self._splines[0]) if self._splines else 0.0
+
+    def _time(self, spline: Spline) -> float:
+        return (self.context.step - spline.origin) * self.context.step_size
+
+    def _moves(self) -> bool:
+        return self._goal is not None or any(
+            self._time(spline) <= spline.segments[-1].end for spline in self._splines)
+
+    def _look(self) -> None:
+        """Check tolerances; when all is done, let the engine stop computing."""
+        following = self._goal
+        if following is not None:
+            self._judge(following)
+            self._send_feedback(following)
+        if not self._moves():
+            self._unwatch()
+            self._send()
+        elif self._watch is None:
+            self._send()
+
+    def _unwatch(self) -> None:
+        if self._watch is not None:
+            self._watch.end()
+            self._watch = None
+
+    def _judge(self, following: "_Following") -> None:
+        for n, (joint, spline) in enumerate(zip(self._joints, self._splines)):
+            now, end = self._time(spline), spline.segments[-1].end
+            position, rate = self._errors(joint, spline)
+            if now < end:
+                if not following.path[n].holds(position, rate):
+                    self._fail(following, PATH_TOLERANCE_VIOLATED,
+                               f"{joint.name} path error {position:.6f}")
+                    return
+            elif following.end[n].holds(position, rate):
+                following.arrived.add(n)
+            elif now >= end + following.late and n not in following.arrived:
+                self._fail(following, GOAL_TOLERANCE_VIOLATED,
+                           f"{joint.name} goal error {position:.6f}")
+                return
+        if len(following.arrived) == len(self._joints):
+            self._goal = None
+            result = self._action.result()
+            result.error_code = SUCCESSFUL
+            following.goal.succeed(result)
+
+    def _fail(self, following: "_Following", code: int, text: str) -> None:
+        self._goal = None
+        result = self._action.result()
+        result.error_code, result.error_string = code, text
+        following.goal.abort(result, text)
+
+    def _errors(self, joint: HardwareJoint, spline: Spline) -> Tuple[float, float]:
+        wanted, rate, _ = spline.at(self._time(spline))
+        error = wanted - joint.position
+        return shortest(error) if joint.limits.wraps else error, rate - joint.velocity
+
+    # -- what is told ------------------------------------------------------------------------------
+
+    def _send_feedback(self, following: "_Following") -> None:
+        now = self.context.now_ns
+        if following.goal.active and self._feedback_hz > 0.0 and (
+                now - following.told_ns) * self._feedback_hz >= 1e9:
+            following.told_ns = now
+            following.goal.feedback(self._filled(self.context.message(f"{_ACTION}Feedback")))
+
+    def _tell(self) -> None:
+        if self._state.wanted:
+            self._state.publish(self._filled(
+                self.context.message("control_msgs/JointTrajectoryControllerState")))
+
+    def _filled(self, message: Any) -> Any:
+        message.header.stamp = self.context.stamp()
+        message.joint_names = list(self._names)
+        wanted = [spline.at(self._time(spline)) for spline in self._splines]
+        errors = [self._errors(joint, spline)
+                  for joint, spline in zip(self._joints, self._splines)]
+        message.desired.positions = [state[0] for state in wanted]
+        message.desired.velocities = [state[1] for state in wanted]
+        message.desired.accelerations = [state[2] for state in wanted]
+        message.actual.positions = [joint.position for joint in self._joints]
+        message.actual.velocities = [joint.velocity for joint in self._joints]
+        message.error.positions = [position for position, _ in errors]
+        message.error.velocities = [rate for _, rate in errors]
+        since = max(0, round((self._now - self._begun) * 1e9))
+        for point in (message.desired, message.actual):
+            point.time_from_start.secs, point.time_from_start.nsecs = divmod(since, 10 ** 9)
+        return message
+
+    def _query(self, request: Any, response: Any) -> None:
+        if self.state != RUNNING:
+            return
+        ahead = (request.time.to_nsec() - self.context.now_ns) * 1e-9
+        found = [spline.at(self._time(spline) + ahead) for spline in self._splines]
+        response.name = list(self._names)
+        response.position = [state[0] for state in found]
+        response.velocity = [state[1] for state in found]
+        response.acceleration = [state[2] for state in found]
+
+
+class _Following:
+    """A goal that is being followed."""
+
+    def __init__(self, goal: Goal, path: List[Tolerance], end: List[Tolerance],
+                 late: float) -> None:
+        self.goal, self.path, self.end, self.late = goal, path, end, late
+        self.arrived: Set[int] = set()
+        self.told_ns = 0
+
+
+class PositionTrajectory(JointTrajectory):
+    """position_controllers/JointTrajectoryController."""
+
+    interface = POSITION
+
+
+class VelocityTrajectory(JointTrajectory):
+    """velocity_controllers/JointTrajectoryController."""
+
+    interface = VELOCITY
+
+
+class EffortTrajectory(JointTrajectory):
+    """effort_controllers/JointTrajectoryController."""
+
+    interface = EFFORT
+
+
+def _follow(joint: HardwareJoint, spline: Spline, gains: Optional[PidGains], ahead: float,
+            now: float) -> None:
+    """Hand a spline to the engine; one that has ended is a target, which may cost nothing."""
+    if now > spline.segments[-1].end:
+        target = spline.at(now)[0]
+        if gains is None:
+            joint.command(target)
+        else:
+            joint.follow(target, gains=gains, by_rates=True, feedforward=ahead)
+    else:
+        joint.follow(spline=spline, gains=gains, by_rates=gains is not None, feedforward=ahead)
+
+
+def _stopping(spline: Spline, now: float, duration: float) -> Spline:
+    """From what is wanted now to rest within a time: half of a way there and back."""
+    position, rate, _ = spline.at(now)
+    there_and_back = segment_between(now, (position, rate), now + 2.0 * duration,
+                                     (position, -rate))
+    rest = Spline((there_and_back,)).at(now + duration)[0]
+    return Spline((segment_between(now, (position, rate), now + duration, (rest, 0.0)),),
+                  spline.origin)

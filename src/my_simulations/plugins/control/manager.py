@@ -1,0 +1,233 @@
+"""The controller manager: loads, switches and unloads controllers by its services.
+
+Source: ros_control, controller_manager. Switches happen at once, also while the world is paused.
+"""
+from __future__ import annotations
+
+import importlib
+from typing import Any, Callable, Dict, List, Mapping, Optional, Type
+
+from ..context import Context, PluginError
+from .controller import RUNNING, Controller
+from .hardware import Hardware
+
+STRICT, BEST_EFFORT = 2, 1
+_MESSAGES = "controller_manager_msgs"
+
+TYPES: Mapping[str, str] = {
+    "joint_state_controller/JointStateController": "joint_state:JointStateController",
+    "position_controllers/JointPositionController": "forward:PositionForward",
+    "position_controllers/JointGroupPositionController": "forward:PositionGroup",
+    "position_controllers/JointTrajectoryController": "joint_trajectory:PositionTrajectory",
+    "position_controllers/GripperActionController": "gripper_action:PositionGripper",
+    "velocity_controllers/JointVelocityController": "forward:VelocityForward",
+    "velocity_controllers/JointGroupVelocityController": "forward:VelocityGroup",
+    "velocity_controllers/JointPositionController": "joint_loops:VelocityPositionLoop",
+    "velocity_controllers/JointTrajectoryController": "joint_trajectory:VelocityTrajectory",
+    "effort_controllers/JointEffortController": "forward:EffortForward",
+    "effort_controllers/JointGroupEffortController": "forward:EffortGroup",
+    "effort_controllers/JointPositionController": "joint_loops:EffortPositionLoop",
+    "effort_controllers/JointVelocityController": "joint_loops:EffortVelocityLoop",
+    "effort_controllers/JointGroupPositionController": "joint_loops:EffortPositionGroup",
+    "effort_controllers/JointTrajectoryController": "joint_trajectory:EffortTrajectory",
+    "effort_controllers/GripperActionController": "gripper_action:EffortGripper",
+    "diff_drive_controller/DiffDriveController": "diff_drive_controller:DiffDriveController",
+}
+"""Classes in this package by type of controller."""
+
+
+class ControllerManager:
+    """The controllers of one robot.
+
+    Args:
+        context: of the plugin, with its namespace set.
+        hardware: the joints.
+        period: s between updates that the user has asked for; 0 for none.
+        extra: finds further classes by type, None for unknown ones.
+    """
+
+    def __init__(self, context: Context, hardware: Hardware, period: float = 0.0,
+                 extra: Callable[[str], Optional[Type[Controller]]] = lambda kind: None) -> None:
+        self._context, self._hardware, self._period = context, hardware, period
+        self._extra = extra
+        self._loaded: Dict[str, Controller] = {}
+        self._halted: List[Controller] = []
+        self._types: Dict[str, str] = {}
+        for name, kind, answer in (
+                ("list_controllers", "ListControllers", self._list),
+                ("list_controller_types", "ListControllerTypes", self._list_types),
+                ("load_controller", "LoadController", self._load_asked),
+                ("unload_controller", "UnloadController", self._unload_asked),
+                ("switch_controller", "SwitchController", self._switch_asked),
+                ("reload_controller_libraries", "ReloadControllerLibraries", self._reload)):
+            context.serve(f"controller_manager/{name}", f"{_MESSAGES}/{kind}", answer)
+
+    @property
+    def controllers(self) -> Dict[str, Controller]:
+        """The loaded ones by name."""
+        return dict(self._loaded)
+
+    # -- what can be asked -------------------------------------------------------------------------
+
+    def load(self, name: str) -> None:
+        """Load a controller that the parameters describe. Raises PluginError."""
+        if name in self._loaded:
+            raise PluginError(f"a controller named '{name}' is loaded already")
+        kind = self._context.parameter(f"{name}/type", None)
+        if not isinstance(kind, str):
+            raise PluginError(f"parameter {name}/type is missing: is the controller's configuration"
+                              " on the parameter server, in the namespace of the robot?")
+        made = self._class_of(kind)(name, self._context, self._hardware, self._period)
+        try:
+            made.load()
+        except Exception:
+            made.close()
+            raise
+        self._loaded[name], self._types[name] = made, kind
+
+    def unload(self, name: str) -> None:
+        """Unload a controller that does not run. Raises PluginError."""
+        found = self._loaded.get(name)
+        if found is None:
+            raise PluginError(f"there is no controller '{name}'")
+        if found.state == RUNNING:
+            raise PluginError(f"controller '{name}' is running")
+        del self._loaded[name]
+        found.close()
+
+    def switch(self, start: List[str], stop: List[str], strictness: int = BEST_EFFORT) -> None:
+        """Stop and start controllers. Raises PluginError; then nothing has changed."""
+        strict = strictness == STRICT
+        stopping = self._named(stop, "stopped", strict)
+        starting = self._named(start, "started", strict)
+        off: List[Controller] = []
+        on: List[Controller] = []
+        for one in stopping:
+            if one.state == RUNNING:
+                off.append(one)
+            elif strict:
+                raise PluginError(f"controller '{one.name}' cannot be stopped: it does not run")
+        for one in starting:
+            if one.state != RUNNING or one in off:
+                on.append(one)
+            elif strict:
+                raise PluginError(f"controller '{one.name}' is running already")
+        self._check_resources([one for one in self._loaded.values() if one in on or (
+            one.state == RUNNING and one not in off)])
+        for one in off:
+            one.switch_off()
+        for one in on:
+            self._start(one)
+
+    def restart(self) -> None:
+        """Start all running controllers anew, where joints are now."""
+        self.halt(True)
+        self.halt(False)
+
+    def halt(self, halted: bool) -> None:
+        """Emergency stop: running controllers stop, until it ends."""
+        if not halted:
+            for one in self._halted:
+                if one.name in self._loaded and one.state != RUNNING:
+                    self._start(one)
+            self._halted = []
+            return
+        self._halted = [one for one in self._loaded.values() if one.state == RUNNING]
+        for one in self._halted:
+            one.switch_off()
+        self._hardware.rest()
+
+    def close(self) -> None:
+        """End all."""
+        for one in self._loaded.values():
+            if one.state == RUNNING:
+                one.switch_off()
+            one.close()
+        self._loaded.clear()
+
+    # -- inside ------------------------------------------------------------------------------------
+
+    def _start(self, one: Controller) -> None:
+        try:
+            one.switch_on()
+        except PluginError:
+            one.switch_off()
+            raise
+
+    def _class_of(self, kind: str) -> Type[Controller]:
+        where = TYPES.get(kind)
+        if where is None:
+            found = self._extra(kind)
+            if found is None:
+                raise PluginError(f"there is no controller of type {kind}; there are"
+                                  f" {', '.join(sorted(TYPES))}")
+            return found
+        module, _, name = where.partition(":")
+        made: Type[Controller] = getattr(importlib.import_module(f"{__package__}.{module}"), name)
+        return made
+
+    def _named(self, names: List[str], verb: str, strict: bool) -> List[Controller]:
+        missing = [name for name in names if name not in self._loaded]
+        if missing and strict:
+            raise PluginError(f"controller '{missing[0]}' cannot be {verb}: it is not loaded")
+        return [self._loaded[name] for name in dict.fromkeys(names) if name in self._loaded]
+
+    @staticmethod
+    def _check_resources(controllers: List[Controller]) -> None:
+        owners: Dict[str, str] = {}
+        for one in controllers:
+            for names in one.claimed.values():
+                for name in names:
+                    other = owners.setdefault(name, one.name)
+                    if other != one.name:
+                        raise PluginError(f"controllers '{other}' and '{one.name}' both drive joint"
+                                          f" '{name}'")
+
+    # -- services ----------------------------------------------------------------------------------
+
+    def _tried(self, what: str, call: Callable[..., None], *arguments: Any) -> bool:
+        """Whether it could be done; why not is told the user."""
+        try:
+            call(*arguments)
+            return True
+        except PluginError as fault:
+            self._context.warn(f"could not {what}: {fault}")
+        except Exception as fault:  # a controller's own fault: the others go on
+            self._context.warn(f"could not {what}: {type(fault).__name__}: {fault}")
+        return False
+
+    def _list(self, _: Any, response: Any) -> None:
+        response.controller = []
+        for name, one in self._loaded.items():
+            found = self._context.message(f"{_MESSAGES}/ControllerState")
+            found.name, found.type, found.state = name, self._types[name], one.state
+            found.claimed_resources = []
+            for interface, names in one.claimed.items():
+                used = self._context.message(f"{_MESSAGES}/HardwareInterfaceResources")
+                used.hardware_interface, used.resources = interface, sorted(names)
+                found.claimed_resources.append(used)
+            response.controller.append(found)
+
+    def _list_types(self, _: Any, response: Any) -> None:
+        response.types = sorted(TYPES)
+        response.base_classes = ["controller_interface::ControllerBase"] * len(TYPES)
+
+    def _load_asked(self, request: Any, response: Any) -> None:
+        response.ok = self._tried(f"load controller '{request.name}'", self.load, request.name)
+
+    def _unload_asked(self, request: Any, response: Any) -> None:
+        response.ok = self._tried(f"unload controller '{request.name}'", self.unload,
+                                  request.name)
+
+    def _switch_asked(self, request: Any, response: Any) -> None:
+        response.ok = self._tried("switch controllers", self.switch,
+                                  list(request.start_controllers),
+                                  list(request.stop_controllers), request.strictness)
+
+    def _reload(self, request: Any, response: Any) -> None:
+        if self._loaded and not request.force_kill:
+            self._context.warn("could not reload the controllers: some are loaded")
+            response.ok = False
+            return
+        self.close()
+        response.ok = True

@@ -1,0 +1,98 @@
+"""Parameters of a controller, by path: `constraints/goal_time`."""
+from __future__ import annotations
+
+from typing import Any, List, Optional
+
+from ...engine.commands import PidGains
+from ..context import Context, PluginError
+
+
+class Settings:
+    """What the parameter server says below a name. Values of a wrong type raise PluginError."""
+
+    def __init__(self, context: Context, name: str) -> None:
+        self.name = name
+        found = context.parameter(name, {})
+        self._tree: Any = found if isinstance(found, dict) else {}
+
+    def get(self, path: str) -> Any:
+        """Whatever is there; None for nothing. Names with slashes may be one key, or several."""
+        found = self._tree
+        for part in path.split("/"):
+            if not isinstance(found, dict) or part not in found:
+                return None
+            found = found[part]
+        return found
+
+    def number(self, path: str, default: float) -> float:
+        """A number."""
+        value = self.get(path)
+        if value is None:
+            return default
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise self._wrong(path, value, "a number")
+        return float(value)
+
+    def flag(self, path: str, default: bool) -> bool:
+        """true or false."""
+        value = self.get(path)
+        if value is None:
+            return default
+        if not isinstance(value, (bool, int)):
+            raise self._wrong(path, value, "true or false")
+        return bool(value)
+
+    def text(self, path: str, default: Optional[str] = None) -> str:
+        """A text; without a default it must be there."""
+        value = self.get(path)
+        if value is None:
+            if default is None:
+                raise PluginError(f"parameter {self.name}/{path} is missing")
+            return default
+        if not isinstance(value, str):
+            raise self._wrong(path, value, "a text")
+        return value
+
+    def texts(self, path: str, default: Optional[List[str]] = None) -> List[str]:
+        """A list of texts, or one; without a default it must be there."""
+        value = self.get(path)
+        if value is None:
+            if default is None:
+                raise PluginError(f"parameter {self.name}/{path} is missing")
+            return default
+        found = [value] if isinstance(value, str) else value
+        if not isinstance(found, list) or not found or not all(
+                isinstance(one, str) for one in found):
+            raise self._wrong(path, value, "a list of names")
+        return found
+
+    def numbers(self, path: str, count: int, default: List[float]) -> List[float]:
+        """A list of so many numbers."""
+        value = self.get(path)
+        if value is None:
+            return default
+        if not isinstance(value, list) or len(value) != count or not all(
+                isinstance(one, (int, float)) for one in value):
+            raise self._wrong(path, value, f"a list of {count} numbers")
+        return [float(one) for one in value]
+
+    def gains(self, path: str) -> Optional[PidGains]:
+        """PID gains; None where there is no p. Source: control_toolbox::Pid::init."""
+        if self.get(f"{path}/p") is None:
+            return None
+        clamp = abs(self.number(f"{path}/i_clamp", 0.0))
+        return PidGains(
+            self.number(f"{path}/p", 0.0), self.number(f"{path}/i", 0.0),
+            self.number(f"{path}/d", 0.0), -abs(self.number(f"{path}/i_clamp_min", clamp)),
+            abs(self.number(f"{path}/i_clamp_max", clamp)),
+            self.flag(f"{path}/antiwindup", False))
+
+    def needed_gains(self, path: str) -> PidGains:
+        """PID gains that must be there."""
+        found = self.gains(path)
+        if found is None:
+            raise PluginError(f"no p gain is specified: parameter {self.name}/{path}/p is missing")
+        return found
+
+    def _wrong(self, path: str, value: Any, wanted: str) -> PluginError:
+        return PluginError(f"parameter {self.name}/{path} must be {wanted}, it is {value!r}")

@@ -1,0 +1,156 @@
+"""What one plugin has asked of the sensing process: a scan and a set of pictures at a time."""
+from __future__ import annotations
+
+import time
+from collections import deque
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from typing import Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+from ..sensing.api import Mount, Pictures, RayFan, RayReturns, SensingError
+from .context import View
+from .eyes import Eyes
+
+_SCAN_S = 10.0      # of wall time, for rays
+_PICTURES_S = 60.0  # and for pictures, which only a world that is stepped manually waits for
+_UNSENT_S = 0.002
+_AGAIN_S = 60.0     # between two warnings of late pictures
+
+
+class _Scan(NamedTuple):
+    future: "Future[RayReturns]"
+    call: Callable[[RayReturns, int], None]
+    ns: int
+
+
+class _Shot(NamedTuple):
+    futures: "List[Future[Pictures]]"
+    call: Callable[[List[Pictures], int], None]
+    ns: int
+    stream: str
+
+    @property
+    def done(self) -> bool:
+        return all(future.done() for future in self.futures)
+
+
+class SensingRequests:
+    """Keeps order between a plugin's requests and their answers.
+
+    Pictures come in streams, one for each camera that a plugin looks through by itself.
+
+    Args:
+        eyes: who looks.
+        inbox: of the plugin; functions that hand answers over are put there.
+        wake: have somebody look into the inbox.
+        warn: tells the user.
+    """
+
+    def __init__(self, eyes: Eyes, inbox: Deque[Callable[[], None]], wake: Callable[[], None],
+                 warn: Callable[[str], None]) -> None:
+        self._eyes, self._inbox, self._wake, self._warn = eyes, inbox, wake, warn
+        self._scan: Optional[_Scan] = None
+        self._shots: Dict[str, _Shot] = {}
+        self._unsent: Dict[str, Deque[None]] = {}
+        self._stream = ""
+        self._fault = ""
+        self._left_out = 0
+        self._told = -_AGAIN_S
+
+    def forget(self) -> None:
+        """What is on its way belongs to a time that has been set back."""
+        self._scan = None
+        self._shots.clear()
+
+    @property
+    def unsent(self) -> "Deque[None]":
+        """A mark for each message that is being made of the stream that is handed over now."""
+        return self._unsent.setdefault(self._stream, deque())
+
+    # -- rays ------------------------------------------------------------------------------------
+
+    def scan(self, mount: Mount, fan: RayFan, visuals: bool,
+             call: Callable[[RayReturns, int], None], ns: int) -> None:
+        """Cast rays, after the answer to those before has been handed over."""
+        self._end_scan(self._scan)
+        scan = self._scan = _Scan(self._eyes.cast(mount, fan, visuals), call, ns)
+        scan.future.add_done_callback(lambda _: self._hear(lambda: self._end_scan(scan)))
+
+    def _hear(self, call: Callable[[], None]) -> None:
+        self._inbox.append(call)
+        self._wake()
+
+    def _end_scan(self, scan: Optional[_Scan]) -> None:
+        if scan is None or scan is not self._scan:
+            return
+        self._scan = None
+        try:
+            found = scan.future.result(_SCAN_S)
+        except (SensingError, FutureTimeoutError) as fault:
+            self._tell_fault("a scan is", fault)
+            return
+        scan.call(found, scan.ns)
+
+    # -- pictures --------------------------------------------------------------------------------
+
+    def photograph(self, views: Sequence[Tuple[Mount, View]],
+                   call: Callable[[List[Pictures], int], None], ns: int, wait: bool,
+                   stream: str = "") -> bool:
+        """Ask for pictures, unless those before of the same stream are late.
+
+        Args:
+            views: where each camera is, and what it is to give.
+            call: gets the pictures, and `ns`.
+            ns: sim time, now.
+            wait: for those before, however late they are.
+            stream: its name.
+
+        Returns:
+            Whether pictures were asked for.
+        """
+        before, unsent = self._shots.get(stream), self._unsent.setdefault(stream, deque())
+        if before is not None and (wait or before.done):
+            self._end_shot(before, _PICTURES_S if wait else 0.0)
+        if wait:
+            _wait_for(unsent)
+        if stream in self._shots or unsent:
+            self._leave_out()
+            return False
+        shot = self._shots[stream] = _Shot(self._eyes.render(views), call, ns, stream)
+        for future in shot.futures:
+            future.add_done_callback(lambda _: self._hear(lambda: self._end_shot(shot)))
+        return True
+
+    def _end_shot(self, shot: _Shot, timeout: float = 0.0) -> None:
+        if shot is not self._shots.get(shot.stream) or not (timeout or shot.done):
+            return
+        del self._shots[shot.stream]
+        deadline = time.monotonic() + timeout
+        try:
+            found = [future.result(max(0.0, deadline - time.monotonic()))
+                     for future in shot.futures]
+        except (SensingError, FutureTimeoutError) as fault:
+            self._tell_fault("a picture is", fault)
+            return
+        self._stream = shot.stream
+        shot.call(found, shot.ns)
+
+    def _leave_out(self) -> None:
+        self._left_out += 1
+        now = time.monotonic()
+        if now - self._told >= _AGAIN_S:
+            self._told = now
+            self._warn(f"pictures are late, this machine draws slower than the camera's rate: "
+                       f"{self._left_out} left out so far; physics goes on")
+
+    def _tell_fault(self, what: str, fault: Exception) -> None:
+        text = f"{what} left out: {fault or 'it took too long'}"
+        if text != self._fault:
+            self._fault = text
+            self._warn(text)
+
+
+def _wait_for(unsent: "Deque[None]") -> None:
+    deadline = time.monotonic() + _PICTURES_S
+    while unsent and time.monotonic() < deadline:
+        time.sleep(_UNSENT_S)

@@ -1,0 +1,103 @@
+"""libgazebo_ros_camera.so, libgazebo_ros_triggered_camera.so and libgazebo_ros_multicamera.so.
+
+Parameters, defaults, topics and frames are those of gazebo_plugins (`camera_parameters` tells of
+two differences). Pictures are drawn while somebody listens, and show the step they are stamped
+with. Where they are drawn slower than the rate asks for, some are left out, and physics goes on.
+"""
+from __future__ import annotations
+
+from typing import Any, List
+
+from ..base import Plugin
+from .camera_parameters import enter_namespace, rate_of, topics_of
+from .picture_stream import PictureStream, blocks_of
+
+_TRIGGERS = 100
+
+
+class Camera(Plugin):
+    """Image, compressed image and CameraInfo of a camera."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        block, sensor = blocks_of(context, "camera")[0], context.sensor
+        assert sensor is not None
+        enter_namespace(context)
+        self._stream = PictureStream(context, sensor, context.sensor_link, block,
+                                     topics_of(context), p.number("hackBaseline", 0.0),
+                                     p.flag("borderCrop", True))
+        context.every(rate_of(context), self.update)
+
+    def update(self) -> None:
+        """Take a picture, if somebody wants one."""
+        if self._stream.wanted:
+            self.take()
+        elif self._stream.info_wanted:
+            self._stream.publish(None, self.context.now_ns)
+
+    def take(self) -> bool:
+        """Ask for a picture; False where the one before is late."""
+        return self.context.photograph([self._stream.view()], self._seen)
+
+    def _seen(self, pictures: List[Any], ns: int) -> None:
+        self._stream.publish(pictures[0].rgb, ns)
+
+
+class TriggeredCamera(Camera):
+    """One picture, at the next appointment, for each message on its trigger topic."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        super().load()
+        topic = self.context.parameters.text("triggerTopicName") or "image_trigger"
+        self._triggers = 0
+        self.context.subscribe(self._stream.topics.named(topic), "std_msgs/Empty", self._trigger,
+                               _TRIGGERS)
+
+    def _trigger(self, message: Any) -> None:
+        self._triggers += 1
+
+    def reset(self) -> None:
+        """Nobody has asked for a picture of the new time."""
+        self._triggers = 0
+
+    def update(self) -> None:
+        """Take a picture, if one is due."""
+        if self._triggers and (not self._stream.wanted or self.take()):
+            self._triggers -= 1
+
+
+class MultiCamera(Plugin):
+    """Several cameras that look at the same time; a pair has `left` and `right` in its names."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        blocks, sensor = blocks_of(context, "multicamera"), context.sensor
+        assert sensor is not None
+        enter_namespace(context)
+        self._streams = []
+        for block in blocks:
+            side = next((word for word in ("left", "right") if word in block.name), "")
+            baseline = p.number("hackBaseline", 0.0) if side == "right" else 0.0
+            self._streams.append(PictureStream(
+                context, sensor, context.sensor_link, block,
+                topics_of(context, f"/{side or block.name}"), baseline,
+                p.flag("borderCrop", True)))
+        context.every(rate_of(context), self.update)
+
+    def update(self) -> None:
+        """Take pictures with the cameras that are listened to."""
+        streams = [stream for stream in self._streams if stream.wanted]
+        if not streams:
+            for stream in self._streams:
+                stream.publish(None, self.context.now_ns)
+            return
+
+        def seen(pictures: List[Any], ns: int) -> None:
+            found = {id(stream): one.rgb for stream, one in zip(streams, pictures)}
+            for stream in self._streams:
+                stream.publish(found.get(id(stream)), ns)
+
+        self.context.photograph([stream.view() for stream in streams], seen)

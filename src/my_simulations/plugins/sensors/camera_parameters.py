@@ -1,0 +1,136 @@
+"""What camera plugins say in their elements, and the sensor_msgs/CameraInfo that comes of it.
+
+Parameters and defaults are those of gazebo_plugins' GazeboRosCameraUtils, with two differences:
+the principal point is the middle of the picture, (width - 1) / 2, where pixels are counted from
+their centres as ROS does (there it is one pixel off); and the lens of the sensor's own
+`<distortion>` is told of, unless the plugin tells of another.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, List
+
+from ...description.sensor import Camera as CameraBlock
+from ...sensing.api import CameraSpec, Distortion
+from ..context import Context
+from ..frames import resolve
+from ..parameters import namespace_or
+
+USUAL_RATE = 30.0
+"""Hz, of a camera that names no rate."""
+
+_COEFFICIENTS = ("K1", "K2", "T1", "T2", "K3")  # in the order of `CameraInfo.D`
+
+
+@dataclass(frozen=True)
+class CameraTopics:
+    """Names of topics, relative to the plugin's namespace or absolute; the frame of the picture."""
+
+    base: str
+    image: str
+    info: str
+    frame: str
+
+    def named(self, name: str) -> str:
+        """A further topic of the camera."""
+        return name if name.startswith("/") or not self.base else f"{self.base}/{name}"
+
+
+def enter_namespace(context: Context) -> None:
+    """`<robotNamespace>`: missing means the node's, empty the model's name."""
+    p = context.parameters
+    context.use_namespace(namespace_or(p, context.model if "robotNamespace" in p else ""))
+
+
+def topics_of(context: Context, suffix: str = "") -> CameraTopics:
+    """Names as the element says; `suffix` (`/left`) goes to the camera's name."""
+    p = context.parameters
+    prefix = str(context.search_parameter("tf_prefix", "") or "")
+    return CameraTopics(p.text("cameraName").strip("/") + suffix,
+                        p.text("imageTopicName") or "image_raw",
+                        p.text("cameraInfoTopicName") or "camera_info",
+                        resolve(prefix, p.text("frameName")))
+
+
+def rate_of(context: Context) -> float:
+    """Hz: the lower one of the sensor's `<update_rate>` and the plugin's `<updateRate>`."""
+    said = [context.parameters.number("updateRate", 0.0)]
+    if context.sensor is not None:
+        said.append(context.sensor.update_rate)
+    return min((rate for rate in said if rate > 0.0), default=USUAL_RATE)
+
+
+def spec_of(block: CameraBlock, crop: bool = False) -> CameraSpec:
+    """What is to be drawn for a `<camera>`."""
+    lens = (block.k1, block.k2, block.k3, block.p1, block.p2)
+    return CameraSpec(
+        max(1, block.width), max(1, block.height), block.horizontal_fov, block.near, block.far,
+        1 if block.anti_aliasing <= 1 else 0,
+        Distortion(*lens, center=block.distortion_center, crop=crop) if any(lens) else None)
+
+
+class Calibration:
+    """Makes sensor_msgs/CameraInfo; another one can be set (`set_camera_info`)."""
+
+    def __init__(self, context: Context, block: CameraBlock, spec: CameraSpec,
+                 baseline: float) -> None:
+        p = context.parameters
+        self._context = context
+        self.width, self.height = spec.width, spec.height
+        focal = p.number("focalLength", 0.0)
+        drawn = spec.focal_length / _crop_share(spec)
+        if focal and abs(focal - drawn) > 1e-3 * drawn:
+            context.warn(f"<focalLength> {focal:g} px is not what the sensor's width and field of"
+                         f" view give: {drawn:.3f} px, which is what is drawn")
+        focal = focal or drawn
+        center = (p.number("Cx", 0.0) or (spec.width - 1) / 2,
+                  p.number("Cy", 0.0) or (spec.height - 1) / 2)
+        self._distortion = _coefficients(context, block)
+        self._k = [focal, 0.0, center[0], 0.0, focal, center[1], 0.0, 0.0, 1.0]
+        self._p = [focal, 0.0, p.number("CxPrime", 0.0) or center[0], -focal * baseline,
+                   0.0, focal, center[1], 0.0, 0.0, 0.0, 1.0, 0.0]
+        self._given: Any = None
+
+    def message(self, header: Any) -> Any:
+        """The message that belongs to a picture."""
+        message = self._context.message("sensor_msgs/CameraInfo")
+        if self._given is not None:
+            for name in ("height", "width", "distortion_model", "D", "K", "R", "P", "binning_x",
+                         "binning_y", "roi"):
+                setattr(message, name, getattr(self._given, name))
+        else:
+            message.height, message.width = self.height, self.width
+            message.distortion_model, message.D = "plumb_bob", self._distortion
+            message.K, message.P = self._k, self._p
+            message.R = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+        message.header = header
+        return message
+
+    def replace(self, request: Any, response: Any) -> None:
+        """Answer `set_camera_info`: what is told from now on; what is drawn stays."""
+        given = request.camera_info
+        response.success = (given.width, given.height) in ((self.width, self.height), (0, 0))
+        if response.success:
+            self._given = given
+            response.status_message = "kept until the model goes"
+        else:
+            response.status_message = (f"the camera has {self.width}x{self.height} pixels, not "
+                                       f"{given.width}x{given.height}")
+
+
+def _coefficients(context: Context, block: CameraBlock) -> List[float]:
+    """D: what the plugin says, else what the sensor's lens does."""
+    p = context.parameters
+    names = [f"distortion{name}" for name in _COEFFICIENTS]
+    if p.flag("autoDistortion", False) or not any(name in p for name in names):
+        return [block.k1, block.k2, block.p1, block.p2, block.k3]
+    return [p.number(name, 0.0) for name in names]
+
+
+def _crop_share(spec: CameraSpec) -> float:
+    """By how much a barrel distortion without empty borders lengthens the focal length."""
+    if spec.distortion is None or not spec.distortion.crop:
+        return 1.0
+    from ...sensing.camera.distortion import crop_share
+
+    return crop_share(spec)

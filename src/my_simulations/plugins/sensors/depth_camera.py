@@ -1,0 +1,140 @@
+"""libgazebo_ros_depth_camera.so and libgazebo_ros_openni_kinect.so: colours, depth, points.
+
+Parameters, defaults, topics and frames are those of gazebo_plugins; `<frameName>` must be an
+optical frame (x right, y down, z forward). Units and what stands for no depth are those of REP 118.
+Both publish `depth/camera_info` and clouds of as many rows as the picture has (the original of the
+first publishes neither), and colours of points are those of the picture for a reader like PCL.
+"""
+from __future__ import annotations
+
+from typing import Any, List, Optional
+
+from ...sensing.api import DEPTH, RGB
+from ..base import Plugin
+from ..context import Context
+from .camera_parameters import CameraTopics, enter_namespace, rate_of, topics_of
+from .image_messages import DepthGeometry, Once, cloud_message, header, image
+from .picture_stream import PictureStream, blocks_of
+
+_FAR = float("inf")
+_MILLIMETRES = 1000.0
+_MOST = 65.535  # m in 16 bits
+
+
+class DepthStream:
+    """Topics of a depth picture: the image, its CameraInfo, the cloud.
+
+    Args:
+        context: of the plugin.
+        lens: the stream of the same camera's colours.
+        names: of image, info and cloud, as published.
+        near, far: m, what counts as seen.
+        wide: 32-bit floats in metres; else 16 bits in millimetres.
+    """
+
+    def __init__(self, context: Context, lens: PictureStream, names: "tuple[str, str, str]",
+                 near: float, far: float, wide: bool) -> None:
+        self._context, self._lens = context, lens
+        self._near, self._far, self._wide = near, far, wide
+        self._frame = lens.topics.frame
+        self._image = context.publish(names[0], "sensor_msgs/Image")
+        self._info = context.publish(names[1], "sensor_msgs/CameraInfo")
+        self._points = context.publish(names[2], "sensor_msgs/PointCloud2") if names[2] else None
+        self._geometry: Optional[DepthGeometry] = None
+
+    @property
+    def wanted(self) -> bool:
+        """Whether anybody wants depth."""
+        return self._image.wanted or self.cloud_wanted
+
+    @property
+    def cloud_wanted(self) -> bool:
+        """Whether anybody wants points."""
+        return self._points is not None and self._points.wanted
+
+    def publish(self, depth: Optional[Any], rgb: Optional[Any], ns: int) -> None:
+        """Publish what is wanted."""
+        context = self._context
+        head = header(context, ns, self._frame)
+        if self._info.wanted:
+            self._info.publish(self._lens.calibration.message(head))
+        if depth is None:
+            return
+        seen = Once(lambda: self._seen(depth))
+        if self._image.wanted:
+            self._image.publish_later(lambda: self._picture(head, seen.get()))
+        if self._points is not None and self._points.wanted:
+            self._points.publish_later(lambda: self._cloud(head, seen.get(), rgb))
+
+    def _seen(self, depth: Any) -> Any:
+        import numpy as np
+
+        return np.where((depth > self._near) & (depth < self._far), depth, np.float32(np.nan))
+
+    def _picture(self, head: Any, depth: Any) -> Any:
+        if self._wide:
+            return image(self._context, head, depth, "32FC1")
+        import numpy as np
+
+        millimetres = np.rint(np.where(depth <= _MOST, depth, 0.0) * _MILLIMETRES)
+        return image(self._context, head, millimetres.astype(np.uint16), "16UC1")
+
+    def _cloud(self, head: Any, depth: Any, rgb: Optional[Any]) -> Any:
+        if self._geometry is None:
+            spec = self._lens.spec
+            self._geometry = DepthGeometry(spec.width, spec.height, spec.focal_length)
+        return cloud_message(self._context, head, *self._geometry.cloud(depth, rgb))
+
+
+class DepthCamera(Plugin):
+    """A camera that sees colours and depth at the same time, from the same place."""
+
+    furthest = _FAR
+    """Default of `<pointCloudCutoffMax>`, m."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        block, sensor = blocks_of(context, "depth")[0], context.sensor
+        assert sensor is not None
+        enter_namespace(context)
+        topics = topics_of(context)
+        self._colors = PictureStream(context, sensor, context.sensor_link, block, topics,
+                                     p.number("hackBaseline", 0.0), p.flag("borderCrop", True))
+        self._depth = DepthStream(
+            context, self._colors, _names(context, topics), p.number("pointCloudCutoff", 0.4),
+            p.number("pointCloudCutoffMax", self.furthest),
+            not p.flag("useDepth16UC1Format", False))
+        context.every(rate_of(context), self.update)
+
+    def update(self) -> None:
+        """Take a picture of what is wanted."""
+        outputs: List[str] = []
+        if self._colors.wanted or self._depth.cloud_wanted:
+            outputs.append(RGB)
+        if self._depth.wanted:
+            outputs.append(DEPTH)
+        if outputs:
+            self.context.photograph([self._colors.view(*outputs)], self._taken)
+        else:
+            self._tell(None, None, self.context.now_ns)
+
+    def _taken(self, pictures: List[Any], ns: int) -> None:
+        self._tell(pictures[0].rgb, pictures[0].depth, ns)
+
+    def _tell(self, rgb: Optional[Any], depth: Optional[Any], ns: int) -> None:
+        self._colors.publish(rgb, ns)
+        self._depth.publish(depth, rgb, ns)
+
+
+class OpenniKinect(DepthCamera):
+    """The same, with an end of what is seen."""
+
+    furthest = 5.0
+
+
+def _names(context: Context, topics: CameraTopics) -> "tuple[str, str, str]":
+    p = context.parameters
+    return (topics.named(p.text("depthImageTopicName") or "depth/image_raw"),
+            topics.named(p.text("depthImageCameraInfoTopicName") or "depth/camera_info"),
+            topics.named(p.text("pointCloudTopicName") or "points"))

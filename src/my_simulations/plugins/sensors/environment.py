@@ -1,0 +1,157 @@
+"""Topics of SDF's `gps`, `magnetometer` and `altimeter` sensors, which Gazebo gives no ROS names.
+
+`libmy_simulations_gps.so`, `libmy_simulations_magnetometer.so`, `libmy_simulations_altimeter.so`,
+each inside of its `<sensor>`: values, signs and noise are those of Gazebo's sensors, at the
+sensor's `<update_rate>`. Parameters: `robotNamespace` (missing: the model's name), `topicName`,
+`frameName` (default: the link's name).
+"""
+from __future__ import annotations
+
+from typing import Any, List
+
+from ...description.sensor import Altimeter, Gps, Magnetometer, Noise
+from ...description.surroundings import SphericalCoordinates
+from ...geometry import transform
+from ...sensing.models import altimeter, gps, magnetometer
+from ...sensing.models.motion import velocity_at
+from ..base import Plugin
+from ..context import PluginError
+from ..frames import resolve
+from ..parameters import namespace_or
+from .hector import vector
+from .image_messages import header
+from .rays import SampledNoise
+
+_DIAGONAL_KNOWN = 2  # of sensor_msgs/NavSatFix
+
+
+class _OfSensor(Plugin):
+    """What the three have in common."""
+
+    block: Any = None
+
+    def _begin(self, kind: str) -> None:
+        context, p = self.context, self.context.parameters
+        if context.sensor is None:
+            raise PluginError(f"it belongs into a <sensor> of type {kind}")
+        context.use_namespace(namespace_or(p, context.model))
+        self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
+        prefix = str(context.search_parameter("tf_prefix", "") or "")
+        self._frame = resolve(prefix, p.text("frameName") or context.sensor_link)
+        self.block = getattr(context.sensor, kind)
+        self._noises: List[SampledNoise] = []
+        context.every(context.sensor.update_rate, self.update)
+
+    def _noise(self, noise: Noise, quantity: str) -> SampledNoise:
+        made = SampledNoise(self.context, noise, quantity)
+        self._noises.append(made)
+        return made
+
+    def reset(self) -> None:
+        """Noise begins anew."""
+        for noise in self._noises:
+            noise.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def _header(self) -> Any:
+        return header(self.context, self.context.now_ns, self._frame)
+
+    def update(self) -> None:
+        """Measure and publish."""
+        raise NotImplementedError
+
+
+class GpsSensor(_OfSensor):
+    """sensor_msgs/NavSatFix on `fix`, velocity east, north, up on `fix_velocity`."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        self._begin("gps")
+        block, context = self.block or Gps(), self.context
+        self._place = [self._noise(one, f"position/{axis}") for one, axis in (
+            (block.position_horizontal, "x"), (block.position_horizontal, "y"),
+            (block.position_vertical, "z"))]
+        self._speed = [self._noise(one, f"velocity/{axis}") for one, axis in (
+            (block.velocity_horizontal, "east"), (block.velocity_horizontal, "north"),
+            (block.velocity_vertical, "up"))]
+        level, up = block.position_horizontal.stddev ** 2, block.position_vertical.stddev ** 2
+        self._covariance = [level, 0.0, 0.0, 0.0, level, 0.0, 0.0, 0.0, up]
+        fix = context.parameters.text("topicName") or "fix"
+        self._fix = context.publish(fix, "sensor_msgs/NavSatFix")
+        self._velocity = context.publish(f"{fix}_velocity", "geometry_msgs/Vector3Stamped")
+
+    def update(self) -> None:
+        """Measure and publish."""
+        context, ns, link = self.context, self.context.now_ns, self._link
+        x, y, z = (noise.apply(value, ns) for noise, value in zip(
+            self._place, transform(link.pose, self._mount.position)))
+        found = gps.measure((x, y, z), velocity_at(link.pose, link.twist, self._mount),
+                            context.place_on_earth or SphericalCoordinates())
+        east, north, up = (noise.apply(value, ns) for noise, value in zip(
+            self._speed, found.velocity))
+        if self._fix.wanted:
+            message = context.message("sensor_msgs/NavSatFix")
+            message.header = self._header()
+            message.status.status = message.status.service = 0
+            message.latitude, message.longitude = found.latitude_deg, found.longitude_deg
+            message.altitude = found.altitude
+            message.position_covariance = self._covariance
+            message.position_covariance_type = _DIAGONAL_KNOWN
+            self._fix.publish(message)
+        if self._velocity.wanted:
+            self._velocity.publish(vector(context, self._header(), (east, north, up)))
+
+
+class MagnetometerSensor(_OfSensor):
+    """sensor_msgs/MagneticField on `magnetic_field`, T in the sensor's axes."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        self._begin("magnetometer")
+        block, context = self.block or Magnetometer(), self.context
+        self._axes = [self._noise(getattr(block, axis), axis) for axis in "xyz"]
+        self._variance = [block.x.stddev ** 2, 0.0, 0.0, 0.0, block.y.stddev ** 2, 0.0, 0.0, 0.0,
+                          block.z.stddev ** 2]
+        self._topic = context.publish(context.parameters.text("topicName") or "magnetic_field",
+                                      "sensor_msgs/MagneticField")
+
+    def update(self) -> None:
+        """Measure and publish."""
+        context = self.context
+        felt = magnetometer.measure(self._link.pose, self._mount, context.magnetic_field)
+        x, y, z = (noise.apply(value, context.now_ns) for noise, value in zip(self._axes, felt))
+        if self._topic.wanted:
+            message = context.message("sensor_msgs/MagneticField")
+            message.header, field = self._header(), message.magnetic_field
+            field.x, field.y, field.z = x, y, z
+            message.magnetic_field_covariance = self._variance
+            self._topic.publish(message)
+
+
+class AltimeterSensor(_OfSensor):
+    """geometry_msgs/PointStamped on `altitude` (m over where it began) and the speed upwards."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        self._begin("altimeter")
+        block, context = self.block or Altimeter(), self.context
+        self._up = self._noise(block.vertical_position, "vertical_position")
+        self._upwards = self._noise(block.vertical_velocity, "vertical_velocity")
+        self._reference = transform(self._link.pose, self._mount.position)[2]
+        name = context.parameters.text("topicName") or "altitude"
+        self._height = context.publish(name, "geometry_msgs/PointStamped")
+        self._velocity = context.publish(f"{name}_velocity", "geometry_msgs/Vector3Stamped")
+
+    def update(self) -> None:
+        """Measure and publish."""
+        context, ns = self.context, self.context.now_ns
+        found = altimeter.measure(self._link.pose, self._link.twist, self._mount, self._reference)
+        height = self._up.apply(found.vertical_position, ns)
+        speed = self._upwards.apply(found.vertical_velocity, ns)
+        if self._height.wanted:
+            message = context.message("geometry_msgs/PointStamped")
+            message.header, message.point.z = self._header(), height
+            self._height.publish(message)
+        if self._velocity.wanted:
+            self._velocity.publish(vector(context, self._header(), (0.0, 0.0, speed)))

@@ -1,0 +1,248 @@
+"""hector_gazebo_plugins' receivers: gps, magnetic field, height by pressure, sonar.
+
+Parameters, defaults, topics, axes and formulas are theirs: north, west and up where the reference
+heading is 0. What is left out: dynamic_reconfigure, and services of hector's own types.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Optional, Tuple
+
+from ...description.surroundings import SphericalCoordinates
+from ...geometry import Vec3, conjugate, rotate
+from ..base import Plugin
+from ..context import Link, PluginError, Publication
+from ..parameters import namespace_or
+from .hector_errors import SensorErrors, rate_of
+from .image_messages import header
+from .rays import fan_of, ray_of
+
+_EQUATOR = 6378137.0            # WGS 84, m
+_FLATTENING = 1.0 / 298.257223563
+_DIAGONAL_KNOWN = 2             # of sensor_msgs/NavSatFix
+_ULTRASOUND = 0                 # of sensor_msgs/Range
+_SCALE_HEIGHT, _EXPONENT = 44330.0, 5.263157  # of the standard atmosphere
+
+
+class _OfLink(Plugin):
+    """On the link `<bodyName>`, or the model's own."""
+
+    _link: Link
+
+    def _begin(self, frame: str = "") -> None:
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._link = context.link(p.text("bodyName"))
+        self._frame = (p.text("frameId") or frame or self._link.name).lstrip("/")
+
+    def _heading(self) -> float:
+        """Of the world's x axis, rad clockwise from north."""
+        context, p = self.context, self.context.parameters
+        usual = 0.0
+        if p.flag("useWorldSphericalCoordinates", False):
+            place = context.place_on_earth or SphericalCoordinates()
+            usual = 90.0 - place.heading_deg
+        return math.radians(p.number("referenceHeading", usual))
+
+
+class Gps(_OfLink):
+    """sensor_msgs/NavSatFix, and the velocity as geometry_msgs/Vector3Stamped."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        self._begin("/world")
+        context, p = self.context, self.context.parameters
+        place = context.place_on_earth if p.flag("useWorldSphericalCoordinates", False) else None
+        self._latitude = p.number("referenceLatitude", place.latitude_deg if place else 49.9)
+        self._longitude = p.number("referenceLongitude", place.longitude_deg if place else 8.9)
+        self._altitude = p.number("referenceAltitude", place.elevation if place else 0.0)
+        self._north, self._east = radii(math.radians(self._latitude))
+        self._turned = self._heading()
+        self._status, self._service = p.integer("status", 0), p.integer("service", 0)
+        self._place_errors = SensorErrors(context)
+        self._velocity_errors = SensorErrors(context, "velocity")
+        fix = p.text("topicName") or "fix"
+        self._fix = context.publish(fix, "sensor_msgs/NavSatFix", 10)
+        self._velocity = context.publish(p.text("velocityTopicName") or "fix_velocity",
+                                         "geometry_msgs/Vector3Stamped", 10)
+        context.every(rate_of(p, 4.0), self.update)
+
+    def reset(self) -> None:
+        """Errors begin anew."""
+        self._place_errors.reset(self.context.now_ns)
+        self._velocity_errors.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def _north_west(self, x: float, y: float) -> Tuple[float, float]:
+        c, s = math.cos(self._turned), math.sin(self._turned)
+        return c * x + s * y, -s * x + c * y
+
+    def update(self) -> None:
+        """Measure always, as errors go on; publish what is wanted."""
+        ns = self.context.now_ns
+        vx, vy, vz = self._velocity_errors.apply(self._link.twist.linear, ns)
+        x, y, z = self._place_errors.apply(self._link.pose.position, ns)
+        head = header(self.context, ns, self._frame)
+        if self._fix.wanted:
+            north, west = self._north_west(x, y)
+            message = self.context.message("sensor_msgs/NavSatFix")
+            message.header = head
+            message.status.status, message.status.service = self._status, self._service
+            message.latitude = self._latitude + math.degrees(north / self._north)
+            message.longitude = self._longitude - math.degrees(west / self._east)
+            message.altitude = self._altitude + z
+            variances = [a * a + b * b for a, b in zip(self._place_errors.drift,
+                                                       self._place_errors.noise)]
+            message.position_covariance = [variances[0], 0.0, 0.0, 0.0, variances[1], 0.0, 0.0,
+                                           0.0, variances[2]]
+            message.position_covariance_type = _DIAGONAL_KNOWN
+            self._fix.publish(message)
+        if self._velocity.wanted:
+            self._velocity.publish(vector(self.context, head, (*self._north_west(vx, vy), vz)))
+
+
+def radii(latitude: float) -> Tuple[float, float]:
+    """Metres a radian towards north and east at a latitude (rad) of the WGS 84 ellipsoid."""
+    square = 2.0 * _FLATTENING - _FLATTENING ** 2
+    part = 1.0 / (1.0 - square * math.sin(latitude) ** 2)
+    vertical = _EQUATOR * math.sqrt(part)
+    return vertical * (1.0 - square) * part, vertical * math.cos(latitude)
+
+
+def vector(context: Any, head: Any, values: Vec3) -> Any:
+    """A geometry_msgs/Vector3Stamped."""
+    message = context.message("geometry_msgs/Vector3Stamped")
+    message.header = head
+    message.vector.x, message.vector.y, message.vector.z = values
+    return message
+
+
+class Magnetic(_OfLink):
+    """The earth's field in the link's axes; of `magnitude` 1 where none is given."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        self._begin()
+        context, p = self.context, self.context.parameters
+        down = math.radians(p.number("inclination", 60.0))
+        angle = self._heading() - math.radians(p.number("declination", 0.0))
+        size = p.number("magnitude", 1.0)
+        self._field: Vec3 = (size * math.cos(down) * math.cos(angle),
+                             size * math.cos(down) * math.sin(angle), -size * math.sin(down))
+        self._errors = SensorErrors(context)
+        self._plain = not p.flag("useMagneticFieldMsgs", False)
+        kind = "geometry_msgs/Vector3Stamped" if self._plain else "sensor_msgs/MagneticField"
+        self._topic = context.publish(p.text("topicName") or "magnetic", kind)
+        context.every(rate_of(p), self.update)
+
+    def reset(self) -> None:
+        """Errors begin anew."""
+        self._errors.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Measure and publish."""
+        context = self.context
+        felt = rotate(conjugate(self._link.pose.orientation), self._field)
+        x, y, z = self._errors.apply(felt, context.now_ns)
+        if not self._topic.wanted:
+            return
+        head = header(context, context.now_ns, self._frame)
+        if self._plain:
+            self._topic.publish(vector(context, head, (x, y, z)))
+            return
+        message = context.message("sensor_msgs/MagneticField")
+        message.header, field = head, message.magnetic_field
+        field.x, field.y, field.z = x, y, z
+        self._topic.publish(message)
+
+
+class Baro(_OfLink):
+    """The height as geometry_msgs/PointStamped, and hector_uav_msgs/Altimeter where it is there."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        self._begin()
+        context, p = self.context, self.context.parameters
+        self._elevation, self._qnh = p.number("elevation", 0.0), p.number("qnh", 1013.25)
+        self._errors = SensorErrors(context, width=1)
+        self._height = context.publish(p.text("topicName") or "pressure_height",
+                                       "geometry_msgs/PointStamped", 10)
+        self._altimeter: Optional[Publication] = None
+        try:
+            self._altimeter = context.publish(p.text("altimeterTopicName") or "altimeter",
+                                              "hector_uav_msgs/Altimeter", 10)
+        except PluginError as missing:
+            context.info(f"only the height is published: {missing}")
+        context.every(rate_of(p), self.update)
+
+    def reset(self) -> None:
+        """Errors begin anew."""
+        self._errors.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Measure and publish."""
+        context = self.context
+        (height,) = self._errors.apply(self._link.pose.position[2:], context.now_ns)
+        head = header(context, context.now_ns, self._frame)
+        if self._height.wanted:
+            message = context.message("geometry_msgs/PointStamped")
+            message.header, message.point.z = head, height
+            self._height.publish(message)
+        if self._altimeter is not None and self._altimeter.wanted:
+            message = context.message("hector_uav_msgs/Altimeter")
+            message.header, message.qnh = head, self._qnh
+            message.altitude = height + self._elevation
+            message.pressure = pressure(message.altitude, self._qnh)
+            self._altimeter.publish(message)
+
+
+def pressure(altitude: float, qnh: float) -> float:
+    """hPa at a height (m) of the standard atmosphere, with `qnh` at sea level."""
+    return float((1.0 - altitude / _SCALE_HEIGHT) ** _EXPONENT * qnh)
+
+
+class Sonar(Plugin):
+    """sensor_msgs/Range of a ray sensor: the nearest of all rays."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        self._ray, self._visuals = ray_of(context)
+        context.use_namespace(namespace_or(p, ""))
+        self._frame = (p.text("frameId") or "/sonar_link").lstrip("/")
+        flat, high = self._ray.horizontal, self._ray.vertical
+        wide = [abs(one.max_angle - one.min_angle) for one in (flat, high)]
+        self._view = min((angle for angle in wide if angle > 0.0), default=0.0)
+        self._errors = SensorErrors(context, width=1)
+        self._fan = fan_of(self._ray)
+        self._topic = context.publish(p.text("topicName") or "sonar", "sensor_msgs/Range")
+        assert context.sensor is not None
+        context.every(rate_of(p, context.sensor.update_rate), self.update)
+
+    def reset(self) -> None:
+        """Errors begin anew."""
+        self._errors.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Look, if somebody listens."""
+        if self._topic.wanted:
+            self.context.scan(self._fan, self._visuals, self._publish)
+
+    def _publish(self, returns: Any, ns: int) -> None:
+        least, most = self._ray.min_range, self._ray.max_range
+        nearest = min(float(returns.ranges.min()), most)
+        if nearest < most:
+            (noisy,) = self._errors.apply((nearest,), ns)
+            nearest = min(max(noisy, least), most)
+        message = self.context.message("sensor_msgs/Range")
+        message.header = header(self.context, ns, self._frame)
+        message.radiation_type, message.field_of_view = _ULTRASOUND, self._view
+        message.min_range, message.max_range, message.range = least, most, nearest
+        self._topic.publish(message)

@@ -1,0 +1,85 @@
+"""The error model that hector_gazebo_plugins' sensors share.
+
+value * scaleError + offset + drift + white noise. The drift is a first-order Markov process with
+the standard deviation `drift` and the time constant 1 / `driftFrequency` (1 h); it is stepped
+exactly, whatever the rate (there its size depends on the rate).
+"""
+from __future__ import annotations
+
+import math
+from typing import List, Optional, Sequence
+
+from ...sensing.noise import generator
+from ..context import Context
+from ..parameters import Parameters
+
+_WHITE, _DRIFT, _FIRST_DRIFT = range(3)
+_HOUR_S = 3600.0
+
+
+class SensorErrors:
+    """Errors of a quantity of `width` numbers.
+
+    Args:
+        context: of the plugin.
+        prefix: of the parameters: `accel` reads accelDrift, "" reads drift.
+        width: 1 or 3.
+    """
+
+    def __init__(self, context: Context, prefix: str = "", width: int = 3) -> None:
+        def read(name: str, default: float) -> List[float]:
+            key = f"{prefix}{name}" if prefix else name[0].lower() + name[1:]
+            return numbers(context.parameters, key, width, default)
+
+        self.offset, self.drift = read("Offset", 0.0), read("Drift", 0.0)
+        self._frequency = read("DriftFrequency", 1.0 / _HOUR_S)
+        self.noise, self._scale = read("GaussianNoise", 0.0), read("ScaleError", 1.0)
+        self._name = (context.seed, f"{context.model}::{context.parameters.text('bodyName')}",
+                      f"{prefix or 'value'} {context.parameters.text('topicName')}")
+        self._width = width
+        self.reset(context.now_ns)
+
+    def reset(self, ns: int, drift: Optional[Sequence[float]] = None) -> None:
+        """Begin anew, with a drift that is drawn, or given."""
+        self._last_ns = ns
+        self.current = list(drift) if drift is not None else [
+            size * draw for size, draw in zip(self.drift, self._draw(ns, _FIRST_DRIFT))]
+
+    def _draw(self, ns: int, purpose: int) -> List[float]:
+        drawn: List[float] = generator(*self._name, ns, purpose).standard_normal(
+            self._width).tolist()
+        return drawn
+
+    @property
+    def bias(self) -> List[float]:
+        """Offset and drift at the last sample."""
+        return [offset + drift for offset, drift in zip(self.offset, self.current)]
+
+    def apply(self, values: Sequence[float], ns: int) -> List[float]:
+        """Values of the sample at a sim time, with their errors."""
+        elapsed, self._last_ns = max(0.0, (ns - self._last_ns) * 1e-9), ns
+        if any(self.drift):
+            self.current = [
+                math.exp(-f * elapsed) * now + size * math.sqrt(-math.expm1(-2 * f * elapsed)) * n
+                for f, now, size, n in zip(self._frequency, self.current, self.drift,
+                                           self._draw(ns, _DRIFT))]
+        white = self._draw(ns, _WHITE) if any(self.noise) else [0.0] * self._width
+        return [value * scale + bias + size * n for value, scale, bias, size, n in zip(
+            values, self._scale, self.bias, self.noise, white)]
+
+
+def numbers(parameters: Parameters, name: str, width: int, default: float) -> List[float]:
+    """As many numbers as wanted; one that is given stands for all."""
+    text = parameters.text(name)
+    if not text:
+        return [default] * width
+    words = text.split()
+    if width == 1 or len(words) == 1:
+        return [parameters.number(name, default)] * width
+    return list(parameters.vector(name, (default,) * 3))
+
+
+def rate_of(parameters: Parameters, usual: float = 0.0) -> float:
+    """Hz: `<updateRate>`, or one over `<updatePeriod>`."""
+    period = parameters.number("updatePeriod", 0.0)
+    return 1.0 / period if period > 0.0 else parameters.number("updateRate", usual)

@@ -1,0 +1,97 @@
+"""libhector_gazebo_ros_imu.so: sensor_msgs/Imu of a link, with biases that drift.
+
+Parameters, defaults and topics are those of hector_gazebo_plugins; `<rpyOffset>` turns the sensor
+on its link. What is left out: dynamic_reconfigure, and services of hector's own types.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, List
+
+from ...geometry import Pose, Quat, Vec3, multiply, normalised, rotate
+from ..parameters import namespace_or
+from .hector_errors import SensorErrors, rate_of
+from .image_messages import header
+from .imu import Imu
+
+
+class HectorImu(Imu):
+    """On the link `<bodyName>`, or the model's own."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._link = context.link(p.text("bodyName"))
+        self._mount = Pose(orientation=p.turn("rpyOffset"))
+        self._frame = (p.text("frameId") or self._link.name).lstrip("/")
+        topic = p.text("topicName") or "imu"
+        self._accel, self._rate = SensorErrors(context, "accel"), SensorErrors(context, "rate")
+        self._yaw = SensorErrors(context, "yaw", 1)
+        both = p.number("gaussianNoise", 0.0)
+        if both:
+            self._accel.noise, self._rate.noise = [both] * 3, [both] * 3
+        self._topic = context.publish(topic, "sensor_msgs/Imu", 10)
+        self._bias = context.publish(p.text("biasTopicName") or f"{topic}/bias",
+                                     "sensor_msgs/Imu", 10)
+        context.serve(p.text("serviceName") or f"{topic}/calibrate", "std_srvs/Empty",
+                      lambda request, response: self._rate.reset(context.now_ns, (0.0,) * 3))
+        self.begin_motion()
+        context.every(rate_of(p), self.update)
+
+    def reset(self) -> None:
+        """Errors and accelerations begin anew."""
+        for errors in (self._accel, self._rate, self._yaw):
+            errors.reset(self.context.now_ns)
+        self.begin_motion()
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Measure always, publish while somebody listens."""
+        context, ns = self.context, self.context.now_ns
+        sample = self.measured()
+        accel = self._accel.apply(sample.linear_acceleration, ns)
+        rate = self._rate.apply(sample.angular_velocity, ns)
+        (yaw,) = self._yaw.apply((0.0,), ns)
+        head = header(context, ns, self._frame)
+        if self._topic.wanted:
+            message = self._message(head, rate, accel)
+            turn = message.orientation
+            turn.x, turn.y, turn.z, turn.w = self._attitude(sample.orientation)
+            self._topic.publish(message)
+        if self._bias.wanted:
+            message = self._message(head, self._rate.bias, self._accel.bias)
+            turn = message.orientation
+            turn.x, turn.y, turn.z, turn.w = 0.0, 0.0, 0.0, 1.0
+            self._bias.publish(message)
+
+    def _attitude(self, orientation: Quat) -> Quat:
+        """What a filter that trusts the biased accelerometer and compass would say."""
+        gravity = math.sqrt(sum(part * part for part in self.context.gravity))
+        yaw = self._yaw.bias[0]
+        around: Quat = (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
+        tilt: Quat = (0.0, 0.0, 0.0, 1.0)
+        if gravity > 0.0:
+            bias: Vec3 = tuple(self._accel.bias)  # type: ignore[assignment]
+            x, y, _ = rotate(orientation, bias)
+            tilt = (0.5 * y / gravity, -0.5 * x / gravity, 0.0, 1.0)
+        return multiply(normalised(multiply(around, tilt)), orientation)
+
+    def _message(self, head: Any, rate: Any, accel: Any) -> Any:
+        message = self.context.message("sensor_msgs/Imu")
+        message.header = head
+        turning, pushing = message.angular_velocity, message.linear_acceleration
+        turning.x, turning.y, turning.z = rate
+        pushing.x, pushing.y, pushing.z = accel
+        gravity = sum(part * part for part in self.context.gravity)
+        tilt = [noise ** 2 / gravity if gravity > 0.0 else -1.0 for noise in self._accel.noise[:2]]
+        message.orientation_covariance = _diagonal([*tilt, self._yaw.noise[0] ** 2])
+        message.angular_velocity_covariance = _diagonal([n ** 2 for n in self._rate.noise])
+        message.linear_acceleration_covariance = _diagonal([n ** 2 for n in self._accel.noise])
+        return message
+
+
+def _diagonal(variances: List[float]) -> List[float]:
+    x, y, z = variances
+    return [x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, z]

@@ -1,0 +1,151 @@
+"""Lasers as points: libgazebo_ros_block_laser.so and the libgazebo_ros_velodyne ones.
+
+Parameters, defaults, topics, frames and fields are those of gazebo_plugins and of
+velodyne_gazebo_plugins. A laser of one row has points, too (there the block laser divides by zero).
+"""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from ...sensing.noise import GAUSSIAN, Noise, NoiseSpec
+from ..base import Plugin
+from ..frames import resolve
+from ..parameters import namespace_or
+from .image_messages import header, point_field
+from .rays import SampledNoise, fan_of, ray_of
+
+_STEP = 32       # bytes of a Velodyne's point
+_UINT16 = 4      # of sensor_msgs/PointField
+_FURTHEST = float("inf")
+
+
+class _Points(Plugin):
+    """A fan of rays at the sensor's rate, while somebody listens."""
+
+    usual_topic = "/world"
+    message_type = ""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        self._ray, self._visuals = ray_of(context)
+        context.use_namespace(namespace_or(p, ""))
+        self._fan = fan_of(self._ray)
+        self._range_noise = SampledNoise(context, self._ray.noise, "range")
+        self._noise = Noise(NoiseSpec(GAUSSIAN, stddev=p.number("gaussianNoise", 0.0)),
+                            context.seed, f"{context.model}::{context.sensor_link}::points")
+        self._frame = self._named(p.text("frameName", "/world"))
+        self._topic = context.publish(p.text("topicName") or self.usual_topic, self.message_type)
+        self._directions: Optional[Any] = None
+        assert context.sensor is not None
+        context.every(context.sensor.update_rate, self.update)
+
+    def _named(self, frame: str) -> str:
+        return resolve(str(self.context.search_parameter("tf_prefix", "") or ""), frame)
+
+    def reset(self) -> None:
+        """Noise begins anew."""
+        self._range_noise.reset(self.context.now_ns)
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Look, if somebody listens."""
+        if self._topic.wanted:
+            self.context.scan(self._fan, self._visuals, self._seen)
+
+    def _seen(self, returns: Any, ns: int) -> None:
+        import numpy as np
+
+        if self._directions is None:
+            from ...sensing.rays.ray_scene import fan_directions
+
+            fan = self._fan
+            self._directions = fan_directions(fan.samples, fan.min_angle, fan.max_angle, fan.rows,
+                                              fan.min_elevation, fan.max_elevation)
+        ranges = self._range_noise.apply(np.asarray(returns.ranges), ns)
+        head = header(self.context, ns, self._frame)
+        self._topic.publish_later(
+            lambda: self._message(head, ranges, np.asarray(returns.retro), ns))
+
+    def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:
+        raise NotImplementedError
+
+
+class BlockLaser(_Points):
+    """sensor_msgs/PointCloud: all rays; too near is -inf, too far +inf (gazebo_plugins)."""
+
+    message_type = "sensor_msgs/PointCloud"
+
+    def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:
+        import numpy as np
+
+        assert self._directions is not None
+        far, near = ranges >= self._fan.far, ranges <= self._fan.near
+        with np.errstate(invalid="ignore"):
+            places = np.where(far | near, 0.0, ranges)[:, None] * self._directions
+        places = self._noise.apply(places, ns, 0.0)
+        places[far], places[near] = np.inf, -np.inf
+        context = self.context
+        message, channel = (context.message("sensor_msgs/PointCloud"),
+                            context.message("sensor_msgs/ChannelFloat32"))
+        message.header = head
+        message.points = [_point(context, *place) for place in places.tolist()]
+        channel.values = retro.tolist()
+        message.channels = [channel]
+        return message
+
+
+def _point(context: Any, x: float, y: float, z: float) -> Any:
+    made = context.message("geometry_msgs/Point32")
+    made.x, made.y, made.z = x, y, z
+    return made
+
+
+class Velodyne(_Points):
+    """sensor_msgs/PointCloud2 of what is met: x, y, z, intensity, ring; column by column."""
+
+    usual_topic = "/points"
+    message_type = "sensor_msgs/PointCloud2"
+
+    def load(self) -> None:
+        """Read parameters."""
+        p = self.context.parameters
+        super().load()
+        self._near = max(p.number("min_range", 0.0), self._fan.near)
+        self._far = min(p.number("max_range", _FURTHEST), self._fan.far)
+        self._faintest = p.number("min_intensity", -_FURTHEST)
+        self._rings: Optional[Any] = None
+
+    def _named(self, frame: str) -> str:
+        """A namespace other than `/` comes before `tf_prefix` (velodyne_gazebo_plugins)."""
+        namespace = self.context.parameters.text("robotNamespace").strip("/")
+        return resolve(namespace, frame) if namespace else super()._named(frame)
+
+    def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:
+        import numpy as np
+
+        fan, context = self._fan, self.context
+        assert self._directions is not None
+        if self._rings is None:
+            self._rings = np.repeat(np.arange(fan.rows, dtype=np.uint16), fan.samples)
+            order = np.arange(fan.rows * fan.samples).reshape(fan.rows, fan.samples).T.ravel()
+            self._order = order
+        order = self._order[((ranges > self._near) & (ranges < self._far)
+                             & (retro >= self._faintest))[self._order]]
+        away = self._noise.apply(ranges, ns, 0.0)[order]
+        points: np.ndarray = np.zeros(len(order), np.dtype({
+            "names": ["place", "intensity", "ring"], "formats": ["(3,)<f4", "<f4", "<u2"],
+            "offsets": [0, 16, 20], "itemsize": _STEP}))
+        points["place"] = away[:, None] * self._directions[order]
+        points["intensity"], points["ring"] = retro[order], self._rings[order]
+        message = context.message("sensor_msgs/PointCloud2")
+        message.header = head
+        message.height, message.width = 1, len(order)
+        message.fields = [point_field(context, name, offset) for name, offset in (
+            ("x", 0), ("y", 4), ("z", 8), ("intensity", 16))] + [
+                point_field(context, "ring", 20, _UINT16)]
+        message.is_bigendian, message.is_dense = False, True
+        message.point_step, message.row_step = _STEP, _STEP * len(order)
+        message.data = points.tobytes()
+        return message

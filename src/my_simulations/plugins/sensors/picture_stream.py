@@ -1,0 +1,97 @@
+"""What all cameras publish of a colour picture: image, compressed image and CameraInfo."""
+from __future__ import annotations
+
+from typing import Any, List, Optional
+
+from ...description.sensor import Camera as CameraBlock
+from ...description.sensor import Sensor
+from ...geometry import Pose, compose
+from ...sensing.api import RGB
+from ...sensing.noise import NoiseSpec, noisy_picture
+from ..context import Context, PluginError, View
+from .camera_parameters import Calibration, CameraTopics, spec_of
+from .image_messages import ENCODINGS, Once, compressed, encoded, header, image
+
+_QUALITY = 80  # of jpeg, as compressed_image_transport
+
+
+def blocks_of(context: Context, kinds: str) -> List[CameraBlock]:
+    """The cameras of the plugin's sensor. Raises PluginError where there is none."""
+    if context.sensor is None or not context.sensor.cameras:
+        raise PluginError(f"it belongs into a <sensor> of type {kinds} with a <camera>")
+    return context.sensor.cameras
+
+
+def place_of(sensor: Sensor, block: CameraBlock) -> Pose:
+    """Where a camera of a sensor is on its link."""
+    return compose(sensor.pose, block.pose)
+
+
+class PictureStream:
+    """Topics of one camera of a sensor.
+
+    Args:
+        context: of the plugin.
+        sensor, link: the sensor, and the name of its link.
+        block: the camera.
+        topics: names and frame.
+        baseline: of a stereo pair, m; for `CameraInfo.P`.
+        crop: no empty borders where the lens has a barrel distortion.
+        calibrated: offer `set_camera_info`.
+    """
+
+    def __init__(self, context: Context, sensor: Sensor, link: str, block: CameraBlock,
+                 topics: CameraTopics, baseline: float = 0.0, crop: bool = True,
+                 calibrated: bool = True) -> None:
+        self._context, self.topics = context, topics
+        self.spec = spec_of(block, crop)
+        self.calibration = Calibration(context, block, self.spec, baseline)
+        self._link, self._pose = link, place_of(sensor, block)
+        self._who = "::".join((context.model, link, sensor.name, block.name))
+        self._noise = NoiseSpec(block.noise.type, block.noise.mean, block.noise.stddev)
+        self._encoding = ENCODINGS.get(block.format, "")
+        if not self._encoding:
+            context.warn(f"there is no image format {block.format!r}; bgr8 is published")
+            self._encoding = "bgr8"
+        name = topics.named(topics.image)
+        self._image = context.publish(name, "sensor_msgs/Image", 2, latch=True)
+        self._compressed = context.publish(f"{name}/compressed", "sensor_msgs/CompressedImage", 2,
+                                           latch=True)
+        self._info = context.publish(topics.named(topics.info), "sensor_msgs/CameraInfo", 2)
+        self._form = str(context.search_parameter(f"{name}/compressed/format", "jpeg"))
+        self._quality = int(context.search_parameter(f"{name}/compressed/jpeg_quality", _QUALITY))
+        if calibrated:
+            context.serve(topics.named("set_camera_info"), "sensor_msgs/SetCameraInfo",
+                          self.calibration.replace)
+
+    @property
+    def wanted(self) -> bool:
+        """Whether anybody wants a picture."""
+        return self._image.wanted or self._compressed.wanted
+
+    @property
+    def info_wanted(self) -> bool:
+        """Whether anybody wants to know of the lens."""
+        return self._info.wanted
+
+    def view(self, *outputs: str) -> View:
+        """What is to be drawn; default colours."""
+        return View(self._link, self._pose, self.spec, outputs or (RGB,))
+
+    def publish(self, rgb: Optional[Any], ns: int) -> None:
+        """Publish a picture to who wants it, and the lens."""
+        context = self._context
+        head = header(context, ns, self.topics.frame)
+        if self._info.wanted:
+            self._info.publish(self.calibration.message(head))
+        if rgb is None or not self.wanted:
+            return
+        seed, encoding = context.seed, self._encoding
+        # The sim time counts the samples: a picture that is left out shifts no other's noise.
+        noisy = Once(lambda: noisy_picture(rgb, self._noise, seed, self._who, ns))
+        if self._image.wanted:
+            self._image.publish_later(
+                lambda: image(context, head, encoded(noisy.get(), encoding), encoding))
+        if self._compressed.wanted:
+            self._compressed.publish_later(lambda: compressed(
+                context, head, noisy.get(), encoding, self._form, self._quality))

@@ -1,0 +1,106 @@
+"""librealsense_gazebo_plugin.so: colour, depth, two infrared pictures and points of a RealSense.
+
+A plugin of the model: it looks through the model's sensors whose names end with `color`, `depth`,
+`ired1` and `ired2`, after `<prefix>`. Parameters are those of realsense_gazebo_plugin; a sensor
+that the model lacks is told and left out (there the simulation ends).
+"""
+from __future__ import annotations
+
+from functools import partial
+from typing import Any, Callable, List, Optional, Tuple
+
+from ...description.sensor import Sensor
+from ...sensing.api import DEPTH, RGB
+from ..base import Plugin
+from ..context import PluginError
+from .camera_parameters import USUAL_RATE, CameraTopics, enter_namespace
+from .depth_camera import DepthStream
+from .picture_stream import PictureStream
+
+_EYES = (("color", "color"), ("ired1", "infrared1"), ("ired2", "infrared2"))
+_RATES = {"color": "colorUpdateRate", "ired1": "infraredUpdateRate", "ired2": "infraredUpdateRate",
+          "depth": "depthUpdateRate"}
+
+
+class RealSense(Plugin):
+    """Four cameras in a housing."""
+
+    def load(self) -> None:
+        """Find the sensors."""
+        context = self.context
+        enter_namespace(context)
+        self._prefix = context.parameters.text("prefix")
+        found = 0
+        for name, words in _EYES:
+            sensor = self._sensor(name)
+            if sensor is not None:
+                found += 1
+                stream = self._stream(sensor, words, True)
+                context.every(self._rate(name, sensor[1]), partial(self._look, name, stream))
+        depth = self._sensor("depth")
+        if depth is not None:
+            self._load_depth(depth)
+        elif not found:
+            raise PluginError(f"the model has no camera named '{self._prefix}color' or "
+                              f"'{self._prefix}depth'")
+
+    def _sensor(self, name: str) -> Optional[Tuple[str, Sensor]]:
+        wanted = self._prefix + name
+        for link, sensor in self.context.sensors():
+            if sensor.cameras and sensor.name.rpartition("::")[2] == wanted:
+                return link, sensor
+        self.context.warn(f"the model has no camera named '{wanted}'; it is left out")
+        return None
+
+    def _rate(self, name: str, sensor: Sensor) -> float:
+        said = (self.context.parameters.number(_RATES[name], 0.0), sensor.update_rate)
+        return min((rate for rate in said if rate > 0.0), default=USUAL_RATE)
+
+    def _stream(self, found: Tuple[str, Sensor], words: str, published: bool) -> PictureStream:
+        p, (link, sensor) = self.context.parameters, found
+        usual = words if published else f"{words}/intensity"
+        topics = CameraTopics(
+            "", (p.text(f"{words}TopicName") if published else "") or f"camera/{usual}/image_raw",
+            (p.text(f"{words}CameraInfoTopicName") if published else "")
+            or f"camera/{usual}/camera_info", p.text(f"{words}OpticalframeName"))
+        return PictureStream(self.context, sensor, link, sensor.cameras[0], topics,
+                             calibrated=False)
+
+    def _load_depth(self, found: Tuple[str, Sensor]) -> None:
+        context, p = self.context, self.context.parameters
+        self._gray = self._stream(found, "depth", False)
+        cloud = p.text("pointCloudTopicName") or "camera/depth/points"
+        self._depth = DepthStream(
+            context, self._gray,
+            (p.text("depthTopicName") or "camera/depth/image_raw",
+             p.text("depthCameraInfoTopicName") or "camera/depth/camera_info",
+             cloud if p.flag("pointCloud", False) else ""),
+            p.number("rangeMinDepth", 0.2), p.number("rangeMaxDepth", 10.0), False)
+        context.every(self._rate("depth", found[1]), self._look_deep)
+
+    def _look(self, name: str, stream: PictureStream) -> None:
+        self._take(name, stream, (RGB,) if stream.wanted else (),
+                   lambda picture, ns: stream.publish(
+                       None if picture is None else picture.rgb, ns))
+
+    def _look_deep(self) -> None:
+        outputs = ((DEPTH,) if self._depth.wanted else ()) + (
+            (RGB,) if self._depth.cloud_wanted or self._gray.wanted else ())
+
+        def seen(picture: Any, ns: int) -> None:
+            rgb, depth = (None, None) if picture is None else (picture.rgb, picture.depth)
+            self._gray.publish(rgb, ns)
+            self._depth.publish(depth, rgb, ns)
+
+        self._take("depth", self._gray, outputs, seen)
+
+    def _take(self, name: str, stream: PictureStream, outputs: Tuple[str, ...],
+              tell: Callable[[Any, int], None]) -> None:
+        if not outputs:
+            tell(None, self.context.now_ns)
+            return
+
+        def seen(pictures: List[Any], ns: int) -> None:
+            tell(pictures[0], ns)
+
+        self.context.photograph([stream.view(*outputs)], seen, name)

@@ -1,0 +1,66 @@
+"""libmy_simulations_segmentation_camera.so: which link each pixel shows. Not in Gazebo Classic.
+
+In a `<sensor>` of type camera, with the parameters of libgazebo_ros_camera.so. The image is mono16:
+0 for nothing, else a number whose link `labels` tells, a latched std_msgs/String of JSON:
+{"1": "model::link", ...}. A link keeps its number while the plugin runs.
+"""
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, List
+
+from ...sensing.api import LABELS, NO_ROW
+from ..base import Plugin
+from ..context import View
+from .camera_parameters import Calibration, enter_namespace, rate_of, spec_of, topics_of
+from .image_messages import header, image
+from .picture_stream import blocks_of, place_of
+
+
+class SegmentationCamera(Plugin):
+    """Image of numbers, CameraInfo, names of the numbers."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        block, sensor = blocks_of(context, "camera")[0], context.sensor
+        assert sensor is not None
+        enter_namespace(context)
+        self._topics = topics = topics_of(context)
+        spec = spec_of(block, p.flag("borderCrop", True))
+        self._calibration = Calibration(context, block, spec, 0.0)
+        self._view = View(context.sensor_link, place_of(sensor, block), spec, (LABELS,))
+        self._image = context.publish(topics.named(topics.image), "sensor_msgs/Image", 2)
+        self._info = context.publish(topics.named(topics.info), "sensor_msgs/CameraInfo", 2)
+        self._names = context.publish(topics.named("labels"), "std_msgs/String", 1, latch=True)
+        self._numbers: Dict[str, int] = {}
+        context.every(rate_of(context), self.update)
+
+    def update(self) -> None:
+        """Take a picture, if somebody wants one."""
+        if self._image.wanted:
+            names = self.context.link_names()
+            self.context.photograph([self._view],
+                                    lambda pictures, ns: self._seen(pictures, ns, names))
+        elif self._info.wanted:
+            self._info.publish(self._calibration.message(
+                header(self.context, self.context.now_ns, self._topics.frame)))
+
+    def _seen(self, pictures: List[Any], ns: int, names: Dict[int, str]) -> None:
+        import numpy as np
+
+        context = self.context
+        head = header(context, ns, self._topics.frame)
+        rows = pictures[0].labels
+        table = np.zeros(max(names, default=0) + 2, np.uint16)  # NO_ROW is the last
+        known = len(self._numbers)
+        for row in np.unique(rows).tolist():
+            if row != NO_ROW and row in names:
+                table[row] = self._numbers.setdefault(names[row], len(self._numbers) + 1)
+        if len(self._numbers) != known:
+            text = context.message("std_msgs/String")
+            text.data = json.dumps({str(n): name for name, n in self._numbers.items()})
+            self._names.publish(text)
+        if self._info.wanted:
+            self._info.publish(self._calibration.message(head))
+        self._image.publish_later(lambda: image(context, head, table[rows], "mono16"))

@@ -1,0 +1,170 @@
+"""Cameras and lasers of robots with the real sensing process: what they publish, and its loss."""
+from __future__ import annotations
+
+import math
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+from plugin_graph import Graph
+from sensing_scene import until
+
+from my_simulations.description.world import World
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.formats.reading import read_any
+from my_simulations.plugins.host import PluginHost
+from my_simulations.plugins.registry import PluginRegistry
+from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.simulator import Simulator
+
+WORLD = """<sdf version="1.7"><world name="w">
+<scene><ambient>1 1 1 1</ambient><background>0 0 0 1</background><shadows>0</shadows></scene>
+<model name="wall"><static>1</static><pose>2.1 0 0 0 0 0</pose><link name="link">
+  <collision name="c"><geometry><box><size>0.2 1 1</size></box></geometry></collision>
+  <visual name="v"><geometry><box><size>0.2 1 1</size></box></geometry>
+    <material><script><name>Gazebo/Red</name></script></material></visual>
+</link></model>
+<model name="eyes"><static>1</static><link name="head">{sensors}</link></model></world></sdf>"""
+CAMERA = """<sensor name="cam" type="depth"><update_rate>{rate}</update_rate>
+<camera><horizontal_fov>1.2</horizontal_fov><image><width>160</width><height>120</height></image>
+<clip><near>0.05</near><far>20</far></clip></camera>
+<plugin name="p" filename="libgazebo_ros_openni_kinect.so"><cameraName>cam</cameraName>
+<frameName>optical</frameName></plugin></sensor>"""
+LASER = """<sensor name="laser" type="ray"><update_rate>10</update_rate><ray><scan><horizontal>
+<samples>21</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal></scan>
+<range><min>0.1</min><max>10</max></range></ray>
+<plugin name="l" filename="libgazebo_ros_laser.so"><topicName>scan</topicName></plugin></sensor>"""
+FOCAL = 80.0 / math.tan(0.6)
+
+
+class Case:
+    def __init__(self, sensors):
+        self.issues, self.graph = [], Graph()
+        world, _ = read_any(WORLD.format(sensors=sensors), Resolver(), "test.world")
+        assert isinstance(world, World)
+        self.sim = Simulator(world, engine_factory=lambda: InlineEngine(KinematicBackend),
+                             paused=True, log=self.issues.append)
+        self.sim.start()
+        self.host = PluginHost(self.sim, self.graph, PluginRegistry(), self.issues.append)
+        self.host.start()
+
+    def after(self, steps, topic, count):
+        self.sim.clock.advance(steps)
+        until(lambda: len(self.graph.on(topic)) >= count, f"{topic} is not published")
+        return self.graph.on(topic)
+
+    @property
+    def sensing(self):
+        return self.host._eyes._process
+
+    def close(self):
+        self.host.stop()
+        self.sim.close()
+
+
+@pytest.fixture
+def case():
+    made = []
+
+    def make(sensors):
+        made.append(Case(sensors))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def pixels(message, kind):
+    return np.frombuffer(message.data, kind).reshape(message.height, message.width, -1)
+
+
+def test_a_depth_camera_publishes_the_world(case):
+    one = case(CAMERA.format(rate=10))
+    one.after(100, "cam/points", 1)
+    rgb = pixels(one.graph.on("cam/image_raw")[0], np.uint8)
+    red = rgb[60, 80].tolist()
+    assert red[0] > 200 and red[1:] == [0, 0] and rgb[0, 0].tolist() == [0, 0, 0]
+    depth = pixels(one.graph.on("cam/depth/image_raw")[0], np.float32)[..., 0]
+    assert depth[60, 80] == pytest.approx(2.0, abs=2e-4) and math.isnan(depth[0, 0])
+    cloud = pixels(one.graph.on("cam/points")[0], np.float32)
+    seen = np.isfinite(cloud[..., 2])
+    assert cloud[seen][:, 0].max() == pytest.approx(0.5, abs=2.0 / FOCAL)
+    assert cloud[seen][:, 2] == pytest.approx(2.0, abs=2e-4)
+    assert cloud.view(np.uint8)[60, 80, 16:19].tolist() == red[::-1]
+    stamps = {one.graph.on(f"cam/{name}")[0].header.stamp for name in (
+        "image_raw", "camera_info", "depth/image_raw", "depth/camera_info", "points")}
+    assert stamps == {100_000_000}
+
+
+def test_edges_of_the_wall_lie_where_camera_info_says(case):
+    one = case(CAMERA.format(rate=10))
+    one.after(100, "cam/depth/image_raw", 1)
+    info = one.graph.on("cam/depth/camera_info")[0]
+    seen = np.isfinite(pixels(one.graph.on("cam/depth/image_raw")[0], np.float32)[60, :, 0])
+    fx, cx = info.K[0], info.K[2]
+    assert fx == pytest.approx(FOCAL)
+    # A pixel is seen where its centre is on the wall, 1 m wide and 2 m away.
+    expected = np.abs(np.arange(160) - cx) < fx * 0.5 / 2.0
+    assert (seen == expected).all()
+
+
+def test_a_world_stepped_by_hand_gets_each_picture_and_the_same_ones_again(case):
+    def run():
+        one = case(CAMERA.format(rate=50))
+        images = one.after(400, "cam/image_raw", 20)
+        until(lambda: len(one.graph.on("cam/depth/image_raw")) == 20, "depth")
+        return ([(m.header.stamp, m.data) for m in images],
+                [(m.header.stamp, m.data) for m in one.graph.on("cam/depth/image_raw")])
+
+    first = run()
+    assert [stamp for stamp, _ in first[0]] == [20_000_000 * n for n in range(1, 21)]
+    assert first == run()
+
+
+def test_a_running_world_leaves_late_pictures_out_and_goes_on(case):
+    one = case(CAMERA.format(rate=1000))
+    one.sim.clock.unpause()
+    begun, wall = one.sim.clock.sim_ns, time.monotonic()
+    until(lambda: one.sim.clock.sim_ns - begun > 10 ** 9, "the world stands")
+    assert time.monotonic() - wall < 10.0
+    until(lambda: one.graph.on("cam/image_raw"), "a picture")
+    late = [issue for issue in one.issues if "late" in issue.message]
+    assert len(late) == 1 and "left out" in late[0].message
+
+
+def test_a_killed_sensing_process_costs_what_was_asked_and_nothing_else(case):
+    one = case(CAMERA.format(rate=10) + LASER)
+    one.after(100, "cam/image_raw", 1)
+    one.after(0, "scan", 1)
+    before = one.sensing.pid
+    os.kill(before, signal.SIGKILL)
+    one.after(500, "cam/image_raw", 3)
+    scans = one.after(0, "scan", 3)
+    assert one.sensing.pid not in (0, before)
+    assert scans[-1].ranges[10] == pytest.approx(2.0, abs=1e-4)
+    assert one.sim.clock.step == 600
+    told = [issue.message for issue in one.issues]
+    assert any("killed by SIGKILL" in text for text in told)
+    assert not any("switched off" in text for text in told)
+
+
+def test_nobody_who_looks_is_no_process(case):
+    one = case(CAMERA.format(rate=10) + LASER)
+    for name in ("image_raw", "image_raw/compressed", "depth/image_raw", "points"):
+        one.graph.ignored.add(f"cam/{name}")
+    one.graph.ignored.add("scan")
+    one.after(300, "cam/camera_info", 3)
+    assert one.sensing is None
+
+
+def test_what_is_painted_anew_is_seen_anew(case):
+    one = case(CAMERA.format(rate=10))
+    one.after(100, "cam/image_raw", 1)
+    one.sim.models.delete("wall")
+    one.host.settle()
+    seen = one.after(100, "cam/image_raw", 2)[1]
+    assert pixels(seen, np.uint8)[60, 80].tolist() == [0, 0, 0]

@@ -1,0 +1,49 @@
+"""An engine that is killed and stopped at any moment: nothing is lost, and every answer is true."""
+from __future__ import annotations
+
+import os
+import random
+import signal
+import time
+
+from ledger import Client, Saver, agree, floating, until
+from proofs import scaled
+
+from my_simulations.simulator import supervisor
+
+
+def test_nothing_is_lost_when_engines_die(record, monkeypatch):
+    monkeypatch.setattr(supervisor, "_RAPID_S", 0.0)  # the world is not to blame for these deaths
+    kills, most = scaled(8, 100), scaled(12, 25)
+    simulator = floating()
+    clients = [Client(simulator, number, most) for number in range(scaled(3, 8))]
+    saver = Saver(simulator)
+    chance = random.Random(16)
+    slowest = 0.0
+    try:
+        for worker in (*clients, saver):
+            worker.start()
+        for _ in range(kills):
+            time.sleep(chance.uniform(0.0, 0.6))  # the moment is the point
+            pid = simulator.engine_pid
+            if chance.random() < 0.25:
+                os.kill(pid, signal.SIGSTOP)
+                time.sleep(0.2)
+                os.kill(pid, signal.SIGCONT)
+            began = time.monotonic()
+            os.kill(pid, signal.SIGKILL)
+            until(lambda gone=pid: simulator.engine_pid not in (gone, 0), "a new engine")
+            done = sum(client.done for client in clients)
+            until(lambda before=done: sum(client.done for client in clients) > before,
+                  "an answer of the new engine")
+            slowest = max(slowest, time.monotonic() - began)
+        for worker in (*clients, saver):
+            worker.stop()
+        models = agree(simulator, clients)
+    finally:
+        simulator.close()
+    assert [wrong for worker in (*clients, saver) for wrong in worker.wrong] == []
+    record("engine killed and stopped", kills=kills, clients=len(clients), models=models,
+           operations=sum(client.done for client in clients),
+           refused=sum(client.refused for client in clients), saves=saver.saves, lost=0, wrong=0,
+           slowest_recovery_s=round(slowest, 1))

@@ -1,0 +1,120 @@
+"""An arm with transmissions, controllers by name, and messages as they come from clients."""
+from __future__ import annotations
+
+from my_simulations.description.model import Joint, JointAxis, Link, Model
+from my_simulations.description.transmission import Transmission, TransmissionJoint
+from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
+from my_simulations.plugins.testing import FakeContext, Message
+
+NS = "robot"
+
+
+class Span:
+    """A time or duration of a message."""
+
+    def __init__(self, seconds=0.0):
+        self.seconds = seconds
+
+    def to_sec(self):
+        return self.seconds
+
+    def to_nsec(self):
+        return round(self.seconds * 1e9)
+
+
+def transmission(joint, interface):
+    return Transmission(f"{joint}_trans", joints=[TransmissionJoint(joint, [interface])])
+
+
+class Arm:
+    """A robot of joints `one` and `two`, driven through an interface, and its controllers."""
+
+    def __init__(self, interface="hardware_interface/PositionJointInterface", inside="",
+                 axis=None, parameters=None, interfaces=None, **controllers):
+        names = ("one", "two")
+        self.context = FakeContext(f"<plugin>{inside}</plugin>", joints=names)
+        axis = axis or JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0,
+                                 velocity=50.0)
+        kinds = (interface, interface) if interfaces is None else interfaces
+        self.context.description = Model(
+            NS, links=[Link("base"), *(Link(name) for name in names)],
+            joints=[Joint(name, "revolute", "base", name, axis=axis) for name in names],
+            transmissions=[transmission(name, kind) for name, kind in zip(names, kinds)])
+        for joint in self.context.description.joints:
+            self.context.joints[joint.name].spec = joint
+        self.context.ros_parameters = {NS: {**controllers, **(parameters or {})}}
+        self.plugin = GazeboRosControl(self.context)
+        self.plugin.load()
+
+    def ask(self, service, **fields):
+        response = Message()
+        self.context.services[f"{NS}/controller_manager/{service}"](Message(**fields), response)
+        return response
+
+    def load(self, name):
+        return self.ask("load_controller", name=name).ok
+
+    def switch(self, start=(), stop=(), strictness=2):
+        return self.ask("switch_controller", start_controllers=list(start),
+                        stop_controllers=list(stop), strictness=strictness).ok
+
+    def run(self, *names):
+        """Load and start."""
+        for name in names:
+            assert self.load(name), self.context.said
+        assert self.switch(names), self.context.said
+
+    def states(self):
+        return {one.name: one.state for one in self.ask("list_controllers").controller}
+
+    def at(self, name="one"):
+        return self.context.joints[name].position
+
+    def published(self, topic):
+        return self.context.published[f"{NS}/{topic}"]
+
+    def hear(self, topic, **fields):
+        self.context.hear(f"{NS}/{topic}", **fields)
+
+
+def trajectory(names, *points, stamp=0.0):
+    """(time, positions[, velocities[, accelerations]])."""
+    return Message(header={"stamp": Span(stamp)}, joint_names=list(names), points=[
+        Message(time_from_start=Span(time), positions=list(states[0]),
+                velocities=list(states[1]) if len(states) > 1 else [],
+                accelerations=list(states[2]) if len(states) > 2 else [])
+        for time, *states in points])
+
+
+class Client:
+    """Sends goals of FollowJointTrajectory."""
+
+    def __init__(self, arm, controller):
+        self._arm, self._at = arm, f"{controller}/follow_joint_trajectory"
+        self._count = 0
+
+    def send(self, wanted, path=(), end=(), late=0.0):
+        self._count += 1
+        self._arm.hear(f"{self._at}/goal", goal_id=Message(id=f"g{self._count}", stamp=Span()),
+                       goal=Message(trajectory=wanted, path_tolerance=list(path),
+                                    goal_tolerance=list(end), goal_time_tolerance=Span(late)))
+        return f"g{self._count}"
+
+    def cancel(self, goal=""):
+        self._arm.hear(f"{self._at}/cancel", id=goal, stamp=Span())
+
+    @property
+    def results(self):
+        """(goal, status, error code, reason)."""
+        return [(one.status.goal_id.id, one.status.status, one.result.error_code,
+                 one.result.error_string) for one in self._arm.published(f"{self._at}/result")]
+
+    @property
+    def status(self):
+        """Of each goal that is told of."""
+        last = self._arm.published(f"{self._at}/status")[-1]
+        return {one.goal_id.id: one.status for one in last.status_list}
+
+
+def tolerance(name, position=0.0, velocity=0.0):
+    return Message(name=name, position=position, velocity=velocity, acceleration=0.0)

@@ -1,0 +1,307 @@
+"""Plugins of cameras in a world without a renderer."""
+from __future__ import annotations
+
+import io
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from my_simulations.description.sensor import Camera as CameraBlock
+from my_simulations.description.sensor import Noise, Sensor
+from my_simulations.geometry import Pose
+from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.sensors.camera import Camera, MultiCamera, TriggeredCamera
+from my_simulations.plugins.sensors.depth_camera import DepthCamera, OpenniKinect
+from my_simulations.plugins.sensors.image_messages import encoded
+from my_simulations.plugins.sensors.realsense import RealSense
+from my_simulations.plugins.testing import FakeContext, Message
+from my_simulations.sensing.api import DEPTH, RGB, Distortion, Pictures
+
+NAMES = "<cameraName>cam</cameraName><frameName>cam_optical</frameName>"
+RAW, INFO = "cam/image_raw", "cam/camera_info"
+
+
+def camera(inside="", block=None, kind="camera", rate=10.0, more=(), cls=Camera):
+    block = block or CameraBlock(width=8, height=6)
+    sensor = Sensor("s", kind, Pose((0.1, 0.0, 0.2)), update_rate=rate, cameras=[block, *more])
+    context = FakeContext(f"<plugin>{NAMES}{inside}</plugin>", sensor=sensor, sensor_link="head")
+    picture = np.arange(8 * 6 * 3, dtype=np.uint8).reshape(6, 8, 3)
+    depth = np.full((6, 8), 2.0, np.float32)
+    context.pictures = [Pictures(picture, depth)] * (1 + len(more))
+    plugin = cls(context)
+    plugin.load()
+    return context
+
+
+def test_a_picture_and_its_lens_have_one_stamp_and_the_sensors_rate():
+    context = camera()
+    context.advance(0.25)
+    images, infos = context.published[RAW], context.published[INFO]
+    assert [one.header.stamp for one in images] == [100_000_000, 200_000_000]
+    assert [one.header.stamp for one in infos] == [100_000_000, 200_000_000]
+    first = images[0]
+    assert (first.header.frame_id, first.encoding, first.step) == ("cam_optical", "rgb8", 24)
+    assert (first.height, first.width, len(first.data)) == (6, 8, 144)
+    assert first.data == context.pictures[0].rgb.tobytes()
+
+
+def test_the_view_is_that_of_the_sensor_on_its_link():
+    context = camera(block=CameraBlock(pose=Pose((0.0, 0.5, 0.0)), width=8, height=6, near=0.2,
+                                       far=9.0, horizontal_fov=1.5))
+    context.advance(0.1)
+    ((view,),) = context.views
+    assert (view.link, view.pose.position, view.outputs) == ("head", (0.1, 0.5, 0.2), (RGB,))
+    assert (view.camera.near, view.camera.far, view.camera.hfov) == (0.2, 9.0, 1.5)
+
+
+def test_camera_info_says_where_the_renderer_puts_points():
+    context = camera("<hackBaseline>0.07</hackBaseline>",
+                     CameraBlock(width=640, height=480, horizontal_fov=1.2))
+    context.advance(0.1)
+    (info,) = context.published[INFO]
+    focal = 320.0 / math.tan(0.6)
+    assert info.K == pytest.approx([focal, 0, 319.5, 0, focal, 239.5, 0, 0, 1])
+    assert info.P[3] == pytest.approx(-focal * 0.07) and info.P[2] == 319.5
+    assert (info.width, info.height, info.distortion_model) == (640, 480, "plumb_bob")
+    assert info.D == [0.0] * 5
+
+
+def test_a_lens_is_told_of_in_the_order_of_the_message():
+    block = CameraBlock(width=640, height=480, k1=-0.2, k2=0.05, k3=0.01, p1=0.002, p2=0.003)
+    context = camera("<borderCrop>false</borderCrop>", block)
+    context.advance(0.1)
+    assert context.published[INFO][0].D == [-0.2, 0.05, 0.002, 0.003, 0.01]
+    assert context.views[0][0].camera.distortion == Distortion(-0.2, 0.05, 0.01, 0.002, 0.003)
+    context = camera("<distortionK1>0.5</distortionK1>", block)
+    context.advance(0.1)
+    assert context.published[INFO][0].D == [0.5, 0.0, 0.0, 0.0, 0.0]
+
+
+def test_a_cropped_barrel_lens_has_a_longer_focal_length():
+    block = CameraBlock(width=640, height=480, k1=-0.2)
+    plain, cropped = camera("<borderCrop>false</borderCrop>", block), camera("", block)
+    for context in (plain, cropped):
+        context.advance(0.1)
+    assert cropped.published[INFO][0].K[0] > 1.05 * plain.published[INFO][0].K[0]
+
+
+def test_nothing_is_drawn_for_nobody_and_nothing_for_who_wants_the_lens_alone():
+    context = camera()
+    context.unwanted = {RAW, INFO, f"{RAW}/compressed"}
+    context.advance(0.1)
+    assert not context.views and not context.published[INFO]
+    context.unwanted = {RAW, f"{RAW}/compressed"}
+    context.advance(0.1)
+    assert not context.views and len(context.published[INFO]) == 1
+
+
+def test_a_compressed_picture_is_decoded_to_the_raw_one():
+    context = camera(block=CameraBlock(width=8, height=6))
+    context.ros_parameters[f"{RAW}/compressed/format"] = "png"
+    Camera(context).load()
+    context.advance(0.1)
+    message = context.published[f"{RAW}/compressed"][-1]
+    assert message.format == "rgb8; png compressed bgr8"
+    back = np.asarray(Image.open(io.BytesIO(message.data)))
+    assert (back == context.pictures[0].rgb).all()
+    jpeg = context.published[f"{RAW}/compressed"][0]
+    assert jpeg.format == "rgb8; jpeg compressed bgr8"
+    assert Image.open(io.BytesIO(jpeg.data)).size == (8, 6)
+
+
+@pytest.mark.parametrize("encoding, kind, size", [
+    ("rgb8", np.uint8, 9), ("bgr8", np.uint8, 9), ("mono8", np.uint8, 3), ("mono16", np.uint16, 3),
+    ("rgb16", np.uint16, 9), ("bayer_rggb8", np.uint8, 3)])
+def test_encodings_have_their_types_and_sizes(encoding, kind, size):
+    rgb = np.zeros((4, 3, 3), np.uint8)
+    rgb[:] = (255, 100, 0)
+    made = encoded(rgb, encoding)
+    assert made.dtype == kind and made[0].size == size
+    assert {"bgr8": 0, "rgb16": 65535, "bayer_rggb8": 255}.get(encoding, made.flat[0]) \
+        == made.flat[0]
+    if encoding == "bayer_rggb8":
+        assert made[:2, :2].tolist() == [[255, 100], [100, 0]]
+    if encoding.startswith("mono"):
+        assert made[0, 0] // (257 if encoding == "mono16" else 1) == round(0.299 * 255 + 58.7)
+
+
+def test_an_unknown_format_is_told():
+    context = camera(block=CameraBlock(width=8, height=6, format="YUV"))
+    context.advance(0.1)
+    assert "YUV" in context.said[0] and context.published[RAW][0].encoding == "bgr8"
+
+
+def test_the_noise_of_a_picture_belongs_to_its_moment():
+    def run(skip):
+        block = CameraBlock(width=8, height=6, noise=Noise("gaussian", stddev=0.1))
+        context = camera(block=block)
+        context.late = skip
+        context.advance(0.1)
+        context.late = False
+        context.advance(0.1)
+        return {one.header.stamp: one.data for one in context.published[RAW]}
+
+    whole, partial = run(False), run(True)
+    assert whole[100_000_000] != whole[200_000_000]
+    assert partial == {200_000_000: whole[200_000_000]}
+
+
+def test_the_lower_rate_counts_and_a_camera_without_one_has_a_usual_one():
+    for rate, said, count in ((10.0, "<updateRate>5</updateRate>", 5), (10.0, "", 10),
+                              (0.0, "<updateRate>0</updateRate>", 30)):
+        context = camera(said, rate=rate)
+        context.advance(1.0)
+        assert len(context.published[RAW]) == count
+
+
+def test_names_are_in_the_namespace_of_the_robot():
+    context = camera("<robotNamespace></robotNamespace>")
+    assert "robot/cam/image_raw" in context.published
+    context = camera("<robotNamespace>left</robotNamespace><imageTopicName>/view</imageTopicName>")
+    assert "/view" in context.published and "left/cam/camera_info" in context.published
+
+
+def test_another_calibration_can_be_set():
+    context = camera()
+    answer, given = Message(), Message(width=8, height=6, distortion_model="none", D=[], K=[1.0],
+                                       R=[], P=[2.0], binning_x=0, binning_y=0, roi=None)
+    request = Message()
+    request.camera_info = given
+    context.services["cam/set_camera_info"](request, answer)
+    context.advance(0.1)
+    assert answer.success and context.published[INFO][0].K == [1.0]
+    given.width = 9
+    context.services["cam/set_camera_info"](request, answer)
+    assert not answer.success and "8x6" in answer.status_message
+
+
+def test_a_camera_outside_of_a_camera_sensor_is_the_users_fault():
+    with pytest.raises(PluginError, match="<camera>"):
+        Camera(FakeContext(sensor=Sensor("s", "ray"))).load()
+
+
+def test_a_trigger_takes_one_picture():
+    context = camera(cls=TriggeredCamera)
+    context.advance(0.3)
+    assert not context.published[RAW]
+    context.hear("cam/image_trigger")
+    context.advance(0.3)
+    assert len(context.published[RAW]) == 1
+    for _ in range(3):
+        context.hear("cam/image_trigger")
+    context.late = True
+    context.advance(0.1)
+    context.late = False
+    context.advance(0.5)
+    assert len(context.published[RAW]) == 4
+
+
+def test_a_pair_looks_at_the_same_time_and_the_right_one_has_the_baseline():
+    block = CameraBlock("left_eye", width=8, height=6)
+    right = CameraBlock("right_eye", Pose((0.0, -0.07, 0.0)), width=8, height=6)
+    context = camera("<hackBaseline>0.07</hackBaseline>", block, "multicamera", more=(right,),
+                     cls=MultiCamera)
+    context.advance(0.1)
+    pairs = [context.published[f"cam/{side}/{name}"][0] for name in ("image_raw", "camera_info")
+             for side in ("left", "right")]
+    assert {one.header.stamp for one in pairs} == {100_000_000}
+    assert pairs[2].P[3] == 0.0 and pairs[3].P[3] < 0.0
+    context.unwanted = {"cam/left/image_raw", "cam/left/image_raw/compressed"}
+    context.advance(0.1)
+    assert [view.pose.position[1] for view in context.views[1]] == [-0.07]
+
+
+def floats(message):
+    return np.frombuffer(message.data, np.float32).reshape(message.height, message.width, -1)
+
+
+def test_depth_is_in_metres_and_what_is_not_seen_is_nan():
+    context = camera(kind="depth", cls=OpenniKinect)
+    depth = np.full((6, 8), 2.0, np.float32)
+    depth[0, :3] = (0.3, 6.0, math.inf)
+    context.pictures = [Pictures(np.full((6, 8, 3), (10, 20, 30), np.uint8), depth)]
+    context.advance(0.1)
+    (image,) = context.published["cam/depth/image_raw"]
+    assert (image.encoding, image.step) == ("32FC1", 32)
+    seen = floats(image)[..., 0]
+    assert np.isnan(seen[0, :3]).all() and (seen[1:] == 2.0).all()
+    (info,) = context.published["cam/depth/camera_info"]
+    assert info.K[2] == 3.5 and info.header.stamp == image.header.stamp
+    assert context.views[0][0].outputs == (RGB, DEPTH)
+
+
+def test_points_lie_where_pixels_look_with_their_colours():
+    context = camera(kind="depth", cls=DepthCamera)
+    context.pictures = [Pictures(np.full((6, 8, 3), (10, 20, 30), np.uint8),
+                                 np.full((6, 8), 6.0, np.float32))]
+    context.advance(0.1)
+    (cloud,) = context.published["cam/points"]
+    assert [(f.name, f.offset, f.datatype) for f in cloud.fields] == [
+        ("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("rgb", 16, 7)]
+    assert (cloud.point_step, cloud.row_step, cloud.is_dense) == (32, 256, True)
+    focal = 4.0 / math.tan(1.047 / 2)
+    points = floats(cloud)
+    assert points[0, 7, :3] == pytest.approx([6 * 3.5 / focal, -6 * 2.5 / focal, 6.0])
+    assert points.view(np.uint8)[2, 3, 16:20].tolist() == [30, 20, 10, 0]
+
+
+def test_depth_in_millimetres():
+    context = camera("<useDepth16UC1Format>true</useDepth16UC1Format>", kind="depth",
+                     cls=DepthCamera)
+    depth = np.full((6, 8), 1.2345, np.float32)
+    depth[0, :2] = (math.inf, 70.0)
+    context.pictures = [Pictures(np.zeros((6, 8, 3), np.uint8), depth)]
+    context.advance(0.1)
+    (image,) = context.published["cam/depth/image_raw"]
+    values = np.frombuffer(image.data, np.uint16).reshape(6, 8)
+    assert image.encoding == "16UC1" and values[0, :3].tolist() == [0, 0, 1234]
+
+
+def test_only_what_is_wanted_is_drawn():
+    context = camera(kind="depth", cls=OpenniKinect)
+    colors = {RAW, f"{RAW}/compressed", "cam/points"}
+    context.unwanted = set(colors)
+    context.advance(0.1)
+    context.unwanted = {"cam/depth/image_raw", "cam/points"}
+    context.advance(0.1)
+    context.unwanted = colors | {"cam/depth/image_raw"}
+    context.advance(0.1)
+    assert [view.outputs for (view,) in context.views] == [(DEPTH,), (RGB,)]
+    assert len(context.published["cam/depth/camera_info"]) == 3
+
+
+def realsense(inside="", names=("color", "depth", "ired1", "ired2")):
+    context = FakeContext(f"<plugin><prefix>d_</prefix>{inside}</plugin>")
+    context.model_sensors = [(f"{name}_link", Sensor(
+        f"d_{name}", "depth" if name == "depth" else "camera", update_rate=10.0,
+        cameras=[CameraBlock(width=8, height=6, format="L8" if "ired" in name else "R8G8B8")]))
+        for name in names]
+    context.pictures = [Pictures(np.zeros((6, 8, 3), np.uint8), np.full((6, 8), 1.5, np.float32))]
+    RealSense(context).load()
+    return context
+
+
+def test_a_realsense_looks_through_the_sensors_of_its_model():
+    context = realsense("<pointCloud>true</pointCloud><colorUpdateRate>5</colorUpdateRate>"
+                        "<depthTopicName>camera/aligned/image_raw</depthTopicName>"
+                        "<depthOpticalframeName>d_optical</depthOpticalframeName>")
+    context.advance(0.2)
+    assert len(context.published["camera/color/image_raw"]) == 1
+    infrared = context.published["camera/infrared1/image_raw"]
+    assert len(infrared) == 2 and infrared[0].encoding == "mono8"
+    depth = context.published["camera/aligned/image_raw"][0]
+    assert (depth.encoding, depth.header.frame_id) == ("16UC1", "d_optical")
+    assert np.frombuffer(depth.data, np.uint16)[0] == 1500
+    assert len(context.published["camera/depth/points"]) == 2
+    assert {view.link for (view,) in context.views} == {
+        "color_link", "depth_link", "ired1_link", "ired2_link"}
+
+
+def test_a_realsense_does_without_a_camera_that_the_model_lacks():
+    context = realsense(names=("depth",))
+    context.advance(0.1)
+    assert len(context.published["camera/depth/image_raw"]) == 1 and len(context.said) == 3
+    with pytest.raises(PluginError, match="d_color"):
+        realsense(names=())

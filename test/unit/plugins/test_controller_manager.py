@@ -1,0 +1,193 @@
+"""gazebo_ros_control and its controller manager, without ROS."""
+from __future__ import annotations
+
+import pytest
+from robot_control import Arm
+
+from my_simulations.plugins.context import PluginError
+
+FORWARD = {"type": "position_controllers/JointPositionController", "joint": "one"}
+GROUP = {"type": "position_controllers/JointGroupPositionController", "joints": ["one", "two"]}
+STATE = {"type": "joint_state_controller/JointStateController", "publish_rate": 50}
+
+
+def test_a_controller_is_loaded_started_stopped_and_unloaded():
+    arm = Arm(forward=FORWARD)
+    assert arm.load("forward")
+    assert arm.states() == {"forward": "initialized"}
+    assert arm.switch(["forward"])
+    assert arm.states() == {"forward": "running"}
+    assert not arm.ask("unload_controller", name="forward").ok
+    assert arm.switch((), ["forward"])
+    assert arm.states() == {"forward": "stopped"}
+    assert arm.ask("unload_controller", name="forward").ok
+    assert arm.states() == {}
+    assert "robot/forward/command" not in arm.context._heard
+
+
+def test_what_cannot_be_loaded_is_told_with_the_reason():
+    arm = Arm(odd={"type": "odd_controllers/Odd"}, nothing={"joint": "one"},
+              lost={**FORWARD, "joint": "three"}, wrong={**FORWARD, "joint": 3})
+    for name, why in (("odd", "odd_controllers/Odd"), ("nothing", "nothing/type is missing"),
+                      ("lost", "joint 'three' has no transmission"), ("wrong", "a text"),
+                      ("absent", "absent/type is missing")):
+        assert not arm.load(name)
+        assert why in arm.context.said[-1]
+    assert arm.states() == {}
+
+
+def test_an_interface_that_the_joint_lacks_is_named_with_the_one_it_has():
+    arm = Arm(forward={"type": "effort_controllers/JointEffortController", "joint": "one"})
+    assert not arm.load("forward")
+    assert "PositionJointInterface" in arm.context.said[-1]
+
+
+def test_two_controllers_of_a_joint_cannot_run_together():
+    arm = Arm(forward=FORWARD, group=GROUP)
+    arm.run("forward")
+    assert arm.load("group")
+    assert not arm.switch(["group"])
+    assert "both drive joint 'one'" in arm.context.said[-1]
+    assert arm.states() == {"forward": "running", "group": "initialized"}
+    assert arm.switch(["group"], ["forward"])
+    assert arm.states() == {"forward": "stopped", "group": "running"}
+
+
+def test_strict_switches_do_all_or_nothing():
+    arm = Arm(forward=FORWARD)
+    assert arm.load("forward")
+    assert not arm.switch(["forward", "absent"], strictness=2)
+    assert arm.states() == {"forward": "initialized"}
+    assert not arm.switch((), ["forward"], strictness=2)
+    assert arm.switch(["forward", "absent"], strictness=1)
+    assert arm.states() == {"forward": "running"}
+    assert not arm.switch(["forward"], strictness=2)
+    assert arm.switch(["forward"], strictness=1)
+
+
+def test_listing_says_types_states_and_claimed_joints():
+    arm = Arm(group=GROUP, states=STATE)
+    arm.run("group", "states")
+    found = {one.name: one for one in arm.ask("list_controllers").controller}
+    assert found["group"].type == GROUP["type"]
+    (claimed,) = found["group"].claimed_resources
+    assert claimed.hardware_interface == "hardware_interface::PositionJointInterface"
+    assert claimed.resources == ["one", "two"]
+    assert found["states"].claimed_resources == []
+    types = arm.ask("list_controller_types")
+    assert "effort_controllers/JointTrajectoryController" in types.types
+    assert len(types.base_classes) == len(types.types)
+
+
+def test_reloading_needs_force_while_controllers_are_loaded():
+    arm = Arm(forward=FORWARD)
+    arm.run("forward")
+    assert not arm.ask("reload_controller_libraries", force_kill=False).ok
+    assert arm.ask("reload_controller_libraries", force_kill=True).ok
+    assert arm.states() == {}
+
+
+def test_joint_states_come_at_their_rate_and_before_any_other_controller():
+    ghost = {"name": "ghost", "position": 0.5}
+    arm = Arm("EffortJointInterface", states={**STATE, "extra_joints": [ghost]})
+    arm.run("states")
+    arm.context.joints["two"].position = 0.25
+    arm.context.advance(0.1)
+    messages = arm.published("joint_states")
+    assert [one.header.stamp for one in messages] == [20e6, 40e6, 60e6, 80e6, 100e6]
+    assert messages[-1].name == ["one", "two", "ghost"]
+    assert messages[-1].position == [0.0, 0.25, 0.5]
+    assert len(messages[-1].velocity) == len(messages[-1].effort) == 3
+
+
+def test_a_rate_is_needed_for_joint_states():
+    arm = Arm(states={"type": STATE["type"]})
+    assert not arm.load("states")
+    assert "publish_rate" in arm.context.said[-1]
+
+
+def test_positions_are_held_until_somebody_controls_them():
+    arm = Arm()
+    assert arm.context.joints["one"].servo.drive == "position"
+    assert arm.context.joints["one"].servo.target == 0.0
+
+
+@pytest.mark.parametrize("spelling", ["EffortJointInterface",
+                                      "hardware_interface/EffortJointInterface",
+                                      "hardware_interface::EffortJointInterface"])
+def test_interfaces_are_known_in_all_spellings(spelling):
+    arm = Arm(spelling, push={"type": "effort_controllers/JointEffortController", "joint": "one"})
+    arm.run("push")
+    arm.hear("push/command", data=3.0)
+    arm.context.advance(0.5)
+    assert arm.context.joints["one"].velocity == pytest.approx(1.5)
+
+
+def test_an_unknown_interface_leaves_the_state_of_its_joint():
+    arm = Arm(interfaces=("franka_hw/FrankaStateInterface",
+                          "hardware_interface/EffortJointInterface"), states=STATE)
+    assert "FrankaStateInterface" in arm.context.said[0]
+    arm.run("states")
+    arm.context.advance(0.02)
+    assert arm.published("joint_states")[0].name == ["one", "two"]
+
+
+def test_gains_of_the_hardware_make_a_loop_of_a_position_joint():
+    gains = {"gazebo_ros_control": {"pid_gains": {"one": {"p": 100.0, "d": 20.0}}}}
+    arm = Arm(parameters=gains, forward=FORWARD)
+    arm.run("forward")
+    arm.hear("forward/command", data=0.5)
+    arm.context.advance(3.0)
+    assert arm.context.joints["one"].servo.drive_gains.p == 100.0
+    assert arm.at() == pytest.approx(0.5, abs=1e-3)
+
+
+def test_limits_on_the_parameter_server_come_before_those_of_the_description():
+    arm = Arm(parameters={"joint_limits": {"one": {
+        "has_position_limits": True, "min_position": -0.1, "max_position": 0.1}}}, forward=FORWARD)
+    arm.run("forward")
+    arm.hear("forward/command", data=2.0)
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(0.1, abs=1e-6)
+
+
+def test_the_emergency_stop_holds_positions_and_ends_controllers_until_it_is_over():
+    arm = Arm(inside="<eStopTopic>stop</eStopTopic>", forward=FORWARD)
+    arm.run("forward")
+    arm.hear("forward/command", data=2.0)
+    arm.context.advance(0.02)
+    arm.hear("stop", data=True)
+    halted = arm.at()
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(halted, abs=1e-6)
+    assert arm.states() == {"forward": "stopped"}
+    arm.hear("stop", data=False)
+    assert arm.states() == {"forward": "running"}
+    arm.hear("forward/command", data=1.0)
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_reset_starts_controllers_anew_where_joints_are():
+    arm = Arm(forward=FORWARD)
+    arm.run("forward")
+    arm.hear("forward/command", data=2.0)
+    arm.context.advance(1.0)
+    arm.context.joints["one"].position = 0.0
+    arm.plugin.reset()
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(0.0, abs=1e-9)
+    assert arm.states() == {"forward": "running"}
+
+
+def test_a_robot_without_transmissions_is_told_so():
+    with pytest.raises(PluginError, match="no <transmission>"):
+        Arm(interfaces=())
+
+
+def test_what_comes_while_a_controller_does_not_run_is_told_once():
+    arm = Arm(forward=FORWARD)
+    assert arm.load("forward")
+    for _ in range(3):
+        arm.hear("forward/command", data=2.0)
+    assert sum("does not run" in text for text in arm.context.said) == 1

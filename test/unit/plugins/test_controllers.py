@@ -1,0 +1,199 @@
+"""Controllers of single joints, groups, grippers and two-wheeled robots."""
+from __future__ import annotations
+
+import math
+
+import pytest
+from robot_control import Arm, Message, Span
+
+from my_simulations.description.model import JointAxis
+from my_simulations.plugins.actions import ABORTED, PREEMPTED, SUCCEEDED
+
+EFFORT = "hardware_interface/EffortJointInterface"
+VELOCITY = "hardware_interface/VelocityJointInterface"
+PD = {"p": 100.0, "d": 20.0}   # critically damped on 1 kg m^2
+
+
+def test_a_position_command_is_followed_no_faster_than_the_joint_may():
+    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=10.0, velocity=0.5)
+    arm = Arm(axis=slow, go={"type": "position_controllers/JointPositionController",
+                             "joint": "one"})
+    arm.run("go")
+    arm.hear("go/command", data=1.0)
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(0.5, abs=1e-3)
+
+
+def test_a_group_takes_a_value_for_each_joint():
+    arm = Arm(VELOCITY, group={"type": "velocity_controllers/JointGroupVelocityController",
+                               "joints": ["one", "two"]})
+    arm.run("group")
+    arm.hear("group/command", data=[1.0, -2.0])
+    arm.context.advance(0.5)
+    assert (arm.at("one"), arm.at("two")) == pytest.approx((0.5, -1.0))
+    arm.hear("group/command", data=[1.0])
+    assert "of 1" in arm.context.said[-1]
+
+
+def test_stopping_a_velocity_controller_stops_the_joint():
+    arm = Arm(VELOCITY, turn={"type": "velocity_controllers/JointVelocityController",
+                              "joint": "one"})
+    arm.run("turn")
+    arm.hear("turn/command", data=1.0)
+    arm.context.advance(0.5)
+    arm.switch((), ["turn"])
+    arm.context.advance(0.5)
+    assert arm.at() == pytest.approx(0.5)
+
+
+def test_a_loop_about_a_position_is_a_spring_and_a_damper():
+    arm = Arm(EFFORT, go={"type": "effort_controllers/JointPositionController", "joint": "one",
+                          "pid": PD})
+    arm.run("go")
+    arm.context.advance(0.001)
+    arm.hear("go/command", data=0.5)
+    arm.context.advance(0.2)
+    t = 0.2
+    assert arm.at() == pytest.approx(0.5 * (1.0 - (1.0 + 10.0 * t) * math.exp(-10.0 * t)),
+                                     rel=0.15)
+    arm.context.advance(3.0)
+    assert arm.at() == pytest.approx(0.5, abs=1e-6)
+    state = arm.published("go/state")[-1]
+    assert (state.set_point, state.p, state.d) == (0.5, 100.0, 20.0)
+    assert state.process_value == pytest.approx(0.5, abs=1e-6)
+
+
+def test_a_loop_about_a_position_keeps_within_the_limits():
+    arm = Arm(EFFORT, go={"type": "effort_controllers/JointPositionController", "joint": "one",
+                          "pid": PD})
+    arm.run("go")
+    arm.hear("go/command", data=9.0)
+    arm.context.advance(5.0)
+    assert arm.at() == pytest.approx(3.0, abs=1e-3)
+
+
+def test_a_loop_about_a_rate_reaches_it():
+    arm = Arm(EFFORT, turn={"type": "effort_controllers/JointVelocityController", "joint": "one",
+                            "pid": {"p": 20.0}})
+    arm.run("turn")
+    arm.hear("turn/command", data=2.0)
+    arm.context.advance(0.1)
+    assert arm.context.joints["one"].velocity == pytest.approx(2.0 * (1.0 - math.exp(-2.0)),
+                                                               rel=0.02)
+
+
+def test_a_group_of_positions_with_loops():
+    arm = Arm(EFFORT, go={"type": "effort_controllers/JointGroupPositionController",
+                          "joints": ["one", "two"], "one": {"pid": PD}, "two": {"pid": PD}})
+    arm.run("go")
+    arm.hear("go/command", data=[0.5, -0.5])
+    arm.context.advance(3.0)
+    assert (arm.at("one"), arm.at("two")) == pytest.approx((0.5, -0.5), abs=1e-4)
+
+
+def gripper(**settings):
+    arm = Arm(grip={"type": "position_controllers/GripperActionController", "joint": "one",
+                    **settings})
+    arm.run("grip")
+
+    def send(position, effort=0.0, name="g"):
+        arm.hear("grip/gripper_cmd/goal", goal_id=Message(id=name, stamp=Span()),
+                 goal=Message(command=Message(position=position, max_effort=effort)))
+
+    def results():
+        return [(one.status.status, one.result.reached_goal, one.result.stalled)
+                for one in arm.published("grip/gripper_cmd/result")]
+    return arm, send, results
+
+
+def test_a_gripper_reaches_its_goal():
+    arm, send, results = gripper()
+    send(0.2)
+    arm.context.advance(0.5)
+    assert results() == [(SUCCEEDED, True, False)]
+    assert arm.at() == pytest.approx(0.2, abs=0.01)
+
+
+def test_a_gripper_that_holds_something_stalls():
+    arm, send, results = gripper(stall_timeout=0.3)
+    send(0.2, effort=5.0)
+    joint = arm.context.joints["one"]
+    assert joint.servo.most_effort == 5.0
+    arm.context.advance(0.002)
+    joint.stuck = True
+    arm.context.advance(0.25)
+    assert results() == []
+    arm.context.advance(0.25)
+    assert results() == [(ABORTED, False, True)]
+
+
+def test_another_goal_takes_over_from_the_first():
+    arm, send, results = gripper()
+    send(0.2, name="a")
+    send(0.1, name="b")
+    assert results() == [(PREEMPTED, False, False)]
+    arm.context.advance(0.5)
+    assert results()[1] == (SUCCEEDED, True, False)
+
+
+def base(**settings):
+    drive = {"type": "diff_drive_controller/DiffDriveController", "left_wheel": "one",
+             "right_wheel": ["two"], "wheel_separation": 0.5, "wheel_radius": 0.1, **settings}
+    free = JointAxis((0.0, 1.0, 0.0))
+    arm = Arm(VELOCITY, axis=free, drive=drive)
+    arm.run("drive")
+    return arm
+
+
+def go(arm, x, yaw, seconds):
+    for _ in range(round(seconds / 0.1)):
+        arm.hear("drive/cmd_vel", linear={"x": x}, angular={"z": yaw})
+        arm.context.advance(0.1)
+
+
+def test_wheels_turn_as_the_command_says():
+    arm = base()
+    go(arm, 0.3, 1.0, 0.2)
+    one, two = (arm.context.joints[name].velocity for name in ("one", "two"))
+    assert (one, two) == pytest.approx(((0.3 - 0.25) / 0.1, (0.3 + 0.25) / 0.1))
+
+
+def test_a_circle_closes_in_the_odometry():
+    arm = base()
+    go(arm, 0.2, 0.4, 2.0)
+    pose = arm.published("drive/odom")[-1].pose.pose
+    yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
+    assert (pose.position.x, pose.position.y) == pytest.approx(
+        (0.5 * math.sin(yaw), 0.5 * (1.0 - math.cos(yaw))), abs=1e-6)
+    twist = arm.published("drive/odom")[-1].twist.twist
+    assert (twist.linear.x, twist.angular.z) == pytest.approx((0.2, 0.4))
+    assert {one[:2] for one in arm.context.transforms} == {("odom", "base_link")}
+
+
+def test_accelerations_are_limited_and_old_commands_forgotten():
+    arm = base(linear={"x": {"has_acceleration_limits": True, "max_acceleration": 1.0,
+                             "has_velocity_limits": True, "max_velocity": 0.4}},
+               publish_cmd=True)
+    go(arm, 2.0, 0.0, 0.3)
+    assert arm.context.joints["one"].velocity == pytest.approx(3.0, abs=0.11)
+    go(arm, 2.0, 0.0, 0.5)
+    assert arm.context.joints["one"].velocity == pytest.approx(4.0)
+    arm.context.advance(1.1)
+    assert arm.context.joints["one"].velocity == 0.0
+    assert max(one.twist.linear.x for one in arm.published("drive/cmd_vel_out")) == 0.4
+
+
+def test_a_jerk_is_limited():
+    arm = base(linear={"x": {"has_jerk_limits": True, "max_jerk": 5.0}}, publish_cmd=True)
+    go(arm, 1.0, 0.0, 0.1)
+    speeds = [one.twist.linear.x for one in arm.published("drive/cmd_vel_out")]
+    ramps = [b - a for a, b in zip([0.0, *speeds], speeds)]
+    assert max(b - a for a, b in zip(ramps, ramps[1:])) <= 2.0 * 5.0 * 0.01 ** 2 + 1e-12
+
+
+def test_wheels_without_a_radius_are_told():
+    arm = Arm(VELOCITY, drive={"type": "diff_drive_controller/DiffDriveController",
+                               "left_wheel": "one", "right_wheel": "two",
+                               "wheel_separation": 0.5})
+    assert not arm.load("drive")
+    assert "wheel_radius" in arm.context.said[-1]

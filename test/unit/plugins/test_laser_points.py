@@ -1,0 +1,83 @@
+"""Lasers that publish points, in a world without rays."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from my_simulations.description.sensor import Ray, ScanAngles, Sensor
+from my_simulations.plugins.sensors.laser_points import BlockLaser, Velodyne
+from my_simulations.plugins.testing import FakeContext
+from my_simulations.sensing.api import RayReturns
+
+
+def laser(cls, ranges, inside="", rows=2, retro=None):
+    samples = len(ranges) // rows
+    ray = Ray(ScanAngles(samples, 1.0, -0.5, 0.5), ScanAngles(rows, 1.0, -0.2, 0.2), 0.1, 5.0)
+    context = FakeContext(f"<plugin><topicName>points</topicName><frameName>mast</frameName>"
+                          f"{inside}</plugin>", sensor=Sensor("s", "ray", update_rate=10.0,
+                                                              ray=ray), sensor_link="base")
+    count = len(ranges)
+    context.returns = RayReturns(np.array(ranges), np.zeros(count) if retro is None
+                                 else np.array(retro), np.zeros(count, int))
+    cls(context).load()
+    return context
+
+
+def test_a_block_laser_has_a_point_for_each_ray():
+    context = laser(BlockLaser, [1.0, 2.0, 0.05, math.inf], retro=[1.0, 2.0, 3.0, 4.0])
+    context.advance(0.1)
+    (cloud,) = context.published["points"]
+    first, second, near, far = ((p.x, p.y, p.z) for p in cloud.points)
+    assert first == pytest.approx((math.cos(0.2) * math.cos(0.5), -math.cos(0.2) * math.sin(0.5),
+                                   -math.sin(0.2)))
+    assert second[1] == pytest.approx(2 * math.cos(0.2) * math.sin(0.5))
+    assert near == (-math.inf,) * 3 and far == (math.inf,) * 3
+    assert cloud.channels[0].values == [1.0, 2.0, 3.0, 4.0]
+
+
+def test_a_block_laser_of_one_row_lies_level():
+    context = laser(BlockLaser, [1.0, 1.0, 1.0], rows=1)
+    context.advance(0.1)
+    assert all(math.isfinite(p.x) for p in context.published["points"][0].points)
+
+
+def velodyne_points(cloud):
+    kind = np.dtype({"names": ["x", "y", "z", "intensity", "ring"],
+                     "formats": ["<f4"] * 4 + ["<u2"], "offsets": [0, 4, 8, 16, 20],
+                     "itemsize": cloud.point_step})
+    return np.frombuffer(cloud.data, kind)
+
+
+def test_a_velodyne_publishes_what_is_met_column_by_column():
+    context = laser(Velodyne, [1.0, math.inf, 0.05, 2.0, 3.0, 4.0],
+                    "<max_range>3.5</max_range>", retro=[9.0, 0, 0, 0, 0, 7.0])
+    context.advance(0.1)
+    (cloud,) = context.published["points"]
+    points = velodyne_points(cloud)
+    assert (cloud.height, cloud.width, cloud.is_dense) == (1, 3, True)
+    assert [(f.name, f.offset, f.datatype) for f in cloud.fields] == [
+        ("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("intensity", 16, 7), ("ring", 20, 4)]
+    assert points["ring"].tolist() == [0, 1, 1] and points["intensity"].tolist() == [9.0, 0, 0]
+    away = np.sqrt(points["x"] ** 2 + points["y"] ** 2 + points["z"] ** 2)
+    assert away == pytest.approx([1.0, 2.0, 3.0])
+    assert points["z"][1] > 0 > points["z"][0]
+
+
+def test_faint_returns_are_left_out_and_noise_is_along_the_ray():
+    ranges = [2.0] * 2000
+    context = laser(Velodyne, ranges, "<min_intensity>0.5</min_intensity>"
+                    "<gaussianNoise>0.02</gaussianNoise>", retro=[0.0, 1.0] * 1000)
+    context.advance(0.1)
+    points = velodyne_points(context.published["points"][0])
+    away = np.sqrt(points["x"] ** 2 + points["y"] ** 2 + points["z"] ** 2)
+    assert len(away) == 1000
+    assert away.mean() == pytest.approx(2.0, abs=0.003) and away.std() == pytest.approx(
+        0.02, rel=0.1)
+
+
+def test_the_namespace_of_a_velodyne_is_its_prefix():
+    context = laser(Velodyne, [1.0, 1.0], "<robotNamespace>/r1</robotNamespace>")
+    context.advance(0.1)
+    assert context.published["r1/points"][0].header.frame_id == "r1/mast"

@@ -1,0 +1,136 @@
+"""Requests of plugins to the sensing process: order, lateness, faults; and messages made later."""
+from __future__ import annotations
+
+import threading
+from collections import deque
+from concurrent.futures import Future
+
+from my_simulations.geometry import Pose
+from my_simulations.plugins.context import View
+from my_simulations.plugins.message_maker import Later, MessageMaker
+from my_simulations.plugins.sensing_requests import SensingRequests
+from my_simulations.sensing.api import CameraSpec, Mount, SensingGoneError
+
+VIEW = (Mount(), View("head", Pose(), CameraSpec(), ("rgb",)))
+
+
+class Eyes:
+    def __init__(self):
+        self.asked = []
+
+    def render(self, views):
+        self.asked.append([Future() for _ in views])
+        return self.asked[-1]
+
+    def cast(self, mount, fan, visuals):
+        self.asked.append(Future())
+        return self.asked[-1]
+
+
+class Case:
+    def __init__(self):
+        self.eyes, self.inbox, self.said, self.seen = Eyes(), deque(), [], []
+        self.requests = SensingRequests(self.eyes, self.inbox, lambda: None, self.said.append)
+
+    def shoot(self, ns, wait=False, views=1):
+        return self.requests.photograph([VIEW] * views, lambda got, at: self.seen.append((got, at)),
+                                        ns, wait)
+
+    def deliver(self):
+        while self.inbox:
+            self.inbox.popleft()()
+
+
+def test_a_picture_is_handed_over_with_its_moment():
+    case = Case()
+    assert case.shoot(5)
+    case.eyes.asked[0][0].set_result("picture")
+    assert not case.seen
+    case.deliver()
+    assert case.seen == [(["picture"], 5)]
+
+
+def test_pictures_of_one_moment_are_handed_over_together():
+    case = Case()
+    case.shoot(5, views=2)
+    first, second = case.eyes.asked[0]
+    second.set_result("b")
+    case.deliver()
+    assert not case.seen
+    first.set_result("a")
+    case.deliver()
+    assert case.seen == [(["a", "b"], 5)]
+
+
+def test_a_late_picture_leaves_others_out_and_this_is_told_once():
+    case = Case()
+    assert [case.shoot(ns) for ns in (1, 2, 3)] == [True, False, False]
+    assert len(case.said) == 1 and "late" in case.said[0]
+    case.eyes.asked[0][0].set_result("picture")
+    assert case.shoot(4) and len(case.eyes.asked) == 2
+    assert case.seen == [(["picture"], 1)]
+
+
+def test_a_world_stepped_by_hand_waits_for_late_pictures():
+    case = Case()
+    case.shoot(1)
+    threading.Timer(0.05, case.eyes.asked[0][0].set_result, ["picture"]).start()
+    assert case.shoot(2, wait=True) and not case.said
+    assert case.seen == [(["picture"], 1)]
+
+
+def test_a_message_that_is_still_being_made_counts_as_late():
+    case = Case()
+    case.requests.unsent.append(None)
+    assert not case.shoot(1)
+    case.requests.unsent.popleft()
+    assert case.shoot(2)
+
+
+def test_a_lost_picture_is_told_and_the_next_is_taken():
+    case = Case()
+    for ns in (1, 2):
+        case.shoot(ns)
+        case.eyes.asked[-1][0].set_exception(SensingGoneError("it was killed"))
+        case.deliver()
+    assert case.said == ["a picture is left out: it was killed"] and case.shoot(3)
+
+
+def test_a_picture_of_a_time_that_was_set_back_is_forgotten():
+    case = Case()
+    case.shoot(5)
+    case.requests.forget()
+    case.eyes.asked[0][0].set_result("picture")
+    case.deliver()
+    assert not case.seen and case.shoot(1)
+
+
+class Topic:
+    def __init__(self):
+        self.sent = []
+
+    def send(self, message):
+        self.sent.append((message, threading.current_thread().name))
+
+
+def test_messages_are_made_in_order_by_another_thread():
+    maker, topic, unsent = MessageMaker(), Topic(), deque()
+    for n in range(3):
+        maker.put(topic, Later(lambda n=n: n, unsent), lambda fault: None)
+    maker.stop()
+    assert topic.sent == [(n, "plugin messages") for n in range(3)] and not unsent
+
+
+def test_a_message_that_cannot_be_made_is_told_and_the_next_is_sent():
+    maker, topic, unsent, faults = MessageMaker(), Topic(), deque(), []
+    maker.put(topic, Later(lambda: 1 // 0, unsent), faults.append)
+    maker.put(topic, Later(lambda: "next", unsent), faults.append)
+    maker.stop()
+    assert [type(fault) for fault in faults] == [ZeroDivisionError]
+    assert topic.sent[0][0] == "next" and not unsent
+
+
+def test_streams_do_not_wait_for_each_other():
+    case = Case()
+    assert case.shoot(1) and case.requests.photograph([VIEW], lambda *_: None, 1, False, "depth")
+    assert not case.said

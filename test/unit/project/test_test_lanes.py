@@ -1,0 +1,98 @@
+"""The shell behind tools/test that runs checks side by side."""
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[3]
+
+HEAD = """set -euo pipefail
+for part in progress checks lanes; do . "$LIB/$part.sh"; done
+LOGS="$HOME/logs"; mkdir -p "$LOGS"; STEPS=9
+trap 'end_lanes; end_leftovers' EXIT
+trap 'exit 130' INT TERM
+"""
+TAIL = """
+run_queue
+for fault in "${FAULTS[@]}"; do say "FAILED $fault"; done
+say "$PASSED passed, $FAILED failed, $STEP steps"
+"""
+
+
+def started(tmp_path, script, lanes=2):
+    return subprocess.Popen(
+        ["bash", "-c", HEAD + script + TAIL], text=True, start_new_session=True,
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        env={**os.environ, "HOME": str(tmp_path), "LIB": str(REPOSITORY / "tools" / "lib"),
+             "MY_SIMULATIONS_TEST_LANES": str(lanes)})
+
+
+def output(tmp_path, script, lanes=2):
+    process = started(tmp_path, script, lanes)
+    text, _ = process.communicate(timeout=60)
+    assert process.returncode == 0, text
+    return text.splitlines()
+
+
+@pytest.mark.parametrize("lanes", [1, 2, 5])
+def test_every_check_is_told_of_in_one_line_and_counted(tmp_path, lanes):
+    script = "\n".join(f"queue check part{n} 20 true" for n in range(4))
+    lines = output(tmp_path, script + "\nqueue check broken 20 bash -c 'echo the reason; exit 3'",
+                   lanes)
+    told = sorted(line.partition("] ")[2].partition(" (")[0] for line in lines
+                  if line.startswith("["))
+    assert told == ["broken ... FAILED", *(f"part{n} ... ok" for n in range(4))]
+    assert [line.partition("/")[0] for line in lines if line.startswith("[")] == [
+        f"[{n}" for n in range(1, 6)]
+    assert "the reason" in lines
+    assert lines[-2:] == [f"FAILED broken: 1 failed, see {tmp_path}/logs/broken.log",
+                          "0 passed, 1 failed, 5 steps"]
+
+
+def test_two_lanes_run_at_the_same_time(tmp_path):
+    # Each waits for what the other writes.
+    meet = "touch $HOME/{0}; until [ -e $HOME/{1} ]; do sleep 0.05; done"
+    script = (f"queue check a 20 bash -c '{meet.format('a', 'b')}'\n"
+              f"queue check b 20 bash -c '{meet.format('b', 'a')}'")
+    assert output(tmp_path, script)[-1] == "0 passed, 0 failed, 2 steps"
+
+
+def test_a_lane_that_is_killed_is_a_failure(tmp_path):
+    lines = output(tmp_path, "doomed() { kill -KILL $BASHPID; }\n"
+                             "queue doomed\nqueue check a 9 true")
+    assert "FAILED doomed : ended without a result" in lines
+    assert lines[-1] == "0 passed, 1 failed, 2 steps"
+
+
+def test_programs_in_lanes_hear_of_interrupts(tmp_path):
+    python = ("import signal; assert signal.getsignal(signal.SIGINT) is "
+              "signal.default_int_handler")
+    assert output(tmp_path, f'queue check a 20 python3 -c "{python}"')[-1].startswith(
+        "0 passed, 0 failed")
+
+
+def test_what_a_check_leaves_running_is_ended_and_its_neighbours_go_on(tmp_path):
+    script = ("queue check leaves 20 bash -c 'setsid sleep 600 & echo $! >$HOME/left'\n"
+              "queue check stays 20 bash -c 'until [ -e $HOME/left ] && ! [ -e /proc/$(cat "
+              "$HOME/left) ]; do sleep 0.05; done'")
+    assert output(tmp_path, script)[-1] == "0 passed, 0 failed, 2 steps"
+
+
+def test_an_interrupt_ends_all_lanes(tmp_path):
+    process = started(tmp_path, "for n in 1 2; do queue check part$n 60 bash -c "
+                                "\"echo \\$\\$ >$HOME/pid$n; sleep 600\"; done")
+    until = time.monotonic() + 30
+    paths = [tmp_path / "pid1", tmp_path / "pid2"]
+    while not all(path.exists() and path.read_text().strip() for path in paths):
+        assert time.monotonic() < until and process.poll() is None
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30) == 130
+    for path in paths:
+        stat = Path(f"/proc/{path.read_text().strip()}/stat")
+        assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"

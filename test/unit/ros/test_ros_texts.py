@@ -1,0 +1,44 @@
+"""Texts of service requests that no world file could hold."""
+from __future__ import annotations
+
+import pytest
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import (
+    SetModelConfigurationRequest,
+    SetModelState,
+    SetModelStateRequest,
+    SpawnModel,
+    SpawnModelRequest,
+)
+
+from my_simulations.errors import CommandError
+from my_simulations.ros.endpoints import Endpoint, answering, check_texts
+
+
+@pytest.mark.parametrize("field", ["model_name", "robot_namespace", "reference_frame"])
+def test_a_request_is_refused_with_field_and_character(field):
+    called = []
+    endpoint = Endpoint("spawn_sdf_model", "SpawnModel", SpawnModel,
+                        lambda request, response: called.append(request) or "done")
+    request = SpawnModelRequest(**{field: "a\x01b"})
+    response = answering(endpoint)(request)
+    assert not response.success and not called
+    assert response.status_message == (
+        f"SpawnModel: {field} contains the character U+0001 at position 2, which an XML file "
+        "cannot hold")
+
+
+def test_nested_messages_and_lists_are_looked_at_and_documents_are_not():
+    with pytest.raises(CommandError, match="model_state.model_name contains .*U[+]FFFE"):
+        check_texts(SetModelStateRequest(ModelState(model_name="\ufffe")))
+    with pytest.raises(CommandError, match=r"joint_names\[1\] contains .*U[+]D800"):
+        check_texts(SetModelConfigurationRequest(joint_names=["fine", "\ud800"]))
+    check_texts(SpawnModelRequest(model_name="fine", model_xml="<sdf>\x01</sdf>"))
+
+
+def test_every_fitting_text_passes():
+    endpoint = Endpoint("set_model_state", "SetModelState", SetModelState,
+                        lambda request, response: request.model_state.model_name)
+    name = "caf\u00e9 \U0001f916\t"
+    answer = answering(endpoint)(SetModelStateRequest(ModelState(model_name=name)))
+    assert answer.success and answer.status_message == f"SetModelState: {name}"

@@ -1,0 +1,131 @@
+/**
+ * The Topics panel: all ROS topics with their types; one that is ticked is shown in the view or in
+ * a window of its own, with its rate and bandwidth. Topics that nobody looks at are not heard.
+ */
+import {fill, h} from './dom.js';
+import {bandwidthText, rateText} from './text_format.js';
+/** @import {Topic} from '../protocol.js' */
+
+export class TopicsPanel {
+  /**
+   * @param {HTMLElement} element
+   * @param {import('./panels.js').Page} page
+   */
+  constructor(element, page) {
+    this.page = page;
+    this.#filter = h('input', {
+      type: 'search',
+      placeholder: 'Find a topic or type',
+      'aria-label': 'Find a topic or type',
+      oninput: () => this.#update(),
+    });
+    this.#list = h('ul', {class: 'topic-list', 'aria-label': 'Topics'});
+    this.#sensing = h('input', {type: 'checkbox'});
+    this.#sensing.addEventListener('change', () => page.topics.sense(this.#sensing.checked));
+    const {speeds} = page.driving;
+    /** @param {keyof typeof speeds} key @param {string} title @param {string} unit */
+    const speed = (key, title, unit) =>
+      h(
+        'label',
+        {},
+        title,
+        h('input', {
+          type: 'number', min: 0.01, step: 0.05, value: speeds[key], 'aria-label': title,
+          onchange: (event) => {
+            const value = event.target instanceof HTMLInputElement ? event.target.valueAsNumber : 0;
+            if (value > 0) speeds[key] = value;
+          },
+        }),
+        h('span', {class: 'unit', text: unit}),
+      );
+    fill(
+      element,
+      h('h2', {class: 'properties-title', text: 'Topics'}),
+      h('div', {class: 'filter'}, this.#filter),
+      h('label', {class: 'topic-sensing'}, this.#sensing, 'Show what the selected robot senses'),
+      this.#list,
+      h('details', {class: 'section drive-speeds'},
+        h('summary', {text: 'Arrow keys drive the selected robot'}),
+        speed('speed', 'Speed', 'm/s'), speed('turn', 'Turn', 'rad/s')),
+    );
+    const {topics} = page;
+    for (const event of /** @type {const} */ (['list', 'shown', 'problem'])) {
+      topics.listen(event, () => this.#update());
+    }
+  }
+
+  #filter;
+  #list;
+  #sensing;
+  /** @type {(() => void)|null} */
+  #off = null;
+  #signature = '';
+  /** @type {Map<string, {box: HTMLInputElement, measured: HTMLElement, problem: HTMLElement}>} */
+  #rows = new Map();
+
+  /** A closed panel asks for nothing. @param {boolean} shown */
+  show(shown) {
+    if (shown) this.#off ??= this.page.topics.read();
+    else {
+      this.#off?.();
+      this.#off = null;
+    }
+    this.#update();
+  }
+
+  #update() {
+    if (!this.#off) return;
+    const {topics} = this.page;
+    this.#sensing.checked = topics.sensing;
+    const word = this.#filter.value.trim().toLowerCase();
+    const found = topics.list.filter(({name, type}) =>
+      !word || name.toLowerCase().includes(word) || type.toLowerCase().includes(word));
+    const signature = JSON.stringify([topics.available, word,
+      found.map(({name, type, publishers}) => [name, type, publishers > 0])]);
+    if (signature !== this.#signature) {
+      this.#signature = signature;
+      this.#build(found);
+    }
+    const shown = new Set(topics.shown);
+    for (const topic of found) this.#refresh(topic, shown.has(topic.name));
+  }
+
+  /** @param {Topic[]} found */
+  #build(found) {
+    this.#rows.clear();
+    const {topics} = this.page;
+    const empty = topics.available ? 'No topics' : 'The simulator runs without ROS.';
+    fill(
+      this.#list,
+      ...found.map((topic) => this.#row(topic)),
+      !found.length && h('li', {class: 'empty', text: empty}),
+    );
+  }
+
+  /** @param {Topic} topic */
+  #row({name, type, publishers}) {
+    const box = h('input', {type: 'checkbox', 'aria-label': `Show ${name}`});
+    box.addEventListener('change', () => this.page.topics.show(name, box.checked));
+    const measured = h('span', {class: 'topic-rate'});
+    const problem = h('div', {class: 'field-note', role: 'status'});
+    this.#rows.set(name, {box, measured, problem});
+    return h(
+      'li',
+      {class: publishers ? '' : 'quiet', title: publishers ? name : `${name}: nobody publishes it`},
+      h('label', {}, box, h('span', {class: 'topic-name', text: name}), measured,
+        h('span', {class: 'topic-type', text: type || 'unknown type'})),
+      problem,
+    );
+  }
+
+  /** @param {Topic} topic @param {boolean} shown */
+  #refresh(topic, shown) {
+    const row = this.#rows.get(topic.name);
+    if (!row) return;
+    row.box.checked = shown;
+    const {hz, bytes_per_s: size} = topic;
+    row.measured.textContent = shown && typeof hz === 'number'
+      ? `${rateText(hz)}, ${bandwidthText(size ?? 0)}` : '';
+    row.problem.textContent = (shown && this.page.topics.problems.get(topic.name)) || '';
+  }
+}

@@ -1,0 +1,33 @@
+/**
+ * Numbers of looks that the page and the cameras share. Written by tools/generate/page_palette.py
+ * from src/my_simulations/appearance/palette.py: edit that file, not this one.
+ */
+
+export const GREY = [0.7, 0.7, 0.7, 1];
+export const GROUND = 0.8;
+export const DULLEST = 0.02;
+export const SHININESS = 30;
+
+export const SKY = Object.freeze({
+  day_zenith: 0x3f78c0,
+  day_horizon: 0xc9dcec,
+  night_zenith: 0x05070f,
+  night_horizon: 0x141a28,
+  dusk: 0xe8a468,
+});
+
+/** @type {Record<string, {painter: string, colors: string[], count: number, grain: number}>} */
+export const PATTERNS = Object.freeze({
+  wood: {painter: 'planks', colors: ['#a9743f', '#9e6a37'], count: 4, grain: 14},
+  wood_floor: {painter: 'planks', colors: ['#b98a54', '#a97b47', '#c2935c'], count: 8, grain: 12},
+  bricks: {painter: 'bricks', colors: ['#b9b2a6', '#964a38'], count: 8, grain: 22},
+  ceiling_tiled: {painter: 'tiles', colors: ['#e9e8e2', '#a5a39b'], count: 2, grain: 16},
+  painted_wall: {painter: 'plain', colors: ['#e6e0cf'], count: 1, grain: 8},
+  concrete: {painter: 'tiles', colors: ['#8fa9bd', '#d8d4c8'], count: 4, grain: 6},
+  road: {painter: 'road', colors: ['#4b4b4d', '#e9e7dd'], count: 2, grain: 16},
+  sidewalk: {painter: 'tiles', colors: ['#b5b1a8', '#8f8b83'], count: 4, grain: 18},
+  steps: {painter: 'tiles', colors: ['#a8a39a', '#7c7870'], count: 3, grain: 18},
+  grass: {painter: 'plain', colors: ['#5f8a3a'], count: 1, grain: 60},
+  granite: {painter: 'plain', colors: ['#77726d'], count: 1, grain: 90},
+  com: {painter: 'checker', colors: ['#f4d616', '#111111'], count: 1, grain: 0},
+});

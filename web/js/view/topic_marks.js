@@ -1,0 +1,240 @@
+/** ROS messages in the scene, each where its frame is, moving with the link that carries it. */
+import {Group, Line, Matrix4, Mesh, Points, Texture} from 'three';
+import {compose, inverse} from '../pose.js';
+import {matrixOf, place} from './three_convert.js';
+import {
+  contactsShape, frameShape, mapShape, markerShape, pathShape, pointsShape, rangeShape, scanShape,
+  TOPIC_COLORS, trailShape,
+} from './topic_shapes.js';
+/** @import {Object3D} from 'three' */
+/** @import {FramePlace} from '../topics/frame_places.js' */
+/** @import {Marker, OdometryView} from '../protocol.js' */
+/** @import {Models} from './model_views.js' */
+/** @import {Pose7, Vec3} from '../pose.js' */
+/** @import {Stage} from './stage.js' */
+/** @import {Store} from '../store.js' */
+/** @import {Topics, TopicView} from '../topics/topics.js' */
+
+/** Points of a trail, and how far apart they are at least, m. */
+const TRAIL = 4000;
+const STEP = 0.01;
+/** A pose that is farther from the last one is not driven to: the odometry began anew. */
+const JUMP = 1;
+const FRAME_SIZE = 0.15;
+
+/**
+ * A shape where a frame is; of frames that nobody knows yet the place is null.
+ * @typedef {{group: Group, frame: string|null, place: FramePlace|null}} Part
+ */
+
+/** What is drawn of a topic. */
+class Mark {
+  group = new Group();
+  /** @type {Part[]} */
+  parts = [];
+  /** @type {Vec3[]} */
+  trail = [];
+  /** The odometry's frame in the world, since it was first seen. @type {Pose7|null} */
+  anchor = null;
+
+  /** @param {number} color */
+  constructor(color) {
+    this.color = color;
+  }
+
+  /** @param {Object3D} shape @param {string|null} frame @param {FramePlace|null} [place] */
+  add(shape, frame, place = null) {
+    const group = new Group();
+    group.matrixAutoUpdate = false;
+    group.add(shape);
+    this.group.add(group);
+    this.parts.push({group, frame, place});
+  }
+
+  clear() {
+    this.group.traverse(free);
+    this.group.clear();
+    this.parts = [];
+  }
+}
+
+/** Materials, labels and small marks are shared. @param {Object3D} object */
+function free(object) {
+  if (object instanceof Points || object instanceof Line || object instanceof Mesh) {
+    object.geometry.dispose();
+    const {texture} = object.userData;
+    if (texture instanceof Texture) texture.dispose();
+  }
+}
+
+export class TopicMarks {
+  #store;
+  #models;
+  #stage;
+  #topics;
+  /** @type {Map<string, Mark>} */
+  #marks = new Map();
+  #count = 0;
+
+  /** @param {{store: Store, models: Models, stage: Stage, topics: Topics}} parts */
+  constructor({store, models, stage, topics}) {
+    this.#store = store;
+    this.#models = models;
+    this.#stage = stage;
+    this.#topics = topics;
+    topics.listen('view', ({detail}) => this.#show(detail));
+    topics.listen('shown', () => this.#drop());
+    topics.listen('transforms', () => this.#placeAll());
+    topics.listen('list', () => this.#placeAll());
+    store.listen('document', () => {
+      for (const mark of this.#marks.values()) Object.assign(mark, {trail: [], anchor: null});
+      this.#placeAll();
+    });
+  }
+
+  /** Names of the topics that are drawn, for tests. */
+  get drawn() {
+    return [...this.#marks].flatMap(([name, mark]) => (mark.parts.some(({place: found}) => found) ? [name] : []));
+  }
+
+  /** Moves what links carry. @param {Set<number>|null} ids  null: all */
+  follow(ids) {
+    for (const {parts} of this.#marks.values()) {
+      for (const part of parts) {
+        const link = part.place?.link ?? null;
+        if (link !== null && (!ids || ids.has(link))) this.#put(part);
+      }
+    }
+  }
+
+  #drop() {
+    const shown = new Set(this.#topics.shown);
+    for (const [name, mark] of this.#marks) {
+      if (shown.has(name)) continue;
+      mark.clear();
+      this.#stage.scene.remove(mark.group);
+      this.#marks.delete(name);
+      this.#stage.invalidate();
+    }
+  }
+
+  /** Puts everything where its frame is by now. */
+  #placeAll() {
+    for (const [topic, mark] of this.#marks) this.#placeParts(topic, mark);
+    if (this.#marks.size) this.#stage.invalidate();
+  }
+
+  /** @param {string} topic @param {Mark} mark */
+  #placeParts(topic, mark) {
+    for (const part of mark.parts) {
+      if (part.frame !== null) part.place = this.#topics.placeOf(topic, part.frame);
+      this.#put(part);
+    }
+  }
+
+  /** @param {TopicView} view */
+  #show(view) {
+    const {topic, view: {type}} = view.head;
+    if (type === 'image' || type === 'text' || !this.#topics.shown.includes(topic)) return;
+    let mark = this.#marks.get(topic);
+    if (!mark) {
+      mark = new Mark(TOPIC_COLORS[this.#count++ % TOPIC_COLORS.length]);
+      this.#marks.set(topic, mark);
+      this.#stage.scene.add(mark.group);
+    }
+    if (type !== 'transforms') mark.clear();
+    this.#fill(mark, view);
+    mark.group.traverse((object) => { object.frustumCulled = false; });
+    this.#placeParts(topic, mark);
+    this.#stage.invalidate();
+  }
+
+  /** @param {Mark} mark @param {TopicView} topicView */
+  #fill(mark, {head, buffer, start}) {
+    const {topic, frame, view} = head;
+    /** @param {Object3D} shape */
+    const inFrame = (shape) => mark.add(shape, frame);
+    switch (view.type) {
+      case 'scan':
+        return inFrame(scanShape(view, new Float32Array(buffer, start, view.count), mark.color));
+      case 'points': return inFrame(pointsShape(view, buffer, start, mark.color));
+      case 'range': return inFrame(rangeShape(view, mark.color));
+      case 'path': return inFrame(pathShape(view, mark.color));
+      case 'contacts': return inFrame(contactsShape(view));
+      case 'map':
+        return inFrame(mapShape(view, new Uint8Array(buffer, start, view.width * view.height)));
+      case 'odometry': return this.#addTrail(mark, topic, view);
+      case 'transforms': return this.#addFrames(mark);
+      case 'markers': return view.markers.forEach((marker) => addMarker(mark, marker));
+      default: return undefined;
+    }
+  }
+
+  /**
+   * Odometry is drawn from where the robot was when it was first seen, so that its drift shows.
+   * @param {Mark} mark
+   * @param {string} topic
+   * @param {OdometryView} view
+   */
+  #addTrail(mark, topic, {child, pose}) {
+    const last = mark.trail.at(-1);
+    const [x, y, z] = pose;
+    const way = last ? Math.hypot(x - last[0], y - last[1], z - last[2]) : 0;
+    if (way > JUMP) Object.assign(mark, {trail: [], anchor: null});
+    mark.anchor ??= this.#anchor(topic, child, pose);
+    if (!mark.anchor) return;
+    if (!mark.trail.length || way > STEP) mark.trail.push([x, y, z]);
+    if (mark.trail.length > TRAIL) mark.trail.shift();
+    const group = new Group();
+    const axes = frameShape('', FRAME_SIZE);
+    place(axes, pose);
+    group.add(trailShape([...mark.trail, [x, y, z]], mark.color), axes);
+    mark.add(group, null, {link: null, pose: mark.anchor});
+  }
+
+  /** @param {string} topic @param {string} child @param {Pose7} pose @returns {Pose7|null} */
+  #anchor(topic, child, pose) {
+    const where = this.#topics.placeOf(topic, child);
+    const model = this.#topics.topic(topic)?.model;
+    const now = where ? this.#worldPose(where) : (model && this.#store.worldPose(model)) || null;
+    return now ? compose(now, inverse(pose)) : null;
+  }
+
+  /** @param {FramePlace} place */
+  #worldPose({link, pose}) {
+    if (link === null) return pose;
+    const carrier = this.#store.poses.get(link);
+    return carrier ? compose(carrier, pose) : null;
+  }
+
+  /** @param {Mark} mark */
+  #addFrames(mark) {
+    const there = new Set(mark.parts.map(({frame}) => frame));
+    for (const frame of this.#frames()) {
+      if (!there.has(frame)) mark.add(frameShape(frame, FRAME_SIZE), frame);
+    }
+  }
+
+  #frames() {
+    const {transforms} = this.#topics;
+    return new Set([...transforms].flatMap(([child, {parent}]) => [parent, child]));
+  }
+
+  /** @param {Part} part */
+  #put({group, place: where}) {
+    const carrier = where && where.link !== null ? this.#models.linkMatrix(where.link) : null;
+    group.visible = where !== null && carrier !== undefined;
+    if (!where || carrier === undefined) return;
+    const own = matrixOf(where.pose, new Matrix4());
+    group.matrix.copy(carrier ? own.premultiply(carrier) : own);
+    group.matrixWorldNeedsUpdate = true;
+  }
+}
+
+/** @param {Mark} mark @param {Marker} marker */
+function addMarker(mark, marker) {
+  const group = new Group();
+  place(group, marker.pose);
+  group.add(markerShape(marker));
+  mark.add(group, marker.frame);
+}
