@@ -30,7 +30,7 @@ refuse_unknown() {
   mapfile -t unknown < <(unknown_packages "$@")
   [ "${#unknown[@]}" -gt 0 ] || return 0
   system=$(os_value PRETTY_NAME)
-  if [ "$(os_value ID)" = ubuntu ] && ! apt-cache policy 2>/dev/null | grep -q '/universe '; then
+  if [ "$(os_value ID)" = ubuntu ] && [[ $(apt-cache policy 2>/dev/null) != *'/universe '* ]]; then
     stop "the part 'universe' of Ubuntu's archive is not enabled here; it has ${unknown[*]}." \
       "As root: add-apt-repository universe && apt-get update; then run $COMMAND again."
   fi
