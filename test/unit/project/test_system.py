@@ -3,7 +3,10 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import os
 import re
+import shutil
+import subprocess
 import tarfile
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -262,3 +265,33 @@ def test_library_of_the_system_casts_rays_where_no_wheel_does(monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(embree.ctypes.util, "find_library", lambda name: f"lib{name}.so.4")
     assert embree.library_path() == "libembree4.so.4"
+
+
+def test_release_is_made_of_what_is_committed_without_ros(tmp_path):
+    def run(*words):
+        return subprocess.run(words, cwd=clone, check=False, capture_output=True, text=True,
+                              timeout=60, env={**os.environ, "PATH": f"{tmp_path}:/usr/bin:/bin",
+                                               "PYTHON": str(tmp_path / "python")})
+
+    clone = tmp_path / "clone"
+    (clone / "tools").mkdir(parents=True)
+    shutil.copy(REPOSITORY / "tools" / "release", clone / "tools" / "release")
+    shutil.copy(REPOSITORY / "package.xml", clone)
+    # A pip that builds nothing: it notes what it is asked for.
+    (tmp_path / "python").write_text(
+        '#!/bin/bash\nfor word; do [ "$last" != --wheel-dir ] || out=$word; last=$word; done\n'
+        'cp "$last/package.xml" $out/my_simulations-0.1.0-py3-none-any.whl\n')
+    (tmp_path / "python").chmod(0o755)
+    for words in (("init", "-q"), ("add", "-A"), ("-c", "user.name=a", "-c", "user.email=a@b",
+                                                  "commit", "-qm", "all")):
+        assert run("git", *words).returncode == 0
+    done = run("tools/release", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    (archive,) = (tmp_path / "out").glob("my_simulations-*.tar.gz")
+    (wheel,) = (tmp_path / "out").glob("my_simulations-*.whl")
+    assert archive.stat().st_size and "<version>" in wheel.read_text()
+    assert "git tag -a" in done.stdout
+    (clone / "new").touch()
+    done = run("tools/release", str(tmp_path / "again"))
+    assert done.returncode == 1
+    assert "changes that no commit has" in done.stderr
