@@ -48,7 +48,7 @@ class System:
                     f"{'echo installed $name' if noetic else 'true'}; done")
         shells.fake(home, "apt-get", 'echo "$@" >>$HOME/calls')
         shells.fake(home, "apt-cache", "if [ $1 = policy ]; then "
-                    f"echo '500 archive jammy/{'universe' if universe else 'main'}'; exit; fi\n"
+                    f"echo '500 archive jammy/{'universe' if universe else 'main'} all'; exit; fi\n"
                     "shift; found=1; for name; do case $name in --*) continue ;; " + no_ros +
                     " libembree4-4|python3-numpy-dev) "
                     + ("echo Package: $name; found=0" if name == "trixie" else "true") +
