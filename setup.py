@@ -64,6 +64,7 @@ def for_pip() -> Dict[str, Any]:
         "install_requires": required,
         "extras_require": extras,
         "data_files": data_files(),
+        "entry_points": {"console_scripts": ["study = my_simulations.studies.command:main"]},
     }
 
 

@@ -50,6 +50,14 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("xacro-unexpanded", ERROR, "The text is xacro source, not URDF.",
          "Expand it with `xacro FILE` first."),
     )),
+    ("Studies", (
+        ("study-key", ERROR, "A study file has an unknown key, lacks one, or a name cannot be that "
+         "of a column.", "Use the keys of doc/studies.md."),
+        ("study-value", ERROR, "A value of a study file has the wrong type or is out of range.",
+         "Write a value of the expected type."),
+        ("study-expression", ERROR, "A measurement of a study file is not understood.",
+         "Use the signals and functions of doc/studies.md."),
+    )),
     ("Elements and values", (
         ("attribute-deprecated", WARNING, "A root attribute of a spawn request is deprecated.",
          "Call the service `spawn_object`, whose request has a field for it."),

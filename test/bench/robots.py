@@ -22,7 +22,7 @@ from server import Server, children, master, processor, wait
 
 Row = Tuple[str, str, str, bool]
 WORLD = scenes.world("boxes", 0, True, 1000.0)
-ROBOT = pathlib.Path(__file__).resolve().parents[1] / "rostest" / "robo_with_laser.urdf.xacro"
+ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf.xacro"
 SECONDS = 15.0
 
 
@@ -61,7 +61,7 @@ def spawn(count: int, laser: bool = True, drives: bool = True) -> None:
     from geometry_msgs.msg import Point, Pose, Quaternion
 
     text = subprocess.run(["xacro", str(ROBOT)], stdout=subprocess.PIPE, text=True,
-                          check=True).stdout.replace("/scan", "scan").replace(
+                          check=True).stdout.replace(">/scan<", ">scan<").replace(
                               "<robotNamespace>/</robotNamespace>", "")
     if not laser:
         text = text.replace("libgazebo_ros_laser.so", "libgazebo_ros_template.so")

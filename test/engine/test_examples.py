@@ -1,10 +1,13 @@
 """The example programs run, and show what they say they show."""
 from __future__ import annotations
 
+import csv
 import runpy
 from pathlib import Path
 
 import pytest
+
+from my_simulations.studies.command import main as study
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -32,3 +35,13 @@ def test_a_grip_holds_from_the_force_on_that_carries_the_weight():
     lifts = example("grasp.py")["lifts"]
     assert not lifts(4.0)
     assert lifts(6.0)
+
+
+def test_the_study_measures_what_the_formula_says(tmp_path):
+    assert study(["study", "run", str(EXAMPLES / "friction_study.yaml"),
+                  "--out", str(tmp_path)]) == 0
+    with open(tmp_path / "results.csv", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == 48
+    for row in rows:
+        assert float(row["distance"]) == pytest.approx(float(row["expected"]), rel=0.01, abs=2e-3)

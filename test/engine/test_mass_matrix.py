@@ -121,3 +121,32 @@ def test_a_stiff_axis_keeps_its_law_when_a_lighter_body_was_there_before():
             1.0 - math.exp(-3.0 * 1000.0 / inertia), rel=0.02)
         sim.models.delete("arm")
     sim.close()
+
+
+def _on_wheel(centre: "tuple[float, float, float]", moments: "tuple[float, float, float]"
+              ) -> MassMatrix:
+    """A base with one wheel about its y axis, with this centre of mass and these moments."""
+    uid = pybullet.createMultiBody(
+        baseMass=1.0, linkMasses=[0.3], linkCollisionShapeIndices=[-1],
+        linkVisualShapeIndices=[-1], linkPositions=[(0.2, 0.1, 0.0)],
+        linkOrientations=[(0, 0, 0, 1)], linkInertialFramePositions=[centre],
+        linkInertialFrameOrientations=[(0, 0, 0, 1)], linkParentIndices=[0],
+        linkJointTypes=[pybullet.JOINT_REVOLUTE], linkJointAxis=[(0, 1, 0)])
+    pybullet.changeDynamics(uid, -1, localInertiaDiagonal=(0.1, 0.2, 0.3))
+    pybullet.changeDynamics(uid, 0, localInertiaDiagonal=moments)
+    return MassMatrix(uid)
+
+
+@pytest.mark.parametrize("centre, moments, balanced", [
+    ((0.0, 0.02, 0.0), (2e-4, 3e-4, 2e-4), True),
+    ((0.001, 0.0, 0.0), (2e-4, 3e-4, 2e-4), False),
+    ((0.0, 0.0, 0.0), (2e-4, 3e-4, 2.1e-4), False)], ids=["round", "eccentric", "oval"])
+def test_what_turns_without_changing_the_matrix(bullet, centre, moments, balanced):
+    tree = _on_wheel(centre, moments)
+    assert tree.balanced() == ({0} if balanced else set())
+    assert tree.changes_only_by(tree.balanced()) == balanced
+    seen = []
+    for angle in (0.0, 0.7):
+        pybullet.resetJointState(tree._uid, 0, angle)
+        seen.append(tree.now())
+    assert np.allclose(*seen, rtol=1e-9, atol=1e-12) == balanced

@@ -24,6 +24,8 @@ def module() -> str:
               for name in ("GROUND", "DULLEST", "SHININESS")]
     sky = [f"  {name}: 0x{value:06x}," for name, value in palette.SKY._asdict().items()]
     lines += ["", "export const SKY = Object.freeze({", *sky, "});", "",
+              "/** GLSL: the colour of the sky, linear, in a direction. */",
+              f"export const SKY_COLOR = `{palette.SKY_COLOR}`;", "",
               "/** @type {Record<string, {painter: string, colors: string[], count: number,"
               " grain: number}>} */", "export const PATTERNS = Object.freeze({"]
     for name, one in palette.PATTERNS.items():

@@ -105,16 +105,26 @@ class KinematicBackend:
         self.settings = settings
 
     def step(self, first: int, count: int) -> None:
-        """Move every link along its twist."""
-        span = self.settings.step_size * count
-        self._turn_motors(span)
+        """Move every link along its twist, step by step: the sums are the same in any batches."""
+        for _ in range(count):
+            self._turn_motors(self.settings.step_size)
+            if not self._move(self.settings.step_size) and not self.motors:
+                return
+
+    def _move(self, span: float) -> bool:
+        """Move for `span` s; returns whether anything moves."""
+        moves = False
         for row, state in self.links.items():
             pose, twist = state.pose, state.twist
+            if not any(twist.linear) and not any(twist.angular):
+                continue
+            moves = True
             spin: Quat = (*scale(twist.angular, span / 2.0), 1.0)
             self.links[row] = LinkState(
                 Pose(add(pose.position, scale(twist.linear, span)),
                      normalised(multiply(spin, pose.orientation))), twist)
-            self._dirty = self._dirty or any(twist.linear) or any(twist.angular)
+        self._dirty = self._dirty or moves
+        return moves
 
     def read(self) -> bool:
         """Whether something may have changed."""

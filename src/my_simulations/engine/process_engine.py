@@ -65,6 +65,11 @@ class ProcessEngine:
         """Process id of the child."""
         return self._child.pid if self._child else 0
 
+    @property
+    def exit_code(self) -> Optional[int]:
+        """How the child ended: -N by signal N, else its exit code; None while it runs."""
+        return self._child.poll() if self._child else None
+
     def on_event(self, listener: Callable[[Event], None]) -> None:
         """Set the listener of events."""
         self._event_listener = listener

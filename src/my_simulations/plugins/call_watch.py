@@ -49,25 +49,35 @@ PATIENCE = Patience()
 
 
 class _Call:
+    """A call that is under way.
+
+    Attributes:
+        looked: whether it was looked at. Its times count from the first look on, so that the many
+            calls that come back before it cost nothing.
+        interrupted: monotonic time; 0 before.
+    """
+
     def __init__(self, subject: Any, patience: Patience) -> None:
         self.subject, self.patience = subject, patience
         self.thread = threading.get_ident()
-        self.clock = time.pthread_getcpuclockid(self.thread)
-        self.computed = self._used()
-        self.begun = time.monotonic()
-        self.interrupted = 0.0   # monotonic time; 0 before
+        self.looked = False
+        self.interrupted = 0.0
         self.where = ""
         self.why = ""
 
     def _used(self) -> float:
-        return time.clock_gettime(self.clock)
+        return time.clock_gettime(self._clock)
 
     def overdue(self) -> str:
-        """Why the call has taken too long; "" when it has not."""
-        used = self._used() - self.computed
+        """Why the call has taken too long; "" when it has not. For calls that are under way."""
+        if not self.looked:
+            self.looked = True
+            self._clock = time.pthread_getcpuclockid(self.thread)
+            self._computed, self._begun = self._used(), time.monotonic()
+        used = self._used() - self._computed
         if used > self.patience.computing:
             return f"it did not come back within {self.patience.computing:g} s of processor time"
-        waited = time.monotonic() - self.begun
+        waited = time.monotonic() - self._begun
         if waited > self.patience.waiting and used < 0.1 * waited:
             return f"it waited for more than {self.patience.waiting:g} s"
         return ""

@@ -1,6 +1,8 @@
 """Names of tf frames under a prefix. Source: tf::resolve of ROS 1."""
 from __future__ import annotations
 
+from .context import Context
+
 
 def resolve(prefix: str, frame: str) -> str:
     """`/x` is x whatever the prefix; x becomes prefix/x."""
@@ -8,3 +10,8 @@ def resolve(prefix: str, frame: str) -> str:
         return frame[1:]
     prefix = prefix.strip("/")
     return f"{prefix}/{frame}" if prefix else frame
+
+
+def prefixed(context: Context, frame: str) -> str:
+    """A frame under the parameter `tf_prefix` of the plugin's namespace, or of one above."""
+    return resolve(str(context.search_parameter("tf_prefix", "") or ""), frame)

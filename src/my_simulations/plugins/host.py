@@ -10,7 +10,7 @@ import contextlib
 import threading
 import traceback
 from collections import deque
-from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
 
 from ..description.model import WORLD, Model
 from ..engine.commands import JointMotor, JointServo, PlanarVelocity
@@ -22,7 +22,7 @@ from ..simulator.simulator import Simulator
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .eyes import Eyes
-from .graph import Graph, TopicUse
+from .graph import Graph, Topic, TopicUse
 from .message_maker import Later, MessageMaker
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import Found, Running, plugins_of
@@ -261,12 +261,9 @@ class PluginHost:
         for _, all_running in self._models.values():
             for running in all_running:
                 context = running.context
-                outbox, context.outbox = context.outbox, []
-                for topic, message in outbox:
-                    if isinstance(message, Later):
-                        self._messages.put(topic, message, self._failing(running))
-                    else:
-                        self._guarded(running, topic.send, message)
+                if context.outbox:
+                    outbox, context.outbox = context.outbox, []
+                    self._guarded(running, self._send, running, outbox)
                 transforms += context.transforms
                 context.transforms = []
         if transforms:
@@ -281,6 +278,13 @@ class PluginHost:
             running.context.inbox.append(again)
             self.wake()
         return fail
+
+    def _send(self, running: Running, messages: Iterable[Tuple[Topic, Any]]) -> None:
+        for topic, message in messages:
+            if isinstance(message, Later):
+                self._messages.put(topic, message, self._failing(running))
+            else:
+                topic.send(message)
 
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox

@@ -323,7 +323,7 @@ class SimulatedContext:
     def link(self, name: str) -> SimulatedLink:
         """A link of the model."""
         if not name and self.entity.link_names:
-            name = self.entity.link_names[self.entity.canonical_row - self.entity.first_link_row]
+            name = self.entity.link_names[self.entity.canonical]
         if name not in self._links:
             link = SimulatedLink(self, name)
             self._find(link)

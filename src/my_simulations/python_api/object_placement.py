@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from typing import Dict, List, Sequence, Tuple
+from typing import Callable, Dict, List, Sequence, Tuple
 
 from ..description.model import Model
 from ..errors import InputError, Issue, error
@@ -12,18 +12,21 @@ from ..formats.reading import read_entity
 from ..geometry import Pose, compose, quat_from_rpy
 from ..objects.object_documents import Documents, package_finder
 from ..objects.object_list import PlacedObject, parse_objects
-from ..objects.selection import parse_groups, select
+from ..objects.selection import Selection, parse_groups, select
 from ..objects.yaml_source import read_yaml
 from ..resources.package_files import PACKAGE, own_directory
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
+
+Alter = Callable[[Model], Model]
+"""Makes another model of one that is about to be spawned; `Model.pose` is its place."""
 
 _XACRO_SECONDS = 60.0
 _GROUPS = "object_groups.yaml"
 
 
 def place_objects(simulator: Simulator, resolver: Resolver, names: Sequence[str], file: str,
-                  world: str) -> List[Issue]:
+                  world: str, alter: Alter) -> List[Issue]:
     """Spawn objects of a list at their places.
 
     Args:
@@ -32,6 +35,7 @@ def place_objects(simulator: Simulator, resolver: Resolver, names: Sequence[str]
         names: objects and groups of the list.
         file: the list; "" for that of the world in this package.
         world: name or file of the world.
+        alter: is given each model with its place in the world.
 
     Returns:
         Faults and advice; an object with an error among them is not there.
@@ -41,32 +45,38 @@ def place_objects(simulator: Simulator, resolver: Resolver, names: Sequence[str]
     """
     if not names:
         return []
-    file = file or _list_of(world)
-    tree, source, issues = read_yaml(file, "/objects")
-    listing = parse_objects(tree, source, PACKAGE)
-    groups, more = _groups_beside(file)
-    selection = select(names, listing, groups)
-    issues = [*issues, *more, *selection.issues]
+    selection, issues = selected_objects(names, file, world)
     with Documents(selection.objects, package_finder(), _XACRO_SECONDS) as documents:
         for placed in selection.objects:
             try:
-                issues += _place(simulator, resolver, placed, documents)
+                issues += _place(simulator, resolver, placed, documents, alter)
             except InputError as fault:
                 issues += fault.issues
     return issues
 
 
+def selected_objects(names: Sequence[str], file: str, world: str
+                     ) -> Tuple[Selection, List[Issue]]:
+    """The objects of a list that are named, and all faults; see `place_objects`."""
+    file = file or _list_of(world)
+    tree, source, issues = read_yaml(file, "/objects")
+    listing = parse_objects(tree, source, PACKAGE)
+    groups, more = _groups_beside(file)
+    selection = select(names, listing, groups)
+    return selection, [*issues, *more, *selection.issues]
+
+
 def _place(simulator: Simulator, resolver: Resolver, placed: PlacedObject,
-           documents: Documents) -> List[Issue]:
+           documents: Documents, alter: Alter) -> List[Issue]:
     document = documents.of(placed)
     entity, issues = read_entity(document.xml, resolver, document.origin)
     if not isinstance(entity, Model):
         return [*issues, error("object-not-a-model", f"{placed.name} is a light, not a model",
                                file=document.path)]
     meshes, faults = collision_meshes(entity)
-    model = replace(entity, name=placed.name)
-    pose = Pose(placed.position, quat_from_rpy(*placed.rpy))
-    simulator.models.spawn(model, compose(pose, model.pose), meshes=meshes)
+    pose = compose(Pose(placed.position, quat_from_rpy(*placed.rpy)), entity.pose)
+    model = alter(replace(entity, name=placed.name, pose=pose))
+    simulator.models.spawn(model, model.pose, meshes=meshes)
     return [*issues, *faults]
 
 

@@ -2,22 +2,23 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import Callable, List, Optional, Sequence, Tuple, Type
 
 from ..description.model import Model
+from ..description.world import World
 from ..engine.api import Engine
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, EngineLostError, InputError, Issue, error, errors_of
 from ..formats.mesh.loading import collision_meshes
-from ..formats.reading import Entity, Text, read_entity
-from ..geometry import ZERO3, Twist, Vec3, compose
+from ..formats.reading import Entity, LoadedWorld, Text, read_entity
+from ..geometry import ZERO3, Pose, Twist, Vec3, compose
 from ..resources.resolver import Resolver
 from ..simulator.saving import save_world
 from ..simulator.simulator import Simulator
 from ..simulator.world_loading import load_world
-from .object_placement import place_objects
+from .object_placement import Alter, place_objects
 from .readings import (
     ContactReading,
     JointReadings,
@@ -31,6 +32,27 @@ from .readings import (
 )
 
 Log = Callable[[Issue], None]
+
+@dataclass(frozen=True)
+class WorldChoice:
+    """Which world to open; see `open_world`.
+
+    Attributes:
+        models: name, path of a URDF or SDF file, and pose of each model to spawn besides.
+        alter: changes the description of the world before it is loaded; it must leave its argument
+            as it is.
+        alter_model: the same for each object and model; `Model.pose` is its place.
+    """
+
+    world: str = "worlds/empty.world"
+    seed: int = 0
+    profile: str = ""
+    objects: Tuple[str, ...] = ()
+    object_list: str = ""
+    models: Tuple[Tuple[str, str, Pose], ...] = ()
+    alter: Callable[[World], World] = lambda world: world
+    alter_model: Alter = lambda model: model
+
 
 _MOST_STEPS = 1_000_000
 _LOST = ("engine-died", "engine-lost", "engine-stalled")
@@ -57,7 +79,7 @@ def open_world(world: str = "worlds/empty.world", *, seed: int = 0, profile: str
         InputError: the world, or one of the objects, cannot be used.
         CommandError: the engine cannot be started.
     """
-    return OpenWorld(world, seed=seed, profile=profile, objects=objects, object_list=object_list,
+    return OpenWorld(WorldChoice(world, seed, profile, tuple(objects), object_list),
                      resolver=resolver, log=log, engine=engine)
 
 
@@ -77,18 +99,16 @@ class OpenWorld:
         simulator: the simulator, which can do more (see doc/architecture.md).
     """
 
-    def __init__(self, world: str, *, seed: int, profile: str, objects: Sequence[str],
-                 object_list: str, resolver: Optional[Resolver], log: Optional[Log],
-                 engine: Callable[[], Engine]) -> None:
+    def __init__(self, choice: WorldChoice, *, resolver: Optional[Resolver] = None,
+                 log: Optional[Log] = None, engine: Callable[[], Engine] = ProcessEngine) -> None:
         """See `open_world`."""
         self.issues: List[Issue] = []
         self._listener = log
         self._lost: Optional[str] = None  # how the engine was lost
         self._furnished = 0  # the revision of the models when the world was opened
-        self._name, self._seed, self._profile = world, seed, profile
-        self._objects, self._object_list = tuple(objects), object_list
+        self._choice = choice
         self._resolver = resolver or Resolver.from_environment()
-        loaded = load_world(world, self._resolver, self._log, seed=seed, profile=profile)
+        loaded = self._load()
         self.simulator = Simulator(loaded.world, engine_factory=engine, paused=True, log=self._log,
                                    meshes=loaded.meshes)
         try:
@@ -138,17 +158,33 @@ class OpenWorld:
 
         What follows repeats bit for bit what followed `open_world` with the same seed.
         """
-        again = self._seed if seed is None else seed
+        again = self._choice.seed if seed is None else seed
         unchanged = self.simulator.models.revision == self._furnished and self._lost is None
-        if again == self._seed and unchanged:
+        if again == self._choice.seed and unchanged:
             self.simulator.resets.reset_simulation()
+            self._furnished = self.simulator.models.revision
         else:
-            self._seed, self._lost = again, None
-            loaded = load_world(self._name, self._resolver, self._log, seed=again,
-                                profile=self._profile)
-            self.simulator.load_world(loaded.world, loaded.meshes)
-            self._furnish()
-        self._furnished = self.simulator.models.revision
+            self.open(replace(self._choice, seed=again))
+
+    def open(self, choice: WorldChoice) -> None:
+        """Open another world in the same engine; it behaves bit for bit as in a new one.
+
+        Issues found in the former world are forgotten.
+
+        Raises:
+            InputError: the world cannot be used; the one before is still open if it is its file
+                that cannot be, else there is none until another call.
+        """
+        self.issues.clear()
+        before, self._choice = self._choice, choice
+        try:
+            loaded = self._load()
+        except InputError:
+            self._choice = before
+            raise
+        self._lost = None
+        self.simulator.load_world(loaded.world, loaded.meshes)
+        self._furnish()
 
     # -- reading -----------------------------------------------------------------------------------
 
@@ -195,15 +231,7 @@ class OpenWorld:
         Raises:
             InputError: the document has no usable model.
         """
-        entity, issues = self._read(document)
-        if not isinstance(entity, Model):
-            raise InputError([error("object-not-a-model",
-                                    f"{entity.name} is a light, not a model")])
-        model = entity if name is None else replace(entity, name=name)
-        meshes, faults = collision_meshes(model)
-        self._judge([*issues, *faults])
-        self.simulator.models.spawn(model, compose(pose_of(pose), model.pose), meshes=meshes)
-        return model.name
+        return self._spawn(document, name, pose_of(pose), lambda model: model)
 
     def remove(self, name: str) -> None:
         """Take a model out of the world."""
@@ -280,10 +308,31 @@ class OpenWorld:
 
     # -- helpers -----------------------------------------------------------------------------------
 
+    def _load(self) -> LoadedWorld:
+        choice = self._choice
+        loaded = load_world(choice.world, self._resolver, self._log, seed=choice.seed,
+                            profile=choice.profile)
+        return replace(loaded, world=choice.alter(loaded.world))
+
     def _furnish(self) -> None:
-        self._judge(place_objects(self.simulator, self._resolver, self._objects,
-                                  self._object_list, self._name))
+        choice = self._choice
+        self._judge(place_objects(self.simulator, self._resolver, choice.objects,
+                                  choice.object_list, choice.world, choice.alter_model))
+        for name, file, pose in choice.models:
+            self._spawn(file, name, pose, choice.alter_model)
         self._furnished = self.simulator.models.revision
+
+    def _spawn(self, document: Text, name: Optional[str], pose: Pose, alter: Alter) -> str:
+        entity, issues = self._read(document)
+        if not isinstance(entity, Model):
+            raise InputError([error("object-not-a-model",
+                                    f"{entity.name} is a light, not a model")])
+        model = alter(replace(entity, name=entity.name if name is None else name,
+                              pose=compose(pose, entity.pose)))
+        meshes, faults = collision_meshes(model)
+        self._judge([*issues, *faults])
+        self.simulator.models.spawn(model, model.pose, meshes=meshes)
+        return model.name
 
     def _read(self, document: Text) -> Tuple[Entity, List[Issue]]:
         if isinstance(document, str) and "<" not in document:

@@ -9,28 +9,12 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
 from typing import Any
+
+from ..description.sensor import Noise as NoiseSpec
 
 GAUSSIAN, QUANTIZED = "gaussian", "gaussian_quantized"
 _WHITE, _BIAS, _WANDERING = range(3)
-
-
-@dataclass(frozen=True)
-class NoiseSpec:
-    """SDF `<noise>`; `type` none, gaussian or gaussian_quantized; in the unit of the quantity.
-
-    `dynamic_bias_correlation_time` in s; `precision` 0 for none.
-    """
-
-    type: str = "none"
-    mean: float = 0.0
-    stddev: float = 0.0
-    bias_mean: float = 0.0
-    bias_stddev: float = 0.0
-    dynamic_bias_stddev: float = 0.0
-    dynamic_bias_correlation_time: float = 0.0
-    precision: float = 0.0
 
 
 def generator(seed: int, sensor: str, quantity: str, sample: int, purpose: int = _WHITE) -> Any:

@@ -84,9 +84,12 @@ class Consumer:
 
     def allow(self, moment: Moment, step: Optional[int]) -> None:
         """Let the engine advance to `step` by the clock of `moment`; None for no limit."""
-        self._session.ring.words[self._word] = credit_word(
+        engine = self._session.supervisor.engine
+        words, credit = engine.ring.words, credit_word(
             moment.clock_sets, NO_LIMIT >> 17 if step is None else step)
-        self._session.supervisor.engine.nudge()
+        if words[self._word] != credit:  # else the engine knows, or waits for somebody else
+            words[self._word] = credit
+            engine.nudge()
 
     def wait(self, timeout: float) -> bool:
         """Wait until the engine stops at an appointment or `rung` is set; False on timeout (s)."""

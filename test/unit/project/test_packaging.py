@@ -102,3 +102,8 @@ def test_every_top_level_folder_of_data_is_installed():
     data = {"Media", "config", "launch", "models", "objects", "urdf", "world"}
     assert set(installed) == data
     assert all((REPOSITORY / folder).is_dir() for folder in data)
+
+
+def test_no_test_is_executable_since_completion_of_rosrun_lists_all_that_are():
+    files = [path for path in (REPOSITORY / "test").rglob("*") if path.is_file()]
+    assert files and not [path for path in files if path.stat().st_mode & 0o111]

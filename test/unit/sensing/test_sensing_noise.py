@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from my_simulations.sensing.noise import Noise, NoiseSpec, noisy_picture
+from my_simulations.description.sensor import Noise as NoiseSpec
+from my_simulations.sensing.noise import Noise, noisy_picture
 
 MANY = 200_000
 

@@ -4,7 +4,7 @@ import {
   Mesh, ShaderMaterial, SphereGeometry, Vector3,
 } from 'three';
 import {colorOf} from './three_convert.js';
-import {SKY} from './palette.js';
+import {SKY, SKY_COLOR} from './palette.js';
 /** @import {Materials} from './materials.js' */
 /** @import {Road, Sky} from '../protocol.js' */
 /** @import {Stage} from './stage.js' */
@@ -55,37 +55,10 @@ void main() {
   gl_Position = place.xyww;
 }`;
 
-/** A gradient, the sun's disc, and clouds of value noise. */
 const SKY_FRAGMENT = `
 varying vec3 ahead;
-uniform vec3 sun, zenith, horizon, cloudColor;
-uniform float cover, size, drift;
-float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
-float noise(vec2 p) {
-  vec2 i = floor(p), f = fract(p);
-  f = f * f * (3.0 - 2.0 * f);
-  return mix(mix(hash(i), hash(i + vec2(1, 0)), f.x),
-             mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y);
-}
-void main() {
-  vec3 way = normalize(ahead);
-  float height = max(way.z, 0.0);
-  vec3 color = mix(horizon, zenith, pow(height, 0.45));
-  float glow = max(dot(way, sun), 0.0);
-  color += vec3(1.0, 0.85, 0.6) * (pow(glow, 900.0) + 0.18 * pow(glow, 12.0)) * step(-0.05, sun.z);
-  if (way.z > 0.01) {
-    vec2 at = way.xy / (way.z + 0.12) / size + vec2(drift, 0.0);
-    float density = 0.0, part = 0.55;
-    for (int octave = 0; octave < 5; octave++) {
-      density += part * noise(at);
-      at *= 2.1;
-      part *= 0.5;
-    }
-    float cloud = smoothstep(1.0 - cover, 1.15 - 0.3 * cover, density);
-    cloud *= smoothstep(0.01, 0.2, way.z);
-    color = mix(color, cloudColor, cloud * 0.85);
-  }
-  gl_FragColor = vec4(color, 1.0);
+${SKY_COLOR}void main() {
+  gl_FragColor = vec4(sky(normalize(ahead)), 1.0);
   #include <colorspace_fragment>
 }`;
 
@@ -98,7 +71,7 @@ function makeSky() {
     vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: BackSide, depthWrite: false,
     depthTest: false, fog: false,
     uniforms: {sun: {value: new Vector3()}, zenith: {value: new Color()},
-      horizon: {value: new Color()}, cloudColor: {value: new Color()}, cover: {value: 0.5},
+      horizon: {value: new Color()}, cloud_color: {value: new Color()}, cover: {value: 0.5},
       size: {value: 1}, drift: {value: 0}},
   }));
   dome.renderOrder = -10;
@@ -121,7 +94,7 @@ function colorSky(dome, sky) {
   uniforms.zenith.value.lerpColors(NIGHT.zenith, DAY.zenith, light);
   uniforms.horizon.value.lerpColors(NIGHT.horizon, DAY.horizon, light)
     .lerp(DUSK, Math.max(0, 0.6 - Math.abs(elevation) * 2.5));
-  uniforms.cloudColor.value.copy(colorOf(sky.cloud_ambient)).multiplyScalar(1.15 * light + 0.05);
+  uniforms.cloud_color.value.copy(colorOf(sky.cloud_ambient)).multiplyScalar(1.15 * light + 0.05);
   uniforms.cover.value = Math.min(Math.max(sky.cloud_humidity, 0), 1);
   uniforms.size.value = 0.6 + sky.cloud_mean_size;
   uniforms.drift.value = sky.cloud_direction;

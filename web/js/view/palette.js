@@ -16,6 +16,36 @@ export const SKY = Object.freeze({
   dusk: 0xe8a468,
 });
 
+/** GLSL: the colour of the sky, linear, in a direction. */
+export const SKY_COLOR = `uniform vec3 sun, zenith, horizon, cloud_color;
+uniform float cover, size, drift;
+float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
+float noise(vec2 p) {
+  vec2 i = floor(p), f = fract(p);
+  f = f * f * (3.0 - 2.0 * f);
+  return mix(mix(hash(i), hash(i + vec2(1, 0)), f.x),
+             mix(hash(i + vec2(0, 1)), hash(i + vec2(1, 1)), f.x), f.y);
+}
+vec3 sky(vec3 way) {
+  vec3 color = mix(horizon, zenith, pow(max(way.z, 0.0), 0.45));
+  float glow = max(dot(way, sun), 0.0);
+  color += vec3(1.0, 0.85, 0.6) * (pow(glow, 900.0) + 0.18 * pow(glow, 12.0)) * step(-0.05, sun.z);
+  if (way.z > 0.01) {
+    vec2 at = way.xy / (way.z + 0.12) / size + vec2(drift, 0.0);
+    float density = 0.0, part = 0.55;
+    for (int octave = 0; octave < 5; octave++) {
+      density += part * noise(at);
+      at *= 2.1;
+      part *= 0.5;
+    }
+    float cloud = smoothstep(1.0 - cover, 1.15 - 0.3 * cover, density);
+    cloud *= smoothstep(0.01, 0.2, way.z);
+    color = mix(color, cloud_color, cloud * 0.85);
+  }
+  return color;
+}
+`;
+
 /** @type {Record<string, {painter: string, colors: string[], count: number, grain: number}>} */
 export const PATTERNS = Object.freeze({
   wood: {painter: 'planks', colors: ['#a9743f', '#9e6a37'], count: 4, grain: 14},

@@ -50,6 +50,7 @@ from .inter_model_joints import InterModelJoints
 from .joint_constraints import Constraints
 from .joint_motors import JointMotors
 from .joint_wrenches import JointWrenches
+from .landing_contacts import LandingContacts
 from .pair_friction import FrictionBalance
 from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
@@ -87,7 +88,8 @@ class BulletBackend:
         self._holds = PinnedBodies(self._waker.around)
         self._ties = InterModelJoints()
         self._decay = VelocityDecay()
-        self._settling = ContactSettling(lambda: self._forces.loaded_bodies)
+        self._settling = ContactSettling(lambda: self._forces.loaded_bodies, self._on_held)
+        self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)
@@ -95,7 +97,8 @@ class BulletBackend:
         self._wrenches = JointWrenches(self._models, self._forces, self._sliding)
         # What acts around the steps, in the order in which it does.
         helpers = (self._friction, self._settling, self._forces, self._decay, self._planar,
-                   self._rolling, self._spin, self._residual, self._sliding, self._holds)
+                   self._rolling, self._spin, self._residual, self._sliding, self._holds,
+                   self._landing)
         self._loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self._ties, self._motors, self._wrenches,
@@ -103,7 +106,7 @@ class BulletBackend:
         # Whom it concerns that a command, or a force that begins, reaches a body.
         self._hearers = (self._readout.touch, *(part.touched for part in (
             self._loop, self._friction, self._settling, self._residual, self._rolling,
-            self._sliding)))
+            self._sliding, self._landing)))
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -249,6 +252,7 @@ class BulletBackend:
                 self._rolling.add(body, part, link)
                 if not slips(link):
                     self._sliding.add(body, part, link)
+                self._landing.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
                 self._forces.slip.add(body, part, link)
             self._set_up_axes(body, model)
@@ -396,6 +400,10 @@ class BulletBackend:
         """A command reached a body."""
         for hear in self._hearers:
             hear(body)
+
+    def _on_held(self, body: Body, held: bool) -> None:
+        self._forces.rest(body, held)
+        self._loop.touched(body)
 
     def _on_misfit(self, uid: int, share: float) -> None:
         body = self._bodies[uid]

@@ -40,7 +40,7 @@ EVERY = 16            # steps between two looks at articulated bodies
 _RIGID_EVERY = 256    # and at rigid ones, of which there may be hundreds
 _SLOW = 0.02          # m/s and rad/s: of the base, and of all joints
 _STILL = 2e-5         # m/s and rad/s, of the base: more is a motion of its own
-_STILL_JOINT = 1e-4   # rad/s or m/s
+_STILL_JOINT = 3e-4   # rad/s or m/s: of a wheel of 6 cm whose base creeps so fast
 _CLEAR = 3            # looks
 _STANDS = 32          # looks: to be held, an acceleration must be below 4e-5 m/s^2
 _PUSHED = 2e-3        # m/s and rad/s, of the base: one that is held has less between two looks
@@ -50,6 +50,7 @@ _NONE = (0.0, 0.0, 0.0)
 _SMALL = 0.06         # m, radius: such a body creeps on the level too
 _RESIDUALS = (1e-7, 1e-11, 1e-15)  # PyBullet's own; for leaning bodies; for standing robots
 _MORE_ITERATIONS = 4
+_IMPACT_ITERATIONS = 10
 _PARTING = 1.0        # s, at most
 _LEAST = 0.1          # s, at least: what is put down a little higher has landed
 _SHALLOW = 1e-4       # m: overlaps that may part with velocity
@@ -81,10 +82,12 @@ class ContactSettling:
 
     Args:
         loaded: tells the bodies that timed forces act on in this step.
+        on_held: hears which body is held from now on (True), or is not any more.
     """
 
-    def __init__(self, loaded: Callable[[], Set[int]]) -> None:
-        self._loaded = loaded
+    def __init__(self, loaded: Callable[[], Set[int]],
+                 on_held: Callable[[Body, bool], None]) -> None:
+        self._loaded, self._on_held = loaded, on_held
         self._trees: Dict[int, _Tree] = {}
         self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}
@@ -137,7 +140,22 @@ class ContactSettling:
         """A command reached a body: it may move from now on."""
         tree = self._trees.get(body.uid)
         if tree is not None:
-            tree.looks, tree.clear, tree.held = 0, 0, None
+            held, tree.held = tree.held, None
+            tree.looks, tree.clear = 0, 0
+            if held is not None:
+                self._on_held(body, False)
+
+    def solve_impact(self, impact: bool) -> None:
+        """Solve the next step with many iterations, or (False) as is usual.
+
+        An impact of 10 m/s needs them: after 50 a block ten times as high as wide turns on.
+        """
+        if impact:
+            pybullet.setPhysicsEngineParameter(
+                numSolverIterations=_IMPACT_ITERATIONS * self._iterations,
+                solverResidualThreshold=_RESIDUALS[-1])
+        else:
+            self._use(self._level)
 
     def due(self, step: int) -> int:
         """At once when something was put in, else the next look."""
@@ -168,7 +186,10 @@ class ContactSettling:
             states = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
             if tree.held is None:
                 _put_back(tree.body, states)
+            held = tree.held is not None
             standing = self._stands(tree, states) or standing
+            if held != (tree.held is not None):
+                self._on_held(tree.body, not held)
         self._change(2 if standing else int(self._leaning))
 
     def _is_parted(self, step: int) -> bool:

@@ -40,6 +40,7 @@ class Forces:
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
         self._implicit: Dict[int, ImplicitAxes] = {}
+        self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are held
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
         self.servos = JointServos(self._axes, wake)
@@ -63,9 +64,18 @@ class Forces:
 
     def set_implicit(self, body: Body, axes: Optional[ImplicitAxes]) -> None:
         """Let these springs and dampers, or none, act on the axes of a body."""
-        self._implicit.pop(body.uid, None)
+        for table in (self._implicit, self._resting):
+            table.pop(body.uid, None)
         if axes is not None:
             self._implicit[body.uid] = axes
+
+    def rest(self, body: Body, held: bool) -> None:
+        """A body is held at rest from now on, or not any more: dampers have nothing to damp."""
+        now, then = (self._implicit, self._resting) if held else (self._resting, self._implicit)
+        axes = now.get(body.uid)
+        if axes is not None and not axes.has_springs:
+            axes.disturbed()
+            then[body.uid] = now.pop(body.uid)
 
     def disturbed(self, body: Body) -> None:
         """A body was put somewhere, or its joints were set."""
@@ -78,7 +88,7 @@ class Forces:
         """Drop a body and every timed force on it."""
         self._placed.discard(body.uid)
         self.slip.forget(body)
-        self._implicit.pop(body.uid, None)
+        self.set_implicit(body, None)
         self.servos.forget(body)
         for part in body.parts:
             self._parts.pop(part.row, None)
@@ -116,7 +126,7 @@ class Forces:
         """All bodies are gone, and every timed force with them."""
         ended = bool(self._loops)
         for table in (self._timed, self._acting, self._loops, self._parts, self._axes,
-                      self._weightless, self._implicit, self._limits):
+                      self._weightless, self._implicit, self._resting, self._limits):
             table.clear()
         self.slip.clear()
         self._placed.clear()

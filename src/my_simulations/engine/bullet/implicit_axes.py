@@ -32,7 +32,11 @@ _MOST_DECAYS = 50.0
 
 
 class ImplicitAxes:
-    """The springs and dampers of some axes of one body."""
+    """The springs and dampers of some axes of one body.
+
+    Attributes:
+        has_springs: whether there are springs among them.
+    """
 
     def __init__(self, body: Body, axes: List[Axis], specs: List[JointAxis], dt: float) -> None:
         self._body = body
@@ -42,8 +46,11 @@ class ImplicitAxes:
         self._damping = np.array([spec.damping for spec in specs])
         self._stiffness = np.array([spec.spring_stiffness for spec in specs])
         self._reference = np.array([spec.spring_reference for spec in specs])
+        self.has_springs = bool(self._stiffness.any())
         self._others = 1.0 - _TRUST, _TRUST / dt, _TRUST
         self._tree: Optional[MassMatrix] = None
+        self._tells: List[int] = []               # which of the axes change the mobility
+        self._constant = False                    # none does, nor anything else
         self._prepared_at: Optional[List[float]] = None
         self._age = 0
         self.disturbed()
@@ -76,11 +83,13 @@ class ImplicitAxes:
             efforts[row] = before + effort
 
     def _prepare_again(self, positions: List[float]) -> None:
-        """Look at the mobility when it may have changed."""
-        self._age += 1
+        """Look at the mobility when it may have changed: wheels that turn do not change it."""
         before = self._prepared_at
+        if before is not None and self._constant:
+            return
+        self._age += 1
         if before is None or self._age >= _EVERY or any(
-                abs(now - then) > _FAR for now, then in zip(positions, before)):
+                abs(positions[n] - before[n]) > _FAR for n in self._tells):
             self._prepared_at, self._age = positions, 0
             self._prepare()
 
@@ -92,6 +101,9 @@ class ImplicitAxes:
         dt, count = self._dt, len(self._rows)
         if self._tree is None:
             self._tree = MassMatrix(self._body.uid)
+            balanced = self._tree.balanced()
+            self._tells = [n for n, index in enumerate(self._indices) if index not in balanced]
+            self._constant = self._tree.changes_only_by(balanced)
         ease = mobility(self._tree, self._indices)
         one = np.eye(count)
         decays = np.minimum(dt * np.diag(ease) * self._damping, _MOST_DECAYS)

@@ -10,12 +10,15 @@ rotation (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 3.1).
 """
 from __future__ import annotations
 
-from typing import Dict, List, Tuple
+from typing import Dict, List, Set, Tuple
 
 import numpy as np
 import pybullet
 
 from .link_states import hung_states
+
+_CENTRED = 1e-7  # m: a centre of mass so near its axis is on it
+_ROUND = 1e-6    # share by which moments of what is round may differ
 
 _AXES = {pybullet.JOINT_REVOLUTE: True, pybullet.JOINT_PRISMATIC: False}  # kind: it turns
 
@@ -58,7 +61,8 @@ class MassMatrix:
         self._owners = np.array(owners, dtype=int)
         self._turns = np.array(turns, dtype=bool)
         self._local = np.array(local).reshape(-1, 3)
-        self._moves = _descent([info[16] for info in infos])[:, self._owners]
+        self._hangs = _descent([info[16] for info in infos])
+        self._moves = self._hangs[:, self._owners]
 
     def now(self) -> np.ndarray:
         """The matrix in the present configuration: (count, count), kg, kg m or kg m^2."""
@@ -73,6 +77,35 @@ class MassMatrix:
             np.einsum("k,kfi,kgi->fg", self._masses, shifts, shifts)
             + np.einsum("ki,kfi,kgi->fg", self._moments, spins, spins))
         return matrix
+
+    def balanced(self) -> Set[int]:
+        """Indices of the axes that turn, alone, a link that is round about them, such as a wheel.
+
+        Their angle does not change the matrix, seen from the link that carries them.
+        """
+        centres, pivots, turned = self._where()
+        found: Set[int] = set()
+        for index, place in self.places.items():
+            owner = index + 1
+            alone = int(self._hangs[:, owner].sum()) == 1 and int(
+                (self._owners == owner).sum()) == 1
+            local = self._local[place]
+            along = turned[owner] @ local
+            lever = np.cross(centres[owner] - pivots[owner], along)
+            tensor = np.diag(self._moments[owner])
+            about = float(local @ tensor @ local)
+            # Round about the axis: I = b 1 + (a - b) u u^T.
+            across = (float(np.trace(tensor)) - about) / 2.0
+            rest = tensor - across * np.eye(3) - (about - across) * np.outer(local, local)
+            if (self._turns[place] and alone and float(np.abs(lever).max()) < _CENTRED
+                    and float(np.abs(rest).max()) <= _ROUND * across):
+                found.add(index)
+        return found
+
+    def changes_only_by(self, axes: Set[int]) -> bool:
+        """Whether the body has no freedoms but these axes and those of its base."""
+        base = 6 if self._masses[0] > 0.0 else 0
+        return self.count == base + len(axes)
 
     def _where(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of the base and each link: centre of mass, pivot, rotation of the principal axes."""

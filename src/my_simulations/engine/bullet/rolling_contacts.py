@@ -120,6 +120,14 @@ class RollingContacts:
             roller.still = roller.wait = 0
             self._rolling[body.uid, BASE] = roller.meets
 
+    def landed(self, uid: int, normal: Vec3) -> None:
+        """A rigid body is about to touch something: if it stands on it, it keeps its points."""
+        roller = self._rollers.get((uid, BASE))
+        if roller is not None and (uid, BASE) in self._rolling:
+            turn = pybullet.getBasePositionAndOrientation(uid)[1]
+            if abs(dot(normal, rotate(turn, roller.axis))) > _UPRIGHT:
+                del self._rolling[uid, BASE]
+
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find out now and then who rolls, and let it roll in the next step."""
         if step % EVERY == 0:

@@ -19,7 +19,7 @@ from typing import Any, Dict, List, Set, Tuple
 import pybullet
 
 from ...description.model import Link
-from ...geometry import Vec3, add, cross, dot, norm, scale
+from ...geometry import Vec3, dot, norm, scale
 from .bodies import Body, Part
 from .link_states import motion
 from .step_helper import FAR, next_multiple
@@ -161,7 +161,7 @@ class Sliding:
         for index, contacts in found.items():
             if (uid, index) in self._slides or self._touches_moving(contacts):
                 continue
-            slip = _mean(_slips(uid, index, contacts))
+            slip = _slips(uid, index, contacts)[1]
             if norm(slip) > _SLIDES:
                 self._slides[uid, index] = _Slide(parts[index], self._mass[uid], slip)
                 pybullet.changeDynamics(uid, index, anisotropicFriction=_OURS)
@@ -180,8 +180,8 @@ class Sliding:
             self._give_back(key)
         if not contacts or key not in self._slides:
             return
-        slips = _slips(*key, contacts)
-        slip, before = _mean(slips), slide.slip
+        slips, slip = _slips(*key, contacts)
+        before = slide.slip
         slide.slip = slip
         if slide.trying:
             if norm(slip) < _HELD:
@@ -216,18 +216,22 @@ class Sliding:
         pybullet.changeDynamics(*key, anisotropicFriction=_BULLETS)
 
 
-def _slips(uid: int, index: int, contacts: Contacts) -> List[Vec3]:
-    """The velocity of a link across the floor at each contact, m/s."""
-    centre, _, linear, angular = motion(uid, index)
+def _slips(uid: int, index: int, contacts: Contacts) -> Tuple[List[Vec3], Vec3]:
+    """The velocity of a link across the floor at each contact, and their mean, m/s.
+
+    Contacts count by what they carry: a wheel of a robot in a curve rolls on the edge that carries
+    it, while the other one slips.
+    """
+    centre, _, (u, v, w), (p, q, r) = motion(uid, index)
     found: List[Vec3] = []
+    mean_x = mean_y = mean_z = carried = 0.0
     for contact in contacts:
-        at, normal = contact[5], contact[7]
-        arm = (at[0] - centre[0], at[1] - centre[1], at[2] - centre[2])
-        velocity = add(linear, cross(angular, arm))
-        found.append(add(velocity, scale(normal, -dot(velocity, normal))))
-    return found
-
-
-def _mean(slips: List[Vec3]) -> Vec3:
-    x, y, z = (sum(slip[n] for slip in slips) / len(slips) for n in range(3))
-    return (x, y, z)
+        (x, y, z), (a, b, c), load = contact[5], contact[7], contact[9]
+        x, y, z = x - centre[0], y - centre[1], z - centre[2]
+        sx, sy, sz = u + q * z - r * y, v + r * x - p * z, w + p * y - q * x
+        away = sx * a + sy * b + sz * c
+        sx, sy, sz = sx - away * a, sy - away * b, sz - away * c
+        found.append((sx, sy, sz))
+        mean_x, mean_y, mean_z = mean_x + load * sx, mean_y + load * sy, mean_z + load * sz
+        carried += load
+    return found, (mean_x / carried, mean_y / carried, mean_z / carried)

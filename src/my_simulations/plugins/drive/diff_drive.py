@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from typing import Tuple
 
-from ..base import Plugin
 from ..parameters import namespace_or
-from .odometry import Odometer, WheelCounter, in_base
+from .odometry import Odometer, WheelCounter
+from .odometry_drive import OdometryDrive
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
 _REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plugins)
 
 
-class DiffDrive(Plugin):
+class DiffDrive(OdometryDrive):
     """A differential drive."""
 
     def load(self) -> None:
@@ -53,33 +53,19 @@ class DiffDrive(Plugin):
         self.clock_set()
         self._drive((0.0, 0.0))
 
-    def clock_set(self) -> None:
-        """Time begins anew; where the robot is does not."""
-        self._last_ns = self.context.now_ns
-        self._counter.forget_way()
-
     def update(self) -> None:
         """Odometry first, then the command (as the original)."""
-        dt = (self.context.now_ns - self._last_ns) * 1e-9
-        self._last_ns = self.context.now_ns
-        velocity = self._counter.count(dt)
+        dt = self.elapsed()
         if self._publishes:
-            self._tell(velocity)
+            pose, velocity = self.motion(dt)
+            if self._broadcasts:
+                self._odometer.transform(pose)
+            self._odometer.publish(pose, velocity)
         if self._frames is not None:
             self._frames.send()
         if self._states is not None:
             self._states.send()
         self._drive(self._speeds(dt))
-
-    def _tell(self, velocity: Tuple[float, float, float]) -> None:
-        if self._encoder:
-            pose = self._counter.pose
-        else:
-            pose = self.context.pose
-            velocity = in_base(pose, self.context.twist)
-        if self._broadcasts:
-            self._odometer.transform(pose)
-        self._odometer.publish(pose, velocity)
 
     def _speeds(self, dt: float) -> Tuple[float, float]:
         """Of the rims, m/s, within the acceleration."""

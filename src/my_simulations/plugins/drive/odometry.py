@@ -6,7 +6,7 @@ from typing import Any, List, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from ..context import Context, Joint
-from ..frames import resolve
+from ..frames import prefixed
 
 _NO_IDEA = 1e12  # of what a wheeled robot does not measure
 
@@ -84,8 +84,7 @@ class Odometer:
                  covariance: Tuple[float, ...] = DRIVE_COVARIANCE,
                  twist_covariance: Tuple[float, ...] = (0.0,) * 6) -> None:
         self._context = context
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self.frame, self.base = resolve(prefix, frame), resolve(prefix, base)
+        self.frame, self.base = prefixed(context, frame), prefixed(context, base)
         self._topic = context.publish(topic, "nav_msgs/Odometry") if topic else None
         self._covariance, self._twist_covariance = diagonal(covariance), diagonal(twist_covariance)
 

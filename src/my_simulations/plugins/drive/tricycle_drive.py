@@ -12,16 +12,16 @@ import math
 from typing import Tuple
 
 from ...geometry import inverse, transform
-from ..base import Plugin
 from ..context import Joint
 from ..parameters import namespace_or
-from .odometry import Odometer, WheelCounter, in_base
+from .odometry import Odometer, WheelCounter
+from .odometry_drive import OdometryDrive
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
 _MOST_STEERING = math.pi / 2.0
 
 
-class TricycleDrive(Plugin):
+class TricycleDrive(OdometryDrive):
     """`linear.x` of a command is the speed of the driven wheel, `angular.z` the steering angle."""
 
     def load(self) -> None:
@@ -68,19 +68,10 @@ class TricycleDrive(Plugin):
         self.clock_set()
         self._drive(0.0, 0.0)
 
-    def clock_set(self) -> None:
-        """Time begins anew; where the robot is does not."""
-        self._last_ns = self.context.now_ns
-        self._counter.forget_way()
-
     def update(self) -> None:
         """Odometry first, then the command (as the original)."""
-        dt = (self.context.now_ns - self._last_ns) * 1e-9
-        self._last_ns = self.context.now_ns
-        velocity, pose = self._counter.count(dt), self._counter.pose
-        if not self._encoder:
-            pose = self.context.pose
-            velocity = in_base(pose, self.context.twist)
+        dt = self.elapsed()
+        pose, velocity = self.motion(dt)
         self._odometer.transform(pose)
         self._odometer.publish(pose, velocity)
         if self._frames is not None:

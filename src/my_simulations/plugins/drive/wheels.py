@@ -5,7 +5,7 @@ from typing import Any, Sequence
 
 from ...geometry import compose, inverse
 from ..context import Context, Joint
-from ..frames import resolve
+from ..frames import prefixed
 
 
 class VelocityCommand:
@@ -42,8 +42,7 @@ class WheelFrames:
 
     def __init__(self, context: Context, joints: Sequence[Joint]) -> None:
         self._context = context
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self._pairs = [(resolve(prefix, joint.parent), resolve(prefix, joint.child),
+        self._pairs = [(prefixed(context, joint.parent), prefixed(context, joint.child),
                         context.link(joint.parent), context.link(joint.child))
                        for joint in joints]
 

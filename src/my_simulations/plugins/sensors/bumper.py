@@ -10,7 +10,7 @@ from typing import Any, Dict, List, Tuple
 from ...geometry import Vec3, add, cross, scale, subtract
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import resolve
+from ..frames import prefixed
 from ..parameters import namespace_or
 
 
@@ -23,8 +23,7 @@ class Bumper(Plugin):
         if context.sensor is None:
             raise PluginError("it belongs into a <sensor> of type contact")
         context.use_namespace(namespace_or(p, ""))
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self._frame = resolve(prefix, p.text("frameName", "world"))
+        self._frame = prefixed(context, p.text("frameName", "world"))
         self._link = context.link(context.sensor_link)
         block = context.sensor.contact
         self._collision = block.collisions[0] if block is not None and block.collisions else ""

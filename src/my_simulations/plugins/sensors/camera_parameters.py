@@ -13,7 +13,7 @@ from typing import Any, List
 from ...description.sensor import Camera as CameraBlock
 from ...sensing.api import CameraSpec, Distortion
 from ..context import Context
-from ..frames import resolve
+from ..frames import prefixed
 from ..parameters import namespace_or
 
 USUAL_RATE = 30.0
@@ -45,11 +45,10 @@ def enter_namespace(context: Context) -> None:
 def topics_of(context: Context, suffix: str = "") -> CameraTopics:
     """Names as the element says; `suffix` (`/left`) goes to the camera's name."""
     p = context.parameters
-    prefix = str(context.search_parameter("tf_prefix", "") or "")
     return CameraTopics(p.text("cameraName").strip("/") + suffix,
                         p.text("imageTopicName") or "image_raw",
                         p.text("cameraInfoTopicName") or "camera_info",
-                        resolve(prefix, p.text("frameName")))
+                        prefixed(context, p.text("frameName")))
 
 
 def rate_of(context: Context) -> float:

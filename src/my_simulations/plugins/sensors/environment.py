@@ -16,7 +16,7 @@ from ...sensing.models import altimeter, gps, magnetometer
 from ...sensing.models.motion import velocity_at
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import resolve
+from ..frames import prefixed
 from ..parameters import namespace_or
 from .hector import vector
 from .image_messages import header
@@ -36,8 +36,7 @@ class _OfSensor(Plugin):
             raise PluginError(f"it belongs into a <sensor> of type {kind}")
         context.use_namespace(namespace_or(p, context.model))
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self._frame = resolve(prefix, p.text("frameName") or context.sensor_link)
+        self._frame = prefixed(context, p.text("frameName") or context.sensor_link)
         self.block = getattr(context.sensor, kind)
         self._noises: List[SampledNoise] = []
         context.every(context.sensor.update_rate, self.update)

@@ -6,7 +6,7 @@ heading is 0. What is left out: dynamic_reconfigure, and services of hector's ow
 from __future__ import annotations
 
 import math
-from typing import Any, Optional, Tuple
+from typing import Any, List, Optional, Tuple
 
 from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3, conjugate, rotate
@@ -15,7 +15,7 @@ from ..context import Link, PluginError, Publication
 from ..parameters import namespace_or
 from .hector_errors import SensorErrors, rate_of
 from .image_messages import header
-from .rays import fan_of, ray_of
+from .rays import RayPlugin
 
 _EQUATOR = 6378137.0            # WGS 84, m
 _FLATTENING = 1.0 / 298.257223563
@@ -31,9 +31,23 @@ class _OfLink(Plugin):
 
     def _begin(self, frame: str = "") -> None:
         context, p = self.context, self.context.parameters
+        self._all_errors: List[SensorErrors] = []
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link(p.text("bodyName"))
         self._frame = (p.text("frameId") or frame or self._link.name).lstrip("/")
+
+    def _with_errors(self, prefix: str = "", width: int = 3) -> SensorErrors:
+        """Errors of a quantity, which begin anew with the world."""
+        made = SensorErrors(self.context, prefix, width)
+        self._all_errors.append(made)
+        return made
+
+    def reset(self) -> None:
+        """Errors begin anew."""
+        for errors in self._all_errors:
+            errors.reset(self.context.now_ns)
+
+    clock_set = reset
 
     def _heading(self) -> float:
         """Of the world's x axis, rad clockwise from north."""
@@ -59,20 +73,13 @@ class Gps(_OfLink):
         self._north, self._east = radii(math.radians(self._latitude))
         self._turned = self._heading()
         self._status, self._service = p.integer("status", 0), p.integer("service", 0)
-        self._place_errors = SensorErrors(context)
-        self._velocity_errors = SensorErrors(context, "velocity")
+        self._place_errors = self._with_errors()
+        self._velocity_errors = self._with_errors("velocity")
         fix = p.text("topicName") or "fix"
         self._fix = context.publish(fix, "sensor_msgs/NavSatFix", 10)
         self._velocity = context.publish(p.text("velocityTopicName") or "fix_velocity",
                                          "geometry_msgs/Vector3Stamped", 10)
         context.every(rate_of(p, 4.0), self.update)
-
-    def reset(self) -> None:
-        """Errors begin anew."""
-        self._place_errors.reset(self.context.now_ns)
-        self._velocity_errors.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def _north_west(self, x: float, y: float) -> Tuple[float, float]:
         c, s = math.cos(self._turned), math.sin(self._turned)
@@ -130,17 +137,11 @@ class Magnetic(_OfLink):
         size = p.number("magnitude", 1.0)
         self._field: Vec3 = (size * math.cos(down) * math.cos(angle),
                              size * math.cos(down) * math.sin(angle), -size * math.sin(down))
-        self._errors = SensorErrors(context)
+        self._errors = self._with_errors()
         self._plain = not p.flag("useMagneticFieldMsgs", False)
         kind = "geometry_msgs/Vector3Stamped" if self._plain else "sensor_msgs/MagneticField"
         self._topic = context.publish(p.text("topicName") or "magnetic", kind)
         context.every(rate_of(p), self.update)
-
-    def reset(self) -> None:
-        """Errors begin anew."""
-        self._errors.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def update(self) -> None:
         """Measure and publish."""
@@ -167,7 +168,7 @@ class Baro(_OfLink):
         self._begin()
         context, p = self.context, self.context.parameters
         self._elevation, self._qnh = p.number("elevation", 0.0), p.number("qnh", 1013.25)
-        self._errors = SensorErrors(context, width=1)
+        self._errors = self._with_errors(width=1)
         self._height = context.publish(p.text("topicName") or "pressure_height",
                                        "geometry_msgs/PointStamped", 10)
         self._altimeter: Optional[Publication] = None
@@ -177,12 +178,6 @@ class Baro(_OfLink):
         except PluginError as missing:
             context.info(f"only the height is published: {missing}")
         context.every(rate_of(p), self.update)
-
-    def reset(self) -> None:
-        """Errors begin anew."""
-        self._errors.reset(self.context.now_ns)
-
-    clock_set = reset
 
     def update(self) -> None:
         """Measure and publish."""
@@ -206,20 +201,19 @@ def pressure(altitude: float, qnh: float) -> float:
     return float((1.0 - altitude / _SCALE_HEIGHT) ** _EXPONENT * qnh)
 
 
-class Sonar(Plugin):
+class Sonar(RayPlugin):
     """sensor_msgs/Range of a ray sensor: the nearest of all rays."""
 
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self._ray, self._visuals = ray_of(context)
+        self.take_ray()
         context.use_namespace(namespace_or(p, ""))
         self._frame = (p.text("frameId") or "/sonar_link").lstrip("/")
         flat, high = self._ray.horizontal, self._ray.vertical
         wide = [abs(one.max_angle - one.min_angle) for one in (flat, high)]
         self._view = min((angle for angle in wide if angle > 0.0), default=0.0)
         self._errors = SensorErrors(context, width=1)
-        self._fan = fan_of(self._ray)
         self._topic = context.publish(p.text("topicName") or "sonar", "sensor_msgs/Range")
         assert context.sensor is not None
         context.every(rate_of(p, context.sensor.update_rate), self.update)
@@ -229,11 +223,6 @@ class Sonar(Plugin):
         self._errors.reset(self.context.now_ns)
 
     clock_set = reset
-
-    def update(self) -> None:
-        """Look, if somebody listens."""
-        if self._topic.wanted:
-            self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: Any, ns: int) -> None:
         least, most = self._ray.min_range, self._ray.max_range

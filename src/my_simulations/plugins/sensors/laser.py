@@ -7,24 +7,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..base import Plugin
-from ..frames import resolve
+from ..frames import prefixed
 from ..parameters import namespace_or
-from .rays import SampledNoise, fan_of, ray_of
+from .rays import RayPlugin, SampledNoise
 
 
-class Laser(Plugin):
+class Laser(RayPlugin):
     """Publishes scans while somebody listens."""
 
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self._ray, self._visuals = ray_of(context)
+        self.take_ray()
         context.use_namespace(namespace_or(
             p, context.model if "robotNamespace" in p else ""))
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self._frame = resolve(prefix, p.text("frameName", "/world"))
-        self._fan = fan_of(self._ray)
+        self._frame = prefixed(context, p.text("frameName", "/world"))
         self._noise = SampledNoise(context, self._ray.noise, "range")
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/LaserScan")
         assert context.sensor is not None
@@ -35,11 +32,6 @@ class Laser(Plugin):
         self._noise.reset(self.context.now_ns)
 
     clock_set = reset
-
-    def update(self) -> None:
-        """Look, if somebody listens."""
-        if self._topic.wanted:
-            self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: Any, ns: int) -> None:
         import numpy as np

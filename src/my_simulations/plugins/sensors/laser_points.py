@@ -7,19 +7,19 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
-from ...sensing.noise import GAUSSIAN, Noise, NoiseSpec
-from ..base import Plugin
-from ..frames import resolve
+from ...description.sensor import Noise as NoiseSpec
+from ...sensing.noise import GAUSSIAN, Noise
+from ..frames import prefixed, resolve
 from ..parameters import namespace_or
 from .image_messages import header, point_field
-from .rays import SampledNoise, fan_of, ray_of
+from .rays import RayPlugin, SampledNoise
 
 _STEP = 32       # bytes of a Velodyne's point
 _UINT16 = 4      # of sensor_msgs/PointField
 _FURTHEST = float("inf")
 
 
-class _Points(Plugin):
+class _Points(RayPlugin):
     """A fan of rays at the sensor's rate, while somebody listens."""
 
     usual_topic = "/world"
@@ -28,9 +28,8 @@ class _Points(Plugin):
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self._ray, self._visuals = ray_of(context)
+        self.take_ray()
         context.use_namespace(namespace_or(p, ""))
-        self._fan = fan_of(self._ray)
         self._range_noise = SampledNoise(context, self._ray.noise, "range")
         self._noise = Noise(NoiseSpec(GAUSSIAN, stddev=p.number("gaussianNoise", 0.0)),
                             context.seed, f"{context.model}::{context.sensor_link}::points")
@@ -41,7 +40,7 @@ class _Points(Plugin):
         context.every(context.sensor.update_rate, self.update)
 
     def _named(self, frame: str) -> str:
-        return resolve(str(self.context.search_parameter("tf_prefix", "") or ""), frame)
+        return prefixed(self.context, frame)
 
     def reset(self) -> None:
         """Noise begins anew."""
@@ -49,12 +48,7 @@ class _Points(Plugin):
 
     clock_set = reset
 
-    def update(self) -> None:
-        """Look, if somebody listens."""
-        if self._topic.wanted:
-            self.context.scan(self._fan, self._visuals, self._seen)
-
-    def _seen(self, returns: Any, ns: int) -> None:
+    def _publish(self, returns: Any, ns: int) -> None:
         import numpy as np
 
         if self._directions is None:

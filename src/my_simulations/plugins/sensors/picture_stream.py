@@ -7,7 +7,7 @@ from ...description.sensor import Camera as CameraBlock
 from ...description.sensor import Sensor
 from ...geometry import Pose, compose
 from ...sensing.api import RGB
-from ...sensing.noise import NoiseSpec, noisy_picture
+from ...sensing.noise import noisy_picture
 from ..context import Context, PluginError, View
 from .camera_parameters import Calibration, CameraTopics, spec_of
 from .image_messages import ENCODINGS, Once, compressed, encoded, header, image
@@ -48,7 +48,7 @@ class PictureStream:
         self.calibration = Calibration(context, block, self.spec, baseline)
         self._link, self._pose = link, place_of(sensor, block)
         self._who = "::".join((context.model, link, sensor.name, block.name))
-        self._noise = NoiseSpec(block.noise.type, block.noise.mean, block.noise.stddev)
+        self._noise = block.noise
         self._encoding = ENCODINGS.get(block.format, "")
         if not self._encoding:
             context.warn(f"there is no image format {block.format!r}; bgr8 is published")

@@ -6,25 +6,23 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..base import Plugin
-from ..frames import resolve
+from ..frames import prefixed
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
-from .rays import fan_of, ray_of
+from .rays import RayPlugin
 
 _ULTRASOUND, _INFRARED = 0, 1  # of sensor_msgs/Range
 
 
-class Range(Plugin):
+class Range(RayPlugin):
     """Publishes while somebody listens; where nothing is met, the maximum range."""
 
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self._ray, self._visuals = ray_of(context)
+        self.take_ray()
         context.use_namespace(namespace_or(p, ""))
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self._frame = resolve(prefix, p.text("frameName", "/world"))
+        self._frame = prefixed(context, p.text("frameName", "/world"))
         self._kind = _ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" \
             else _INFRARED
         self._view = p.number("fov", 0.05)
@@ -32,14 +30,8 @@ class Range(Plugin):
         self._noise = WhiteNoise(context.seed, f"{context.model}::{context.sensor_link}::"
                                  f"{context.sensor.name}::range",
                                  p.number("gaussianNoise", 0.0))
-        self._fan = fan_of(self._ray)
         self._topic = context.publish(p.text("topicName", "/range"), "sensor_msgs/Range")
         context.every(p.number("updateRate", 0.0) or context.sensor.update_rate, self.update)
-
-    def update(self) -> None:
-        """Look, if somebody listens."""
-        if self._topic.wanted:
-            self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: Any, ns: int) -> None:
         most = self._ray.max_range

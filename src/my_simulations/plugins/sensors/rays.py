@@ -4,10 +4,10 @@ from __future__ import annotations
 from typing import Any, Tuple
 
 from ...description.sensor import Noise, Ray
-from ...sensing.api import RayFan
+from ...sensing.api import RayFan, RayReturns
 from ...sensing.noise import Noise as SensorNoise
-from ...sensing.noise import NoiseSpec
-from ..context import Context, PluginError
+from ..base import Plugin
+from ..context import Context, PluginError, Publication
 
 _NO_END = 1e6  # m: a sensor without a maximum range
 
@@ -32,16 +32,33 @@ def ray_of(context: Context) -> Tuple[Ray, bool]:
     return sensor.ray, sensor.type in ("gpu_ray", "gpu_lidar")
 
 
+class RayPlugin(Plugin):
+    """What plugins in a `<ray>` sensor share: they look while somebody listens."""
+
+    _topic: Publication
+
+    def take_ray(self) -> None:
+        """Find the block of the sensor. Raises PluginError."""
+        self._ray, self._visuals = ray_of(self.context)
+        self._fan = fan_of(self._ray)
+
+    def update(self) -> None:
+        """Look, if somebody listens."""
+        if self._topic.wanted:
+            self.context.scan(self._fan, self._visuals, self._publish)
+
+    def _publish(self, returns: RayReturns, ns: int) -> None:
+        """Publish what the rays met at a sim time."""
+        raise NotImplementedError
+
+
 class SampledNoise:
     """SDF's noise, sample by sample."""
 
     def __init__(self, context: Context, noise: Noise, quantity: str) -> None:
         name = f"{context.model}::{context.sensor_link}::" + (
             context.sensor.name if context.sensor is not None else "")
-        self._noise = SensorNoise(NoiseSpec(
-            noise.type, noise.mean, noise.stddev, noise.bias_mean, noise.bias_stddev,
-            noise.dynamic_bias_stddev, noise.dynamic_bias_correlation_time, noise.precision),
-            context.seed, name, quantity)
+        self._noise = SensorNoise(noise, context.seed, name, quantity)
         self._last_ns = context.now_ns
 
     def apply(self, values: Any, ns: int) -> Any:

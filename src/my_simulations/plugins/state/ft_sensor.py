@@ -13,7 +13,7 @@ from ...description.sensor import ForceTorque
 from ...sensing.models.force_torque import measure
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import resolve
+from ..frames import prefixed
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 from ..sensors.rays import SampledNoise
@@ -39,8 +39,7 @@ class FtSensor(Plugin):
                                     f"{kind}/{axis}")
                        for kind in ("force", "torque") for axis in "xyz"
                        ] if self._block is not None else []
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self._frame = resolve(prefix, self._frame_name())
+        self._frame = prefixed(context, self._frame_name())
         self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
         context.joint_wrench(self._name)
         context.every(p.number("updateRate", 0.0) or (

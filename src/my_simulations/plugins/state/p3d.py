@@ -10,7 +10,7 @@ from typing import Any, Optional
 from ...geometry import Pose, Twist, add, compose, conjugate, inverse, multiply, rotate, subtract
 from ..base import Plugin
 from ..context import Link
-from ..frames import resolve
+from ..frames import prefixed
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 
@@ -32,8 +32,7 @@ class P3d(Plugin):
                             p.turn("rpyOffset", p.turn("rpyOffsets")))
         self._stddev = p.number("gaussianNoise", 0.0)
         self._noise = WhiteNoise(context.seed, f"{context.model}::{name}::p3d", self._stddev)
-        prefix = str(context.search_parameter("tf_prefix", "") or "")
-        self._frame_id, self._child_id = resolve(prefix, frame), resolve(prefix, name)
+        self._frame_id, self._child_id = prefixed(context, frame), prefixed(context, name)
         self._topic = context.publish(p.text("topicName"), "nav_msgs/Odometry")
         context.every(p.number("updateRate", 0.0), self.update)
 

@@ -10,6 +10,8 @@ import contextlib
 from dataclasses import replace
 from typing import Any, Callable, Iterable, Iterator, List, Optional, Union
 
+from lxml import etree
+
 from ....description.compare import differences
 from ....description.light import Light
 from ....description.model import Joint, JointAxis, Link, Mimic, Model, PluginSpec
@@ -176,8 +178,6 @@ class _Writer:
 
     def inertial(self, parent: Any, link: Link) -> None:
         """`<inertial>`; omitted if it has default values."""
-        from lxml import etree
-
         element = etree.SubElement(parent, "inertial")
         fill_element(element, link.inertial, INERTIAL, {}, [])
         if not len(element):
@@ -218,8 +218,6 @@ class _Writer:
 
     def mimic(self, parent: Any, mimic: Optional[Mimic]) -> None:
         """`<mimic>` (SDF 1.11; older readers ignore it)."""
-        from lxml import etree
-
         if mimic is not None:
             element = etree.SubElement(parent, "mimic", joint=mimic.joint)
             write_value(element, "multiplier", FLOAT, mimic.multiplier)
@@ -236,8 +234,6 @@ def _naming(what: str) -> Iterator[None]:
 
 
 def _element(parent: Any, tag: str, named: Any) -> Any:
-    from lxml import etree
-
     element = etree.SubElement(parent, tag)
     if named is not None and hasattr(named, "name"):
         element.set("name", named.name)

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Set, Tuple
 
+from lxml import etree
+
 from ...xml.binding import Entry, Group, Kept, Nested, Part, Table, Value, usual_value
 from .xml_text import append_fragment, write_value
 
@@ -38,8 +40,6 @@ def write_each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[A
 
 def _write_nested(parent: Any, source: Any, of: Any, tag: str, entry: Nested) -> None:
     """Write the objects of a nested element, unless they are the default."""
-    from lxml import etree
-
     value = getattr(source, entry.field)
     if value == usual_value(of, entry.field):
         return
@@ -78,8 +78,6 @@ class _Filler:
 
     def _group(self, element: Any, source: Any, of: Any, name: str, entry: Group,
                path: str) -> None:
-        from lxml import etree
-
         inner = getattr(source, entry.part) if entry.part else source
         inner_of = type(inner) if entry.part else of
         if entry.part and inner == usual_value(of, entry.part) and not self._has_more(path):
@@ -105,12 +103,14 @@ class _Filler:
 
     def _text(self, value: Value, source: Any, of: Any, path: str) -> Optional[str]:
         """The text of a value; None if it need not be written."""
-        if path in self._leave_out or not self._first(value, source):
-            return None
+        owner, kind = source, of
         if value.part:
-            source, of = getattr(source, value.part), type(getattr(source, value.part))
-        now, usual = getattr(source, value.field), usual_value(of, value.field)
-        if now is None or (now == usual and path not in self._required):
+            owner = getattr(source, value.part)
+            kind = type(owner)
+        now = getattr(owner, value.field)
+        if now is None or (now == usual_value(kind, value.field) and path not in self._required):
+            return None
+        if path in self._leave_out or not self._first(value, source):
             return None
         return value.kind.format(now)
 

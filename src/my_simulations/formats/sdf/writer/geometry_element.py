@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from typing import Any, Dict
 
+from lxml import etree
+
 from ....description.shapes import Geometry, Polyline
 from ...xml.binding import Table
 from ...xml.values import FLOAT, TEXT, VECTOR2
@@ -17,8 +19,6 @@ def write_geometry(parent: Any, geometry: Geometry) -> None:
     A relative URI, which is valid in its own file only, is replaced by the absolute path it
     resolved to; `model://`, `package://` and `file://` URIs are kept (Gazebo behaviour).
     """
-    from lxml import etree
-
     holder = etree.SubElement(parent, "geometry")
     if isinstance(geometry, Polyline):
         _write_polyline(holder, geometry)
@@ -50,8 +50,6 @@ def uri_of(geometry: Any) -> str:
 
 
 def _write_polyline(holder: Any, polyline: Polyline) -> None:
-    from lxml import etree
-
     for loop in polyline.loops:
         element = etree.SubElement(holder, "polyline")
         for point in loop:

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
+from lxml import etree
+
 from ....description.compare import BUILT_IN
 from ....description.shapes import Material
 from ...xml.values import TEXT
@@ -13,8 +15,6 @@ from .xml_text import write_value
 
 def write_material(parent: Any, material: Optional[Material]) -> None:
     """`<material>`; a script without a `<uri>` gets the URI of Gazebo's own materials."""
-    from lxml import etree
-
     if material is None:
         return
     element = etree.SubElement(parent, "material")

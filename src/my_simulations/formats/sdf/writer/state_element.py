@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, Sequence
 
+from lxml import etree
+
 from ....description.light import Light
 from ....description.model import Model
 from ....description.saved_state import LinkState, ModelState, SavedState
@@ -26,8 +28,6 @@ def write_state(parent: Any, state: SavedState, write_model: Callable[[Any, Mode
         write_model: writes an inserted model below an element.
         write_light: writes an inserted light below an element.
     """
-    from lxml import etree
-
     element = etree.SubElement(parent, "state", world_name=state.world_name)
     write_value(element, "sim_time", TEXT, _seconds(state.sim_time_ns))
     for tag, time in (("real_time", state.real_time_ns), ("wall_time", state.wall_time_ns)):
@@ -56,8 +56,6 @@ def _seconds(nanoseconds: int) -> str:
 
 
 def _write_model(parent: Any, model: ModelState) -> None:
-    from lxml import etree
-
     element = etree.SubElement(parent, "model", name=model.name)
     if model.pose is not None:
         write_value(element, "pose", POSE, model.pose)
@@ -83,8 +81,6 @@ class _Nested:
         return self._model(scope), plain
 
     def _model(self, scope: str) -> Any:
-        from lxml import etree
-
         if scope not in self._elements:
             outer, _, plain = scope.rpartition(SCOPE)
             self._elements[scope] = etree.SubElement(self._model(outer), "model", name=plain)
@@ -92,8 +88,6 @@ class _Nested:
 
 
 def _write_joint(parent: Any, name: str, positions: Sequence[float]) -> None:
-    from lxml import etree
-
     joint = etree.SubElement(parent, "joint", name=name)
     for axis, position in enumerate(positions):
         write_value(joint, "angle", FLOAT, position)
@@ -101,8 +95,6 @@ def _write_joint(parent: Any, name: str, positions: Sequence[float]) -> None:
 
 
 def _write_link(parent: Any, name: str, link: LinkState) -> None:
-    from lxml import etree
-
     element = etree.SubElement(parent, "link", name=name)
     write_value(element, "pose", POSE, link.pose)
     numbers = (*link.twist.linear, *link.twist.angular)

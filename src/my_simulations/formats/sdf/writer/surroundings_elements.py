@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Any, List, Optional
 
+from lxml import etree
+
 from ....description.actor import Actor
 from ....description.model import PluginSpec
 from ....description.surroundings import Gui, GuiCamera, Road
@@ -35,8 +37,6 @@ def write_road(parent: Any, road: Road) -> None:
 
 def write_actor(parent: Any, actor: Actor) -> None:
     """`<actor>`, or the `<include>` that it was read from."""
-    from lxml import etree
-
     if actor.include:
         parent.append(parsed_fragment(actor.include))
         return
@@ -61,8 +61,6 @@ def _write_camera(parent: Any, camera: Optional[GuiCamera]) -> None:
 
 
 def _element(parent: Any, tag: str, name: Optional[str] = None) -> Any:
-    from lxml import etree
-
     element = etree.SubElement(parent, tag)
     if name is not None:
         element.set("name", name)

@@ -6,6 +6,8 @@ import math
 import re
 from typing import Any, Callable, Dict, List, Mapping, Optional
 
+from lxml import etree
+
 from ....geometry import Pose, Quat, Vec3, quat_from_rpy, rpy_from_quat
 from ...xml.binding import Entry, Group, Kept, Part, Table
 from ...xml.values import Kind, PoseKind
@@ -18,8 +20,6 @@ _MOST_ROUNDS = 16
 def write_value(parent: Any, tag: str, kind: Kind, value: Any = None,
                 text: Optional[str] = None) -> None:
     """A child element with a value, or with its text."""
-    from lxml import etree
-
     if text is None:
         text = kind.format(value)
     if isinstance(kind, PoseKind):
@@ -96,8 +96,6 @@ def _merge(parent: Any, fragment: Any, children: Mapping[str, Entry]) -> None:
         if inside is not None and _is_kept(fragment[0], inside):
             there = parent.find(fragment.tag)
             if there is None:
-                from lxml import etree
-
                 there = etree.SubElement(parent, fragment.tag)
             _merge(there, fragment[0], inside)
             return
@@ -123,8 +121,6 @@ def _is_kept(fragment: Any, children: Mapping[str, Entry]) -> bool:
 
 def parsed_fragment(xml: str) -> Any:
     """A fragment as an element, without white space between tags, its prefixes declared."""
-    from lxml import etree
-
     missing = sorted(set(_PREFIX.findall(xml)) - set(_DECLARED.findall(xml)) - {"xml", "xmlns"})
     declared = "".join(f' xmlns:{prefix}="urn:{prefix}"' for prefix in missing)
     parser = etree.XMLParser(
@@ -140,8 +136,6 @@ def parsed_fragment(xml: str) -> Any:
 
 def document(version: str, write: Callable[[Any], None]) -> bytes:
     """The bytes of an SDF document; `write` fills its root."""
-    from lxml import etree
-
     root = etree.Element("sdf", version=version)
     write(root)
     prefixes: Dict[str, str] = {}

@@ -1,0 +1,32 @@
+"""What drives with two wheels and odometry share: time between updates, and how the robot moved."""
+from __future__ import annotations
+
+from typing import Tuple
+
+from ...geometry import Pose
+from ..base import Plugin
+from .odometry import WheelCounter, in_base
+
+
+class OdometryDrive(Plugin):
+    """Counts the way of its wheels, and tells it or the truth."""
+
+    _counter: WheelCounter
+    _encoder: bool   # tell what the wheels have turned, else where the robot is
+
+    def clock_set(self) -> None:
+        """Time begins anew; where the robot is does not."""
+        self._last_ns = self.context.now_ns
+        self._counter.forget_way()
+
+    def elapsed(self) -> float:
+        """Sim time since the last call, or since `clock_set`, s."""
+        before, self._last_ns = self._last_ns, self.context.now_ns
+        return (self._last_ns - before) * 1e-9
+
+    def motion(self, dt: float) -> Tuple[Pose, Tuple[float, float, float]]:
+        """Count the way of the last `dt` s; pose and (forward, sideways, yaw) velocity to tell."""
+        velocity = self._counter.count(dt)
+        if self._encoder:
+            return self._counter.pose, velocity
+        return self.context.pose, in_base(self.context.pose, self.context.twist)

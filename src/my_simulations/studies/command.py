@@ -1,0 +1,224 @@
+"""The command `study`: runs, resumes and shows studies. Needs no ROS."""
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import signal
+import sys
+from types import FrameType
+from typing import Any, Dict, List, Optional, Sequence
+
+from ..errors import CommandError, InputError, SimulationError
+from .folder import REPORT, StudyFolder
+from .journal import Journal, counts, finished_cases, header_of
+from .plan import WHOLE, CasePlan, Shard
+from .report import write_report
+from .row import OK
+from .show import can_launch, launch_command, write_world
+from .slot import Hook
+from .study_file import read_study
+from .study_progress import Progress
+from .study_runner import Rate, StudyRunner
+from .trajectories import Recorder
+
+NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = argparse.ArgumentParser(
+        prog="study", description="Run worlds many times with varied parameters, and measure them."
+        " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are"
+        " missing, 2 for a faulty study or command line, 130 if interrupted.")
+    actions = made.add_subparsers(dest="action", metavar="ACTION", required=True)
+    run = actions.add_parser("run", help="run a study, or the cases of it that have no result yet")
+    run.add_argument("file", metavar="FILE", help="study file (doc/studies.md)")
+    run.add_argument("--out", metavar="DIR", help="folder of the results; default: the name of the"
+                     " file, in the working directory")
+    run.add_argument("--shard", type=_shard, default=WHOLE, metavar="I/N",
+                     help="run every Nth case only, beginning with number I")
+    resume = actions.add_parser("resume", help="go on with a study that was interrupted")
+    others = {
+        "status": "print how many cases have run, and what became of them",
+        "report": "write the table, and the report as one HTML file",
+        "export": "write the table as CSV, and as parquet if pyarrow is installed"}
+    parsers = {name: actions.add_parser(name, help=text) for name, text in others.items()}
+    show = actions.add_parser("show", help="open the world of a case in the world editor")
+    show.add_argument("case", metavar="CASE", help="id of the case, or its beginning")
+    show.add_argument("--write", metavar="FILE", help="only write the world to this file")
+    show.add_argument("--in", dest="dir", metavar="DIR", default=".",
+                      help="folder of the results; default: the working directory")
+    for each in (resume, *parsers.values()):
+        each.add_argument("dir", metavar="DIR", nargs="?", default=".",
+                          help="folder of the results; default: the working directory")
+    for each in (run, resume):
+        each.add_argument("--slots", type=int, metavar="N", default=os.cpu_count() or 1,
+                          help="cases that run at a time; default: number of processors")
+    for each in (run, resume, *parsers.values()):
+        each.add_argument("--json", action="store_true", help="print JSON")
+    return made
+
+
+def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None) -> int:
+    """Run the command.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+        hook: see `Slot`.
+
+    Returns:
+        The exit code, see `parser`.
+    """
+    options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
+    try:
+        return _ACTIONS[options.action](options, hook)
+    except InputError as fault:
+        for issue in fault.issues:
+            _tell(str(issue))
+        return INVALID
+    except SimulationError as fault:
+        _tell(f"study: {fault}")
+        return INVALID
+    except KeyboardInterrupt:
+        _tell("study: interrupted; `study resume` goes on")
+        return INTERRUPTED
+
+
+def _shard(text: str) -> Shard:
+    found = re.fullmatch(r"(\d+)/(\d+)", text)
+    if not found or not 1 <= int(found[1]) <= int(found[2]):
+        raise argparse.ArgumentTypeError(f"{text!r} is not I/N with I from 1 to N")
+    return Shard(int(found[1]), int(found[2]))
+
+
+def _run(options: argparse.Namespace, hook: Optional[Hook]) -> int:
+    stem = os.path.splitext(os.path.basename(options.file))[0]
+    folder = StudyFolder(options.out or stem)
+    plan = _plan(options.file)
+    folder.create(options.file)
+    return _work(options, folder, plan, options.shard, hook)
+
+
+def _resume(options: argparse.Namespace, hook: Optional[Hook]) -> int:
+    folder = StudyFolder(options.dir)
+    header = folder.header()
+    plan = _plan(header["file"])
+    codes = []
+    for path in folder.journals():
+        found = re.search(r"-(\d+)-of-(\d+)\.jsonl$", path)
+        shard = Shard(int(found[1]), int(found[2])) if found else WHOLE
+        codes.append(_work(options, folder, plan, shard, hook))
+    return max(codes)
+
+
+def _plan(file: str) -> CasePlan:
+    study, issues = read_study(file)
+    for issue in issues:
+        _tell(str(issue))
+    return CasePlan(study)
+
+
+def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shard: Shard,
+          hook: Optional[Hook]) -> int:
+    if options.slots < 1:
+        raise CommandError(f"--slots must be at least 1, is {options.slots}")
+    total = len(range(shard.index - 1, len(plan), shard.of))
+    journal = Journal(folder.journal_of(shard), {
+        "study": plan.study.name, "file": plan.study.file, "cases": total,
+        "shard": [shard.index, shard.of], "versions": plan.versions})
+    try:
+        finished = finished_cases(journal.path)
+        recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
+        rate = Rate(total - len(finished))
+        progress = Progress(rate, sys.stderr, options.json)
+        runner = StudyRunner(plan, recorder, finished, options.slots, progress.tell, hook)
+        before = signal.signal(signal.SIGTERM, _interrupt)
+        try:
+            runner.run(shard)
+        finally:
+            signal.signal(signal.SIGTERM, before)
+            progress.close()
+    finally:
+        journal.close()
+    files = folder.write_tables(plan)
+    files.append(_report(folder, plan))
+    return _tell_status(folder, options.json, files)
+
+
+def _interrupt(_: int, __: Optional[FrameType]) -> None:
+    raise KeyboardInterrupt
+
+
+def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
+    return _tell_status(StudyFolder(options.dir), options.json, [])
+
+
+def _tell_status(folder: StudyFolder, as_json: bool, files: List[str]) -> int:
+    total: Dict[str, int] = {}
+    cases = 0
+    header: Dict[str, Any] = {}
+    for path in folder.journals():
+        header = header_of(path)
+        cases += header["cases"]
+        for status, count in counts(path).items():
+            total[status] = total.get(status, 0) + count
+    done = sum(total.values())
+    if as_json:
+        _say(json.dumps({"study": header["study"], "folder": folder.path, "cases": cases,
+                         "done": done, **total, "files": files}))
+    else:
+        became = ", ".join(f"{count} {status}" for status, count in total.items() if count)
+        _say(f"{header['study']}: {done} of {cases} cases" + (f": {became}" if became else ""))
+        for file in files:
+            _say(f"  {file}")
+    return 0 if total.get(OK, 0) >= cases else NOT_ALL_OK
+
+
+def _report(folder: StudyFolder, plan: CasePlan) -> str:
+    path = os.path.join(folder.path, REPORT)
+    write_report(path, plan.study, folder.journals(), f"study show --in {folder.path}")
+    return path
+
+
+def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
+    folder = StudyFolder(options.dir)
+    plan = _plan(folder.header()["file"])
+    files = folder.write_tables(plan)
+    if options.action == "report":
+        files.append(_report(folder, plan))
+    _say(json.dumps({"files": files}) if options.json else "\n".join(files))
+    return 0
+
+
+def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
+    folder = StudyFolder(options.dir)
+    plan = _plan(folder.header()["file"])
+    case = plan.find(options.case)
+    if case is None:
+        _tell(f"study: no case has an id that begins with {options.case}; ids change with the study"
+              " file and the files it names")
+        return INVALID
+    path = options.write or os.path.join(folder.path, f"case-{case.id}.world")
+    path = write_world(plan, case, path)
+    command = launch_command(path)
+    if options.write or not can_launch():
+        _say(path)
+        _tell("to open it: " + " ".join(command))
+        return 0
+    _tell(" ".join(command))
+    os.execvp(command[0], command)
+
+
+_ACTIONS = {"run": _run, "resume": _resume, "status": _status, "report": _write,
+            "export": _write, "show": _show}
+
+
+def _say(text: str) -> None:
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def _tell(text: str) -> None:
+    sys.stderr.write(text + "\n")

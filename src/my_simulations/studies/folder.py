@@ -1,0 +1,65 @@
+"""The folder of a study's results: journals, table, trajectories and report."""
+from __future__ import annotations
+
+import glob
+import os
+import shutil
+from typing import Any, Dict, List
+
+from ..errors import CommandError
+from .journal import header_of
+from .plan import CasePlan, Shard
+from .table import has_parquet, write_csv, write_parquet
+
+COPY = "study.yaml"
+REPORT = "report.html"
+
+
+class StudyFolder:
+    """Where the results of a study are.
+
+    Args:
+        path: of the folder.
+    """
+
+    def __init__(self, path: str) -> None:
+        self.path = os.path.abspath(path)
+
+    def journal_of(self, shard: Shard) -> str:
+        """The path of the journal of a shard."""
+        return os.path.join(self.path, self.stem("journal", shard) + ".jsonl")
+
+    @staticmethod
+    def stem(kind: str, shard: Shard) -> str:
+        """The name of a shard's file, without its ending."""
+        return kind if shard.of == 1 else f"{kind}-{shard.index}-of-{shard.of}"
+
+    def journals(self) -> List[str]:
+        """All journals. Raises CommandError if there is none."""
+        found = sorted(glob.glob(os.path.join(glob.escape(self.path), "journal*.jsonl")))
+        if not found:
+            raise CommandError(f"there is no study in {self.path}; start one with"
+                               " `study run FILE`")
+        return found
+
+    def header(self) -> Dict[str, Any]:
+        """What the first journal says about the study."""
+        return header_of(self.journals()[0])
+
+    def create(self, study_file: str) -> None:
+        """Make the folder, with a copy of the study file for the record."""
+        try:
+            os.makedirs(self.path, exist_ok=True)
+            shutil.copyfile(study_file, os.path.join(self.path, COPY))
+        except OSError as fault:
+            raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
+
+    def write_tables(self, plan: CasePlan) -> List[str]:
+        """Write the table in all formats; returns the files."""
+        paths = self.journals()
+        files = [os.path.join(self.path, "results.csv")]
+        write_csv(files[0], plan.study, paths)
+        if has_parquet():
+            files.append(os.path.join(self.path, "results.parquet"))
+            write_parquet(files[1], plan.study, paths)
+        return files

@@ -1,0 +1,133 @@
+"""What a case is made of besides its settings: contents of files, versions, the processor."""
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+from importlib import metadata
+from typing import Any, Dict, List, Sequence
+
+from .. import __version__
+from ..errors import SimulationError
+from ..formats.reading import read_entity, read_world
+from ..objects.object_documents import Documents, package_finder
+from ..python_api.object_placement import selected_objects
+from ..resources.resolver import Resolver
+from ..resources.world_lookup import find_world
+
+_XACRO_SECONDS = 60.0
+
+
+class NotingResolver(Resolver):
+    """A resolver that notes every file that it finds.
+
+    Attributes:
+        found: absolute paths, in the order in which they were asked for.
+    """
+
+    found: Dict[str, None]
+
+    def __init__(self, *arguments: Any, **more: Any) -> None:
+        super().__init__(*arguments, **more)
+        self.found = {}
+
+    def resolve(self, uri: str, base_dir: str = "") -> str:
+        """See `Resolver`."""
+        path = super().resolve(uri, base_dir)
+        self.found[path] = None
+        return path
+
+    def model_file(self, uri: str, base_dir: str = "") -> str:
+        """See `Resolver`."""
+        path = super().model_file(uri, base_dir)
+        self.found[path] = None
+        return path
+
+
+def digest_of(value: Any) -> str:
+    """A digest of plain values, the same on every machine: 32 hexadecimal digits."""
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+def versions() -> Dict[str, str]:
+    """Versions on which results depend."""
+    found = {"my_simulations": __version__, "python": platform.python_version()}
+    for name in ("pybullet", "numpy"):
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "unknown"
+    return found
+
+
+def processor_type() -> str:
+    """The model of this machine's processor."""
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as info:
+            for line in info:
+                if line.startswith("model name"):
+                    return " ".join(line.partition(":")[2].split())
+    except OSError:
+        return platform.machine()
+    return platform.machine()
+
+
+def digest_of_world(world: str, profile: str, objects: Sequence[str], object_list: str,
+                    models: Sequence[str]) -> str:
+    """A digest of the contents of all files that a world is read from.
+
+    Included models, meshes and the documents of objects (after xacro) count. A file that cannot
+    be read counts by its fault.
+    """
+    resolver = NotingResolver.from_environment()
+    assert isinstance(resolver, NotingResolver)
+    parts: List[object] = []
+    try:
+        path = find_world(world, resolver, "")
+        resolver.found[path] = None
+        read_world(path, resolver, seed=0, profile=profile)
+    except SimulationError as fault:
+        parts.append(str(fault))
+    if objects:
+        parts += _object_texts(objects, object_list, world, resolver)
+    for model in models:
+        resolver.found[model] = None
+        try:
+            with open(model, "rb") as stream:
+                read_entity(stream.read(), resolver, model)
+        except (OSError, SimulationError) as fault:
+            parts.append(str(fault))
+    # By base name: a study whose folder was moved, or is mounted elsewhere, keeps its ids.
+    parts += sorted((os.path.basename(name), _content(name)) for name in resolver.found)
+    return digest_of(parts)
+
+
+def _object_texts(objects: Sequence[str], object_list: str, world: str,
+                  resolver: NotingResolver) -> List[object]:
+    parts: List[object] = []
+    try:
+        selection, issues = selected_objects(objects, object_list, world)
+        parts += [str(issue) for issue in issues]
+        with Documents(selection.objects, package_finder(), _XACRO_SECONDS) as documents:
+            for placed in selection.objects:
+                document = documents.of(placed)
+                parts += [placed.name, placed.position, placed.rpy, document.xml]
+                read_entity(document.xml, resolver, document.path)
+    except SimulationError as fault:
+        parts.append(str(fault))
+    return parts
+
+
+def _content(path: str) -> str:
+    digest = hashlib.sha256()
+    try:
+        with open(path, "rb") as stream:
+            for block in iter(lambda: stream.read(1 << 20), b""):
+                digest.update(block)
+    except IsADirectoryError:
+        return "folder"
+    except OSError as fault:
+        return f"unreadable: {fault.strerror}"
+    return digest.hexdigest()

@@ -1,0 +1,130 @@
+"""The report of a study: one HTML file that needs neither network nor script."""
+from __future__ import annotations
+
+import math
+import os
+from html import escape
+from typing import Any, Dict, List, Sequence, Tuple
+
+from .plots import scatter
+from .row import OK, STATUSES, Row
+from .study import Study
+from .table import cells, columns_of, rows_in_order
+
+_MOST_ROWS = 500
+_MOST_POINTS = 1000
+_MOST_PLOTS = 24
+_MOST_EXAMPLES = 5
+
+_STYLE = """body{font:14px/1.4 sans-serif;margin:2em;color:#222}table{border-collapse:collapse}
+td,th{border:1px solid #ccc;padding:2px 8px;text-align:left}th{background:#f2f2f2}
+code{background:#f2f2f2;padding:0 3px}.plots{display:flex;flex-wrap:wrap;gap:8px}
+svg{border:1px solid #ddd}svg text{font:11px sans-serif}.grid{stroke:#e4e4e4;fill:none}
+circle{fill:#1f6fb2;fill-opacity:.6}.scroll{overflow-x:auto}"""
+
+
+def write_report(path: str, study: Study, paths: Sequence[str], command: str) -> None:
+    """Write the report.
+
+    Args:
+        path: of the HTML file.
+        study: the study.
+        paths: its journals.
+        command: what shows a case when its id is appended.
+    """
+    found = _Collected(study)
+    for row in rows_in_order(paths):
+        found.add(row)
+    parts = [f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>'
+             f'{escape(study.name)}</title><style>{_STYLE}</style></head><body>'
+             f'<h1>{escape(study.name)}</h1><p><code>{escape(study.file)}</code></p>',
+             _summary(study, found), _plots(study, found), _failures(found, command),
+             _table(study, found), "</body></html>\n"]
+    with open(path + ".part", "w", encoding="utf-8") as stream:
+        stream.write("\n".join(part for part in parts if part))
+    os.replace(path + ".part", path)
+
+
+class _Collected:
+    """What the report shows of the rows, in bounded memory."""
+
+    def __init__(self, study: Study) -> None:
+        self.counts = dict.fromkeys(STATUSES, 0)
+        self.total = self.flaky = 0
+        self.rows: List[Row] = []
+        self.causes: Dict[Tuple[str, str], List[Row]] = {}
+        self.cause_counts: Dict[Tuple[str, str], int] = {}
+        self.points: List[Dict[str, Any]] = []
+        self._every = max(1, study.count // _MOST_POINTS)
+
+    def add(self, row: Row) -> None:
+        self.counts[row.status] += 1
+        self.flaky += row.flaky
+        if len(self.rows) < _MOST_ROWS:
+            self.rows.append(row)
+        if row.status != OK:
+            cause = (row.status, row.issue)
+            self.cause_counts[cause] = self.cause_counts.get(cause, 0) + 1
+            examples = self.causes.setdefault(cause, [])
+            if len(examples) < _MOST_EXAMPLES:
+                examples.append(row)
+        if row.values and self.total % self._every == 0:
+            self.points.append(cells(row))
+        self.total += 1
+
+
+def _summary(study: Study, found: _Collected) -> str:
+    rows = "".join(f"<tr><td>{status}</td><td>{count}</td></tr>"
+                   for status, count in found.counts.items() if count)
+    return (f"<h2>Cases</h2><p>{found.total} of {study.count} have run, {study.duration:g} s of sim"
+            f" time each; {found.flaky} are flaky (crashed once, ran the second time).</p>"
+            f"<table><tr><th>status</th><th>cases</th></tr>{rows}</table>")
+
+
+def _plots(study: Study, found: _Collected) -> str:
+    drawn: List[str] = []
+    for name, expression in study.measure:
+        for parameter in study.parameters:
+            points = [(float(point[parameter.name]), float(point[name])) for point in found.points
+                      if _finite(point[parameter.name]) and _finite(point[name])]
+            if points and not expression.condition and len(drawn) < _MOST_PLOTS:
+                drawn.append(scatter(points, parameter.name, name))
+    if not drawn:
+        return ""
+    note = (f"<p>Every {found._every}th case.</p>" if found._every > 1 else "")
+    return f'<h2>Measured by varied</h2>{note}<div class="plots">{"".join(drawn)}</div>'
+
+
+def _finite(value: Any) -> bool:
+    return isinstance(value, (int, float)) and math.isfinite(value)
+
+
+def _failures(found: _Collected, command: str) -> str:
+    if not found.causes:
+        return ""
+    rows = []
+    for cause, count in sorted(found.cause_counts.items(), key=lambda item: -item[1]):
+        shown = "<br>".join(f"<code>{escape(command)} {row.case}</code>"
+                            for row in found.causes[cause])
+        rows.append(f"<tr><td>{cause[0]}</td><td>{escape(cause[1])}</td><td>{count}</td>"
+                    f"<td>{shown}</td></tr>")
+    return ("<h2>Failures by cause</h2><table><tr><th>status</th><th>cause</th><th>cases</th>"
+            "<th>to see one</th></tr>" + "".join(rows) + "</table>")
+
+
+def _table(study: Study, found: _Collected) -> str:
+    columns = columns_of(study)
+    body = []
+    for row in found.rows:
+        values = cells(row)
+        body.append("<tr>" + "".join(f"<td>{escape(_shown(values.get(name, '')))}</td>"
+                                     for name in columns) + "</tr>")
+    note = (f"<p>The first {_MOST_ROWS} of {found.total}; all are in the CSV file.</p>"
+            if found.total > _MOST_ROWS else "")
+    head = "".join(f"<th>{escape(name)}</th>" for name in columns)
+    return (f'<h2>Table</h2>{note}<div class="scroll"><table><tr>{head}</tr>'
+            + "\n".join(body) + "</table></div>")
+
+
+def _shown(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

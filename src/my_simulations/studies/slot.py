@@ -1,0 +1,304 @@
+"""Runs cases one after the other in an engine that is kept from one to the next."""
+from __future__ import annotations
+
+import hashlib
+import math
+import signal
+import threading
+from dataclasses import dataclass
+from typing import Callable, List, Optional, Tuple
+
+import numpy as np
+
+from ..engine.api import Engine
+from ..engine.commands import Command
+from ..engine.process_engine import ProcessEngine
+from ..errors import CommandError, InputError, Severity, SimulationError
+from ..python_api import OpenWorld, WorldChoice
+from ..simulator.watchdog import process_time
+from .changes import CaseChanges
+from .plan import Case, CasePlan
+from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, Row
+from .sampling import SignalReader
+from .study import Study
+from .trajectories import CaseTrajectory
+
+_FARTHEST = 1e9  # m: Bullet stops bodies whose bounds it cannot compute, without a word
+_SLICE = 1000  # steps between two looks at `stop`
+
+Hook = Callable[[Case, int, OpenWorld], None]
+"""Called before a case begins to move, with its attempt and its world."""
+
+
+class StoppedError(SimulationError):
+    """The study was told to stop during a case."""
+
+
+class RefusedError(CommandError):
+    """A case that cannot be run as the study says."""
+
+
+class OneLifeEngine(ProcessEngine):
+    """An engine that is not started again after its death: a case must not go on from a snapshot.
+
+    Attributes:
+        death: why it ended; "" while it lives.
+    """
+
+    def __init__(self) -> None:
+        self.death = ""
+        self._started = False
+        super().__init__()
+
+    def restart(self) -> None:
+        """Start the child, once. Raises OSError afterwards."""
+        if self._started:
+            raise OSError("a study begins the case again in another engine")
+        self._started = True
+        super().restart()
+
+    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
+        """Set the listener of the death."""
+        def note(reason: str, unanswered: List[Command]) -> None:
+            self.death = reason
+            listener(reason, unanswered)
+
+        super().on_death(note)
+
+    @property
+    def ended_by(self) -> str:
+        """Name of the signal that ended it; "" if none did."""
+        code = self.exit_code
+        return signal.Signals(-code).name if code is not None and code < 0 else ""
+
+
+@dataclass
+class _Run:
+    """A case that is being run: what is known of it so far."""
+
+    world: OpenWorld
+    reader: SignalReader
+    steps: int
+    times: List[float]
+    frames: List[np.ndarray]
+    names: Tuple[str, ...] = ()
+    rows: Optional[List[int]] = None
+
+
+class Slot:
+    """Runs one case at a time, for one thread.
+
+    Args:
+        plan: of the study.
+        processor: model of the processor, for rows.
+        stop: ends the case that runs with StoppedError once it is set.
+        hook: for tests.
+    """
+
+    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event,
+                 hook: Optional[Hook] = None) -> None:
+        self._plan = plan
+        self._study: Study = plan.study
+        self._processor = processor
+        self._stop = stop
+        self._hook = hook
+        self._world: Optional[OpenWorld] = None
+        self._engine: Optional[OneLifeEngine] = None
+        self._guard = threading.Lock()
+        self._began: Optional[float] = None  # processor time of the engine as the case began
+        self._late = False
+
+    def close(self) -> None:
+        """End the engine."""
+        if self._world is not None:
+            self._world.close()
+        self._world = self._engine = None
+
+    def look(self) -> None:
+        """End the engine if its case has used up its processor time; from another thread."""
+        with self._guard:
+            engine = self._engine
+            if self._began is None or engine is None or self._late:
+                return
+            if _used(engine) - self._began > self._study.limits.processor_seconds:
+                self._late = True
+                engine.kill("the case has used up its processor time")
+
+    def run(self, case: Case) -> Tuple[Row, Optional[CaseTrajectory]]:
+        """Run a case; once more in a new engine if its engine crashes.
+
+        Raises:
+            StoppedError: `stop` was set; there is no result.
+        """
+        first_crash: Optional[Row] = None
+        for attempt in range(1, self._study.limits.attempts + 1):
+            row, trajectory = self._attempt(case, attempt)
+            if row.status != CRASHED:
+                break
+            self.close()
+            first_crash = first_crash or row
+        if first_crash is not None and row.status != CRASHED:
+            row.flaky = True
+            row.signal = first_crash.signal
+            row.issue = row.issue or f"in attempt 1: {first_crash.issue}"
+        return row, trajectory
+
+    def _attempt(self, case: Case, attempt: int) -> Tuple[Row, Optional[CaseTrajectory]]:
+        row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=attempt,
+                  processor=self._processor)
+        with self._guard:
+            self._late = False
+            self._began = _used(self._engine) if self._engine is not None else 0.0
+        began = self._began
+        trajectory = None
+        try:
+            trajectory = self._measured(case, row)
+        except InputError as fault:
+            row.status, row.issue = REFUSED, str(fault.first)
+        except RefusedError as fault:
+            row.status, row.issue = REFUSED, str(fault)
+        except CommandError as fault:
+            row.status, row.issue = FAILED, str(fault)
+        with self._guard:
+            self._began = None
+        self._judge(row, began)
+        return row, trajectory if row.status == OK or row.values else None
+
+    def _judge(self, row: Row, began: float) -> None:
+        engine = self._engine
+        if engine is None:
+            return
+        row.step = row.step or engine.ring.step
+        if engine.exit_code is None and not self._late:
+            row.seconds = round(_used(engine) - began, 2)
+            return
+        row.status, row.values, row.hash = (TIMED_OUT if self._late else CRASHED), {}, ""
+        row.signal, row.issue = engine.ended_by, engine.death or "the physics engine ended"
+        if self._late:
+            limit = self._study.limits.processor_seconds
+            row.signal, row.issue = "", f"used up its processor time of {limit:g} s"
+            row.seconds = limit
+        self.close()
+
+    # -- one attempt -----------------------------------------------------------------------------
+
+    def _measured(self, case: Case, row: Row) -> Optional[CaseTrajectory]:
+        """Run the case and fill its row."""
+        study = self._study
+        world = self._opened(case)
+        if self._hook is not None:
+            self._hook(case, row.attempt, world)
+        expressions = study.measure + study.require
+        steps = round(study.duration / world.step_size)
+        if steps > study.limits.steps:
+            raise RefusedError(f"the case needs {steps} steps, the limit is {study.limits.steps}")
+        signals = [signal for _, expression in expressions for signal in expression.signals]
+        run = _Run(world, SignalReader(world, signals, case.settings), steps, [], [])
+        self._walk(run, any(expression.sampled for _, expression in expressions))
+        # Its answer comes after all that the engine had to tell, such as a diverged state.
+        world.contacts()
+        samples = run.reader.samples()
+        row.step, row.hash = steps, final_hash(world)
+        row.values = {name: expression.value(samples) for name, expression in expressions}
+        row.issue = _divergence(world)
+        missed = [name for name, _ in study.require if not row.values[name]]
+        if row.issue:
+            row.status = DIVERGED
+        elif missed:
+            row.status, row.issue = FAILED, f"required, and not so: {', '.join(missed)}"
+        if study.trajectory is None:
+            return None
+        return CaseTrajectory(np.array(run.times), run.names, np.array(run.frames))
+
+    def _opened(self, case: Case) -> OpenWorld:
+        study = self._study
+        changes = CaseChanges(study.parameters, case.settings)
+        world_name, objects = self._plan.world_and_objects(case.settings)
+        choice = WorldChoice(
+            world_name, case.seed, study.profile, objects, study.object_list,
+            tuple((model.name, model.file, model.pose) for model in study.models),
+            changes.world, changes.model)
+        if self._world is None:
+            self._world = OpenWorld(choice, engine=self._new_engine)
+        else:
+            self._world.open(choice)
+        world = self._world
+        faults = [issue for issue in world.issues if issue.severity is Severity.ERROR]
+        if faults:
+            raise InputError(faults)
+        unused = changes.unused()
+        if unused:
+            raise RefusedError("the world has no '" + "', '".join(unused) + "' to vary")
+        return world
+
+    def _new_engine(self) -> Engine:
+        engine = OneLifeEngine()
+        with self._guard:
+            self._engine = engine
+            self._began = 0.0
+        return engine
+
+    def _walk(self, run: _Run, sampled: bool) -> None:
+        """Make all steps; take samples and frames on the way."""
+        study, world = self._study, run.world
+        sample = _interval(study.sample, world) if sampled else run.steps
+        frame = _interval(study.trajectory.every, world) if study.trajectory else 0
+        run.reader.take()
+        self._frame(run)
+        done = 0
+        while done < run.steps:
+            ends = [run.steps, done + _SLICE, done + sample - done % sample]
+            if frame:
+                ends.append(done + frame - done % frame)
+            world.step(min(ends) - done)
+            done = min(ends)
+            if self._stop.is_set():
+                raise StoppedError
+            if done % sample == 0 or done == run.steps:
+                run.reader.take()
+            if frame and (done % frame == 0 or done == run.steps):
+                self._frame(run)
+
+    def _frame(self, run: _Run) -> None:
+        wanted = self._study.trajectory
+        if wanted is None:
+            return
+        states = run.world.states()
+        if run.rows is None:
+            run.names = wanted.models or states.names
+            missing = [name for name in run.names if name not in states.pose]
+            if missing:
+                raise CommandError(f"the world has no model '{missing[0]}' whose trajectory"
+                                   " could be kept")
+            run.rows = [states.names.index(name) for name in run.names]
+        run.times.append(states.time)
+        run.frames.append(states.pose.array[run.rows])
+
+
+def final_hash(world: OpenWorld) -> str:
+    """A hash of all bits of the poses and twists of links and the states of joint axes."""
+    links, joints = world.links(), world.joints()
+    digest = hashlib.sha256("\0".join(links.names + joints.names).encode())
+    for rows in (links.pose, links.twist, joints.position, joints.rate):
+        digest.update(np.ascontiguousarray(rows.array, dtype="<f8").tobytes())
+    return digest.hexdigest()[:32]
+
+
+def _divergence(world: OpenWorld) -> str:
+    """What became infinite, or went where no world is; "" for nothing."""
+    for issue in world.issues:
+        if issue.code == "state-diverged":
+            return issue.message
+    pose = world.links().pose
+    far = ~(np.abs(pose.array[:, :3]) < _FARTHEST).all(axis=1)
+    return f"{pose.names[int(np.argmax(far))]} is farther than {_FARTHEST:g} m" if far.any() else ""
+
+
+def _interval(seconds: float, world: OpenWorld) -> int:
+    return max(1, int(math.floor(seconds / world.step_size + 0.5)))
+
+
+def _used(engine: ProcessEngine) -> float:
+    """Processor time of the engine in s."""
+    found = process_time(engine.pid)
+    return found[0] if found else 0.0

@@ -1,0 +1,132 @@
+"""A study: what is run, varied, measured and kept, and its limits."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Tuple
+
+from ..geometry import Pose
+from .expressions import Expression
+from .variation import Parameter
+
+
+@dataclass(frozen=True)
+class StudyModel:
+    """A model that every case spawns.
+
+    Attributes:
+        name: in the world.
+        file: absolute path of a URDF or SDF file.
+        pose: its place in the world.
+    """
+
+    name: str
+    file: str
+    pose: Pose
+
+
+@dataclass(frozen=True)
+class Seeds:
+    """Seeds of each combination: `count` numbers from `first` on, or those `listed`."""
+
+    first: int = 0
+    count: int = 1
+    listed: Tuple[int, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.listed) or self.count
+
+    def at(self, index: int) -> int:
+        """The seed number `index`."""
+        return self.listed[index] if self.listed else self.first + index
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How values are combined: all with all, or `cases` draws.
+
+    Attributes:
+        cases: number of draws of a random plan; 0 for a grid.
+        seed: of all draws.
+    """
+
+    cases: int = 0
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """What is kept of the motion.
+
+    Attributes:
+        every: s of sim time between two frames.
+        models: names; empty for all.
+    """
+
+    every: float
+    models: Tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a case may use.
+
+    Attributes:
+        processor_seconds: of its engine.
+        steps: greatest number of steps of a case.
+        attempts: how often a case is started whose engine crashes.
+    """
+
+    processor_seconds: float = 60.0
+    steps: int = 10_000_000
+    attempts: int = 2
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study file that was read.
+
+    Attributes:
+        name: of the study.
+        file: absolute path of its file.
+        world: world file, as `open_world` takes it, or an absolute path.
+        profile: physics preset of the world file; "" for its default.
+        objects: objects and groups of the list in every case.
+        object_list: absolute path of the list; "" for that of the world.
+        models: models in every case.
+        duration: s of sim time of each case.
+        seeds: seeds of each combination; a random plan takes them in turn.
+        plan: how values are combined.
+        parameters: what is varied.
+        measure: expressions by column of the table.
+        require: conditions by name; a case in which one is false has failed.
+        sample: s of sim time between two samples of signals.
+        trajectory: what is kept of the motion; None for nothing.
+        limits: what a case may use.
+    """
+
+    name: str
+    file: str
+    world: str
+    profile: str
+    objects: Tuple[str, ...]
+    object_list: str
+    models: Tuple[StudyModel, ...]
+    duration: float
+    seeds: Seeds
+    plan: Plan
+    parameters: Tuple[Parameter, ...]
+    measure: Tuple[Tuple[str, Expression], ...]
+    require: Tuple[Tuple[str, Expression], ...]
+    sample: float
+    trajectory: "Trajectory | None"
+    limits: Limits
+
+    @property
+    def count(self) -> int:
+        """Number of cases."""
+        if self.plan.cases:
+            return self.plan.cases
+        total = len(self.seeds)
+        for parameter in self.parameters:
+            total *= parameter.count
+        return total

@@ -1,0 +1,171 @@
+"""Reads a study file: YAML, every fault with its line and key."""
+from __future__ import annotations
+
+import os
+from typing import Any, List, Mapping, Optional, Sequence, Tuple
+
+from ..errors import CommandError, InputError, Issue, errors_of
+from ..geometry import Pose
+from ..objects.yaml_source import KeyPath, read_yaml
+from ..python_api.readings import pose_of
+from .expressions import Expression, ExpressionError, parse
+from .study import Limits, Plan, Seeds, Study, StudyModel, Trajectory
+from .value_reader import ValueReader, kind_of
+from .variation_file import name_of_column, parameter_of
+
+_KEYS = ("study", "world", "profile", "objects", "object_list", "models", "duration", "seeds",
+         "plan", "vary", "measure", "require", "sample", "keep", "limits")
+MOST_CASES = 10 ** 9
+
+
+def read_study(file: str) -> Tuple[Study, List[Issue]]:
+    """Read a study file; relative paths in it start at its folder.
+
+    Returns:
+        The study, and warnings.
+
+    Raises:
+        InputError: the file has faults; all of them are named.
+    """
+    tree, source, issues = read_yaml(file, "")
+    reader = StudyReader(source, os.path.dirname(os.path.abspath(file)))
+    reader.issues += issues
+    study = reader.study(tree, os.path.abspath(file))
+    if study is None or errors_of(reader.issues):
+        raise InputError(reader.issues)
+    return study, reader.issues
+
+
+class StudyReader(ValueReader):
+    """Reads a study."""
+
+    def study(self, tree: Any, file: str) -> Optional[Study]:
+        """The study; None if it is not a mapping at all."""
+        if not isinstance(tree, Mapping):
+            self.fault((), f"a study must be a mapping, is {kind_of(tree)}")
+            return None
+        top = self.mapping(tree, (), _KEYS)
+        if "duration" not in top:
+            self.fault((), "'duration' is missing: s of sim time of each case", code="study-key")
+        measure = self._expressions(top, "measure")
+        require = self._expressions(top, "require", conditions=True)
+        if "measure" in top and "require" in top:
+            for name in {name for name, _ in measure} & {name for name, _ in require}:
+                self.fault(("require", name), f"'{name}' is measured, too; use another name")
+        vary = self.mapping(top.get("vary"), ("vary",))
+        found = [parameter_of(self, name, value, ("vary", name)) for name, value in vary.items()]
+        parameters = tuple(parameter for parameter in found if parameter is not None)
+        plan = self._plan(top.get("plan"))
+        for parameter in parameters:
+            if not plan.cases and not parameter.count:
+                self.fault(("vary", parameter.name),
+                           f"'{parameter.name}' has a distribution, of which a grid draws"
+                           " 'samples' values", "add samples: 10, or plan: {random: CASES}")
+        self._check_names(measure + require, vary)
+        study = Study(
+            self.text(top.get("study", os.path.splitext(os.path.basename(file))[0]), ("study",)),
+            file, self.world(top.get("world", "worlds/empty.world"), ("world",)),
+            self.text(top["profile"], ("profile",)) if "profile" in top else "",
+            self.names(top.get("objects"), ("objects",)),
+            self._file(top["object_list"], ("object_list",)) if "object_list" in top else "",
+            self._models(top.get("models")),
+            self.number(top.get("duration", 1), ("duration",), above=0.0, most=1e6),
+            self._seeds(top.get("seeds")), plan, parameters, measure, require,
+            self.number(top.get("sample", 0.01), ("sample",), above=0.0),
+            self._trajectory(top.get("keep")), self._limits(top.get("limits")))
+        if study.count > MOST_CASES and not errors_of(self.issues):
+            self.fault(("vary",), f"a study has at most {MOST_CASES} cases, this one has"
+                                  f" {study.count}")
+        return study
+
+    def _file(self, value: Any, path: KeyPath) -> str:
+        name = self.text(value, path)
+        found = os.path.join(self._folder, os.path.expanduser(name))
+        if name and not os.path.isfile(found):
+            self.fault(path, f"there is no file {found}", "paths start at the folder of the study",
+                       "file-not-found")
+        return os.path.abspath(found)
+
+    def _models(self, value: Any) -> Tuple[StudyModel, ...]:
+        found = []
+        for name, entry in self.mapping(value, ("models",)).items():
+            path = ("models", name)
+            inside = self.mapping(entry, path, ("file", "pose"))
+            pose = Pose()
+            if "pose" in inside:
+                numbers = self.numbers(inside["pose"], (*path, "pose"), (3, 6, 7))
+                try:
+                    pose = pose_of(numbers)
+                except CommandError as fault:
+                    self.fault((*path, "pose"), str(fault))
+            found.append(StudyModel(name, self._file(inside.get("file"), (*path, "file")), pose))
+        return tuple(found)
+
+    def _seeds(self, value: Any) -> Seeds:
+        if value is None:
+            return Seeds()
+        if isinstance(value, list):
+            listed = tuple(self.whole(item, ("seeds",)) for item in value)
+            if not listed or len(set(listed)) < len(listed):
+                self.fault(("seeds",), "'seeds' must be a list of different numbers")
+            return Seeds(listed=listed)
+        if isinstance(value, Mapping):
+            inside = self.mapping(value, ("seeds",), ("first", "count"))
+            return Seeds(self.whole(inside.get("first", 0), ("seeds", "first")),
+                         self.whole(inside.get("count"), ("seeds", "count"), 1))
+        return Seeds(0, self.whole(value, ("seeds",), 1))
+
+    def _plan(self, value: Any) -> Plan:
+        if value is None or value == "grid":
+            return Plan()
+        inside = self.mapping(value, ("plan",), ("random", "seed"))
+        seed = self.whole(inside.get("seed", 0), ("plan", "seed"))
+        if "random" in inside:
+            return Plan(self.whole(inside["random"], ("plan", "random"), 1, MOST_CASES), seed)
+        return Plan(0, seed)
+
+    def _expressions(self, top: Mapping[str, Any], key: str, conditions: bool = False
+                     ) -> Tuple[Tuple[str, Expression], ...]:
+        found = []
+        for name, text in self.mapping(top.get(key), (key,)).items():
+            path = (key, name)
+            name_of_column(self, name, path)
+            if name in (top.get("vary") or ()):
+                self.fault(path, f"'{name}' is varied, too; use another name", code="study-key")
+            try:
+                expression = parse(self.text(text, path) or "0 == 0")
+            except ExpressionError as fault:
+                self.fault(path, str(fault), "doc/studies.md lists what can be measured",
+                           "study-expression")
+                continue
+            if conditions and not expression.condition:
+                self.fault(path, f"'{text}' is a number, 'require' takes conditions",
+                           "compare it with another number", "study-expression")
+            found.append((name, expression))
+        return tuple(found)
+
+    def _check_names(self, expressions: Sequence[Tuple[str, Expression]],
+                     vary: Mapping[str, Any]) -> None:
+        for name, expression in expressions:
+            for signal in expression.signals:
+                if signal.kind == "vary" and signal.names[0] not in vary:
+                    self.fault(("measure", name), f"'{name}': '{signal.names[0]}' is not varied",
+                               code="study-expression")
+
+    def _trajectory(self, value: Any) -> Optional[Trajectory]:
+        keep = self.mapping(value, ("keep",), ("trajectory",))
+        if "trajectory" not in keep:
+            return None
+        path = ("keep", "trajectory")
+        inside = self.mapping(keep["trajectory"], path, ("every", "models"))
+        return Trajectory(self.number(inside.get("every", 0.02), (*path, "every"), above=0.0),
+                          self.names(inside.get("models"), (*path, "models")))
+
+    def _limits(self, value: Any) -> Limits:
+        inside = self.mapping(value, ("limits",), ("processor_seconds", "steps", "attempts"))
+        default = Limits()
+        return Limits(
+            self.number(inside.get("processor_seconds", default.processor_seconds),
+                        ("limits", "processor_seconds"), above=0.0),
+            self.whole(inside.get("steps", default.steps), ("limits", "steps"), 1),
+            self.whole(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10))

@@ -1,0 +1,117 @@
+"""The table of a study: CSV always, parquet where pyarrow is installed."""
+from __future__ import annotations
+
+import csv
+import importlib
+import importlib.util
+import os
+from typing import Any, Dict, Iterator, List, Sequence, Tuple
+
+from ..errors import CommandError
+from .journal import lines
+from .row import Row, row_of
+from .study import Study
+
+_FIRST = ("index", "case", "seed")
+_LAST = ("status", "attempt", "flaky", "signal", "step", "issue", "hash", "processor", "trajectory")
+_GROUP = 20_000  # rows of a row group of parquet
+
+
+def columns_of(study: Study) -> List[str]:
+    """Names of the columns: number, id and seed, what was varied, measured, and became of it."""
+    return [*_FIRST, *(parameter.name for parameter in study.parameters),
+            *(name for name, _ in study.measure + study.require), *_LAST]
+
+
+def rows_in_order(paths: Sequence[str]) -> Iterator[Row]:
+    """The rows of journals in the order of the plan; of two of one case the first."""
+    places: List[Tuple[int, int, int]] = []
+    for number, path in enumerate(paths):
+        for offset, line in lines(path):
+            at = line.find(b'"index":') + 8
+            places.append((int(line[at:line.index(b",", at)]), number, offset))
+    places.sort()
+    streams = [open(path, "rb") for path in paths]
+    try:
+        before = ""
+        for _, number, offset in places:
+            streams[number].seek(offset)
+            row = row_of(streams[number].readline())
+            if row.case != before:
+                yield row
+            before = row.case
+    finally:
+        for stream in streams:
+            stream.close()
+
+
+def cells(row: Row) -> Dict[str, Any]:
+    """A row by column; what was not measured is not there."""
+    found: Dict[str, Any] = {name: getattr(row, name) for name in _FIRST + _LAST}
+    found.update({name: _plain(value) for name, value in row.settings.items()})
+    found.update(row.values)
+    return found
+
+
+def write_csv(path: str, study: Study, paths: Sequence[str]) -> int:
+    """Write the table as CSV (RFC 4180, UTF-8); returns the number of rows.
+
+    Floats are written so that reading them gives the same bits. A value that was not measured is
+    empty, and NaN is `nan`.
+    """
+    columns, count = columns_of(study), 0
+    with open(path + ".part", "w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        for row in rows_in_order(paths):
+            found = cells(row)
+            writer.writerow([found.get(name, "") for name in columns])
+            count += 1
+    os.replace(path + ".part", path)
+    return count
+
+
+def has_parquet() -> bool:
+    """Whether pyarrow is installed."""
+    return importlib.util.find_spec("pyarrow") is not None
+
+
+def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
+    """Write the table as parquet; returns the number of rows.
+
+    Raises CommandError without pyarrow.
+    """
+    if not has_parquet():
+        raise CommandError("parquet needs pyarrow: pip install pyarrow")
+    arrow = importlib.import_module("pyarrow")
+    parquet = importlib.import_module("pyarrow.parquet")
+    schema = arrow.schema(_types(arrow, study))
+    count = 0
+    with parquet.ParquetWriter(path + ".part", schema) as writer:
+        group: List[Dict[str, Any]] = []
+        for row in rows_in_order(paths):
+            group.append(cells(row))
+            count += 1
+            if len(group) == _GROUP:
+                writer.write_table(arrow.Table.from_pylist(group, schema))
+                group = []
+        writer.write_table(arrow.Table.from_pylist(group, schema))
+    os.replace(path + ".part", path)
+    return count
+
+
+def _types(arrow: Any, study: Study) -> List[Tuple[str, Any]]:
+    whole, text, number, truth = arrow.int64(), arrow.string(), arrow.float64(), arrow.bool_()
+    kinds: Dict[str, Any] = {"index": whole, "seed": whole, "attempt": whole, "step": whole,
+                             "flaky": truth}
+    for parameter in study.parameters:
+        numeric = all(isinstance(value, (int, float)) for value in parameter.values)
+        kinds[parameter.name] = number if numeric else text
+    for name, expression in study.measure + study.require:
+        kinds[name] = truth if expression.condition else number
+    return [(name, kinds.get(name, text)) for name in columns_of(study)]
+
+
+def _plain(value: Any) -> Any:
+    """Poses and lists of names as one text."""
+    return " ".join(map(str, value)) if isinstance(value, (list, tuple)) else value

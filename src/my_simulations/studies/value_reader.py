@@ -1,0 +1,121 @@
+"""Reads single values of a YAML file and notes their faults with line and key."""
+from __future__ import annotations
+
+import difflib
+import math
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
+
+from ..errors import Issue, error
+from ..objects.yaml_source import KeyPath, Source
+from ..resources.resolver import Resolver, ResourceNotFoundError
+from ..resources.world_lookup import advice_on, find_world
+
+
+class ValueReader:
+    """Reads values; faults go to `issues`, and defaults take their place.
+
+    Args:
+        source: where the values stand.
+        folder: where relative paths start.
+    """
+
+    def __init__(self, source: Source, folder: str) -> None:
+        self.issues: List[Issue] = []
+        self._source = source
+        self._folder = folder
+        self._resolver = Resolver.from_environment()
+
+    def fault(self, path: Sequence[str], message: str, hint: str = "",
+              code: str = "study-value") -> None:
+        """Note a fault of the value at a path of keys."""
+        self.issues.append(error(code, message, hint=hint, **self._source.where(path)))
+
+    def mapping(self, value: Any, path: KeyPath, known: Sequence[str] = ()) -> Dict[str, Any]:
+        """A mapping with text keys, of the known ones only if any are given."""
+        if value is None:
+            return {}
+        if not isinstance(value, Mapping):
+            self.fault(path, f"'{_shown(path)}' must be a mapping, is {kind_of(value)}")
+            return {}
+        found = {}
+        for key, inner in value.items():
+            if not isinstance(key, str):
+                self.fault((*path, str(key)), f"a key must be text, is {key!r}",
+                           "put it in quotes", "study-key")
+            elif known and key not in known:
+                close = difflib.get_close_matches(key, known, 1)
+                self.fault((*path, key), f"unknown key '{key}'",
+                           f"did you mean '{close[0]}'?" if close
+                           else "known are " + ", ".join(known), "study-key")
+            else:
+                found[key] = inner
+        return found
+
+    def number(self, value: Any, path: KeyPath, *, least: float = -math.inf,
+               most: float = math.inf, above: float = -math.inf) -> float:
+        """A finite number in a range."""
+        if isinstance(value, bool) or not isinstance(value, (int, float)) \
+                or not math.isfinite(value):
+            self.fault(path, f"'{_shown(path)}' must be a number, is {kind_of(value)}")
+        elif not least <= value <= most or value <= above:
+            bounds = f"above {above:g}" if above > -math.inf else f"at least {least:g}"
+            more = f" and at most {most:g}" if most < math.inf else ""
+            self.fault(path, f"'{_shown(path)}' must be {bounds}{more}, is {value:g}")
+        else:
+            return float(value)
+        return 1.0
+
+    def whole(self, value: Any, path: KeyPath, least: int = 0, most: int = 2 ** 62) -> int:
+        """A whole number in a range."""
+        if isinstance(value, bool) or not isinstance(value, int):
+            self.fault(path, f"'{_shown(path)}' must be a whole number, is {kind_of(value)}")
+        elif not least <= value <= most:
+            self.fault(path, f"'{_shown(path)}' must be between {least} and {most}, is {value}")
+        else:
+            return value
+        return max(1, least)
+
+    def text(self, value: Any, path: KeyPath) -> str:
+        """A text that is not empty."""
+        if isinstance(value, str) and value.strip():
+            return value
+        self.fault(path, f"'{_shown(path)}' must be text, is {kind_of(value)}")
+        return ""
+
+    def numbers(self, value: Any, path: KeyPath, counts: Sequence[int]) -> Tuple[float, ...]:
+        """A list of finite numbers; its length is one of `counts`."""
+        if not isinstance(value, list) or len(value) not in counts:
+            wanted = " or ".join(map(str, counts))
+            self.fault(path, f"'{_shown(path)}' must be a list of {wanted} numbers,"
+                             f" is {kind_of(value)}")
+            return (0.0,) * counts[0]
+        return tuple(self.number(item, path) for item in value)
+
+    def names(self, value: Any, path: KeyPath) -> Tuple[str, ...]:
+        """A text or a list of texts."""
+        items = value if isinstance(value, list) else [value]
+        return () if value is None else tuple(self.text(item, path) for item in items)
+
+    def world(self, value: Any, path: KeyPath) -> str:
+        """The absolute path of a world file, found as by `open_world` or beside the study."""
+        name = self.text(value, path)
+        try:
+            return find_world(name, self._resolver, self._folder) if name else ""
+        except ResourceNotFoundError:
+            self.fault(path, f"there is no world file '{name}'", advice_on(name, self._folder),
+                       "world-not-found")
+            return name
+
+
+def _shown(path: Sequence[str]) -> str:
+    return ".".join(path)
+
+
+def kind_of(value: Any) -> str:
+    if value is None:
+        return "empty"
+    if isinstance(value, (list, tuple)):
+        return f"a list of {len(value)}"
+    if isinstance(value, Mapping):
+        return "a mapping"
+    return f"'{value}'"[:60]

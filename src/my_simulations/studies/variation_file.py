@@ -1,0 +1,135 @@
+"""Reads one entry of `vary` of a study file."""
+from __future__ import annotations
+
+import difflib
+import re
+from typing import Any, List, Optional, Tuple
+
+from ..objects.yaml_source import KeyPath
+from .value_reader import ValueReader
+from .variation import (
+    DISTRIBUTIONS,
+    FORMS,
+    NAME,
+    NAMES,
+    NUMBER,
+    POSE,
+    Parameter,
+    Setting,
+    Target,
+    target_of,
+)
+
+_MOST_VALUES = 1_000_000
+_COLUMNS = ("index", "case", "seed", "status", "attempt", "flaky", "signal", "step", "issue",
+            "hash", "processor", "trajectory")
+"""Columns that every table has."""
+
+
+def name_of_column(reader: ValueReader, name: str, path: KeyPath) -> None:
+    """Note a fault if a name cannot be that of a column of the table."""
+    if name in _COLUMNS or not re.fullmatch(r"[A-Za-z_]\w*", name):
+        reader.fault(path, f"'{name}' cannot be the name of a column",
+                     "use letters, digits and _, and none of " + ", ".join(_COLUMNS), "study-key")
+
+
+def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath
+                 ) -> Optional[Parameter]:
+    """The parameter of an entry; None where a fault was noted."""
+    before = len(reader.issues)
+    name_of_column(reader, name, path)
+    inside = reader.mapping(value, path, ("set", "values", "range", "samples", *DISTRIBUTIONS))
+    target = _target(reader, inside.get("set", "none"), (*path, "set"))
+    sources = [key for key in ("values", "range", *DISTRIBUTIONS) if key in inside]
+    if len(sources) != 1:
+        reader.fault(path, f"'{name}' needs one of values, range, " + ", ".join(DISTRIBUTIONS),
+                     code="study-key")
+        return None
+    if target is None:
+        return None
+    (key,) = sources
+    below = (*path, key)
+    if key != "values" and target.wants != NUMBER:
+        reader.fault(below, f"'{name}' takes {target.wants}: list its values")
+        return None
+    if key == "values":
+        values = _listed(reader, target, inside[key], below)
+        return Parameter(name, target, values) if len(reader.issues) == before else None
+    if key == "range":
+        numbers = _range(reader, inside[key], below)
+        return Parameter(name, target, numbers) if len(reader.issues) == before else None
+    drawn = reader.numbers(inside[key], below, (2,))
+    if len(reader.issues) == before:
+        _check_distribution(reader, key, drawn, below)
+    samples = reader.whole(inside.get("samples", 0), (*path, "samples"), 0, _MOST_VALUES)
+    if len(reader.issues) > before:
+        return None
+    return Parameter(name, target, (), key, drawn, samples)
+
+
+def _target(reader: ValueReader, value: Any, path: KeyPath) -> Optional[Target]:
+    text = reader.text(value, path)
+    target = target_of(text)
+    if target is None and text:
+        close = difflib.get_close_matches(text, FORMS, 1)
+        reader.fault(path, f"'{text}' cannot be varied",
+                     (f"did you mean {close[0]}? " if close else "") + "Known are "
+                     + ", ".join(FORMS))
+    return target
+
+
+def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
+            ) -> Tuple[Setting, ...]:
+    if not isinstance(value, list) or not value:
+        reader.fault(path, "'values' must be a list with at least one value")
+        return ()
+    found: List[Setting] = []
+    for item in value:
+        if target.wants == POSE:
+            found.append(reader.numbers(item, path, (3, 6)))
+        elif target.wants == NAMES:
+            found.append(reader.names(item, path))
+        elif target.wants == NAME:
+            found.append(reader.world(item, path))
+        elif target.kind == "none" and isinstance(item, str):
+            found.append(item)
+        else:
+            found.append(reader.number(item, path))
+    if len(set(found)) < len(found):
+        reader.fault(path, "'values' has the same value twice; use seeds to repeat a case")
+    return tuple(found)
+
+
+def _range(reader: ValueReader, value: Any, path: KeyPath) -> Tuple[float, ...]:
+    inside = reader.mapping(value, path, ("from", "to", "step", "count"))
+    first = reader.number(inside.get("from"), (*path, "from"))
+    last = reader.number(inside.get("to"), (*path, "to"))
+    if ("step" in inside) == ("count" in inside):
+        reader.fault(path, "a range needs one of 'step' and 'count'", code="study-key")
+        return ()
+    if "count" in inside:
+        count = reader.whole(inside["count"], (*path, "count"), 1, _MOST_VALUES)
+        if first == last:
+            reader.fault(path, "'from' and 'to' must differ")
+        step = (last - first) / (count - 1) if count > 1 else 0.0
+    else:
+        step = reader.number(inside["step"], (*path, "step"))
+        if step == 0.0 or (last - first) / step < 0.0:
+            reader.fault((*path, "step"), "'step' does not lead from 'from' to 'to'")
+            return ()
+        whole = (last - first) / step
+        if whole > _MOST_VALUES:
+            reader.fault((*path, "step"), f"a range has at most {_MOST_VALUES} values")
+            return ()
+        count = int(whole + 1e-9) + 1
+    return tuple(first + step * index for index in range(count))
+
+
+def _check_distribution(reader: ValueReader, key: str, numbers: Tuple[float, ...],
+                        path: KeyPath) -> None:
+    if key == "normal" and numbers[1] <= 0.0:
+        reader.fault(path, "the standard deviation must be above 0")
+    if key != "normal" and numbers[1] <= numbers[0]:
+        reader.fault(path, "the first number must be below the second")
+    if key == "log_uniform" and numbers[0] <= 0.0:
+        reader.fault(path, "both numbers must be above 0")

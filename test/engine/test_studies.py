@@ -1,0 +1,244 @@
+"""Studies with real engines, some of which are killed."""
+from __future__ import annotations
+
+import csv
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from my_simulations.python_api import OpenWorld, WorldChoice
+from my_simulations.studies.command import main
+from my_simulations.studies.plan import CasePlan
+from my_simulations.studies.slot import final_hash
+from my_simulations.studies.study_file import read_study
+
+SOURCE = Path(__file__).resolve().parents[2] / "src"
+BOX = """<sdf version="1.7"><model name="box"><link name="link">
+<inertial><mass>1</mass><inertia><ixx>0.0067</ixx><iyy>0.0067</iyy><izz>0.0067</izz></inertia>
+</inertial><collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry>
+</collision></link></model></sdf>"""
+DROP = """study: drop
+models:
+  box: {file: box.sdf, pose: [0, 0, 1]}
+duration: 0.4
+vary:
+  height: {set: pose.box.z, range: {from: 0.2, to: 0.6, count: 20}}
+  tilt: {set: pose.box.roll, values: [0, 0.3, 0.6]}
+measure:
+  rest: final(pose.box.z)
+  touched: contact(box, ground_plane)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    (tmp_path / "box.sdf").write_text(BOX)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(folder, text, *more, hook=None, name="s"):
+    (folder / f"{name}.yaml").write_text(text)
+    return main(["study", "run", f"{name}.yaml", *more], hook)
+
+
+def table(folder, name="s"):
+    with open(folder / name / "results.csv", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def one_after_the_other(folder, text):
+    """The final hash of each case, each in an engine of its own, without the runner."""
+    (folder / "bare.yaml").write_text(text)
+    plan = CasePlan(read_study(str(folder / "bare.yaml"))[0])
+    found = {}
+    for case in plan.cases():
+        height, tilt = case.settings["height"], case.settings["tilt"]
+        with OpenWorld(WorldChoice()) as world:
+            world.spawn(BOX, pose=[0, 0, height, tilt, 0, 0])
+            world.step(round(plan.study.duration / world.step_size))
+            found[case.id] = final_hash(world)
+    return found
+
+
+def test_poisoned_cases_do_not_touch_the_others(folder):
+    def poison(case, attempt, world):
+        pid = world.simulator.engine_pid
+        if case.index % 10 == 3:
+            os.kill(pid, signal.SIGSEGV)
+        if case.index % 20 == 5 and attempt == 1:
+            os.kill(pid, signal.SIGKILL)
+
+    assert run(folder, DROP, "--slots", "2", hook=poison) == 1
+    rows = table(folder)
+    assert [int(row["index"]) for row in rows] == list(range(60))
+    crashed = [row for row in rows if row["status"] == "crashed"]
+    assert [int(row["index"]) for row in crashed] == [3, 13, 23, 33, 43, 53]
+    assert {(row["signal"], row["attempt"], row["hash"], row["rest"]) for row in crashed} == {
+        ("SIGSEGV", "2", "", "")}
+    assert all("SIGSEGV" in row["issue"] for row in crashed)
+    flaky = [row for row in rows if row["flaky"] == "True"]
+    assert [(int(row["index"]), row["status"], row["signal"]) for row in flaky] == [
+        (5, "ok", "SIGKILL"), (25, "ok", "SIGKILL"), (45, "ok", "SIGKILL")]
+    assert sum(row["status"] == "ok" for row in rows) == 54
+    bare = one_after_the_other(folder, DROP)
+    assert {row["case"]: row["hash"] for row in rows if row["status"] == "ok"} == {
+        case: found for case, found in bare.items() if case not in {r["case"] for r in crashed}}
+
+
+def test_a_driver_killed_at_any_moment_goes_on_to_the_same_table(folder):
+    assert run(folder, DROP, "--slots", "2", name="whole") == 0
+    (folder / "cut.yaml").write_text(DROP)
+    random_moment = random.Random(4)
+    command = [sys.executable, "-m", "my_simulations.studies"]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(
+        [str(SOURCE), os.environ.get("PYTHONPATH", "")])}
+    journal = folder / "cut" / "journal.jsonl"
+    arguments = ["run", "cut.yaml", "--slots", "2"]
+    kills = 0
+    for _again in range(20):
+        before = journal.read_bytes().count(b"\n") if journal.exists() else 0
+        with subprocess.Popen([*command, *arguments], env=environment,
+                              stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as driver:
+            more = random_moment.randint(1, 15)
+            while driver.poll() is None:
+                if journal.exists() and journal.read_bytes().count(b"\n") >= before + more:
+                    time.sleep(random_moment.uniform(0.0, 0.02))  # anywhere in a case
+                    driver.kill()
+                    kills += 1
+                    break
+                time.sleep(0.001)
+        arguments = ["resume", "cut", "--slots", "2"]
+        if driver.returncode == 0:
+            break
+    assert driver.returncode == 0 and kills >= 3
+    assert table(folder, "cut") == table(folder, "whole")
+    assert main(["study", "status", "cut"]) == 0
+
+
+def test_shards_make_the_table_of_the_whole(folder):
+    assert run(folder, DROP, "--slots", "1", name="whole") == 0
+    for number in (1, 2, 3):
+        run(folder, DROP, "--slots", "1", "--shard", f"{number}/3", name="parts")
+    assert table(folder, "parts") == table(folder, "whole")
+    assert len(list((folder / "parts").glob("journal-*-of-3.jsonl"))) == 3
+
+
+def test_what_became_of_a_case_is_told(folder, capsys):
+    (folder / "bad.world").write_text("<sdf version='1.6'><world name='w'>")
+    text = """duration: 0.1
+models:
+  box: {file: box.sdf, pose: [0, 0, 1]}
+vary:
+  world: {set: world, values: [worlds/empty.world, bad.world]}
+measure:
+  z: final(pose.box.z)
+require:
+  high: final(pose.box.z) > 5
+"""
+    assert run(folder, text, "--slots", "1", "--json") == 1
+    failed, bad = table(folder)
+    assert (failed["status"], failed["high"]) == ("failed", "False") and "high" in failed["issue"]
+    assert float(failed["z"]) == pytest.approx(1 - 0.5 * 9.8 * 0.1 * 0.101)
+    assert bad["status"] == "refused" and "bad.world:1" in bad["issue"]
+    told = json.loads(capsys.readouterr().out)
+    assert (told["cases"], told["failed"], told["refused"]) == (2, 1, 1)
+    report = (folder / "s" / "report.html").read_text()
+    assert f"study show --in {folder / 's'} {failed['case']}" in report
+    assert "http" not in report and "<script" not in report
+
+
+def test_a_name_that_is_not_there_refuses_or_fails_the_case(folder):
+    text = "duration: 0.1\nvary:\n  m: {set: mass.nobody, values: [1]}\n"
+    assert run(folder, text) == 1
+    assert table(folder)[0]["status"] == "refused" and "nobody" in table(folder)[0]["issue"]
+    assert run(folder, "duration: 0.1\nmeasure:\n  z: final(pose.nobody.z)\n", name="t") == 1
+    assert table(folder, "t")[0]["status"] == "failed"
+    assert "nobody" in table(folder, "t")[0]["issue"]
+
+
+def test_a_case_that_uses_up_its_processor_time_is_ended(folder):
+    text = """duration: 3000
+models:
+  box: {file: box.sdf, pose: [0, 0, 1]}
+vary:
+  gravity: {set: gravity.z, values: [-9.8, -5]}
+limits: {processor_seconds: 1.5}
+"""
+    assert run(folder, text, "--slots", "1") == 1
+    assert [row["status"] for row in table(folder)] == ["timed out", "timed out"]
+    assert all(0 < int(row["step"]) < 3_000_000 for row in table(folder))
+
+
+def test_a_state_that_diverges_is_told(folder):
+    def push(case, attempt, world):
+        if case.index == 1:
+            world.apply_wrench("box::link", force=[1e308, 1e308, 0])
+
+    assert run(folder, DROP.replace("count: 20", "count: 2"), "--slots", "1", hook=push) == 1
+    assert [row["status"] for row in table(folder)] == ["ok", "diverged"] + 4 * ["ok"]
+    assert "box" in table(folder)[1]["issue"]
+
+
+def test_too_many_steps_are_refused(folder):
+    assert run(folder, "duration: 10\nlimits: {steps: 100}\n") == 1
+    assert "10000 steps" in table(folder)[0]["issue"]
+
+
+def test_settings_reach_the_world(folder):
+    text = """duration: 1.0
+models:
+  box: {file: box.sdf, pose: [0, 0, 0.1]}
+vary:
+  mass: {set: mass.box, values: [1, 2]}
+  dt: {set: physics.step_size, values: [0.001, 0.002]}
+  gravity: {set: gravity.x, values: [0, 2]}
+  mu: {set: friction.box, values: [0.0, 1.0]}
+measure:
+  weight: mean(force(box, ground_plane))
+  far: final(pose.box.x)
+"""
+    run(folder, text)
+    for row in table(folder):
+        mass, pull, mu = float(row["mass"]), float(row["gravity"]), float(row["mu"])
+        assert int(row["step"]) == round(1.0 / float(row["dt"]))
+        assert float(row["weight"]) == pytest.approx(9.8 * mass, rel=0.05)
+        assert float(row["far"]) == pytest.approx(0.5 * pull if mu == 0 else 0.0, abs=0.02)
+
+
+def test_trajectories_are_kept(folder):
+    text = DROP.replace("count: 20", "count: 2") + "keep:\n  trajectory: {every: 0.1}\n"
+    assert run(folder, text, "--slots", "2") == 0
+    for row in table(folder):
+        with np.load(folder / "s" / row["trajectory"]) as kept:
+            poses = kept[row["case"] + ".pose"]
+            assert list(kept[row["case"] + ".names"]) == ["ground_plane", "box"]
+            assert kept[row["case"] + ".time"] == pytest.approx([0, 0.1, 0.2, 0.3, 0.4])
+        assert poses.shape == (5, 2, 7)
+        assert poses[0, 1, 2] == pytest.approx(float(row["height"]))
+        assert poses[-1, 1, 2] == float(row["rest"])
+
+
+def test_a_case_is_written_as_a_world(folder):
+    text = DROP.replace("count: 20", "count: 2")
+    assert run(folder, text) == 0
+    row = table(folder)[4]
+    assert main(["study", "show", row["case"][:8], "--in", "s", "--write", "case.world"]) == 0
+    with OpenWorld(WorldChoice(str(folder / "case.world"))) as world:
+        assert world.states().pose["box"][2] == pytest.approx(float(row["height"]))
+    assert main(["study", "show", "nothing", "--in", "s"]) == 2
+
+
+def test_faults_of_a_study_are_told(folder, capsys):
+    assert run(folder, "duration: x\n") == 2
+    assert "s.yaml:1: error: 'duration' must be a number" in capsys.readouterr().err
+    assert main(["study", "status", str(folder)]) == 2
+    assert "there is no study" in capsys.readouterr().err
