@@ -10,6 +10,7 @@ PYTHON_NAME=0
 USE_COMPANIONS="${MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS:-0}"
 OVERLAY=0
 SET_UP_STEPS=6
+APT_LISTS_ARE_NEW=0
 
 # source_setup FILE: catkin's setup files use unset variables and failing tests.
 source_setup() {
@@ -112,13 +113,18 @@ apt_get() {
   recorded "$name" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q "$@"
 }
 
-# apt_install NAME ADVICE PACKAGE...: install the packages or stop; the logs have that NAME in theirs.
+# apt_update: fetch apt's lists, once in a run: a second time takes seconds and finds nothing new.
+apt_update() {
+  [ "$APT_LISTS_ARE_NEW" = 0 ] || return 0
+  apt_get apt-update update || return
+  APT_LISTS_ARE_NEW=1
+}
+
+# apt_install NAME ADVICE PACKAGE...: install the packages or stop; the log has that NAME.
 apt_install() {
   local name="$1" advice="$2"
   shift 2
-  apt_get "apt-update$name" update || failed "apt-update$name" "$?" "$advice"
-  apt_get "apt-install$name" -y --no-install-recommends install "$@" ||
-    failed "apt-install$name" "$?" "$advice"
+  apt_get "$name" -y --no-install-recommends install "$@" || failed "$name" "$?" "$advice"
 }
 
 # system_packages PURPOSE: the names of what apt must have installed here: `run` for what a workspace
@@ -153,11 +159,12 @@ install_system_packages() {
     # Asks for the password now, while the screen is free for it.
     [ "$(id -u)" = 0 ] || sudo true || ask_administrator "sudo does not let this user install them" \
       "${missing[@]}"
-    apt_get apt-update update ||
-      failed apt-update "$?" "Is there a network? Then run $COMMAND again."
+    apt_update || failed apt-update "$?" "Is there a network? Then run $COMMAND again."
+    # New lists may name more than old ones did: some packages are asked for where apt has them.
+    mapfile -t wanted < <(system_packages all)
+    mapfile -t missing < <(missing_packages "${wanted[@]}")
     refuse_unknown "${missing[@]}"
-    apt_get apt-install -y --no-install-recommends install "${missing[@]}" ||
-      failed apt-install "$?" "Is there room on the disk (df -h)? Then run $COMMAND again."
+    apt_install apt-install "Is there room on the disk (df -h)? Then run $COMMAND again." "${missing[@]}"
     SYSTEM_REMARK="${#missing[@]} installed"
   fi
   if [ "$COMMON_PACKAGES" = 1 ] && [ "$(ros_source)" = apt ]; then
@@ -183,7 +190,7 @@ install_optional() {
   [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
   if may_install; then
     say "installing ${#missing[@]} that $2 commonly ask for"
-    if apt_get "apt-update-$1" update &&
+    if apt_update &&
        apt_get "apt-install-$1" -y --no-install-recommends install "${missing[@]}"; then
       SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for $2 installed"
       return 0
@@ -197,7 +204,7 @@ apt-get install --no-install-recommends ${missing[*]}$(optional_reason "$1")"
 # optional_reason NAME: why the optional packages NAME were not installed, for the end of a sentence.
 optional_reason() {
   local reason
-  reason=$(sed -n 's/^E: //p' "$LOGS/apt-update-$1.log" "$LOGS/apt-install-$1.log" 2>/dev/null |
+  reason=$(sed -n 's/^E: //p' "$LOGS/apt-update.log" "$LOGS/apt-install-$1.log" 2>/dev/null |
     head -n 1)
   printf '%s' "${reason:+ ($reason)}"
 }
