@@ -1,38 +1,22 @@
-"""The container: what its file says holds together; what needs Docker or root is not tried here."""
+"""The container: what its file says holds together; test/reliability builds it (needs root)."""
 from __future__ import annotations
 
 import json
 import re
 import subprocess
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
-from typing import List, Tuple
 
 import pytest
 import yaml
+from dockerfile import REPOSITORY, arguments, stages
 
-REPOSITORY = Path(__file__).resolve().parents[3]
 DOCKER = REPOSITORY / "docker"
 HOME = "/home/student/simulation_ws/src/my_simulations/"
 
 
-def stages() -> List[List[Tuple[str, str]]]:
-    """The instructions of each stage, which begins with its FROM."""
-    found: List[List[Tuple[str, str]]] = []
-    text = (DOCKER / "Dockerfile").read_text().replace("\\\n", " ")
-    for line in text.splitlines():
-        if not line or line.startswith(("#", "ARG")):
-            continue
-        word, rest = line.split(None, 1)
-        if word == "FROM":
-            found.append([])
-        found[-1].append((word, rest))
-    return found
-
-
 def test_both_stages_have_the_same_base_which_can_be_chosen():
     assert [stage[0][1].split()[0] for stage in stages()] == ["${BASE}"] * 2
-    assert "ARG BASE=debian:12-slim\n" in (DOCKER / "Dockerfile").read_text()
+    assert arguments() == {"BASE": "debian:12-slim"}
 
 
 @pytest.mark.parametrize("stage", stages(), ids=["built", "run"])
