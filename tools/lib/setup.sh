@@ -387,9 +387,11 @@ use_loopback() {
 machine can connect, others cannot. To change that, add the name to /etc/hosts."
 }
 
+localhost_resolves() { timeout 5 getent hosts localhost >/dev/null; }
+
 # resolve_localhost: add localhost to /etc/hosts if it does not resolve; roslaunch needs it.
 resolve_localhost() {
-  ! timeout 5 getent hosts localhost >/dev/null || return 0
+  ! localhost_resolves || return 0
   may_install && as_root sh -c 'echo "127.0.0.1 localhost" >>/etc/hosts' ||
     stop "the name localhost does not resolve, and roslaunch needs it." \
       "As root: echo '127.0.0.1 localhost' >>/etc/hosts"

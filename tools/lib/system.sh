@@ -44,15 +44,17 @@ refuse_unknown() {
     "Is a part of the archive missing in /etc/apt/sources.list (main)? apt-cache policy shows them."
 }
 
-# ask_administrator REASON NAME...: stop with one command for all that is missing, the packages that
-# PyBullet is compiled with among them where it may have to be.
+# ask_administrator REASON NAME...: stop with one command for all that needs root: the packages, those
+# that PyBullet is compiled with where it may have to be, and the name localhost.
 ask_administrator() {
-  local reason="$1" names compiled=()
+  local reason="$1" names command compiled=()
   shift
-  names=$#
-  needs_compiler && mapfile -t compiled < <(missing_packages $(compile_packages))
-  stop "$names system packages are missing, and $reason." \
-    "As root: apt-get update && apt-get install --no-install-recommends $* ${compiled[*]}" \
+  # shellcheck disable=SC2046
+  ! needs_compiler || mapfile -t compiled < <(missing_packages $(compile_packages))
+  names=("$@" "${compiled[@]}")
+  command="apt-get update && apt-get install --no-install-recommends ${names[*]}"
+  localhost_resolves || command+=" && echo '127.0.0.1 localhost' >>/etc/hosts"
+  stop "${#names[@]} system packages are missing, and $reason." "As root: $command" \
     "Everything else is installed below this user's home: then run $COMMAND again."
 }
 

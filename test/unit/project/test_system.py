@@ -42,6 +42,7 @@ class System:
         no_ros = "" if has_ros and universe else "*ros*) ;;"
         shells.fake(home, "id", f"echo {0 if root else 1000}")
         shells.fake(home, "uname", f"echo {machine}")
+        shells.fake(home, "getent", "exit 0")
         shells.fake(home, "fake_python", "echo 13" if name == "trixie" else "echo 11")
         shells.fake(home, "dpkg-query", "shift 2; for name; do grep -qx $name $HOME/installed "
                     "&& echo installed $name; [ $name != ros-noetic-catkin ] || "
@@ -137,7 +138,16 @@ def test_administrator_is_told_all_in_one_command(clone, tmp_path, name, compile
     assert {"python3-venv", "python3-rospy", "catkin", "npm", "libegl1"} <= set(words)
     assert ("python3-dev" in words) is compiled
     assert len(set(words)) >= len(words) - 2  # "apt-get", and "install" once more at most
+    assert "/etc/hosts" not in command
     assert not (system.home / "calls").exists()
+
+
+def test_administrator_is_told_of_localhost_in_the_same_command(clone, tmp_path):
+    system = System(clone, tmp_path / "home", "bookworm", root=False)
+    shells.fake(system.home, "getent", "exit 2")
+    done = system.run("install_system_packages")
+    (command,) = (line for line in done.stderr.splitlines() if "apt-get install" in line)
+    assert command.endswith(" && echo '127.0.0.1 localhost' >>/etc/hosts")
 
 
 def test_user_without_root_goes_on_where_all_is_installed(clone, tmp_path):
