@@ -198,22 +198,24 @@ class PluginHost:
         contexts = [running.context for _, all_running in self._models.values()
                     for running in all_running]
         for context in contexts:
-            motors += context.motors.values()
-            servos += context.servos.values()
-            if context.planar is not None:
-                planar.append(context.planar)
+            motors += context.orders.motors.values()
+            servos += context.orders.servos.values()
+            if context.orders.planar is not None:
+                planar.append(context.orders.planar)
         if (motors or servos or planar) and not self._simulator.drives.set(
                 motors, planar, self._followed, servos):
             return False
         for context in contexts:
-            context.motors, context.servos, context.planar = {}, {}, None
-        return self._pushed([context for context in contexts if context.pushes])
+            context.orders.motors.clear()
+            context.orders.servos.clear()
+            context.orders.planar = None
+        return self._pushed([context for context in contexts if context.orders.pushes])
 
     def _pushed(self, contexts: List[SimulatedContext]) -> bool:
         if not contexts:
             return True
         orders = [(context, link, *push) for context in contexts
-                  for link, push in context.pushes.items()]
+                  for link, push in context.orders.pushes.items()]
         ids = self._simulator.wrenches.swap(
             [context.push_ids[link] for context, link, *_ in orders if link in context.push_ids],
             [order[1:] for order in orders], self._followed)
@@ -224,7 +226,7 @@ class PluginHost:
             if number:
                 context.push_ids[link] = number
         for context in contexts:
-            context.pushes = {}
+            context.orders.pushes.clear()
         return True
 
     def _go_on(self, moment: Moment) -> None:
@@ -261,11 +263,11 @@ class PluginHost:
         for _, all_running in self._models.values():
             for running in all_running:
                 context = running.context
-                if context.outbox:
-                    outbox, context.outbox = context.outbox, []
+                if context.graph.outbox:
+                    outbox, context.graph.outbox = context.graph.outbox, []
                     self._guarded(running, self._send, running, outbox)
-                transforms += context.transforms
-                context.transforms = []
+                transforms += context.graph.transforms
+                context.graph.transforms = []
         if transforms:
             self._graph.send_transforms(transforms, moment.sim_ns)
 
