@@ -3,10 +3,9 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import replace
-from typing import Any, Callable, Deque, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..description.model import Mimic, Model
-from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
@@ -14,47 +13,50 @@ from ..engine.commands import JointWrench, PlanarVelocity, WheelSlip
 from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
-from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
 from ..simulator.simulator import Simulator
 from .context import PluginError, View
 from .eyes import Eyes
+from .found_plugins import Found
 from .graph import Graph, TopicUse
 from .model_rows import ModelRows
 from .parameters import Parameters
+from .schedule import Appointment, Schedule
 from .sensing_requests import SensingRequests
-from .simulated_appointment import Appointment
 from .simulated_graph import Offer, OpenEnd, PluginGraph
 from .simulated_handles import Orders, SimulatedJoint, SimulatedLink
 
-Report = Callable[[Issue], None]
+
+class Shared(NamedTuple):
+    """What the contexts of all plugins share; `report` tells the user."""
+
+    simulator: Simulator
+    graph: Graph
+    report: Callable[[Issue], None]
+    eyes: Eyes
+    schedule: Schedule
 
 
 class SimulatedContext:
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
 
     Attributes:
-        appointments: when the plugin wants to be called.
         orders: what it has ordered for its model since they were last taken.
         push_ids: the wrenches that act now, by link.
         graph: what it has on the graph; `inbox`: functions to be called for what has come.
         sensing: what it has asked of the sensing process.
     """
 
-    def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
-                 scope: str, report: Report, wake: Callable[[], None],
-                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "",
-                 sensor_joint: str = "") -> None:
-        self.simulator = simulator
+    def __init__(self, shared: Shared, entity: Entity, found: Found,
+                 wake: Callable[[], None]) -> None:
+        self.simulator, self._report, self._schedule = (
+            shared.simulator, shared.report, shared.schedule)
         self.model = entity.model.name
-        self.sensor, self.sensor_link, self.sensor_joint = sensor, sensor_link, sensor_joint
-        self.spec = spec
-        self._scope, self._report = scope, report
-        self.parameters = Parameters(spec.xml, self.warn)
+        self.sensor, self.sensor_link, self.sensor_joint = found.sensor, found.link, found.joint
+        self.spec, self._scope = found.spec, found.scope
+        self.parameters = Parameters(found.spec.xml, self.warn)
         self.entity = entity
-        self._rows = ModelRows(entity, scope)
-        self.moment: Optional[Moment] = None
-        self.appointments: List[Appointment] = []
+        self._rows = ModelRows(entity, found.scope)
         self.orders = Orders()
         self._level: Optional[PlanarVelocity] = None
         self.inbox: Deque[Callable[[], None]] = deque()
@@ -63,8 +65,8 @@ class SimulatedContext:
         self.push_ids: Dict[str, int] = {}
         self._attached: List[str] = []
         self._held = False
-        self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
-        self.graph = PluginGraph(graph, self.inbox, wake, lambda: self.sensing.unsent)
+        self.sensing = SensingRequests(shared.eyes, self.inbox, wake, self.warn)
+        self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent)
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -84,7 +86,7 @@ class SimulatedContext:
     def close(self) -> None:
         """Take everything off the graph, and call the plugin no more."""
         self.graph.close()
-        self.appointments.clear()
+        self._schedule.end_all(self)
 
     def stop(self) -> None:
         """Switch off what the plugin drives, in a world that still has the model."""
@@ -110,7 +112,7 @@ class SimulatedContext:
     @property
     def now_ns(self) -> int:
         """Sim time of this step."""
-        return self.moment.sim_ns if self.moment is not None else self.simulator.clock.sim_ns
+        return self._schedule.sim_ns
 
     @property
     def step_size(self) -> float:
@@ -120,21 +122,16 @@ class SimulatedContext:
     @property
     def step(self) -> int:
         """The step count."""
-        return self.moment.step if self.moment is not None else self.simulator.clock.step
+        moment = self._schedule.moment
+        return moment.step if moment is not None else self.simulator.clock.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
         """Be called at a rate."""
-        return self._appointed(Appointment(self.appointments, Rate(hertz), call))
+        return self._schedule.every(self, hertz, call)
 
     def once(self, ns: int, call: Callable[[], None]) -> Appointment:
         """Be called once."""
-        return self._appointed(Appointment(self.appointments, None, call, ns))
-
-    def _appointed(self, made: Appointment) -> Appointment:
-        if self.moment is not None:
-            made.set_next(self.moment)
-        self.appointments.append(made)
-        return made
+        return self._schedule.once(self, ns, call)
 
     # -- the model -------------------------------------------------------------------------------
 
