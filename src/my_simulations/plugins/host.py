@@ -15,10 +15,10 @@ from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
 from ..errors import CommandError, Issue, Severity, warning
 from ..simulator.appointments import Consumer, Moment
 from ..simulator.registry import Entity
+from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
-from .eyes import Eyes
 from .found_plugins import Found
 from .graph import Graph, Topic, TopicUse
 from .message_maker import Later, MessageMaker
@@ -47,8 +47,8 @@ class PluginHost:
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
                  log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
-        self._eyes, self._schedule = Eyes(simulator, log), Schedule()
-        self._shared = Shared(simulator, graph, log, self._eyes, self._schedule)
+        self._scene, self._schedule = SceneSensing(simulator, log), Schedule()
+        self._shared = Shared(simulator, graph, log, self._scene, self._schedule)
         self._messages = MessageMaker()
         self._models = ModelPlugins(simulator, self._rebind)
         self._running: Dict[SimulatedContext, Running] = {}
@@ -130,7 +130,7 @@ class PluginHost:
     def _clean_up(self) -> None:
         self._stop.set()
         self._watch.stop()
-        self._eyes.close()
+        self._scene.close()
         self._messages.stop()
         if self._consumer is not None:
             self._consumer.leave()

@@ -14,9 +14,9 @@ from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.registry import Entity
+from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .context import PluginError, View
-from .eyes import Eyes
 from .found_plugins import Found
 from .graph import Graph, TopicUse
 from .model_rows import ModelRows
@@ -33,7 +33,7 @@ class Shared(NamedTuple):
     simulator: Simulator
     graph: Graph
     report: Callable[[Issue], None]
-    eyes: Eyes
+    scene: SceneSensing
     schedule: Schedule
 
 
@@ -65,7 +65,7 @@ class SimulatedContext:
         self.push_ids: Dict[str, int] = {}
         self._attached: List[str] = []
         self._held = False
-        self.sensing = SensingRequests(shared.eyes, self.inbox, wake, self.warn)
+        self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn)
         self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent)
 
     # -- for the host ----------------------------------------------------------------------------
