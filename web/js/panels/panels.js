@@ -349,18 +349,22 @@ async function offerRestore(page, {found, file, time, others}) {
 }
 
 /** @param {HTMLElement} element @param {Page} page */
-function mountConnectionNote(element, {store}) {
+function mountConnectionNote(element, {store, connection}) {
   const note = h('div', {class: 'connection-note', role: 'status', hidden: true});
   element.append(note);
   let begun = false;
   const show = () => {
     begun ||= store.connected;
     note.hidden = store.connected;
-    note.textContent = begun
-      ? 'Connection to the simulator lost. Reconnecting…'
-      : 'Connecting to the simulator…';
+    note.textContent = connection.refused
+      ? 'The simulator was started again, with a new token. Run “gzclient”: it opens the editor, ' +
+        'and this page connects again.'
+      : begun
+        ? 'Connection to the simulator lost. Reconnecting…'
+        : 'Connecting to the simulator…';
   };
   store.listen('connection', show);
+  connection.listen('refused', show);
   // A page that connects at once need not say so.
   setTimeout(show, 600);
 }
