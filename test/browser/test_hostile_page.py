@@ -168,7 +168,7 @@ def test_a_hostile_page_reaches_nothing(case, site, asked, browser, monkeypatch,
     victim = context.new_page()
     victim.goto(made.url)
     wait_for(lambda: victim.evaluate("Boolean(window.editor && editor.store.document)"),
-             "the world in the user's own page")
+             "the world in the user's own page", 120.0)
     before = victim.evaluate("editor.store.document")
     own = len(asked)
     origins = {

@@ -7,6 +7,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ...description.light import Light
 from ...description.model import Model
+from ...description.scoped_names import split_scoped
 from ...description.unflatten import unflattened
 from ...engine.commands import JointPid
 from ...errors import CommandError, Issue
@@ -46,9 +47,11 @@ from .inserts import (
     taken_names,
     world_of,
 )
+from .model_building import ModelBuilding
 from .model_scaling import resized
 from .property_path import made
-from .property_target import property_change
+from .property_target import property_change, split_target
+from .solid_inertia import of_shapes
 
 _MOST_IN_A_GROUP = 5000
 _MOST_STEPS = 1000000
@@ -80,14 +83,15 @@ class Edits:
         self._protocol = protocol
         self._tell = tell
         self._dragged = dragged
+        self._building = ModelBuilding(simulator, resolver, tell)
 
-    def do(self, op: Dict[str, Any]) -> Dict[str, Any]:
-        """Carry out one operation as one step of the history; returns the reply's value.
+    def do(self, op: Dict[str, Any], author: str = "") -> Dict[str, Any]:
+        """Carry out one operation as one step of its author's; returns the reply's value.
 
         Raises CommandError, InputError; then nothing has changed.
         """
         label, operation, value = self._planned(op, 0)
-        self._history.do(label, operation)
+        self._history.do(label, operation, author)
         return value
 
     def copy(self, names: List[str]) -> str:
@@ -112,7 +116,8 @@ class Edits:
             "insert": self._insert, "insert_light": self._insert_light, "delete": self._delete,
             "move": self._move, "scale": self._scale, "rename": self._rename, "set": self._set,
             "paste": self._paste, "wrench": self._wrench, "reset": self._reset,
-            "joint": self._joint,
+            "joint": self._joint, "compute_inertia": self._compute_inertia,
+            **self._building.planners(),
         }
         return planners[kind](op)
 
@@ -232,7 +237,23 @@ class Edits:
     def _set(self, op: Dict[str, Any]) -> Planned:
         target, path = op["target"], op["path"]
         operation = property_change(self._world, self._resolver, target, path, op.get("value"))
-        return history_labels.set_property(target, path, op.get("value")), operation, {}
+        model = split_target(self._world, target)[0] if self._is_of_model(target) else None
+        label = history_labels.set_property(target, path, op.get("value"), model)
+        return label, operation, {}
+
+    def _is_of_model(self, target: str) -> bool:
+        return bool(split_scoped(target, self._world.models.has)[0])
+
+    def _compute_inertia(self, op: Dict[str, Any]) -> Planned:
+        owner, rest = split_target(self._world, op["link"])
+        link = next((one for one in owner.links if one.name == rest), None)
+        if link is None:
+            raise CommandError(f"unknown link {op['link']!r}")
+        meshes, _ = checked(owner)
+        changed = replace(link, inertial=of_shapes(link, meshes))
+        model = replace(owner, links=[changed if one is link else one for one in owner.links])
+        whose = history_labels.short(op["link"], self._world.models.get(owner.name))
+        return f"Compute inertia of {whose}", EditModel(owner.name, model, meshes), {}
 
     def _reset(self, op: Dict[str, Any]) -> Planned:
         words = {"time": "time", "poses": "model poses", "world": "world"}[op["what"]]
