@@ -387,7 +387,7 @@ async function offerRestore(page, {found, file, time, others}) {
  * @param {HTMLElement} element
  * @param {Page} page
  */
-function mountConnectionNote(element, {store}) {
+function mountConnectionNote(element, {store, connection}) {
   const text = h('span');
   const detail = h('span', {class: 'soft'});
   const bar = h('progress', {'aria-label': 'Progress'});
@@ -397,6 +397,10 @@ function mountConnectionNote(element, {store}) {
   /** @type {LoadingPush|null} */
   let loading = null;
   const words = () => {
+    if (connection.refused) {
+      return 'The simulator was started again, with a new token. Run “gzclient”: it opens the ' +
+        'editor, and this page connects again.';
+    }
     if (loading) return loading.title || 'Loading the world';
     return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';
   };
@@ -415,6 +419,7 @@ function mountConnectionNote(element, {store}) {
     loading = null;
     show();
   });
+  connection.listen('refused', show);
   store.listen('loading', ({detail: news}) => {
     loading = news.of && news.done >= news.of && store.connected ? null : news;
     show();
