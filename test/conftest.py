@@ -44,7 +44,8 @@ class ProcessorTimes:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
         yield
         now = processor_seconds()
-        self.seconds[item.nodeid] = now - self._before
+        # What was killed with its parent counts no more: the last test would get less than nothing.
+        self.seconds[item.nodeid] = max(0.0, now - self._before)
         self._before = now
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
