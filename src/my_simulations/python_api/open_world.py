@@ -12,7 +12,7 @@ from ..engine.api import Engine
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, EngineLostError, InputError, Issue, error, errors_of
 from ..formats.mesh.loading import collision_meshes
-from ..formats.reading import Entity, LoadedWorld, Text, read_entity
+from ..formats.reading import Entity, LoadedWorld, Text, read_entity, read_file
 from ..geometry import ZERO3, Pose, Twist, Vec3, compose
 from ..resources.resolver import Resolver
 from ..simulator.saving import save_world
@@ -336,14 +336,7 @@ class OpenWorld:
 
     def _read(self, document: Text) -> Tuple[Entity, List[Issue]]:
         if isinstance(document, str) and "<" not in document:
-            path = os.path.expanduser(document)
-            try:
-                with open(path, "rb") as stream:
-                    content = stream.read()
-            except OSError as fault:
-                raise InputError([error("object-unreadable", f"cannot read: {fault.strerror}",
-                                        file=path)]) from fault
-            return read_entity(content, self._resolver, path)
+            return read_file(os.path.expanduser(document), self._resolver)
         return read_entity(document, self._resolver)
 
     def _judge(self, issues: Sequence[Issue]) -> None:
