@@ -108,3 +108,14 @@ def test_an_interrupt_ends_all_lanes(tmp_path):
     for path in paths:
         stat = Path(f"/proc/{path.read_text().strip()}/stat")
         assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+def test_the_oldest_python_gets_the_unit_tests_that_import_nothing_of_ros():
+    done = subprocess.run(
+        ["bash", "-c", ". tools/lib/oldest.sh; tests_without_ros"], cwd=REPOSITORY, text=True,
+        capture_output=True, check=True)
+    chosen = done.stdout.split()
+    assert "test/unit/formats/test_mesh.py" in chosen and len(chosen) > 100
+    assert "test/unit/ros/test_ros_texts.py" not in chosen
+    for name in chosen:
+        assert "\nimport rospy" not in (REPOSITORY / name).read_text(encoding="utf-8"), name
