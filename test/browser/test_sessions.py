@@ -32,6 +32,58 @@ def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, brows
     second.close()
 
 
+def test_two_people_at_one_world_see_whose_hand_is_where(launch, browser):
+    node = launch("worlds/empty.world")
+    first = browser.open(node.url)
+    assert first.page.locator("#people").is_hidden()
+    first.place("Box", (0.0, 0.0, 0.0))
+    second = browser.open(node.url)
+    first.page.get_by_role("group", name="Who is here").get_by_text("Guest 2").wait_for()
+    wait_for(lambda: "by Guest 1" in second.button("Undo").get_attribute("title"), "the author")
+    second.until("editor.view.sharedMarks.join() === 'unit_box'", "the first's selection")
+
+    # The first drags; the second sees the hand, takes the box too, and both are told.
+    first.page.keyboard.press("t")
+    x, y = first.get("editor.view.pixelOf('unit_box')")
+    first.page.mouse.move(x - 12, y + 12)
+    first.page.mouse.down()
+    first.page.mouse.move(x + 60, y + 12, steps=6)
+    second.page.get_by_text("unit_box", exact=True).first.wait_for()
+    wait_for(lambda: second.get("editor.store.others[0].held.join()") == "unit_box", "the hand")
+    second.page.keyboard.press("t")
+    x, y = second.get("editor.view.pixelOf('unit_box')")
+    second.page.mouse.move(x, y)
+    second.page.mouse.down()
+    second.page.mouse.move(x - 60, y, steps=6)
+    first.page.get_by_text("Guest 2 is dragging unit_box too").wait_for()
+    second.page.mouse.up()
+    first.page.get_by_text("Guest 2 released unit_box, which you are dragging").wait_for()
+    first.page.mouse.up()
+    first.until("editor.store.history.undo.length === 3", "two moves")
+
+    # What somebody drags is deleted: the hand is empty, without an error.
+    x, y = first.get("editor.view.pixelOf('unit_box')")
+    first.page.mouse.move(x, y)
+    first.page.mouse.down()
+    first.page.mouse.move(x + 30, y, steps=4)
+    wait_for(lambda: second.get("editor.store.others[0].held.join()") == "unit_box", "the hand")
+    second.row("unit_box").click()
+    second.page.keyboard.press("Delete")
+    first.page.get_by_text("unit_box, which you were dragging, was deleted by Guest 2").wait_for()
+    first.page.mouse.move(x + 50, y, steps=4)
+    first.page.mouse.up()
+    assert first.get("editor.store.issues.filter(({severity}) => severity === 'error')") == []
+
+    # An undo of another's edit says whose it was.
+    first.page.locator("#view").focus()
+    first.page.keyboard.press("Control+z")
+    first.page.get_by_text("Undid an edit of Guest 2: Delete unit_box").wait_for()
+    second.page.get_by_text("Guest 1 undid your edit: Delete unit_box").wait_for()
+    assert first.faults == second.faults == []
+    first.close()
+    second.close()
+
+
 def test_unsaved_changes_survive_a_killed_node_and_are_offered_again(launch, browser):
     node = launch("worlds/empty.world")
     editor = browser.open(node.url)

@@ -77,16 +77,19 @@ export class Connection extends Emitter {
   #closed = false;
   /** @type {string|null} */
   #session = null;
+  /** What the others know us by. @type {() => {person?: string, name?: string}} */
+  #identity;
 
   /**
    * @param {string} url  of the web socket
-   * @param {{WebSocket?: typeof globalThis.WebSocket,
+   * @param {{WebSocket?: typeof globalThis.WebSocket, identity?: () => {person?: string, name?: string},
    *          setTimeout?: (call: () => void, wait: number) => ReturnType<typeof setTimeout>}}
    *        [options]  other implementations, for tests
    */
   constructor(url, options = {}) {
     super();
     this.#url = url;
+    this.#identity = options.identity ?? (() => ({}));
     this.#WebSocket = options.WebSocket ?? globalThis.WebSocket;
     this.#setTimeout = options.setTimeout ?? globalThis.setTimeout.bind(globalThis);
   }
@@ -149,13 +152,16 @@ export class Connection extends Emitter {
   async #greet() {
     const session = this.#session ? {session: this.#session} : {};
     try {
-      const welcome = await this.request('hello', {version: PROTOCOL_VERSION, ...session});
+      const welcome = await this.request('hello', {version: PROTOCOL_VERSION, ...session,
+        ...this.#identity()});
       this.#session = welcome.session;
       this.#attempt = 0;
       this.connected = true;
       this.emit('open', welcome);
     } catch (error) {
       for (const issue of error instanceof RequestError ? error.issues : []) {
+        // The page says all the time that there is no line.
+        if (issue.code === 'connection-lost') continue;
         this.emit('message', {type: 'issue', issue});
       }
     }

@@ -18,10 +18,10 @@ from ..errors import CommandError, Issue, Severity, warning
 from ..geometry import IDENTITY
 from ..simulator.appointments import Consumer, Moment
 from ..simulator.registry import Entity
+from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
-from .eyes import Eyes
 from .graph import Graph, Topic, TopicUse
 from .message_maker import Later, MessageMaker
 from .registry import PluginRegistry, UnknownPluginError, library_name
@@ -50,7 +50,7 @@ class PluginHost:
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
                  log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
-        self._eyes = Eyes(simulator, log)
+        self._scene_sensing = SceneSensing(simulator, log)
         self._messages = MessageMaker()
         self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
         self._told: Dict[str, bool] = {}
@@ -126,7 +126,7 @@ class PluginHost:
     def _clean_up(self) -> None:
         self._stop.set()
         self._watch.stop()
-        self._eyes.close()
+        self._scene_sensing.close()
         self._messages.stop()
         if self._consumer is not None:
             self._consumer.leave()
@@ -365,8 +365,8 @@ class PluginHost:
 
     def _load(self, entity: Entity, into: List[Running], found: Found) -> None:
         context = SimulatedContext(self._simulator, self._graph, entity, found.spec, found.scope,
-                                   self._log, self.wake, self._eyes, found.sensor, found.link,
-                                   found.joint)
+                                   self._log, self.wake, self._scene_sensing, found.sensor,
+                                   found.link, found.joint)
         running = Running(found, context, None)
         into.append(running)
         if self._registry.is_provided(found.spec.filename):

@@ -18,10 +18,10 @@ from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.appointments import Moment, Rate
 from ..simulator.registry import Entity
+from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from ..simulator.wrenches import first_step
 from .context import PluginError, View
-from .eyes import Eyes
 from .graph import Closing, Graph, MissingTypeError, Topic, TopicUse, TransformOf
 from .message_maker import Later
 from .parameters import Parameters
@@ -169,7 +169,7 @@ class SimulatedContext:
 
     def __init__(self, simulator: Simulator, graph: Graph, entity: Entity, spec: PluginSpec,
                  scope: str, report: Report, wake: Callable[[], None],
-                 eyes: Eyes, sensor: Optional[Sensor] = None, sensor_link: str = "",
+                 scene: SceneSensing, sensor: Optional[Sensor] = None, sensor_link: str = "",
                  sensor_joint: str = "") -> None:
         self.simulator = simulator
         self.model = entity.model.name
@@ -194,7 +194,7 @@ class SimulatedContext:
         self._closed = threading.Event()
         self._attached: List[str] = []
         self._held = False
-        self.sensing = SensingRequests(eyes, self.inbox, wake, self.warn)
+        self.sensing = SensingRequests(scene, self.inbox, wake, self.warn)
         self._namespace = ""
         self.opened: List[Closing] = []
         self._topics: List[Tuple[str, str, bool]] = []

@@ -95,7 +95,7 @@ export class TimeBar {
     sim: figure('Sim Time', '8.6em'),
     real: figure('Real Time', '8.6em'),
     iterations: figure('Iterations', '5em'),
-    fps: figure('FPS', '2.4em'),
+    fps: figure('FPS', '2.2em'),
   };
   #file = h('span', {class: 'file-name'});
   #recording = h('span', {class: 'recording', hidden: true, text: '● recording'});
@@ -179,7 +179,8 @@ export class TimeBar {
 
   #showFrames() {
     const fps = this.page.view?.fps;
-    const text = fps === undefined ? '–' : String(Math.round(fps));
+    // A picture now and then is what a view at rest draws.
+    const text = fps === undefined ? '–' : fps < 2 ? 'idle' : String(Math.round(fps));
     if (this.#figures.fps.textContent !== text) this.#figures.fps.textContent = text;
   }
 

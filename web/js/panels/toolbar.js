@@ -133,12 +133,13 @@ export function mountToolBar(element, page) {
     ]) {
       one.disabled = many.disabled = !list.length;
     }
-    undo.title = store.history.undo.length
-      ? `Undo ${store.history.undo[0]} (Ctrl+Z)`
-      : 'Undo (Ctrl+Z)';
-    redo.title = store.history.redo.length
-      ? `Redo ${store.history.redo[0]} (Shift+Ctrl+Z)`
-      : 'Redo (Shift+Ctrl+Z)';
+    /** @param {'undo'|'redo'} which @param {string} verb @param {string} keys */
+    const title = (which, verb, keys) => {
+      const [label] = store.history[which];
+      return label ? `${verb} ${label}${byOther(store, which, 0)} (${keys})` : `${verb} (${keys})`;
+    };
+    undo.title = title('undo', 'Undo', 'Ctrl+Z');
+    redo.title = title('redo', 'Redo', 'Shift+Ctrl+Z');
     const wholes = store.selection.filter((name) => store.entity(name)?.kind !== 'link');
     copy.disabled = !wholes.length;
     paste.disabled = !store.clipboard;
@@ -163,6 +164,7 @@ export function mountToolBar(element, page) {
     'placing',
     'document',
     'entity',
+    'people',
   ])) {
     store.listen(event, update);
   }
@@ -187,6 +189,17 @@ function arrow(title, open) {
 }
 
 /**
+ * Whose step of the history it is, where it is another's.
+ * @param {Page['store']} store
+ * @param {'undo'|'redo'} which
+ * @param {number} at
+ */
+function byOther(store, which, at) {
+  const author = store.authorOf(which, at);
+  return author ? ` by ${author}` : '';
+}
+
+/**
  * The history in words: choosing an entry undoes or redoes all steps up to it.
  * @param {Page} page
  * @param {'undo'|'redo'} which
@@ -207,6 +220,7 @@ function historyList({store, actions}, which, anchor) {
         },
       },
       h('span', {class: 'menu-title', text: label}),
+      h('span', {class: 'soft', text: byOther(store, which, at)}),
     ),
   );
   const list = h(

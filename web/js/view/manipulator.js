@@ -116,7 +116,10 @@ export class Manipulator {
     this.#stage = stage;
     this.#gizmo = new Gizmo(stage.scene);
     for (const event of /** @type {const} */ (['selection', 'mode', 'document', 'entity'])) {
-      store.listen(event, () => this.update());
+      store.listen(event, () => {
+        this.#dropGone();
+        this.update();
+      });
     }
   }
 
@@ -129,7 +132,9 @@ export class Manipulator {
     const name = selection.at(-1);
     const entity = name ? this.#store.entity(name) : null;
     if (!name || !entity) return null;
-    if (entity.kind === 'link') return entity.model.name;
+    if (entity.kind === 'link') {
+      return this.#store.modelEditing?.name === entity.model.name ? name : entity.model.name;
+    }
     if (entity.kind === 'light' && mode === 'scale') return null;
     return name;
   }
@@ -238,6 +243,14 @@ export class Manipulator {
     }
     this.#end(grasp, false);
     return true;
+  }
+
+  /** Somebody has deleted what the hand is on: the drag is over, the simulator says who it was. */
+  #dropGone() {
+    const grasp = this.#grasp;
+    if (!grasp || this.#store.entity(grasp.name)) return;
+    this.#grasp = this.#result = this.#lastEvent = null;
+    this.#end(grasp, false);
   }
 
   /** @param {Record<string, Pose7>} poses */

@@ -1,9 +1,10 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
 import {Vector3} from 'three';
+import {remembered} from '../panels/dom.js';
 import {subtract} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
-import {CameraRig} from './camera_rig.js';
+import {CameraRig, savedConfiguration} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
 import {Forces} from './force_arrows.js';
@@ -13,6 +14,7 @@ import {Materials} from './materials.js';
 import {Meshes} from './mesh_files.js';
 import {Models} from './model_views.js';
 import {Overlays} from './overlays.js';
+import {PeopleMarks} from './people_marks.js';
 import {Picker} from './picking.js';
 import {Placer} from './insert_ghost.js';
 import {PivotMark} from './markers.js';
@@ -58,6 +60,9 @@ const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs 
   acceleration in the browser's settings, update the graphics driver, or allow software rendering
   (Chromium: --enable-unsafe-swiftshader).`;
 
+/** Milliseconds after which it is told that meshes and textures are on their way. */
+const SLOW_FILES = 500;
+
 /** What stands in for the view where there is no WebGL. @param {HTMLElement} element */
 function withoutWebGL(element) {
   const text = document.createElement('p');
@@ -68,6 +73,33 @@ function withoutWebGL(element) {
   return {
     fps: 0, available: false, thumbnail: async () => null, redraw: () => {},
     dispose: () => text.remove(),
+  };
+}
+
+/**
+ * Tells of a number that grows, once it has taken so long that somebody waits, and of its end.
+ * @param {(done: number, of: number) => void} tell
+ */
+function counted(tell) {
+  /** @type {ReturnType<typeof setTimeout>|undefined} */
+  let timer;
+  /** @type {[number, number]} */
+  let news = [0, 0];
+  let shown = false;
+  return (/** @type {number} */ done, /** @type {number} */ of) => {
+    news = [done, of];
+    if (done < of) {
+      timer ??= setTimeout(() => {
+        timer = undefined;
+        shown = news[0] < news[1];
+        if (shown) tell(...news);
+      }, shown ? 100 : SLOW_FILES);
+      return;
+    }
+    clearTimeout(timer);
+    timer = undefined;
+    if (shown) tell(done, of);
+    shown = false;
   };
 }
 
@@ -90,6 +122,8 @@ class View {
   #store;
   #stage;
   #stock;
+  /** For pictures of the library. @type {Stock} */
+  #gallery;
   #models;
   #lights;
   #rig;
@@ -100,7 +134,9 @@ class View {
   #overlays;
   #pointer;
   #actors;
+  #surroundings;
   #marks;
+  #people;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
@@ -119,12 +155,18 @@ class View {
     const meshes = new Meshes((message) =>
       store.addIssue({severity: 'warning', code: 'resource', message}));
     meshes.onArrived = () => stage.invalidate();
+    meshes.onCount = counted((done, of) => store.emit('loading', {
+      type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
+    // Pictures of models that nobody has asked for say nothing of what they lack.
+    const unseen = new Meshes(() => {});
+    this.#gallery = {meshes: unseen, materials: new Materials(unseen.manager)};
     const batches = new Batches(stage.scene);
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
     const rig = new CameraRig({stage, store, models});
+    models.unitAt = (point) => rig.unitAt(Array.from(point));
     const picker = new Picker(stage);
     const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
       picker};
@@ -133,11 +175,12 @@ class View {
     this.#lights = lights;
     this.#rig = rig;
     this.#picker = picker;
-    new Surroundings({stage, store, materials});
+    this.#surroundings = new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
     this.#marks = new TopicMarks({...shared, topics});
     this.#boxes = new SelectionBoxes(shared);
+    this.#people = new PeopleMarks(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
@@ -145,12 +188,17 @@ class View {
       selector: new Selector(shared), pivotMark: new PivotMark(shared)});
     this.#connect();
     actions.attachView(this);
+    const kept = savedConfiguration();
+    if (kept) Object.assign(store.overlays.scene, kept.overlays);
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
 
   /** Names of the topics that are drawn, for tests. */
   get drawnTopics() { return this.#marks.drawn; }
+
+  /** Names of what others hold or have selected, for tests. */
+  get sharedMarks() { return this.#people.shown; }
 
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
@@ -162,11 +210,13 @@ class View {
   }
 
   #connect() {
+    this.#models.onArrived = () => this.#rig.frameAll();
     this.#models.onMoved = (ids) => {
       this.#rig.follow();
       this.#boxes.follow(ids);
       this.#overlays.follow(ids);
       this.#marks.follow(ids);
+      this.#people.follow(ids);
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();
@@ -174,6 +224,7 @@ class View {
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
+      this.#models.catchUp();
       const moving = this.#rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();
@@ -199,6 +250,8 @@ class View {
       : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
     const centre = position.map((part, index) => part + ahead[index] * distance);
     this.#lights.cover(centre, Math.max(distance * 1.3, 4));
+    this.#surroundings.cover(centre, this.#rig.orthographic
+      ? Math.max(distance, this.#stage.width / this.#rig.zoomLevel) : distance);
   }
 
   // ---- what actions ask
@@ -270,6 +323,17 @@ class View {
     return this.#models.carry(poses, asked);
   }
 
+  /** Remembers camera and overlays for worlds that have no camera of their own. */
+  saveConfiguration() {
+    const {projection, controller} = this.#store.camera;
+    remembered.set('configuration', {...this.#rig.view, projection, controller,
+      overlays: this.#store.overlays.scene});
+  }
+
+  resetConfiguration() {
+    remembered.set('configuration', null);
+  }
+
   cancelDrag() {
     return this.#manipulator.cancel();
   }
@@ -337,7 +401,7 @@ class View {
   async #drawThumbnail(uri, address) {
     const found = await this.#connection.request('library_get', {uri}).catch(() => null);
     const model = found?.model;
-    const blob = model && await thumbnail(this.#stage, model, this.#stock);
+    const blob = model && await thumbnail(this.#stage, model, this.#gallery);
     if (!blob) return null;
     if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);
     return URL.createObjectURL(blob);
