@@ -25,13 +25,13 @@ for words in json.load(sys.stdin):
 
 def _run(*words, **variables):
     return subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          timeout=60, env={**os.environ, **variables})
+                          timeout=300, env={**os.environ, **variables})
 
 
 def _roslaunch_each(*calls):
     """What roslaunch prints for each list of words, all in one Python: its start takes a second."""
     done = subprocess.run(["/usr/bin/python3", "-c", EACH], input=json.dumps(calls),
-                          capture_output=True, text=True, timeout=120, env=dict(os.environ))
+                          capture_output=True, text=True, timeout=600, env=dict(os.environ))
     assert done.returncode == 0, done.stderr
     return done.stdout.split("--\n")[:-1]
 
