@@ -41,7 +41,7 @@ class Case:
         self.until(lambda: not any(one.context.inbox for one in self.host._at_work()))
 
     def until(self, condition):
-        deadline = time.monotonic() + 20.0
+        deadline = time.monotonic() + 60.0
         while not condition():
             assert time.monotonic() < deadline
             time.sleep(0.001)
