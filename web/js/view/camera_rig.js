@@ -2,6 +2,7 @@
 import {Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
 import {add, length, scale, subtract} from '../pose.js';
+import {readLink} from '../view_link.js';
 /** @import {GuiCamera} from '../protocol.js' */
 /** @import {Vec3} from '../pose.js' */
 /** @import {View} from '../camera_math.js' */
@@ -238,7 +239,9 @@ export class CameraRig {
     this.#world = which;
     this.#home = camera ? views.fromPose(camera.pose) : views.HOME;
     this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
-    this.set(this.#home);
+    const link = readLink(globalThis.location?.hash ?? '');
+    this.set(link?.view ?? this.#home);
+    if (link) this.#store.select(link.selection.filter((name) => this.#store.entity(name)));
     this.#store.setCamera({
       projection: camera?.projection_type === 'orthographic' ? 'orthographic' : 'perspective',
       controller: camera?.view_controller === 'fps' ? 'fps' : 'orbit',

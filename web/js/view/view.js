@@ -3,6 +3,7 @@ import {Vector3} from 'three';
 import {subtract} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
+import {BoxSelect} from './box_select.js';
 import {CameraRig} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
@@ -10,9 +11,11 @@ import {Forces} from './force_arrows.js';
 import {Lights} from './light_views.js';
 import {Manipulator} from './manipulator.js';
 import {Materials} from './materials.js';
+import {Measure} from './measure.js';
 import {Meshes} from './mesh_files.js';
 import {Models} from './model_views.js';
 import {Overlays} from './overlays.js';
+import {OrientationCube} from './orientation_cube.js';
 import {PeopleMarks} from './people_marks.js';
 import {Picker} from './picking.js';
 import {Placer} from './insert_ghost.js';
@@ -76,6 +79,21 @@ function withoutWebGL(element) {
 }
 
 /**
+ * Numbers over the view while something is dragged; '' hides them.
+ * @param {HTMLElement} parent
+ */
+function readout(parent) {
+  const element = document.createElement('output');
+  element.className = 'readout';
+  element.hidden = true;
+  parent.append(element);
+  return (/** @type {string} */ text) => {
+    element.hidden = !text;
+    element.textContent = text;
+  };
+}
+
+/**
  * Tells of a number that grows, once it has taken so long that somebody waits, and of its end.
  * @param {(done: number, of: number) => void} tell
  */
@@ -135,6 +153,9 @@ class View {
   #actors;
   #marks;
   #people;
+  #measure;
+  #cube;
+  #readout;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
@@ -181,11 +202,17 @@ class View {
     this.#people = new PeopleMarks(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
+    const selector = new Selector(shared);
+    this.#measure = new Measure({...shared, selector});
+    this.#cube = new OrientationCube(element, actions);
+    this.#readout = readout(element);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
       placer: new Placer(shared), faceSnap: new FaceSnap(shared), forces: this.#forces,
-      selector: new Selector(shared), pivotMark: new PivotMark(shared)});
+      selector, measure: this.#measure, pivotMark: new PivotMark(shared),
+      boxSelect: new BoxSelect(element, store, (name) => this.pixelOf(name))});
     this.#connect();
     actions.attachView(this);
+    this.#rig.apply();
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
@@ -215,7 +242,12 @@ class View {
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();
-    this.#rig.onMoved = () => this.#manipulator.update();
+    this.#manipulator.onNumbers = (text) => this.#readout(text);
+    this.#rig.onMoved = () => {
+      this.#manipulator.update();
+      this.#measure.follow();
+      this.#cube.update(this.#rig.view);
+    };
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
@@ -248,6 +280,17 @@ class View {
   }
 
   // ---- what actions ask
+
+  /** Where the camera is. */
+  get camera() { return this.#rig.view; }
+
+  /** What the measure tool says, for tests. */
+  get measured() { return this.#measure.texts; }
+
+  /** @param {import('../camera_math.js').View} view */
+  flyTo(view) {
+    this.#rig.fly(view);
+  }
 
   /** @param {string} side */
   viewFrom(side) {
