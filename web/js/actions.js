@@ -310,6 +310,14 @@ export function createActions({store, connection}) {
       if (bookmark) view?.flyTo(bookmark.view);
     },
     clearBookmarks: () => remembered.set(bookmarksKey(), []),
+    /**
+     * What the models of the world cover of the ground, but for planes and one of them.
+     * @param {string} [without]
+     */
+    footprints: (without) => (store.document?.models ?? []).flatMap(({name}) => {
+      const outline = name === without ? null : view?.footprint(name);
+      return outline ? [{name, outline}] : [];
+    }),
     /** @param {string|null} name  null ends it @returns {void} */
     follow(name = store.selection.at(-1) ?? null) {
       if (name) store.setMode('select');

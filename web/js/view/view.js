@@ -1,6 +1,7 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
-import {Vector3} from 'three';
-import {subtract} from '../pose.js';
+import {Box3, Vector3} from 'three';
+import {hullOf} from '../building/plane_geometry.js';
+import {subtract, transform} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
 import {BoxSelect} from './box_select.js';
@@ -158,6 +159,8 @@ class View {
   #readout;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
+  /** What of it the camera was last turned to. @type {Box3|null} */
+  #framed = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
   #thumbnails = new Map();
   /** Names of the models that are shown elsewhere. @type {string[]} */
@@ -326,6 +329,22 @@ class View {
   }
 
   /**
+   * The outline of a model on the ground, m; null for planes and for what is not drawn.
+   * @param {string} name
+   */
+  footprint(name) {
+    const pose = this.#models.shownPose(name);
+    const box = pose && this.#models.bounds(name, pose);
+    const model = this.#store.model(name);
+    const isPlane = model?.links.every(({visuals}) =>
+      visuals.every(({geometry}) => geometry.type === 'plane'));
+    if (!pose || !box || isPlane) return null;
+    const corners = [box.min.x, box.max.x].flatMap((x) => [box.min.y, box.max.y].flatMap((y) =>
+      [box.min.z, box.max.z].map((z) => transform(pose, [x, y, z]).slice(0, 2))));
+    return hullOf(corners);
+  }
+
+  /**
    * Where the middle of an entity is in the page, px, for tests.
    * @param {string} name
    * @returns {number[]|null}
@@ -388,9 +407,22 @@ class View {
       // It can be picked before it is drawn for the first time.
       group.updateMatrixWorld(true);
       this.#stage.scene.add(group);
-      ready.then(() => this.#stage.shadowsChanged());
-    }
+      ready.then(() => {
+        this.#frame(new Box3().setFromObject(group));
+        this.#stage.shadowsChanged();
+      });
+    } else this.#framed = null;
     this.#stage.shadowsChanged();
+  }
+
+  /**
+   * What is drawn beside the world is in sight when it begins, and when it has outgrown that.
+   * @param {Box3} box
+   */
+  #frame(box) {
+    if (box.isEmpty() || this.#framed?.containsBox(box)) return;
+    this.#framed = box.clone().expandByScalar(box.getSize(new Vector3()).length() * 0.15);
+    this.#rig.flyTo(this.#framed);
   }
 
   /**
