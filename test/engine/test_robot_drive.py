@@ -44,7 +44,7 @@ class Drive:
         self.odometry()
         self.graph.heard["cmd_vel"](Message(linear={"x": forward}, angular={"z": turn}))
         deadline = time.monotonic() + 60.0
-        while any(one.context.inbox for one in self.host._all()):
+        while self.host.unheard:
             assert time.monotonic() < deadline
             time.sleep(0.001)
         self.sim.clock.advance(round(seconds * 1000))

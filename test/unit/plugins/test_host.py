@@ -372,8 +372,8 @@ def test_what_is_attached_is_let_go(case, how):
     elif how == "deleted":
         one.sim.models.delete("me")
     else:
-        (running,) = [running for running in one.host._all() if "libjoin" in
+        (running,) = [running for running in one.host._at_work() if "libjoin" in
                       running.found.spec.filename]
         running.context.inbox.append(lambda: 1 / 0)
-        one.host.wake()
+        one.host._ring(running)
     until(lambda: not connected)
