@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 import pybullet
 
@@ -23,6 +23,7 @@ class _Loops:
         self.uid = uid
         self.indices: List[int] = []
         self.efforts: List[Tuple[int, int, ServoLaw]] = []   # place in `indices`, row, law
+        self.effort_indices: List[int] = []
         self.motors: List[Tuple[int, ServoLaw]] = []
         self.motor_indices: List[int] = []
         self.forces: List[float] = []
@@ -32,6 +33,7 @@ class _Loops:
         self.indices.append(axis.index)
         if law.gives_effort:
             self.efforts.append((place, axis.row, law))
+            self.effort_indices.append(axis.index)
         else:
             self.motors.append((place, law))
             self.motor_indices.append(axis.index)
@@ -113,13 +115,25 @@ class JointServos:
         for table in (self._laws, self._friction, self._busy):
             table.clear()
 
-    def add_to(self, efforts: Dict[int, float], step: int) -> None:
-        """Add the efforts of the step that begins at a count, N m or N by row; set motors."""
-        for loops in self._busy.values():
-            states = pybullet.getJointStates(loops.uid, loops.indices)
-            for place, row, law in loops.efforts:
-                position, rate, _, _ = states[place]
-                efforts[row] = efforts.get(row, 0.0) + law.advance(position, rate, step)
+    def act(self, efforts: Dict[int, float], shared: Set[int], step: int) -> None:
+        """Act in the step that begins at a count.
+
+        The efforts of bodies (PyBullet's numbers) that something else acts on, too, are added to
+        `efforts`, N m or N by row; those of others are given at once, a body at a time.
+        """
+        for uid, loops in self._busy.items():
+            states = pybullet.getJointStates(uid, loops.indices)
+            if uid in shared:
+                for place, row, law in loops.efforts:
+                    efforts[row] = efforts.get(row, 0.0) + law.advance(
+                        states[place][0], states[place][1], step)
+            elif loops.efforts:
+                given = []
+                for place, _, law in loops.efforts:
+                    position, rate, _, _ = states[place]
+                    given.append(law.advance(position, rate, step))
+                pybullet.setJointMotorControlArray(
+                    uid, loops.effort_indices, pybullet.TORQUE_CONTROL, forces=given)
             if loops.motors:
                 rates = [law.advance(states[place][0], states[place][1], step)
                          for place, law in loops.motors]
