@@ -119,8 +119,9 @@ class Forces:
             self._tell_loops()
 
     def _tell_loops(self) -> None:
-        self._loops_changed({self._acting[number].row for number in self._loops
-                             if number in self._acting})
+        rows = {self._acting[number].row for number in self._loops if number in self._acting}
+        self.servos.yield_to(rows)
+        self._loops_changed(rows)
 
     def clear(self) -> None:
         """All bodies are gone, and every timed force with them."""
@@ -130,9 +131,9 @@ class Forces:
             table.clear()
         self.slip.clear()
         self._placed.clear()
+        self.servos.clear()
         if ended:
             self._tell_loops()
-        self.servos.clear()
 
     @property
     def wrenched_links(self) -> Set[int]:

@@ -49,12 +49,23 @@ class JointServos:
         self._laws: Dict[int, ServoLaw] = {}
         self._friction: Dict[int, Tuple[float, float]] = {}
         self._busy: Dict[int, _Loops] = {}
+        self._yielding: Set[int] = set()
         self._dt = 0.0
 
     @property
     def idle(self) -> bool:
         """Whether nothing must be computed."""
         return not self._busy
+
+    def yield_to(self, rows: Set[int]) -> None:
+        """PID loops drive these axes: their servos rest meanwhile, only friction stays."""
+        changed, self._yielding = rows ^ self._yielding, set(rows)
+        for row in changed & self._laws.keys():
+            body, axis = self._axes[row]
+            self._laws[row].disturbed()
+            self._release(body, axis)
+            self._drive(body, axis)
+        self._sort()
 
     def set(self, servos: Iterable[JointServo], dt: float) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
@@ -114,6 +125,7 @@ class JointServos:
         """All bodies are gone."""
         for table in (self._laws, self._friction, self._busy):
             table.clear()
+        self._yielding.clear()
 
     def act(self, efforts: Dict[int, float], shared: Set[int], step: int) -> None:
         """Act in the step that begins at a count.
@@ -149,7 +161,7 @@ class JointServos:
             if row not in self._axes:
                 found.append(0.0)
             elif law is not None and law.gives_effort:
-                found.append(law.last)
+                found.append(0.0 if row in self._yielding else law.last)
             else:
                 body, axis = self._axes[row]
                 found.append(float(pybullet.getJointState(body.uid, axis.index)[3]))
@@ -159,7 +171,7 @@ class JointServos:
         """Find out anew what must be computed for which body."""
         self._busy = {}
         for row, law in self._laws.items():
-            if not law.steady:
+            if not law.steady and row not in self._yielding:
                 body, axis = self._axes[row]
                 self._busy.setdefault(body.uid, _Loops(body.uid)).add(axis, law)
 
@@ -172,7 +184,7 @@ class JointServos:
     def _drive(self, body: Body, axis: Axis) -> None:
         """Hand over what PyBullet does by itself."""
         law = self._laws.get(axis.row)
-        if law is None or not law.steady or law.gives_effort:
+        if law is None or not law.steady or law.gives_effort or axis.row in self._yielding:
             return
         servo = law.servo
         if servo.drive == "velocity":
