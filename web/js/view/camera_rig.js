@@ -268,8 +268,10 @@ export class CameraRig {
     } else this.#beginWithAll();
     const link = readLink(globalThis.location?.hash ?? '');
     if (link) {
-      this.#toFrame = [];
-      this.set(link.view);
+      if (link.view) {
+        this.#toFrame = [];
+        this.set(link.view);
+      }
       this.#store.select(link.selection.filter((name) => this.#store.entity(name)));
     }
     this.#store.setCamera({
