@@ -7,7 +7,7 @@ from typing import Any, List, Mapping, Optional, Sequence, Tuple
 from ..errors import CommandError, InputError, Issue, errors_of
 from ..geometry import Pose
 from ..objects.yaml_source import KeyPath, read_yaml
-from ..python_api.readings import pose_of
+from ..python_api.plain_values import pose_of
 from .expressions import Expression, ExpressionError, parse
 from .study import Limits, Plan, Seeds, Study, StudyModel, Trajectory
 from .value_reader import ValueReader, kind_of
