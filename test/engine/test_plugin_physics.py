@@ -38,10 +38,10 @@ class Case:
 
     def hear(self, topic, **fields):
         self.graph.heard[topic](Message(**fields))
-        self.until(lambda: not any(one.context.inbox for one in self.host._all()))
+        self.until(lambda: not any(one.context.inbox for one in self.host._at_work()))
 
     def until(self, condition):
-        deadline = time.monotonic() + 20.0
+        deadline = time.monotonic() + 60.0
         while not condition():
             assert time.monotonic() < deadline
             time.sleep(0.001)
