@@ -247,11 +247,12 @@ class BulletBackend:
         for body in built:
             self._register(body)
             for part in body.parts:
-                link = model.links[part.row - first_row]
-                self._decay.add(body, part, link)
-                self._rolling.add(body, part, link)
-                if not slips(link):
-                    self._sliding.add(body, part, link)
+                self._decay.add(body, part, part.link)
+                self._rolling.add(body, part, part.link)
+                if not slips(part.link):
+                    self._sliding.add(body, part, part.link)
+            for part in body.colliders:
+                link = part.link
                 self._landing.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
                 self._forces.slip.add(body, part, link)

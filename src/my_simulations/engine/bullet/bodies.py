@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import pybullet
 
@@ -41,6 +41,7 @@ class Part:
         link_from_com: the centre of mass and the principal axes.
         moments: about those axes, kg m^2.
         mu, friction: the coefficient of the file, and what PyBullet was given to store.
+        link: its description, with the collisions that it carries (see `surface_pieces`).
     """
 
     row: int
@@ -51,6 +52,7 @@ class Part:
     mu: float
     friction: float
     gravity: bool
+    link: Link = field(default_factory=lambda: Link(""))
 
     def com_pose(self, link_pose: Pose) -> Pose:
         """World pose of the centre of mass from that of the link frame."""
@@ -110,6 +112,7 @@ class Body:
         seen_at: its centre of mass at the last read-out; parting an overlap moves it without
             velocity.
         ties: how many joints connect it with other models.
+        pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).
     """
 
     uid: int
@@ -126,6 +129,7 @@ class Body:
     still: int = 0
     seen_at: Optional[Vec3] = None
     ties: int = 0
+    pieces: Tuple[Part, ...] = ()
     lead_row: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -135,6 +139,17 @@ class Body:
     def uids(self) -> Tuple[int, ...]:
         """All PyBullet numbers it holds."""
         return (self.uid,) + self.more
+
+    @property
+    def colliders(self) -> Tuple[Part, ...]:
+        """Its links and their pieces: all that can touch something."""
+        return (*self.parts, *self.pieces)
+
+    @property
+    def owners(self) -> Dict[int, int]:
+        """Of each piece, by PyBullet's index, the index of the link it belongs to."""
+        indices = {part.row: part.index for part in self.parts}
+        return {piece.index: indices[piece.row] for piece in self.pieces}
 
     @property
     def base(self) -> Optional[Part]:

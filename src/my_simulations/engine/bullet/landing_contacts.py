@@ -385,7 +385,7 @@ def _across(low: Vec3, high: Vec3, normal: Vec3) -> Tuple[float, float]:
 
 def _extent(body: Body) -> Tuple[Vec3, Vec3]:
     """The lowest and highest corner of a box along the world's axes about a body."""
-    boxes = [pybullet.getAABB(body.uid, part.index) for part in body.parts]
+    boxes = [pybullet.getAABB(body.uid, part.index) for part in body.colliders]
     low = (min(box[0][0] for box in boxes), min(box[0][1] for box in boxes),
            min(box[0][2] for box in boxes))
     high = (max(box[1][0] for box in boxes), max(box[1][1] for box in boxes),
