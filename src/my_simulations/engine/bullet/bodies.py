@@ -107,6 +107,7 @@ class Body:
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
         is_ball: its only shape is one sphere.
+        swept: so small that Bullet sweeps it along its way.
         lead_row: of its first part.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
         seen_at: its centre of mass at the last read-out; parting an overlap moves it without
@@ -124,6 +125,7 @@ class Body:
     moves: bool = True
     rigid: bool = True
     is_ball: bool = False
+    swept: bool = False
     may_sleep: bool = True
     radius: float = 0.0
     still: int = 0
@@ -225,16 +227,18 @@ def launch(body: Body, link_pose: Pose, twist: Twist) -> None:
     pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
 
 
-def sweep(uid: int) -> None:
-    """Let a small rigid body stop at what it would fly through within one step.
+def sweep(uid: int) -> bool:
+    """Let a small rigid body stop at what it would fly through within one step; whether it is one.
 
     Bullet sweeps a sphere along the way of the centre, from 0.5 mm a step on. It must lie well
     within the body, or bounces come out wrong.
     """
     low, high = pybullet.getAABB(uid, BASE)
     half = min(b - a for a, b in zip(low, high)) / 2
-    if 0.0 < half < _SMALL:
-        pybullet.changeDynamics(uid, BASE, ccdSweptSphereRadius=_SWEPT * half)
+    if not 0.0 < half < _SMALL:
+        return False
+    pybullet.changeDynamics(uid, BASE, ccdSweptSphereRadius=_SWEPT * half)
+    return True
 
 
 def radius_of(uid: int) -> float:

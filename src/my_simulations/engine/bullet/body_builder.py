@@ -158,7 +158,7 @@ class Builder:
                 let_rest(uid)
         body.radius = radius_of(uids[0])
         if body.rigid and body.moves and rigid.pieces:
-            sweep(uids[0])
+            body.swept = sweep(uids[0])
         return body
 
     def _part(self, number: int, index: int, masses: _Masses, link: Link) -> Part:
