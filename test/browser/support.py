@@ -15,7 +15,8 @@ from playwright.sync_api import sync_playwright
 
 from my_simulations.editor.transport import address_file
 
-SECONDS = 30.0
+SECONDS = 60.0
+"""Until something must have happened; a machine under load draws a picture in seconds."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -79,6 +80,7 @@ class Node:
 
         # Each node has a master of its own; rospy asks the one of the environment at each call.
         with mock.patch.dict(os.environ, ROS_MASTER_URI=self.master):
+            rospy.wait_for_service(f"/gazebo/{service}", SECONDS)
             return rospy.ServiceProxy(f"/gazebo/{service}", service_class)(**fields)
 
     def close(self):
@@ -116,15 +118,21 @@ class Browser:
 class Editor:
     """One page with the editor; `faults` are errors of its scripts."""
 
-    def __init__(self, browser, url, size=(WIDTH, HEIGHT), color_scheme="dark"):
+    def __init__(self, browser, url, size=(WIDTH, HEIGHT), color_scheme="dark", wait=True,
+                 **options):
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]},
-                                           color_scheme=color_scheme, accept_downloads=True)
+                                           color_scheme=color_scheme, accept_downloads=True,
+                                           **options)
         self.page = self.context.new_page()
         self.faults = []
         self.said = []
         self.page.on("pageerror", lambda fault: self.faults.append(str(fault)))
         self.page.on("console", lambda message: self.said.append(message.text))
         self.page.goto(url)
+        if wait:
+            self.wait_for_world()
+
+    def wait_for_world(self):
         self.until("Boolean(window.editor && editor.store.document && editor.view)", "the world")
         self.until("performance.getEntriesByName('first-picture').length > 0",
                    "the first picture")

@@ -6,7 +6,7 @@ import signal
 import xmlrpc.client
 
 from pytest import approx
-from support import wait_for
+from support import free_port, wait_for
 
 
 def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, browser):
@@ -32,6 +32,58 @@ def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, brows
     second.close()
 
 
+def test_two_people_at_one_world_see_whose_hand_is_where(launch, browser):
+    node = launch("worlds/empty.world")
+    first = browser.open(node.url)
+    assert first.page.locator("#people").is_hidden()
+    first.place("Box", (0.0, 0.0, 0.0))
+    second = browser.open(node.url)
+    first.page.get_by_role("group", name="Who is here").get_by_text("Guest 2").wait_for()
+    wait_for(lambda: "by Guest 1" in second.button("Undo").get_attribute("title"), "the author")
+    second.until("editor.view.sharedMarks.join() === 'unit_box'", "the first's selection")
+
+    # The first drags; the second sees the hand, takes the box too, and both are told.
+    first.page.keyboard.press("t")
+    x, y = first.get("editor.view.pixelOf('unit_box')")
+    first.page.mouse.move(x - 12, y + 12)
+    first.page.mouse.down()
+    first.page.mouse.move(x + 60, y + 12, steps=6)
+    second.page.get_by_text("unit_box", exact=True).first.wait_for()
+    wait_for(lambda: second.get("editor.store.others[0].held.join()") == "unit_box", "the hand")
+    second.page.keyboard.press("t")
+    x, y = second.get("editor.view.pixelOf('unit_box')")
+    second.page.mouse.move(x, y)
+    second.page.mouse.down()
+    second.page.mouse.move(x - 60, y, steps=6)
+    told(first, "Guest 2 is dragging unit_box too")
+    second.page.mouse.up()
+    told(first, "Guest 2 released unit_box, which you are dragging")
+    first.page.mouse.up()
+    first.until("editor.store.history.undo.length === 3", "two moves")
+
+    # What somebody drags is deleted: the hand is empty, without an error.
+    x, y = first.get("editor.view.pixelOf('unit_box')")
+    first.page.mouse.move(x, y)
+    first.page.mouse.down()
+    first.page.mouse.move(x + 30, y, steps=4)
+    wait_for(lambda: second.get("editor.store.others[0].held.join()") == "unit_box", "the hand")
+    second.row("unit_box").click()
+    second.page.keyboard.press("Delete")
+    told(first, "unit_box, which you were dragging, was deleted by Guest 2")
+    first.page.mouse.move(x + 50, y, steps=4)
+    first.page.mouse.up()
+    assert first.get("editor.store.issues.filter(({severity}) => severity === 'error')") == []
+
+    # An undo of another's edit says whose it was.
+    first.page.locator("#view").focus()
+    first.page.keyboard.press("Control+z")
+    told(first, "Undid an edit of Guest 2: Delete unit_box")
+    told(second, "Guest 1 undid your edit: Delete unit_box")
+    assert first.faults == second.faults == []
+    first.close()
+    second.close()
+
+
 def test_unsaved_changes_survive_a_killed_node_and_are_offered_again(launch, browser):
     node = launch("worlds/empty.world")
     editor = browser.open(node.url)
@@ -52,6 +104,29 @@ def test_unsaved_changes_survive_a_killed_node_and_are_offered_again(launch, bro
     assert again.model("unit_cylinder")["pose"] == approx(pose, abs=1e-5)
     again.until("editor.store.history.dirty", "the mark of unsaved changes")
     again.close()
+
+
+def test_an_open_page_says_how_to_open_a_simulator_that_was_started_again(launch, browser):
+    port = free_port()
+    node = launch("worlds/empty.world", f"editor_port:={port}")
+    left_open = browser.open(node.url)
+    node.close()
+    again = launch("worlds/empty.world", f"editor_port:={port}")
+    assert again.url != node.url and again.url.partition("?")[0] == node.url.partition("?")[0]
+    left_open.page.get_by_text("Run “gzclient”").wait_for()
+    assert left_open.get("editor.store.connected") is False
+    # What gzclient does: it opens the new address, whose token the browser keeps.
+    page = left_open.context.new_page()
+    page.goto(again.url)
+    left_open.until("editor.store.connected", "the connection of the page that was left open")
+    assert not left_open.page.get_by_text("Run “gzclient”").is_visible()
+    page.close()
+    left_open.close()
+
+
+def told(editor, text):
+    """Waits for a message; its card may have gone by then."""
+    editor.until(f"editor.store.issues.some(({{message}}) => message.includes({text!r}))", text)
 
 
 def autosaved(folder, name):

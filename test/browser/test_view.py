@@ -249,3 +249,37 @@ def test_without_webgl_the_page_says_so_and_the_rest_works(node, browser):
     assert "WebGL" in alert.inner_text()
     page.get_by_role("treeitem", name="ground_plane", exact=True).wait_for()
     chromium.close()
+
+
+CREEP = """(metres) => {
+  const {id} = editor.store.model('box').links[0];
+  const pose = [...editor.store.poses.get(id)];
+  const bytes = new ArrayBuffer(72), view = new DataView(bytes);
+  view.setUint32(0, 1, true);
+  view.setUint32(32, 1, true);
+  view.setUint32(40, id, true);
+  clearInterval(window.creeping);
+  window.creeping = setInterval(() => {
+    pose[0] += metres;
+    pose.forEach((part, at) => view.setFloat32(44 + 4 * at, part, true));
+    editor.store.receiveFrame(bytes);
+  }, 33);
+}"""
+"""Poses of the box as the simulator sends them, each so far beside the one before."""
+
+SHARPNESS = "document.querySelector('.view-canvas').width / innerWidth"
+
+
+def test_what_moves_less_than_a_pixel_leaves_the_picture_at_full_resolution(editor):
+    insert(editor, "box", standing(0, 0))
+    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
+    full = editor.get(SHARPNESS)
+    editor.page.evaluate(CREEP, 0.02)
+    wait_for(lambda: editor.get(SHARPNESS) < full, "coarser pictures of what moves")
+    # Creeping by 1 mm/s, 0.2 pixels a second here, is rest.
+    editor.page.evaluate(CREEP, 0.001 / 30)
+    wait_for(lambda: editor.get(SHARPNESS) == full, "the full picture of what creeps")
+    for _ in range(20):
+        assert editor.get(SHARPNESS) == full
+        editor.get("new Promise((done) => setTimeout(done, 50))")
+    editor.get("clearInterval(window.creeping)")

@@ -108,6 +108,14 @@ test('framing shows the whole box', () => {
   }
 });
 
+test('framing looks from the same direction, so that the horizon stays after Top', () => {
+  const box = {min: [4, 4, 0], max: [8, 5, 3]};
+  const top = camera.fromSide(camera.HOME, 'top', [0, 0, 0]);
+  const view = camera.framing(top, box, FOV, WIDTH / HEIGHT);
+  assert.equal(view.yaw, top.yaw);
+  near(camera.forward(view), camera.forward(top));
+});
+
 test('a flight takes the shorter way round', () => {
   const from = {position: [0, 0, 0], yaw: 3, pitch: 0};
   const to = {position: [1, 0, 0], yaw: -3, pitch: 0.5};

@@ -255,6 +255,8 @@ export class FakeSimulator {
       type: 'history',
       undo: this.undo.map((one) => one.label),
       redo: this.redo.map((one) => one.label),
+      undo_by: this.undo.map(() => 'Guest 1'),
+      redo_by: this.redo.map(() => 'Guest 1'),
       dirty: this.undo.length > 0,
       file: this.document.file,
     };
@@ -280,7 +282,7 @@ export class FakeSimulator {
   }
 
   on_hello() {
-    return {session: 'one', version: 1, app: 'fake'};
+    return {session: 'one', version: 1, app: 'fake', number: 1};
   }
 
   on_edit({op}) {

@@ -1,6 +1,7 @@
+import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {
-  axisAngle, compose, fromRpy, inverse, rotate, rotationBetween, transform,
+  axisAngle, compose, displacement, fromRpy, inverse, rotate, rotationBetween, transform,
 } from '../../web/js/pose.js';
 import {near, sameTurn} from './near.mjs';
 
@@ -32,4 +33,13 @@ test('the rotation between opposite directions is a half turn', () => {
   near(rotate(rotationBetween([0, 0, 1], [0, 0, -1]), [0, 0, 1]), [0, 0, -1]);
   near(rotate(rotationBetween([1, 0, 0], [-1, 0, 0]), [1, 0, 0]), [-1, 0, 0]);
   near(rotate(rotationBetween([1, 0, 0], [0, 0.6, 0.8]), [1, 0, 0]), [0, 0.6, 0.8]);
+});
+
+test('what turns moves its far end by angle times radius, whatever the sign of the quaternion', () => {
+  const turned = [0, 0, 0, ...axisAngle([0, 0, 1], 0.01)];
+  const opposite = turned.map((part, at) => (at < 3 ? part : -part));
+  for (const to of [turned, opposite]) {
+    assert.ok(Math.abs(displacement(NONE, to, 2) - 0.02) < 1e-6);
+  }
+  assert.equal(displacement(NONE, [3, 4, 0, 0, 0, 0, 1], 9), 5);
 });

@@ -5,12 +5,13 @@ import {mountDriving} from './drive_keys.js';
 import {mountKeys} from './hotkeys.js';
 import {faultText} from './panels/dialog.js';
 import {byId} from './panels/dom.js';
+import {identity} from './panels/people_bar.js';
 import {mountPanels} from './panels/panels.js';
 import {Store} from './store.js';
 import {Topics} from './topics/topics.js';
 import {Watches} from './watches.js';
 
-const connection = new Connection(webSocketUrl(location));
+const connection = new Connection(webSocketUrl(location), {identity});
 const store = new Store(connection);
 const actions = createActions({store, connection});
 const watches = new Watches(connection);

@@ -160,3 +160,17 @@ export function slerp(a, b, part) {
   const mixed = a.map((value, index) => from * value + to * end[index]);
   return scale4(mixed, 1 / Math.hypot(...mixed));
 }
+
+/**
+ * How far, m, a point of a body has gone at most between two poses.
+ * @param {Numbers} from
+ * @param {Numbers} to
+ * @param {number} radius  of the body about its origin, m
+ */
+export function displacement(from, to, radius) {
+  // Half the angle is the distance of the quaternions, of which q and -q are the same rotation.
+  const sign = from[3] * to[3] + from[4] * to[4] + from[5] * to[5] + from[6] * to[6] < 0 ? -1 : 1;
+  const half = Math.hypot(from[3] - sign * to[3], from[4] - sign * to[4], from[5] - sign * to[5],
+    from[6] - sign * to[6]);
+  return Math.hypot(from[0] - to[0], from[1] - to[1], from[2] - to[2]) + 2 * half * radius;
+}

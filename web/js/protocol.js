@@ -64,6 +64,8 @@ export const FRAME_RECORD_BYTES = 32;
  *  name: string, texture?: Texture|null, transparency: number, lighting: boolean
  *}} Material */
 
+/** @typedef {'box'|'sphere'|'cylinder'|'capsule'|'cone'|'ellipsoid'} SolidShape */
+
 /** @typedef {{type: 'box', size: vec3}} Box */
 
 /** @typedef {{type: 'sphere', radius: number}} Sphere */
@@ -299,6 +301,10 @@ export const FRAME_RECORD_BYTES = 32;
  *  mount?: Mount|null, driven?: boolean|null, hz?: number|null, bytes_per_s?: number|null
  *}} Topic */
 
+/** @typedef {{
+ *  number: number, name: string, selected: string[], held: string[]
+ *}} Person */
+
 /** @typedef {{parent: string, child: string, pose: pose}} Transform */
 
 /** @typedef {{
@@ -394,10 +400,40 @@ export const FRAME_RECORD_BYTES = 32;
  *  gains?: Gains|null
  *}} JointOperation */
 
+/** @typedef {{
+ *  kind: 'add_link', model?: string|null, shape?: SolidShape|null, uri?: string|null,
+ *  pose?: pose|null
+ *}} AddLinkOperation */
+
+/** @typedef {{
+ *  kind: 'add_shape', link: string, part: 'visual'|'collision'|'both', shape?: SolidShape|null,
+ *  uri?: string|null
+ *}} AddShapeOperation */
+
+/** @typedef {{kind: 'rename_link', link: string, to: string}} RenameLinkOperation */
+
+/** @typedef {{kind: 'add_joint', model: string, joint: Partial<Joint>}} AddJointOperation */
+
+/** @typedef {{kind: 'edit_joint', joint: string, values: Partial<Joint>}} EditJointOperation */
+
+/** @typedef {{
+ *  kind: 'add_model', model: string, uri: string, pose?: pose|null
+ *}} AddModelOperation */
+
+/** @typedef {{kind: 'set_plugins', model: string, text: string}} SetPluginsOperation */
+
+/** @typedef {{kind: 'remove_part', target: string}} RemovePartOperation */
+
+/** @typedef {{
+ *  kind: 'compute_inertial', target: string, density?: number|null
+ *}} ComputeInertialOperation */
+
 /** @typedef {{kind: 'group', ops: Operation[], label?: string|null}} GroupOperation */
 
 /** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
+ *  AddLinkOperation|AddShapeOperation|RenameLinkOperation|AddJointOperation|EditJointOperation|
+ *  AddModelOperation|SetPluginsOperation|RemovePartOperation|ComputeInertialOperation|
  *  GroupOperation} Operation */
 
 /** @typedef {{
@@ -417,8 +453,15 @@ export const FRAME_RECORD_BYTES = 32;
  *}} StatsPush */
 
 /** @typedef {{
- *  type: 'history', undo: string[], redo: string[], dirty: boolean, file: string
+ *  type: 'history', undo: string[], redo: string[], undo_by: string[], redo_by: string[],
+ *  dirty: boolean, file: string
  *}} HistoryPush */
+
+/** @typedef {{type: 'people', people: Person[]}} PeoplePush */
+
+/** @typedef {{
+ *  type: 'loading', title: string, text: string, done: number, of: number
+ *}} LoadingPush */
 
 /** @typedef {{type: 'issue', issue: Issue}} IssuePush */
 
@@ -444,20 +487,24 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{type: 'shutdown', reason: string}} ShutdownPush */
 
-/** @typedef {ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|IssuePush|LibraryPush|DownloadPush|
- *  WatchPush|AutosavePush|LogPush|ShutdownPush} Push */
+/** @typedef {ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|PeoplePush|LoadingPush|IssuePush|
+ *  LibraryPush|DownloadPush|WatchPush|AutosavePush|LogPush|ShutdownPush} Push */
 
 /** @typedef {{
- *  hello: {fields: {version: number, session?: string|null},
- *    reply: {session: string, version: number, app: string}},
+ *  hello: {fields: {
+ *      version: number, session?: string|null, person?: string|null, name?: string|null
+ *    },
+ *    reply: {
+ *      session: string, version: number, app: string, number: number
+ *    }},
  *  edit: {fields: {op: Operation},
  *    reply: {name?: string|null, names?: string[]|null}},
  *  copy: {fields: {names: string[]},
  *    reply: {text: string}},
  *  undo: {fields: {to?: number|null},
- *    reply: {label: string}},
+ *    reply: {label: string, by: string[]}},
  *  redo: {fields: {to?: number|null},
- *    reply: {label: string}},
+ *    reply: {label: string, by: string[]}},
  *  play: {fields: {},
  *    reply: {}},
  *  pause: {fields: {},
@@ -466,7 +513,7 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {step: number}},
  *  save: {fields: {
  *      path?: string|null, overwrite?: boolean|null, format?: 'full'|'includes'|null,
- *      state?: boolean|null, launched?: boolean|null
+ *      state?: boolean|null, launched?: boolean|null, copy?: boolean|null
  *    },
  *    reply: {path: string, left_out: string[]}},
  *  open: {fields: {path: string, discard?: boolean|null},
@@ -488,6 +535,10 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {locations: Location[]}},
  *  import_model: {fields: {
  *      name: string, files: ImportFile[], density?: number|null, overwrite?: boolean|null
+ *    },
+ *    reply: {uri: string, path: string}},
+ *  save_model: {fields: {
+ *      model: string, name: string, overwrite?: boolean|null, about?: BuildingAbout|null
  *    },
  *    reply: {uri: string, path: string}},
  *  library_get: {fields: {uri: string},
@@ -528,4 +579,5 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {{
  *  drag: {names: string[], poses: pose[]},
  *  drag_end: {},
+ *  presence: {name?: string|null, selected?: string[]|null},
  *  viewed: {topic: string}}} Notices */

@@ -4,15 +4,15 @@ import {decodeFrame, LIVE} from './pose_frames.js';
 import {compose, inverse} from './pose.js';
 import {splitScoped} from './scoped_names.js';
 /** @import {
- *   AutosavePush, ChangePush, DownloadPush, HistoryPush, LibraryPush, Light, Link, LogPush,
- *   Model, Operation, Push, ShutdownPush, WatchPush, World, WorldPush
+ *   AutosavePush, ChangePush, DownloadPush, HistoryPush, LibraryPush, Light, Link, LoadingPush,
+ *   LogPush, Model, Notices, Operation, Person, Push, ShutdownPush, WatchPush, World, WorldPush
  * } from './protocol.js' */
 /** @import {Connection, Issue} from './connection.js' */
 /** @import {DialogRequest} from './actions.js' */
 /** @import {Pose7} from './pose.js' */
 /** @import {ShapeName} from './new_entities.js' */
 
-/** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'insert'} Mode */
+/** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'measure'|'insert'|'connect'} Mode */
 /** @typedef {'grid'|'origin'|'transparent'|'wireframe'|'collisions'|'joints'|'com'|'inertia'|
  *            'contacts'|'frames'|'skeleton'} OverlayFlag */
 
@@ -64,6 +64,10 @@ import {splitScoped} from './scoped_names.js';
  * @property {undefined} clipboard
  * @property {undefined} camera
  * @property {undefined} preview
+ * @property {undefined} modelEditing
+ * @property {{model: string, link: string}} pick  a link was clicked in the mode `connect`
+ * @property {undefined} people  who is here, what they hold and have selected
+ * @property {LoadingPush} loading
  * @property {WatchPush} watch
  * @property {LogPush} log
  * @property {AutosavePush} autosave
@@ -117,7 +121,11 @@ export class Store extends Emitter {
   overlays = initialOverlays();
   stats = {sim_ns: 0, real_ns: 0, factor: 0, iterations: 0, paused: true};
   /** @type {Omit<HistoryPush, 'type'>} */
-  history = {undo: [], redo: [], dirty: false, file: ''};
+  history = {undo: [], redo: [], undo_by: [], redo_by: [], dirty: false, file: ''};
+  /** Everybody who has this world open, this page too. @type {Person[]} */
+  people = [];
+  /** This page's number among them. */
+  me = 0;
   /** @type {Clipboard|null} */
   clipboard = null;
   /** @type {Issue[]} */
@@ -133,15 +141,27 @@ export class Store extends Emitter {
   camera = {projection: 'perspective', controller: 'orbit', following: null};
   /** A model document shown beside the world, e.g. a building being drawn. @type {Model|null} */
   preview = null;
+  /**
+   * While the model editor is open: the model, null until it has a first link.
+   * @type {{name: string|null}|null}
+   */
+  modelEditing = null;
 
   /** From a link's id to the document of its model. @type {Map<number, Model>} */
   #owners = new Map();
+  /** @type {Connection|undefined} */
+  #connection;
 
   /** @param {Connection} [connection] */
   constructor(connection) {
     super();
     if (!connection) return;
-    connection.listen('open', () => this.#setConnected(true));
+    this.#connection = connection;
+    connection.listen('open', ({detail}) => {
+      this.me = detail.number;
+      this.#setConnected(true);
+      this.emit('people');
+    });
     connection.listen('close', () => this.#setConnected(false));
     connection.listen('message', (event) => this.receive(event.detail));
     connection.listen('frame', (event) => this.receiveFrame(event.detail));
@@ -169,6 +189,8 @@ export class Store extends Emitter {
       case 'issue': this.addIssue(message.issue); break;
       case 'autosave': this.autosave = message; this.emit('autosave', message); break;
       case 'log': this.log = message; this.emit('log', message); break;
+      case 'people': this.people = message.people; this.emit('people'); break;
+      case 'loading': this.emit('loading', message); break;
       case 'watch': this.emit('watch', message); break;
       case 'library': this.emit('library', message); break;
       case 'download': this.emit('download', message); break;
@@ -317,6 +339,26 @@ export class Store extends Emitter {
     return entity.kind === 'link' ? [...pose] : compose(pose, inverse(link.pose));
   }
 
+  /** The others who have this world open. */
+  get others() {
+    return this.people.filter(({number}) => number !== this.me);
+  }
+
+  /**
+   * The other who did a step of the history, '' for this page's user and for nobody.
+   * @param {'undo'|'redo'} which
+   * @param {number} [at]
+   */
+  authorOf(which, at = 0) {
+    const by = this.history[`${which}_by`]?.[at] ?? '';
+    return by === this.people.find(({number}) => number === this.me)?.name ? '' : by;
+  }
+
+  /** Tells the others what is selected, or a name. @param {Notices['presence']} fields */
+  tellPresence(fields) {
+    this.#connection?.send('presence', fields);
+  }
+
   // ---- what the user looks at
 
   /**
@@ -340,6 +382,7 @@ export class Store extends Emitter {
     if (same) return;
     this.selection = names;
     this.emit('selection');
+    if (this.others.length) this.tellPresence({selected: names});
   }
 
   /** @param {Mode} mode */
@@ -426,6 +469,12 @@ export class Store extends Emitter {
   setPreview(document) {
     this.preview = document;
     this.emit('preview');
+  }
+
+  /** @param {{name: string|null}|null} editing */
+  setModelEditing(editing) {
+    this.modelEditing = editing;
+    this.emit('modelEditing');
   }
 
   /** @param {Issue} issue */

@@ -1,9 +1,10 @@
 """Front ends besides ROS: the world editor and state logs."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, Dict, List
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional
 
 if TYPE_CHECKING:
+    from ..editor.loading_server import LoadingServer
     from ..editor.logs.recorder import Recorder
     from ..editor.server import EditorServer
     from ..errors import Issue
@@ -18,9 +19,24 @@ class FrontEnds:
     def __init__(self) -> None:
         self._logs: List[str] = []
 
-    def edit(self, simulator: "Simulator", resolver: "Resolver",
-             settings: Dict[str, Any]) -> "EditorServer":
-        """Start the world editor; it lists logs that were started before.
+    def await_world(self, settings: Dict[str, Any]) -> "LoadingServer":
+        """Serve the editor's page while the world is being loaded.
+
+        Raises CommandError: the port is in use, or a dependency is not installed.
+        """
+        from ..errors import CommandError
+
+        try:
+            from .. import editor
+
+            return editor.start_loading(editor.EditorOptions(**settings))
+        except ImportError as missing:
+            raise CommandError(
+                f"{missing}; run tools/run to install the dependencies of the editor") from missing
+
+    def edit(self, simulator: "Simulator", resolver: "Resolver", settings: Dict[str, Any],
+             loading: "Optional[LoadingServer]" = None) -> "EditorServer":
+        """Start the world editor, with the page that was served meanwhile; it lists earlier logs.
 
         Raises CommandError: the port is in use, or a dependency is not installed.
         """
@@ -30,7 +46,7 @@ class FrontEnds:
             from .. import editor
 
             options = editor.EditorOptions(**settings, more_logs=tuple(self._logs))
-            return editor.start(simulator, resolver, options)
+            return editor.start(simulator, resolver, options, loading)
         except ImportError as missing:
             raise CommandError(
                 f"{missing}; run tools/run to install the dependencies of the editor") from missing

@@ -44,7 +44,7 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
 
     front_ends = FrontEnds()
     return Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
-                  front_ends.record).run()
+                  front_ends.record, front_ends.await_world).run()
 
 
 def _make_node(*arguments: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from typing import TYPE_CHECKING, Callable, List, Optional
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Tuple
 
 from ..errors import CommandError, InputError, Issue, Severity
 from .front_ends import FrontEnds
@@ -14,10 +14,13 @@ from .web_browser import show
 if TYPE_CHECKING:
     from ..editor.logs.recorder import Recorder
     from ..resources.resolver import Resolver
-    from ..ros.lifecycle.server_options import Recording
+    from ..ros.lifecycle.engine_supply import EngineSupply
+    from ..ros.lifecycle.server_options import Recording, ServerOptions
     from ..simulator.simulator import Simulator
 
 OK, FAILED = 0, 1
+_EARLY_S = 1.0
+"""Wall seconds after which the browser is opened before the world is there."""
 
 
 def main(words: List[str], program: str) -> int:
@@ -36,12 +39,9 @@ def main(words: List[str], program: str) -> int:
     say("no ROS master found; running without ROS")
     for notice in options.notices:
         say(notice)
-    from ..engine.commands import FOREVER
     from ..engine.process_engine import ProcessEngine
-    from ..resources.resolver import Resolver
     from ..ros.lifecycle.engine_supply import EngineSupply
     from ..simulator.issue_log import IssueLog
-    from ..simulator.world_loading import start_world
 
     def tell(issue: Issue) -> None:
         if options.verbose or issue.severity is not Severity.NOTE or issue.code == "meshes":
@@ -50,28 +50,35 @@ def main(words: List[str], program: str) -> int:
     log = IssueLog()
     log.open(tell)
     engines = EngineSupply(ProcessEngine)
+    front_ends = FrontEnds()
+    settings: Dict[str, Any] = {"log": lambda issue: say(issue)}
     try:
-        resolver = Resolver.from_environment()
-        simulator = start_world(options.world, resolver, engines, log, seed=options.seed or 0,
-                                profile=options.profile,
-                                steps=options.iterations or FOREVER)
-    except InputError as fault:
-        for issue in fault.issues:
-            say(issue)
+        page = front_ends.await_world(settings)
+    except CommandError as fault:
+        say(fault)
         engines.close()
         return FAILED
+    log.also(lambda issue: page.say(issue.message) if issue.code == "meshes" else None)
+    # A world that cannot be read is no reason to open a browser; one that takes long is.
+    opening = Opening(page.url, program)
+    try:
+        simulator, resolver = _load(options, engines, log, page.show)
+    except InputError as fault:
+        opening.cancel()
+        page.stop()
+        engines.close()
+        return _refused(fault, say)
     say(f"the world file is {simulator.world.file}")
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: ended.set())
-    front_ends = FrontEnds()
     recorder = _record(front_ends, simulator, resolver, options.recording, say)
     try:
         if not options.paused:
             simulator.clock.unpause()
-        editor = front_ends.edit(simulator, resolver, {"log": lambda issue: say(issue)})
+        editor = front_ends.edit(simulator, resolver, settings, page)
         log.also(editor.tell)
-        show(editor.url, program)
+        opening.now()
         ended.wait()
         editor.stop()
         return OK
@@ -81,6 +88,51 @@ def main(words: List[str], program: str) -> int:
     finally:
         _finish(recorder, say)
         simulator.close()
+
+
+class Opening:
+    """Opens the browser once: soon, or at once when the world is there."""
+
+    def __init__(self, url: str, program: str) -> None:
+        self._page = (url, program)
+        self._lock = threading.Lock()
+        self._opened = False
+        self._timer = threading.Timer(_EARLY_S, self.now)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def now(self) -> None:
+        """Open it unless it is open."""
+        with self._lock:
+            opened, self._opened = self._opened, True
+        self._timer.cancel()
+        if not opened:
+            show(*self._page)
+
+    def cancel(self) -> None:
+        """Open it no more."""
+        with self._lock:
+            self._opened = True
+        self._timer.cancel()
+
+
+def _load(options: "ServerOptions", engines: "EngineSupply", log: Callable[[Issue], None],
+          progress: Callable[[str, str, int, int], None]) -> "Tuple[Simulator, Resolver]":
+    """Read the world and start its simulator. Raises InputError."""
+    from ..engine.commands import FOREVER
+    from ..resources.resolver import Resolver
+    from ..simulator.world_loading import start_world
+
+    resolver = Resolver.from_environment()
+    return start_world(options.world, resolver, engines, log, seed=options.seed or 0,
+                       profile=options.profile, steps=options.iterations or FOREVER,
+                       progress=progress), resolver
+
+
+def _refused(fault: InputError, say: Callable[[object], None]) -> int:
+    for issue in fault.issues:
+        say(issue)
+    return FAILED
 
 
 def _record(front_ends: FrontEnds, simulator: "Simulator", resolver: "Resolver",

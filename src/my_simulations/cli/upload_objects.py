@@ -7,17 +7,15 @@ import xmlrpc.client
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, error, warning
+from ..objects.list_files import groups_file, list_file, world_name
 from ..objects.object_documents import package_finder, package_names
 from ..objects.object_list import parse_objects
 from ..objects.selection import closest, parse_groups
 from ..objects.yaml_source import read_yaml
-from ..resources.package_files import file_in_package
 from ..ros.arguments import Parser
 from . import object_client as client
 
 NAME = "upload_objects.py"
-LOCATIONS = "object_locations.yaml"
-GROUPS = "object_groups.yaml"
 
 
 def parser() -> argparse.ArgumentParser:
@@ -48,13 +46,6 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     words, remappings = client.plain_words(argv)
     options = parser().parse_args(words)
     return client.run(NAME, lambda: _upload(options, remappings))
-
-
-def world_name(world: str) -> str:
-    """The base name of a world, from its name or the path of its file."""
-    base = os.path.basename(world.strip())
-    root, ending = os.path.splitext(base)
-    return root if ending in (".world", ".sdf", ".xml") else base
 
 
 def transferable(tree: Mapping[Any, Any], source_where: Any) -> Tuple[Dict[str, Any], List[Issue]]:
@@ -91,12 +82,12 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
                                f"{_meant(options.package, package_names())}; source its "
                                "workspace, or correct --package")
     parameters.delete(client.LIST_MARK)
-    file = file_in_package(folder, options.package, os.path.join("config", name, LOCATIONS))
+    file = list_file(folder, options.package, name)
     if os.path.isfile(file):
         count, issues = _load(parameters, file, client.OBJECTS, options.package)
-        groups_file = os.path.join(os.path.dirname(file), GROUPS)
-        groups, more = (_load(parameters, groups_file, client.GROUPS, options.package)
-                        if os.path.isfile(groups_file) else (0, []))
+        beside = groups_file(file)
+        groups, more = (_load(parameters, beside, client.GROUPS, options.package)
+                        if os.path.isfile(beside) else (0, []))
         if not groups:
             parameters.delete(client.GROUPS)
         issues += more

@@ -2,22 +2,24 @@
 from __future__ import annotations
 
 import asyncio
-import errno
-import socket
 import threading
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as TimeoutError_
-from typing import List, Optional
+from typing import TYPE_CHECKING, Optional
 
 from aiohttp import web
 
-from ..errors import CommandError, Issue, warning
+from ..errors import CommandError, Issue
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 from .assembly import Assembly
-from .editor_options import DEFAULT_PORT, EditorOptions
+from .editor_options import EditorOptions
 from .transport import address_file
 from .transport.access_guard import Guard
+from .transport.listening import keep_address, listening, url_of
+
+if TYPE_CHECKING:
+    from .loading_server import LoadingServer
 
 _START_S = 10.0
 _END_S = 3.0
@@ -25,6 +27,9 @@ _END_S = 3.0
 
 class EditorServer:
     """Serves one simulator until `stop`.
+
+    Args:
+        loading: served the page until now; its pages go on with this server.
 
     Attributes:
         url: what to open in a browser; with the token, so it is for the user alone.
@@ -34,14 +39,15 @@ class EditorServer:
         CommandError: it cannot listen there, or the page is not installed.
     """
 
-    def __init__(self, simulator: Simulator, resolver: Resolver, options: EditorOptions) -> None:
+    def __init__(self, simulator: Simulator, resolver: Resolver, options: EditorOptions,
+                 loading: "Optional[LoadingServer]" = None) -> None:
         self._world = (simulator, resolver)
         self._options = options
-        self._guard = Guard(options)
+        self._guard = loading.guard if loading is not None else Guard(options)
         self._editor: Optional[Assembly] = None
         self._loop: Optional[asyncio.AbstractEventLoop] = None
         self._stopping: "Optional[asyncio.Future[str]]" = None
-        self._listener = _listening(options)
+        self._listener = loading.hand_over() if loading is not None else listening(options)
         self._started: "Future[None]" = Future()
         self._thread = threading.Thread(target=self._main, name="editor", daemon=True)
         self._thread.start()
@@ -49,9 +55,9 @@ class EditorServer:
             self._started.result(_START_S)
         except TimeoutError_ as slow:
             raise CommandError(f"the editor did not start within {_START_S:g} s") from slow
-        self.url = _url(self._listener, options.host, self._guard.token)
+        self.url = url_of(self._listener, options.host, self._guard.token)
         self.public_url = address_file.without_token(self.url)
-        self._address_files = self._keep_address() if self._guard.token else []
+        self._address_files = keep_address(self.url, options) if self._guard.token else []
 
     def stop(self, reason: str = "the simulator ends") -> None:
         """Tell the pages, and end; unsaved edits stay in the autosave."""
@@ -68,15 +74,6 @@ class EditorServer:
         """Show an issue on all pages; safe from any thread."""
         if self._editor is not None:
             self._editor.tell(issue)
-
-    def _keep_address(self) -> List[str]:
-        try:
-            return address_file.write(self.url, self._options.cache_dir)
-        except OSError as fault:
-            self._options.log(warning(
-                "editor-address", "cannot keep the editor's address with its token: "
-                f"{fault}; gzclient cannot open it (start with editor_token:=false)"))
-            return []
 
     def _main(self) -> None:
         try:
@@ -106,34 +103,3 @@ class EditorServer:
         reason = await self._stopping
         server.close()
         await self._editor.close(reason, runner)
-
-
-def _listening(options: EditorOptions) -> socket.socket:
-    """A listening socket. Raises CommandError."""
-    host = options.host.strip("[]")
-    ports = [options.port] + ([0] if options.port == DEFAULT_PORT else [])
-    for port in ports:
-        try:
-            family, kind, _, _, address = socket.getaddrinfo(
-                host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
-            listener = socket.socket(family, kind)
-        except OSError as fault:
-            raise CommandError(f"the editor cannot listen at {host!r}: {fault}") from fault
-        try:
-            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            listener.bind(address)
-            listener.listen(64)
-            return listener
-        except OSError as fault:
-            listener.close()
-            if fault.errno != errno.EADDRINUSE or port == ports[-1]:
-                raise CommandError(f"the editor cannot listen at {host}:{port}: "
-                                   f"{fault.strerror}") from fault
-    raise AssertionError("there is a port to try")
-
-
-def _url(listener: socket.socket, host: str, token: str) -> str:
-    port = listener.getsockname()[1]
-    shown = {"0.0.0.0": socket.gethostname(), "::": socket.gethostname()}.get(host, host)
-    shown = f"[{shown}]" if ":" in shown else shown
-    return f"http://{shown}:{port}/" + (f"?token={token}" if token else "")

@@ -10,8 +10,10 @@ from ..errors import CommandError, Issue
 from ..resources.resolver import Resolver
 from ..simulator.history import History
 from ..simulator.simulator import Simulator
+from .editing.company import Company
 from .editing.drags import Drags
 from .editing.edit_requests import Edits
+from .editing.people import People
 from .library.autosave import Autosave
 from .library.world_files import WorldFiles
 from .scene.plain_json import pose_of
@@ -39,9 +41,12 @@ class Requests:
         self._files = files
         self._autosave = autosave
         self._drags = Drags(self._world)
+        self._people = People()
+        self._company = Company(hub, self._people, self._drags)
+        self._acting = 0
         self._pending: Dict[int, Dict[str, Any]] = {}
         self._edits = Edits(self._world, resolver, history, hub.protocol, tell,
-                            self._drags.taken)
+                            lambda names: self._drags.taken(self._acting, names))
         self._told: Dict[str, Any] = {}
         self.thread = ThreadPoolExecutor(1, "editor edits")
 
@@ -54,18 +59,23 @@ class Requests:
             "drag_end": self._drag_end, "folders": self._folders,
         }
         return {"hello": Route(self._hello, None), "drag": Route(self._drag, None),
+                "presence": Route(self._presence, None),
                 **{kind: Route(handler, self.thread) for kind, handler in handlers.items()}}
 
     def leave(self, client: Client) -> None:
         """A client has gone: what it held falls."""
         self._pending.pop(client.number, None)
-        self.thread.submit(self._drags.end, client.number)
+        self._people.leave(client.number)
+        self.thread.submit(self._end_drags, client.number)
 
     def history_push(self) -> Dict[str, Any]:
         """The push `history`."""
+        names = self._people.names
         return {"type": "history", "undo": self._history.undo_labels[:_LISTED],
-                "redo": self._history.redo_labels[:_LISTED], "dirty": self._history.dirty,
-                "file": self._files.file}
+                "redo": self._history.redo_labels[:_LISTED],
+                "undo_by": names(self._history.undo_authors[:_LISTED]),
+                "redo_by": names(self._history.redo_authors[:_LISTED]),
+                "dirty": self._history.dirty, "file": self._files.file}
 
     # -- greeting --------------------------------------------------------------------------------
 
@@ -77,36 +87,61 @@ class Requests:
                 f" {version}", "reload the page")
         given = message.get("session") or ""
         client.session = given or secrets.token_hex(8)
+        self._people.join(client.number, message.get("person") or client.session,
+                          message.get("name") or "")
         await self._hub.welcome(client, new=not given)
         self._hub.push(self.history_push(), [client])
+        self._hub.push(self._people.push())
         found = self._autosave.push()
         if found["found"] or (found["others"] and not given):
             self._hub.push(found, [client])
-        return {"session": client.session, "version": version, "app": __version__}
+        return {"session": client.session, "version": version, "app": __version__,
+                "number": client.number}
+
+    async def _presence(self, client: Client, message: Dict[str, Any]) -> None:
+        """Somebody tells a name, or what they have selected."""
+        if message.get("name"):
+            self._people.rename(client.number, message["name"])
+            self._hub.push(self.history_push())
+        if message.get("selected") is not None:
+            self._people.select(client.number, message["selected"])
+        self._hub.push(self._people.push())
 
     # -- editing ---------------------------------------------------------------------------------
 
-    def _edit(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+    def _edit(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         op = message["op"]
-        value = self._edits.do(op)
-        if op.get("kind") == "move":
-            self._drags.moved(list(op["poses"]))
+        self._acting = client.number
+        with self._company.watching(client.number):
+            value = self._edits.do(op, self._people.key_of(client.number))
+            if op.get("kind") == "move":
+                self._company.released(client.number, list(op["poses"]))
         self._changed()
         return value
 
     def _copy(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return {"text": self._edits.copy(message["names"])}
 
-    def _undo(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._moved_in_history(self._history.undo, message)
+    def _undo(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._moved_in_history(client, message, "undo")
 
-    def _redo(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._moved_in_history(self._history.redo, message)
+    def _redo(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._moved_in_history(client, message, "redo")
 
-    def _moved_in_history(self, move: Callable[[int], str],
-                          message: Dict[str, Any]) -> Dict[str, Any]:
+    def _moved_in_history(self, client: Client, message: Dict[str, Any],
+                          verb: str) -> Dict[str, Any]:
+        """Whose edits are taken back hear of it, and so does who takes them back."""
+        steps = message.get("to") or 0
+        history = self._history
+        move, authors, labels = (
+            (history.undo, history.undo_authors, history.undo_labels) if verb == "undo" else
+            (history.redo, history.redo_authors, history.redo_labels))
         try:
-            return {"label": move(message.get("to") or 0)}
+            with self._company.watching(client.number):
+                label = move(steps)
+            theirs = list(zip(authors[:steps + 1], labels[:steps + 1]))
+            return {"label": label, "by": self._company.moved_in_history(
+                client.number, verb, theirs)}
         finally:
             self._changed()
 
@@ -123,11 +158,17 @@ class Requests:
     def _drag_now(self, number: int) -> None:
         poses = self._pending.pop(number, None)
         if poses:
-            self._drags.drag(number, {name: pose_of(pose) for name, pose in poses.items()})
+            fresh = self._drags.drag(number, {name: pose_of(pose)
+                                              for name, pose in poses.items()})
+            self._company.grasped(number, fresh)
 
     def _drag_end(self, client: Client, _message: Dict[str, Any]) -> None:
         self._pending.pop(client.number, None)
-        self._drags.end(client.number)
+        self._end_drags(client.number)
+
+    def _end_drags(self, number: int) -> None:
+        self._drags.end(number)
+        self._company.tell_holds(always=True)
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -153,16 +194,16 @@ class Requests:
 
     # -- files -----------------------------------------------------------------------------------
 
-    def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._filed(self._files.save, message)
+    def _save(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._filed(client, "saved", self._files.save, message)
 
-    def _open(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+    def _open(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         self._set_aside(message)
-        return self._filed(self._files.open, message)
+        return self._filed(client, "opened", self._files.open, message)
 
-    def _new(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+    def _new(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         self._set_aside(message)
-        return self._filed(self._files.new, message)
+        return self._filed(client, "opened", self._files.new, message)
 
     def _set_aside(self, message: Dict[str, Any]) -> None:
         """What is discarded can be recovered."""
@@ -172,10 +213,15 @@ class Requests:
     def _folders(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return self._files.folders(message)
 
-    def _filed(self, handler: Callable[[Dict[str, Any]], Dict[str, Any]],
+    def _filed(self, client: Client, verb: str,
+               handler: Callable[[Dict[str, Any]], Dict[str, Any]],
                message: Dict[str, Any]) -> Dict[str, Any]:
         try:
-            return handler(message)
+            with self._company.watching(client.number):
+                value = handler(message)
+            file = value.get("path") or value.get("file") or "an empty world"
+            self._company.tell_others(client.number, f"{verb} {file}")
+            return value
         finally:
             self._changed()
 

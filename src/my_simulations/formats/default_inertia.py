@@ -79,7 +79,7 @@ def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inert
         None if no collision is a box, sphere or cylinder.
     """
     solids = [(collision, solid) for collision in collisions
-              for solid in [_solid(collision.geometry)] if solid is not None]
+              for solid in [solid_moments(collision.geometry)] if solid is not None]
     volume = sum(solid[0] for _, solid in solids)
     if not volume > 0:
         return None
@@ -93,7 +93,7 @@ def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inert
     return total
 
 
-def _solid(geometry: Geometry) -> Optional[Tuple[float, Tuple[float, float, float]]]:
+def solid_moments(geometry: Geometry) -> Optional[Tuple[float, Tuple[float, float, float]]]:
     """Volume (m^3) and principal moments of 1 kg (kg m^2) of a solid shape about its centre."""
     if isinstance(geometry, Box):
         x, y, z = geometry.size

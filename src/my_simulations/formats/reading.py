@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 from ..description.actor import Actor
 from ..description.light import Light
@@ -30,6 +30,9 @@ from .xml.source import FaultLevel, IssueCollector, Source
 Text = Union[str, bytes]
 Entity = Union[Model, Light]
 
+Progress = Callable[[str, int, int], None]
+"""Hears which model's meshes are read: its name, how many are done, of how many."""
+
 _UNNAMED = "unnamed"
 _SDF_ROOTS = ("sdf", "gazebo")  # root element of the first SDF versions
 
@@ -50,8 +53,13 @@ class LoadedWorld:
     issues: List[Issue]
 
 
+def _silent(_name: str, _done: int, _of: int) -> None:
+    """Nobody waits."""
+
+
 def read_world(path: str, resolver: Resolver, *, seed: int = 0, profile: str = "",
-               advice_limit: Optional[int] = ADVICE_LIMIT) -> LoadedWorld:
+               advice_limit: Optional[int] = ADVICE_LIMIT,
+               progress: Progress = _silent) -> LoadedWorld:
     """Read the first world of a file, completely.
 
     An unusable model is skipped; its errors are among the issues and in `World.losses`.
@@ -62,24 +70,26 @@ def read_world(path: str, resolver: Resolver, *, seed: int = 0, profile: str = "
         seed: seed of populations that are placed at random.
         profile: name of the physics preset to use; "" for the default of the world.
         advice_limit: see `advice_issues`.
+        progress: called before the meshes of each model are read, and when all are.
 
     Raises:
         InputError: nothing is usable: no such file, truncated XML, no `<world>`.
     """
     return read_world_text(_content(path), resolver, path, seed=seed, profile=profile,
-                           advice_limit=advice_limit)
+                           advice_limit=advice_limit, progress=progress)
 
 
 def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
-                    profile: str = "",
-                    advice_limit: Optional[int] = ADVICE_LIMIT) -> LoadedWorld:
+                    profile: str = "", advice_limit: Optional[int] = ADVICE_LIMIT,
+                    progress: Progress = _silent) -> LoadedWorld:
     """As `read_world`, from text; `file` names it and, if it is a path, anchors relative URIs.
 
     Raises:
         InputError: nothing is usable.
     """
     source, root = _open(text, resolver, file)
-    return _loaded_world(root, source, _world_in(root, source, seed, profile), advice_limit)
+    return _loaded_world(root, source, _world_in(root, source, seed, profile), advice_limit,
+                         progress)
 
 
 def parse_world(text: Text, resolver: Resolver, file: str = "<world>", *, seed: int = 0,
@@ -107,14 +117,16 @@ def _world_in(root: Any, source: Source, seed: int, profile: str) -> World:
     return world
 
 
-def _loaded_world(root: Any, source: Source, parsed: World,
-                  advice_limit: Optional[int]) -> LoadedWorld:
+def _loaded_world(root: Any, source: Source, parsed: World, advice_limit: Optional[int],
+                  progress: Progress = _silent) -> LoadedWorld:
     issues = source.log.issues
     world = replace(apply_state(parsed), losses=[str(issue) for issue in errors_of(issues)])
     meshes: Dict[str, MeshTable] = {}
-    for model in world.models:
+    for number, model in enumerate(world.models):
+        progress(model.name, number, len(world.models))
         meshes[model.name], faults = collision_meshes(model)
         issues += faults
+    progress("", len(world.models), len(world.models))
     issues += advice_issues(world.models, meshes, source.file, root=root, limit=advice_limit)
     return LoadedWorld(world, meshes, issues)
 

@@ -10,11 +10,12 @@ from ..errors import InputError, Issue, error
 from ..formats.mesh.loading import collision_meshes
 from ..formats.reading import read_entity
 from ..geometry import Pose, compose, quat_from_rpy
+from ..objects.list_files import groups_file, list_file, world_name
 from ..objects.object_documents import Documents, package_finder
 from ..objects.object_list import PlacedObject, parse_objects
 from ..objects.selection import Selection, parse_groups, select
 from ..objects.yaml_source import read_yaml
-from ..resources.package_files import PACKAGE, own_directory
+from ..resources.package_files import PACKAGE, package_directories
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 
@@ -22,7 +23,6 @@ Alter = Callable[[Model], Model]
 """Makes another model of one that is about to be spawned; `Model.pose` is its place."""
 
 _XACRO_SECONDS = 60.0
-_GROUPS = "object_groups.yaml"
 
 
 def place_objects(simulator: Simulator, resolver: Resolver, names: Sequence[str], file: str,
@@ -81,16 +81,17 @@ def _place(simulator: Simulator, resolver: Resolver, placed: PlacedObject,
 
 
 def _list_of(world: str) -> str:
-    name = os.path.splitext(os.path.basename(world))[0]
-    file = os.path.join(own_directory(), "config", name, "object_locations.yaml")
+    folders = package_directories()
+    file = list_file(folders[0] if folders else "", PACKAGE, world)
     if not os.path.isfile(file):
-        raise InputError([error("object-list-missing", f"world '{name}' has no object list",
-                                file=file, hint="name one with object_list")])
+        raise InputError([error("object-list-missing",
+                                f"world '{world_name(world)}' has no object list", file=file,
+                                hint="name one with object_list")])
     return file
 
 
 def _groups_beside(file: str) -> Tuple[Dict[str, List[str]], List[Issue]]:
-    groups = os.path.join(os.path.dirname(file), _GROUPS)
+    groups = groups_file(file)
     if not os.path.isfile(groups):
         return {}, []
     tree, source, issues = read_yaml(groups, "/object_groups")

@@ -21,11 +21,13 @@ class Step:
         label: text for the history menu.
         inverse: operation that undoes it.
         number: unique id.
+        author: who did it; "" for nobody in particular.
     """
 
     label: str
     inverse: Operation
     number: int
+    author: str = ""
 
 
 class History:
@@ -52,6 +54,18 @@ class History:
             return [step.label for step in reversed(self._undone)]
 
     @property
+    def undo_authors(self) -> List[str]:
+        """Authors of the steps that can be undone, newest first."""
+        with self._lock:
+            return [step.author for step in reversed(self._done)]
+
+    @property
+    def redo_authors(self) -> List[str]:
+        """Authors of the steps that can be redone, next first."""
+        with self._lock:
+            return [step.author for step in reversed(self._undone)]
+
+    @property
     def dirty(self) -> bool:
         """Whether the world was edited since it was loaded or saved."""
         with self._lock:
@@ -67,15 +81,15 @@ class History:
     def _top(self) -> int:
         return self._done[-1].number if self._done else 0
 
-    def do(self, label: str, operation: Operation) -> None:
-        """Carry out an operation and record it; clears the steps to redo.
+    def do(self, label: str, operation: Operation, author: str = "") -> None:
+        """Carry out an operation and record it, with its author; clears the steps to redo.
 
         Raises CommandError; then nothing has changed.
         """
         with self._lock:
             inverse = operation.apply(self._simulator)
             self._number += 1
-            self._done.append(Step(label, inverse, self._number))
+            self._done.append(Step(label, inverse, self._number, author))
             self._undone.clear()
             if len(self._done) > LONGEST:
                 if self._saved is not None and self._saved < self._done.pop(0).number:
@@ -115,5 +129,5 @@ class History:
                     inverse = step.inverse.apply(self._simulator)
                 except CommandError as fault:
                     raise CommandError(f"cannot {verb} {step.label!r}: {fault}") from fault
-                target.append(Step(step.label, inverse, step.number))
+                target.append(Step(step.label, inverse, step.number, step.author))
             return step.label

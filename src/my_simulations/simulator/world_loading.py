@@ -1,6 +1,7 @@
 """Finds and reads a world by name, and starts its simulator."""
 from __future__ import annotations
 
+import os
 from typing import Callable
 
 from ..engine.api import Engine
@@ -12,11 +13,17 @@ from ..resources.world_lookup import advice_on, find_world
 from .simulator import Simulator
 
 Log = Callable[[Issue], None]
+Progress = Callable[[str, str, int, int], None]
+
+
+def _silent(_title: str, _text: str, _done: int, _of: int) -> None:
+    """Nobody waits."""
 
 
 def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], log: Log, *,
                 seed: int = 0, profile: str = "", steps: int = FOREVER, caller: str = "",
-                read: Callable[[], None] = lambda: None) -> Simulator:
+                read: Callable[[], None] = lambda: None,
+                progress: Progress = _silent) -> Simulator:
     """Read a world and start its simulator, paused.
 
     Args:
@@ -29,13 +36,17 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
         steps: pause after this many steps; FOREVER for never.
         caller: see `load_world`.
         read: called when the file has been read.
+        progress: called with what is under way: a title, a text, how much is done, of how much
+            (0: unknown). What the meshes are divided into is told to `log`.
 
     Raises:
         InputError: the world cannot be used.
         CommandError: the engine cannot be started.
     """
-    loaded = load_world(name, resolver, log, seed=seed, profile=profile, caller=caller)
+    loaded = load_world(name, resolver, log, seed=seed, profile=profile, caller=caller,
+                        progress=progress)
     read()
+    progress("Starting the physics engine", f"{len(loaded.world.models)} models", 0, 0)
     simulator = Simulator(loaded.world, engine_factory=engines, paused=True, log=log,
                           meshes=loaded.meshes, steps=steps)
     simulator.start()
@@ -43,7 +54,7 @@ def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], lo
 
 
 def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profile: str = "",
-               caller: str = "") -> LoadedWorld:
+               caller: str = "", progress: Progress = _silent) -> LoadedWorld:
     """Find and read a world.
 
     Args:
@@ -53,6 +64,7 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profil
         seed: seed of populations that are placed at random.
         profile: name of the physics preset to use; "" for the default of the world.
         caller: folder from which relative names start; "" for the working directory.
+        progress: see `start_world`.
 
     Raises:
         InputError: the world is unusable.
@@ -62,7 +74,13 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profil
     except ResourceNotFoundError as missing:
         raise InputError([error("world-not-found", f"world file {missing}",
                                 hint=advice_on(name, caller))]) from missing
-    loaded = read_world(path, resolver, seed=seed, profile=profile)
+    title = f"Reading {os.path.basename(path)}"
+    progress(title, "", 0, 0)
+
+    def read_meshes(model: str, done: int, of: int) -> None:
+        progress(title, model and f"meshes of {model}", done, of)
+
+    loaded = read_world(path, resolver, seed=seed, profile=profile, progress=read_meshes)
     for issue in loaded.issues:
         log(issue)
     return loaded

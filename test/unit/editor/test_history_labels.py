@@ -1,6 +1,8 @@
 """What the undo history says."""
 import pytest
 
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Box, Collision, Visual
 from my_simulations.editor.editing.history_labels import (
     apply_wrench,
     listed,
@@ -25,6 +27,26 @@ from my_simulations.editor.editing.history_labels import (
     ("box", "plugin", "x" * 100, "Set plugin of box")])
 def test_a_changed_property_is_named_with_its_value(target, path, value, label):
     assert set_property(target, path, value) == label
+
+
+@pytest.mark.parametrize("target, label", [
+    ("unit_box::link::collision:collision", "Set friction of unit_box to 0.5"),
+    ("unit_box::link::visual:visual", "Set friction of unit_box to 0.5"),
+    ("unit_box::link", "Set friction of unit_box to 0.5"),
+    ("unit_box", "Set friction of unit_box to 0.5")])
+def test_a_model_of_one_link_goes_by_its_name(target, label):
+    collision, visual = Collision("collision", Box()), Visual("visual", Box())
+    model = Model("unit_box", links=[Link("link", collisions=[collision], visuals=[visual])])
+    assert set_property(target, "surface.mu", 0.5, model) == label
+
+
+def test_what_has_several_parts_is_named_in_full():
+    model = Model("box", links=[Link("link", collisions=[Collision("a", Box()),
+                                                         Collision("b", Box())])])
+    assert set_property("box::link::collision:a", "surface.mu", 1, model) == \
+        "Set friction of box::link::a to 1"
+    robot = Model("box", links=[Link("link"), Link("wheel")])
+    assert set_property("box::wheel", "gravity", True, robot) == "Set gravity of box::wheel to true"
 
 
 @pytest.mark.parametrize("kind, mode, value, label", [

@@ -80,15 +80,19 @@ export function menus(page) {
         item('Save World As…', 'saveAs'),
         LINE,
         item('Recover…', 'recover'),
+        LINE,
+        item('Save Configuration', 'saveConfiguration'),
+        item('Reset Configuration', 'resetConfiguration'),
+        item('Clone World…', 'cloneWorld'),
       ],
     },
     {
       title: 'Edit',
       items: () => [
-        item(labelOf('Undo', store.history.undo), 'undo', {
+        item(labelOf('Undo', store, 'undo'), 'undo', {
           enabled: () => store.history.undo.length > 0,
         }),
-        item(labelOf('Redo', store.history.redo), 'redo', {
+        item(labelOf('Redo', store, 'redo'), 'redo', {
           enabled: () => store.history.redo.length > 0,
         }),
         LINE,
@@ -102,6 +106,7 @@ export function menus(page) {
         item('Reset Time', 'resetTime'),
         LINE,
         item('Building Editor', 'building'),
+        item('Model Editor', 'modelEditor', {checked: () => Boolean(store.modelEditing)}),
       ],
     },
     {
@@ -114,6 +119,11 @@ export function menus(page) {
         camera('Orbit View Control', 'orbitControl', 'controller', 'orbit'),
         LINE,
         item('Reset View Angle', 'resetView'),
+        item('Copy Link to This View', 'copyLink'),
+        item('Add Bookmark', 'addBookmark'),
+        ...actions.bookmarks().map(({name}, at) => ({title: name, run: () => actions.goToBookmark(at)})),
+        ...(actions.bookmarks().length ? [item('Clear Bookmarks', 'clearBookmarks')] : []),
+        LINE,
         item('Move To Selection', 'moveTo', {enabled: () => store.selection.length > 0}),
         item('Follow Selection', 'follow', {enabled: () => store.selection.length > 0}),
       ],
@@ -169,9 +179,17 @@ export function menus(page) {
   ];
 }
 
-/** @param {string} verb @param {string[]} labels */
-function labelOf(verb, labels) {
-  return labels.length ? `${verb}: ${labels[0]}` : verb;
+/**
+ * A step of the history, with its author where it is another's.
+ * @param {string} verb
+ * @param {Page['store']} store
+ * @param {'undo'|'redo'} which
+ */
+function labelOf(verb, store, which) {
+  const [label] = store.history[which];
+  if (!label) return verb;
+  const author = store.authorOf(which);
+  return `${verb}: ${label}${author && ` by ${author}`}`;
 }
 
 /**
@@ -227,6 +245,8 @@ export function contextMenu(page, name) {
       ? {title: 'Stop Following', run: () => actions.follow(null)}
       : {title: 'Follow', run: () => actions.follow(whole)},
     ...force,
+    ...(model && !isPlane(entity.model)
+      ? [{title: 'Edit Model', run: () => actions.modelEditor(model), enabled: () => !store.modelEditing}] : []),
     LINE,
     ...view,
     ...(light ? [] : [LINE]),
@@ -244,3 +264,7 @@ export function contextMenu(page, name) {
     },
   ];
 }
+
+/** A ground: nothing of it can be edited by hand. @param {import('../protocol.js').Model|undefined} model */
+const isPlane = (model) => Boolean(model?.links.every((link) =>
+  link.visuals.length && link.visuals.every(({geometry}) => geometry.type === 'plane')));

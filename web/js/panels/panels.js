@@ -18,12 +18,13 @@
 import {HOTKEYS} from '../hotkeys.js';
 import {ask, closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
-import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
+import {cloneDialog, newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
+import {mountHints} from './hint_line.js';
 import {InsertTab} from './insert_tab.js';
 import {JointsPanel} from './joints_panel.js';
 import {mountLayers} from './layers_tab.js';
@@ -32,6 +33,7 @@ import {contextMenu, menus} from './menu_items.js';
 import {Notices} from './notices.js';
 import {Plots} from './plots.js';
 import {openMenu} from './popup.js';
+import {mountPeople} from './people_bar.js';
 import {lyingBar, splitter} from './splitter.js';
 import {mountTheme} from './theme.js';
 import {TimeBar} from './timebar.js';
@@ -40,7 +42,7 @@ import {TopicsPanel} from './topics_panel.js';
 import {TopicWindows} from './topic_windows.js';
 import {WorldTab} from './world_tab.js';
 /** @import {Actions, DialogName, DialogRequest} from '../actions.js' */
-/** @import {AutosavePush, Requests} from '../protocol.js' */
+/** @import {AutosavePush, LoadingPush, Requests} from '../protocol.js' */
 /** @import {Connection, RequestFunction} from '../connection.js' */
 /** @import {SceneView} from '../view/view.js' */
 /** @import {Store} from '../store.js' */
@@ -66,6 +68,7 @@ export function mountPanels(document, parts) {
     theme: mountTheme(),
   });
   mountMenuBar(byId('menubar'), menus(page));
+  mountPeople(byId('people'), page);
   mountToolBar(byId('toolbar'), page);
   const tabs = mountTabs(byId('left'), page);
   new TimeBar(byId('timebar'), page);
@@ -84,7 +87,21 @@ export function mountPanels(document, parts) {
     ),
   );
   mountConnectionNote(byId('centre'), page);
+  mountHints(byId('view'));
+  mountDrawer();
   return page;
+}
+
+/** In a narrow window the left panel lies over the view, while it is wanted. */
+function mountDrawer() {
+  const button = byId('drawer');
+  /** @param {boolean} open */
+  const set = (open) => {
+    document.body.classList.toggle('drawer', open);
+    button.setAttribute('aria-expanded', String(open));
+  };
+  button.addEventListener('click', () => set(!document.body.classList.contains('drawer')));
+  byId('view').addEventListener('pointerdown', () => set(false));
 }
 
 const TABS = [
@@ -199,6 +216,8 @@ class Windows {
   #open = new Set();
   /** @type {{close: () => Promise<boolean>}|null} */
   #building = null;
+  /** @type {import('../model_editor/model_editor.js').ModelEditor|null} */
+  #model = null;
 
   /** @param {DialogRequest} detail */
   show(detail) {
@@ -206,6 +225,7 @@ class Windows {
     const windows = {
       open: () => this.#files(openDialog, 'Opened'),
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
+      cloneWorld: () => cloneDialog(this.page),
       newWorld: () => newWorld(this.page),
       recover: () => recoverDialog(this.page),
       importFiles: () => importDialog(this.page, detail.entries ?? [], detail.place ?? [0, 0, 0]),
@@ -217,6 +237,8 @@ class Windows {
       joints: () => this.#toggleSide('joints'),
       topics: () => this.#toggleSide('topics'),
       building: () => this.#toggleBuilding(),
+      modelEditor: () => this.#toggleModelEditor(detail.target ?? null),
+      saveModel: () => this.#model?.save(),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
       rename: () => this.#inWorld((world) => world.rename()),
@@ -287,7 +309,32 @@ class Windows {
     this[name].show(!section.hidden);
   }
 
+  /** @param {string|null} name  of the model to edit */
+  async #toggleModelEditor(name) {
+    if (this.#model) {
+      await this.#model.close();
+      return;
+    }
+    if (this.#building) {
+      this.page.notices.say('Leave the building editor first (Ctrl+B).');
+      return;
+    }
+    const {ModelEditor} = await import('../model_editor/model_editor.js');
+    const {store, request, actions, notices} = this.page;
+    this.#model = new ModelEditor({store, request, actions, notices});
+    this.#model.onExit = () => {
+      closeDialogs();
+      this.#model = null;
+      byId('view').focus();
+    };
+    await this.#model.open(name);
+  }
+
   async #toggleBuilding() {
+    if (this.#model) {
+      this.page.notices.say('Leave the model editor first (Ctrl+M).');
+      return;
+    }
     const element = byId('building');
     if (this.#building) {
       const closed = await this.#building.close();
@@ -348,19 +395,48 @@ async function offerRestore(page, {found, file, time, others}) {
   }
 }
 
-/** @param {HTMLElement} element @param {Page} page */
-function mountConnectionNote(element, {store}) {
-  const note = h('div', {class: 'connection-note', role: 'status', hidden: true});
+/**
+ * What is waited for: the line, the simulator that reads its world, meshes and textures.
+ * @param {HTMLElement} element
+ * @param {Page} page
+ */
+function mountConnectionNote(element, {store, connection}) {
+  const text = h('span');
+  const detail = h('span', {class: 'soft'});
+  const bar = h('progress', {'aria-label': 'Progress'});
+  const note = h('div', {class: 'connection-note', role: 'status', hidden: true}, text, detail, bar);
   element.append(note);
   let begun = false;
+  /** @type {LoadingPush|null} */
+  let loading = null;
+  const words = () => {
+    if (connection.refused) {
+      return 'The simulator was started again, with a new token. Run “gzclient”: it opens the ' +
+        'editor, and this page connects again.';
+    }
+    if (loading) return loading.title || 'Loading the world';
+    return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';
+  };
   const show = () => {
     begun ||= store.connected;
-    note.hidden = store.connected;
-    note.textContent = begun
-      ? 'Connection to the simulator lost. Reconnecting…'
-      : 'Connecting to the simulator…';
+    note.hidden = store.connected && !loading;
+    text.textContent = words();
+    const {done = 0, of = 0} = loading ?? {};
+    const count = of ? `${done} of ${of}` : '';
+    detail.textContent = [loading?.text, count].filter(Boolean).join(' · ');
+    bar.hidden = !loading;
+    if (of) Object.assign(bar, {max: of, value: done});
+    else bar.removeAttribute('value');
   };
-  store.listen('connection', show);
+  store.listen('connection', () => {
+    loading = null;
+    show();
+  });
+  connection.listen('refused', show);
+  store.listen('loading', ({detail: news}) => {
+    loading = news.of && news.done >= news.of && store.connected ? null : news;
+    show();
+  });
   // A page that connects at once need not say so.
   setTimeout(show, 600);
 }

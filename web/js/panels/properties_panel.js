@@ -7,6 +7,7 @@ import {byId, elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
 import {faultText} from './dialog.js';
 import {icon} from './icons.js';
 import {makeInput} from './property_inputs.js';
+import {sharedSections} from './model_sections.js';
 import {sectionsOf, valueAt} from './property_sections.js';
 import {unitGeometry} from './geometry_fields.js';
 /** @import {Field, Section} from './property_fields.js' */
@@ -58,7 +59,8 @@ export class Properties {
   /** Ten times a second is as often as a person reads numbers. */
   #posesCame() {
     this.#frames.splice(0).forEach((resolve) => resolve());
-    if (this.#later || !['model', 'link'].includes(this.row?.kind ?? '')) return;
+    const several = this.store.selection.length > 1;
+    if (this.#later || !(several || ['model', 'link'].includes(this.row?.kind ?? ''))) return;
     this.#later = setTimeout(() => {
       this.#later = 0;
       this.update();
@@ -116,8 +118,18 @@ export class Properties {
     this.#show();
   }
 
+  /** What several selected models have in common, else what the row is. @returns {Found|null} */
+  #found() {
+    const {selection, document} = this.store;
+    if (selection.length < 2) return sectionsOf(document, this.row);
+    const models = selection.flatMap((name) => this.store.model(name) ?? []);
+    return models.length === selection.length
+      ? sharedSections(models, (name) => this.store.worldPose(name))
+      : sectionsOf(document, this.row);
+  }
+
   #show() {
-    const found = sectionsOf(this.store.document, this.row);
+    const found = this.#found();
     const signature = found
       ? JSON.stringify([
           found.title,
@@ -147,7 +159,7 @@ export class Properties {
    * @param {Field} field
    */
   #value(entity, field) {
-    const now = field.path === 'pose' ? this.#poseNow(entity) : null;
+    const now = field.path === 'pose' && !field.ops ? this.#poseNow(entity) : null;
     return now ?? valueAt(entity, field.local ?? field.path);
   }
 
@@ -171,6 +183,7 @@ export class Properties {
     this.#inputs = [];
     this.#title.textContent = found?.title ?? 'Property';
     this.#title.title = found?.title ?? '';
+    this.element.classList.toggle('nothing', !found);
     if (!found) {
       fill(
         this.#body,
@@ -231,12 +244,13 @@ export class Properties {
         title: field.hint,
         dataset: {path: field.path, target: section.target},
       },
-      h('span', {class: 'field-label', text: field.label}),
+      field.type === 'button' ? null : h('span', {class: 'field-label'}, field.label,
+        wide && field.unit ? h('span', {class: 'unit', text: ` ${field.unit}`}) : null),
       h(
         'span',
         {class: 'field-input'},
         input.element,
-        field.unit && h('span', {class: 'unit', text: field.unit}),
+        !wide && field.unit && h('span', {class: 'unit', text: field.unit}),
       ),
       note,
     );
@@ -258,7 +272,12 @@ export class Properties {
     const turn = (this.#turns.get(element) ?? 0) + 1;
     this.#turns.set(element, turn);
     try {
-      if (field.rename) await this.#rename(section.target, String(value));
+      if (field.ops) {
+        const {label, ops} = field.ops(value);
+        await this.#told(this.row?.model ?? '', () =>
+          this.request('edit', {op: ops.length === 1 && ops[0].kind === 'compute_inertial'
+            ? ops[0] : {kind: 'group', ops, label}}));
+      } else if (field.rename) await this.#rename(section.target, String(value));
       else if (field.path === 'geometry.type') {
         await this.#set(section.target, 'geometry', unitGeometry(String(value)));
       } else await this.#set(section.target, field.path, value);

@@ -4,7 +4,7 @@
  * @typedef {Object} Field
  * @property {string} path     dotted path within the entity, as the `set` operation takes it
  * @property {string} label
- * @property {'number'|'integer'|'text'|'flag'|'color'|'vector'|'pose'|'choice'|'optional'|'xml'} type
+ * @property {'number'|'integer'|'text'|'flag'|'color'|'vector'|'pose'|'choice'|'optional'|'xml'|'button'} type
  * @property {string} [unit]
  * @property {string[]} [parts]    labels of a vector's numbers
  * @property {readonly string[]} [choices]
@@ -16,6 +16,8 @@
  * @property {unknown} [initial]   what an optional one becomes when it is switched on
  * @property {boolean} [rename]    a change renames the entity
  * @property {string} [local]      the path within the section's entity
+ * @property {(value: unknown) => {label: string, ops: Operation[]}} [ops]  what a new value does,
+ *   where it is more than one property
  *
  * @typedef {Object} Section
  * @property {string} key
@@ -24,7 +26,7 @@
  * @property {object|null|undefined} entity  that the paths begin at
  * @property {Field[]} fields
  */
-/** @import {Joint, Light} from '../protocol.js' */
+/** @import {Joint, Light, Operation} from '../protocol.js' */
 
 /**
  * @param {string} path
@@ -76,7 +78,7 @@ const optional = (path, label, initial) => field(path, label, 'optional', {initi
 
 const NAME = fixed('name', 'name');
 const NEW_NAME = field('name', 'name', 'text', {rename: true});
-const POSE = field('pose', 'pose', 'pose');
+const POSE = field('pose', 'pose', 'pose', {unit: 'm, rad'});
 const NOT_NEGATIVE = {min: 0};
 
 export const GUI = [optional('gui_camera', 'GUI camera', {})];
@@ -233,7 +235,7 @@ export const JOINT = [
   fixed('type', 'type'),
   fixed('parent', 'parent'),
   fixed('child', 'child'),
-  field('pose', 'pose', 'pose', {fixed: true, hint: 'relative to the child link'}),
+  field('pose', 'pose', 'pose', {fixed: true, unit: 'm, rad', hint: 'relative to the child link'}),
 ];
 
 /** The fields of an axis, for rad or m. @param {Joint} joint */

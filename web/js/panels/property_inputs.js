@@ -37,6 +37,7 @@ const MAKERS = {
   choice: choiceInput,
   optional: optionalInput,
   xml: xmlInput,
+  button: buttonInput,
 };
 
 /**
@@ -285,7 +286,7 @@ function vectorInput(field, commit, refuse) {
   return {
     element: h(
       'div',
-      {class: 'vector-input'},
+      {class: names.length > 3 ? 'pose-input' : 'vector-input'},
       ...parts.map((part, at) =>
         h(
           'span',
@@ -350,6 +351,13 @@ function poseInput(field, commit, refuse) {
 function tidy(value, parts) {
   const rounded = Math.round(value * parts) / parts;
   return rounded === 0 ? 0 : rounded;
+}
+
+/** @param {InputField} field @param {(value: unknown) => void} commit */
+function buttonInput(field, commit) {
+  const element = h('button', {type: 'button', text: field.label, title: field.hint,
+    onclick: () => { commit(null); }});
+  return {element, show: () => {}};
 }
 
 /** @param {InputField} field */

@@ -3,6 +3,7 @@
  */
 import * as table from './property_fields.js';
 import {geometryFields} from './geometry_fields.js';
+import {bodySections} from './model_sections.js';
 /** @import {Field, Section} from './property_fields.js' */
 /** @import {Row} from './world_rows.js' */
 /** @import {World} from '../protocol.js' */
@@ -115,7 +116,8 @@ const KINDS = {
   wind: (world) => [section('', '', world.wind, table.WIND, 'wind.')],
   model: (world, row) => {
     const model = named(world.models, row.model);
-    return model && [section('', model.name, model, table.MODEL)];
+    return model && [section('', model.name, model, table.MODEL),
+      ...bodySections(model).map((one) => ({...one, prefix: ''}))];
   },
   link: linkSections,
   joint: (world, row) => {
@@ -180,7 +182,12 @@ function linkSections(world, row) {
       ]),
     );
     sections.push(
-      section(`Material of ${visual.name}`, exact, visual.material, table.MATERIAL, 'material.'),
+      section(`Material of ${visual.name}`, exact, visual.material, [
+        {...table.MATERIAL[1], label: 'color', hint: 'ambient and diffuse together',
+          ops: (value) => ({label: `Set color of ${exact.replace('::visual:', '::')}`, ops: ['ambient',
+            'diffuse'].map((path) => ({kind: 'set', target: exact, path: `material.${path}`, value}))})},
+        ...table.MATERIAL,
+      ], 'material.'),
     );
   }
   return sections;

@@ -36,11 +36,11 @@ class Mean {
 const figure = (label, width) =>
   h('output', {class: 'figure', 'aria-label': label, style: `min-width:${width}`});
 
-/** A figure behind its label. @param {HTMLElement} output */
-const labelledFigure = (output) =>
+/** A figure behind its label. @param {HTMLElement} output @param {string} [name] for narrow windows */
+const labelledFigure = (output, name = '') =>
   h(
     'span',
-    {class: 'figure-pair'},
+    {class: `figure-pair figure-${name}`},
     h('span', {class: 'figure-label', text: output.getAttribute('aria-label')}),
     output,
   );
@@ -95,7 +95,7 @@ export class TimeBar {
     sim: figure('Sim Time', '8.6em'),
     real: figure('Real Time', '8.6em'),
     iterations: figure('Iterations', '5em'),
-    fps: figure('FPS', '2.4em'),
+    fps: figure('FPS', '2.2em'),
   };
   #file = h('span', {class: 'file-name'});
   #recording = h('span', {class: 'recording', hidden: true, text: '● recording'});
@@ -139,15 +139,15 @@ export class TimeBar {
       this.#step,
       h(
         'label',
-        {class: 'figure-pair'},
+        {class: 'figure-pair figure-steps'},
         h('span', {class: 'figure-label', text: 'Steps'}),
         this.#steps,
       ),
-      labelledFigure(this.#figures.factor),
-      labelledFigure(this.#figures.sim),
-      labelledFigure(this.#figures.real),
-      labelledFigure(this.#figures.iterations),
-      labelledFigure(this.#figures.fps),
+      labelledFigure(this.#figures.factor, 'factor'),
+      labelledFigure(this.#figures.sim, 'sim'),
+      labelledFigure(this.#figures.real, 'real'),
+      labelledFigure(this.#figures.iterations, 'iterations'),
+      labelledFigure(this.#figures.fps, 'fps'),
       reset,
     );
   }
@@ -179,7 +179,8 @@ export class TimeBar {
 
   #showFrames() {
     const fps = this.page.view?.fps;
-    const text = fps === undefined ? '–' : String(Math.round(fps));
+    // A picture now and then is what a view at rest draws.
+    const text = fps === undefined ? '–' : fps < 2 ? 'idle' : String(Math.round(fps));
     if (this.#figures.fps.textContent !== text) this.#figures.fps.textContent = text;
   }
 

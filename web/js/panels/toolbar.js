@@ -77,6 +77,7 @@ export function mountToolBar(element, page) {
     focusFirst('.popup input');
   });
   const snap = button('snap', 'Snap (N)', () => actions.snapMode());
+  const measure = button('measure', 'Measure (M)', () => actions.measureMode());
   const views = button('views', 'View angle', () => {
     openPopup(viewPanel(page, closePopup), {anchor: views});
     focusFirst('.popup button');
@@ -110,6 +111,7 @@ export function mountToolBar(element, page) {
     line(),
     align,
     snap,
+    measure,
     line(),
     views,
     h('span', {class: 'spring'}),
@@ -127,18 +129,20 @@ export function mountToolBar(element, page) {
       mode.setAttribute('aria-checked', String(store.mode === mode.dataset.mode));
     }
     snap.setAttribute('aria-pressed', String(store.mode === 'snap'));
+    measure.setAttribute('aria-pressed', String(store.mode === 'measure'));
     for (const {list, one, many} of [
       {list: store.history.undo, one: undo, many: undoList},
       {list: store.history.redo, one: redo, many: redoList},
     ]) {
       one.disabled = many.disabled = !list.length;
     }
-    undo.title = store.history.undo.length
-      ? `Undo ${store.history.undo[0]} (Ctrl+Z)`
-      : 'Undo (Ctrl+Z)';
-    redo.title = store.history.redo.length
-      ? `Redo ${store.history.redo[0]} (Shift+Ctrl+Z)`
-      : 'Redo (Shift+Ctrl+Z)';
+    /** @param {'undo'|'redo'} which @param {string} verb @param {string} keys */
+    const title = (which, verb, keys) => {
+      const [label] = store.history[which];
+      return label ? `${verb} ${label}${byOther(store, which, 0)} (${keys})` : `${verb} (${keys})`;
+    };
+    undo.title = title('undo', 'Undo', 'Ctrl+Z');
+    redo.title = title('redo', 'Redo', 'Shift+Ctrl+Z');
     const wholes = store.selection.filter((name) => store.entity(name)?.kind !== 'link');
     copy.disabled = !wholes.length;
     paste.disabled = !store.clipboard;
@@ -163,6 +167,7 @@ export function mountToolBar(element, page) {
     'placing',
     'document',
     'entity',
+    'people',
   ])) {
     store.listen(event, update);
   }
@@ -187,6 +192,17 @@ function arrow(title, open) {
 }
 
 /**
+ * Whose step of the history it is, where it is another's.
+ * @param {Page['store']} store
+ * @param {'undo'|'redo'} which
+ * @param {number} at
+ */
+function byOther(store, which, at) {
+  const author = store.authorOf(which, at);
+  return author ? ` by ${author}` : '';
+}
+
+/**
  * The history in words: choosing an entry undoes or redoes all steps up to it.
  * @param {Page} page
  * @param {'undo'|'redo'} which
@@ -207,6 +223,7 @@ function historyList({store, actions}, which, anchor) {
         },
       },
       h('span', {class: 'menu-title', text: label}),
+      h('span', {class: 'soft', text: byOther(store, which, at)}),
     ),
   );
   const list = h(

@@ -1,5 +1,6 @@
 /** The World tab: a filter, the tree, and the properties of the row that is chosen. */
 import {elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
+import {colorOf, doing} from './people_bar.js';
 import {Properties} from './properties_panel.js';
 import {Tree} from './tree_view.js';
 import {rowOf, worldRows} from './world_rows.js';
@@ -51,6 +52,7 @@ export class WorldTab {
     this.update = onceAFrame(() => this.#update());
     for (const event of /** @type {const} */ (['document', 'entity'])) this.store.listen(event, this.update);
     this.store.listen('selection', () => this.#followSelection());
+    this.store.listen('people', () => this.tree.draw());
     /** @type {boolean|null} */
     let paused = null;
     this.store.listen('stats', () => {
@@ -154,6 +156,12 @@ export class WorldTab {
 
   /** @param {Row} row */
   #decorate(row) {
+    const person = row.select && this.store.others.find(({held, selected}) =>
+      held.includes(row.select ?? '') || selected.includes(row.select ?? ''));
+    if (person) {
+      return h('span', {class: 'tag person-tag', style: `--person: ${colorOf(person)}`,
+        text: person.name, title: `${person.name} ${doing(person)}`});
+    }
     if (row.kind === 'model') {
       const model = this.store.document?.models.find((one) => one.name === row.name);
       return model?.static && h('span', {class: 'tag', text: 'static'});

@@ -2,7 +2,9 @@
 import {
   alongAxis, rotated, roundness, scaled, translated, WORLD_AXES,
 } from '../drag_math.js';
-import {orientation, position, rotate} from '../pose.js';
+import {
+  conjugate, length, multiply, orientation, position, rotate, subtract,
+} from '../pose.js';
 import {LIMITS} from '../protocol.js';
 import {Gizmo} from './gizmo.js';
 /** @import {AxisName, GizmoMode} from './gizmo.js' */
@@ -75,6 +77,25 @@ function graspedPoint(grasp, point) {
   return axis && along ? point.map((part, index) => part + along * axis[index]) : point;
 }
 
+/**
+ * What a drag has come to: position and way, angle, or size.
+ * @param {Grasp} grasp
+ * @param {DragResult} dragResult
+ */
+function numbersOf(grasp, {poses, factors}) {
+  /** @param {ArrayLike<number>} vector */
+  const vector = (vector) => ['x', 'y', 'z'].map((axis, at) => `${axis} ${vector[at].toFixed(3)}`).join('  ');
+  if (factors) return `${vector(grasp.size.map((part, at) => part * factors[at]))} m`;
+  const pose = poses[grasp.name];
+  if (grasp.mode === 'rotate') {
+    const turn = multiply(orientation(pose), conjugate(orientation(grasp.first)));
+    const degrees = 2 * Math.atan2(Math.hypot(turn[0], turn[1], turn[2]), Math.abs(turn[3])) * 180 / Math.PI;
+    return `${degrees.toFixed(1)}°`;
+  }
+  const way = subtract(pose, grasp.first);
+  return `${vector(pose)} m   moved ${length(way).toFixed(3)} m`;
+}
+
 /** How a drag goes: its axis and frame, as one text.
  * @param {AxisName|null} handle
  * @param {AxisName|null} key
@@ -104,6 +125,9 @@ export class Manipulator {
   /** Called when something is moved by hand, so that boxes and overlays go along. */
   onMoved = () => {};
 
+  /** Called with what a drag has come to, in numbers; '' at its end. */
+  onNumbers = (/** @type {string} */ _text) => {};
+
   /** @param {ViewParts} viewParts */
   constructor({store, actions, connection, models, lights, rig, picker, stage}) {
     this.#store = store;
@@ -116,7 +140,10 @@ export class Manipulator {
     this.#stage = stage;
     this.#gizmo = new Gizmo(stage.scene);
     for (const event of /** @type {const} */ (['selection', 'mode', 'document', 'entity'])) {
-      store.listen(event, () => this.update());
+      store.listen(event, () => {
+        this.#dropGone();
+        this.update();
+      });
     }
   }
 
@@ -129,7 +156,9 @@ export class Manipulator {
     const name = selection.at(-1);
     const entity = name ? this.#store.entity(name) : null;
     if (!name || !entity) return null;
-    if (entity.kind === 'link') return entity.model.name;
+    if (entity.kind === 'link') {
+      return this.#store.modelEditing?.name === entity.model.name ? name : entity.model.name;
+    }
     if (entity.kind === 'light' && mode === 'scale') return null;
     return name;
   }
@@ -195,6 +224,7 @@ export class Manipulator {
     const made = this.#apply(ray, event, key);
     if (!made) return;
     this.#result = made;
+    if (this.#grasp) this.onNumbers(numbersOf(this.#grasp, made));
     this.#show(made);
     this.#send();
   }
@@ -240,6 +270,14 @@ export class Manipulator {
     return true;
   }
 
+  /** Somebody has deleted what the hand is on: the drag is over, the simulator says who it was. */
+  #dropGone() {
+    const grasp = this.#grasp;
+    if (!grasp || this.#store.entity(grasp.name)) return;
+    this.#grasp = this.#result = this.#lastEvent = null;
+    this.#end(grasp, false);
+  }
+
   /** @param {Record<string, Pose7>} poses */
   #message(poses) {
     const names = Object.keys(poses).filter((name) => this.#store.model(name));
@@ -248,6 +286,7 @@ export class Manipulator {
 
   /** @param {Grasp} grasp @param {boolean} keep */
   #end(grasp, keep) {
+    this.onNumbers('');
     if (grasp.sent) this.#connection.send('drag_end');
     const names = [grasp.name, ...Object.keys(grasp.others)];
     // A next drag may have begun while the simulator answered.

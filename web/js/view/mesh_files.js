@@ -143,6 +143,9 @@ export class Meshes {
   /** Tells of pictures that arrive after their mesh. */
   manager = new LoadingManager();
   #busy = false;
+  /** How many are there, of how many. */
+  #textures = [0, 0];
+  #meshes = [0, 0];
   /** @type {(() => void)[]} */
   #waiting = [];
   /** @type {Map<string, Promise<MeshPart[]>>} */
@@ -156,6 +159,10 @@ export class Meshes {
     /** @type {Set<string>} */
     const told = new Set();
     this.manager.onStart = () => { this.#busy = true; };
+    this.manager.onProgress = (_url, loaded, total) => {
+      this.#textures = [loaded, total];
+      this.#count();
+    };
     this.manager.onLoad = () => {
       this.#busy = false;
       for (const resolve of this.#waiting.splice(0)) resolve();
@@ -170,6 +177,13 @@ export class Meshes {
 
   /** Called when pictures have come. */
   onArrived = () => {};
+
+  /** Called with how many meshes and pictures there are, of how many. */
+  onCount = (/** @type {number} */ _done, /** @type {number} */ _of) => {};
+
+  #count() {
+    this.onCount(this.#meshes[0] + this.#textures[0], this.#meshes[1] + this.#textures[1]);
+  }
 
   /** Resolves when no picture is under way. @returns {Promise<void>} */
   idle() {
@@ -191,8 +205,15 @@ export class Meshes {
    */
   load(geometry) {
     const {url} = geometry;
-    const parts = this.#files.get(url) ?? this.#readSomehow(geometry, partsOf)
+    const known = this.#files.get(url);
+    if (!known) {
+      this.#meshes[1] += 1;
+      this.#count();
+    }
+    const parts = known ?? this.#readSomehow(geometry, partsOf)
       .then(({found, whole}) => {
+        this.#meshes[0] += 1;
+        this.#count();
         const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part));
         this.#ready.set(url, ready);
         return ready;

@@ -1,9 +1,10 @@
 /** The world's models in the scene: built from the document, moved by pose frames. */
-import {Box3, Matrix4} from 'three';
+import {Box3, Matrix4, Vector3} from 'three';
 import {canonicalLink} from '../store.js';
-import {compose, inverse} from '../pose.js';
+import {compose, displacement, inverse} from '../pose.js';
 import {matrixOf} from './three_convert.js';
 import {boxOf, visualParts} from './shape_meshes.js';
+import {tinted} from './tints.js';
 /** @import {Batches, Item} from './batches.js' */
 /** @import {Link, Model, Visual} from '../protocol.js' */
 /** @import {Part, Stock} from './shape_meshes.js' */
@@ -13,10 +14,18 @@ import {boxOf, visualParts} from './shape_meshes.js';
 
 /** @typedef {{model: string, link: string, linkId: number, plane: boolean}} Owner  of an item */
 
+/** Pixels: less is no movement, and up to the second number it is creeping. */
+const STILL = 0.7;
+const CREEPING = 2.5;
+
 class LinkView {
   /** @type {Item[]} */
   items = [];
   matrix = new Matrix4();
+  /** The pose that is shown. */
+  shown = new Float64Array(7);
+  /** Of the visuals about the link's origin, m; 0: not known yet. */
+  radius = 0;
 
   /** @param {Link} link */
   constructor(link) {
@@ -54,6 +63,8 @@ export class Models {
   #stretched = new Map();
   /** @type {Set<string>} */
   #faded = new Set();
+  /** Links that have moved, but not so far that it is seen. @type {Set<number>} */
+  #late = new Set();
 
   /**
    * @param {{store: Store, batches: Batches,
@@ -76,6 +87,24 @@ export class Models {
    * @type {(ids: Set<number>|null) => void}
    */
   onMoved = () => {};
+  /** Called when a mesh that was waited for can be seen. */
+  onArrived = () => {};
+
+  /**
+   * Metres that a pixel covers at a point.
+   * @type {(point: ArrayLike<number>) => number}
+   */
+  unitAt = () => 0;
+
+  /** Before a picture: what has moved unseen is where it is. */
+  catchUp() {
+    for (const id of this.#late) {
+      const view = this.#byLink.get(id);
+      const linkView = view?.links.get(id);
+      if (view && linkView && !this.#held.has(id)) this.#moveLink(view, linkView);
+    }
+    this.#late.clear();
+  }
 
   rebuildAll() {
     for (const name of [...this.#views.keys()]) this.#replace(name, null);
@@ -107,7 +136,10 @@ export class Models {
   hold(poses) {
     for (const [name, pose] of Object.entries(poses)) {
       const view = this.#views.get(name);
-      if (!view) continue;
+      if (!view) {
+        this.#holdLink(name, pose);
+        continue;
+      }
       const here = this.#store.worldPose(name);
       if (!here) continue;
       const toModel = inverse(here);
@@ -126,10 +158,8 @@ export class Models {
    */
   release(names, {keep = false} = {}) {
     for (const name of names) {
-      const view = this.#views.get(name);
       this.#stretched.delete(name);
-      if (!view) continue;
-      for (const [id, linkView] of view.links) {
+      for (const [view, id, linkView] of this.#linksOf(name)) {
         const pose = this.#held.get(id);
         if (keep && pose) this.#store.poses.get(id)?.set(pose);
         this.#held.delete(id);
@@ -137,6 +167,28 @@ export class Models {
       }
     }
     this.#changed(null);
+  }
+
+  /** One link of a model that is being built. @param {string} name @param {Pose7} pose */
+  #holdLink(name, pose) {
+    for (const [view, id, linkView] of this.#linksOf(name)) {
+      this.#held.set(id, pose);
+      this.#moveLink(view, linkView);
+    }
+  }
+
+  /**
+   * The links of a model, or the one that is named.
+   * @param {string} name
+   * @returns {[ModelView, number, LinkView][]}
+   */
+  #linksOf(name) {
+    const view = this.#views.get(name);
+    if (view) return [...view.links].map(([id, linkView]) => [view, id, linkView]);
+    const entity = this.#store.entity(name);
+    const owner = entity?.kind === 'link' ? this.#views.get(entity.model.name) : null;
+    const linkView = entity?.kind === 'link' ? owner?.links.get(entity.link.id) : null;
+    return entity?.kind === 'link' && owner && linkView ? [[owner, entity.link.id, linkView]] : [];
   }
 
   /**
@@ -264,15 +316,17 @@ export class Models {
         item.local = part.matrix;
         linkView.items.push(item);
       }
+      linkView.radius = 0;
       this.#moveLink(view, linkView);
     };
-    const parts = visualParts(visual, this.#stock, look);
+    const parts = visualParts(tinted(view.document, visual), this.#stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {
         if (view.gone) return;
         add(ready);
         this.#changed(null);
+        this.onArrived();
       });
     }
   }
@@ -282,6 +336,7 @@ export class Models {
     const pose = this.#linkPose(linkView.link.id);
     if (!pose) return;
     matrixOf(pose, linkView.matrix);
+    linkView.shown.set(pose);
     const stretch = this.#stretched.get(view.document.name);
     if (stretch) {
       const frame = matrixOf(this.shownPose(view.document.name) ?? view.document.pose);
@@ -295,13 +350,44 @@ export class Models {
 
   /** @param {Set<number>} ids */
   #followFrame(ids) {
+    let most = 0;
+    /** @type {Set<number>} */
+    const seen = new Set();
     for (const id of ids) {
-      if (this.#held.has(id)) continue;
+      const linkView = this.#byLink.get(id)?.links.get(id);
+      if (!linkView || this.#held.has(id)) continue;
+      const pixels = this.#pixelsMoved(id, linkView);
+      most = Math.max(most, pixels);
+      if (pixels < STILL) this.#late.add(id);
+      else seen.add(id);
+    }
+    if (this.#late.size) this.#stage.owe();
+    if (!seen.size) return;
+    if (most < CREEPING && !this.#stage.creep()) {
+      for (const id of seen) this.#late.add(id);
+      this.#stage.owe();
+      return;
+    }
+    for (const id of seen) {
       const view = this.#byLink.get(id);
       const linkView = view?.links.get(id);
       if (view && linkView) this.#moveLink(view, linkView);
     }
-    this.#changed(ids);
+    this.#changed(seen);
+  }
+
+  /**
+   * How far a link is from where it is shown.
+   * @param {number} id
+   * @param {LinkView} linkView
+   */
+  #pixelsMoved(id, linkView) {
+    const pose = this.#linkPose(id);
+    if (!pose) return 0;
+    const unit = this.unitAt(pose);
+    if (!(unit > 0)) return Infinity;
+    linkView.radius ||= radiusOf(linkView);
+    return displacement(linkView.shown, pose, linkView.radius) / unit;
   }
 
   /** @param {Set<number>|null} ids */
@@ -309,4 +395,18 @@ export class Models {
     this.#stage.shadowsChanged();
     this.onMoved(ids);
   }
+}
+
+/** @param {LinkView} linkView @returns {number} of its visuals about its origin, m */
+function radiusOf({items}) {
+  const corner = new Vector3();
+  let farthest = 0.05;
+  for (const {geometry, local} of items) {
+    const box = boxOf(geometry);
+    if (local) box.applyMatrix4(local);
+    corner.set(Math.max(-box.min.x, box.max.x), Math.max(-box.min.y, box.max.y),
+      Math.max(-box.min.z, box.max.z));
+    if (Number.isFinite(corner.length())) farthest = Math.max(farthest, corner.length());
+  }
+  return farthest;
 }

@@ -236,6 +236,8 @@ export class Overlays {
   /** @param {Group} group @param {Link} link */
   #addCollisions(group, link) {
     for (const collision of link.collisions) {
+      // An infinite plane would lie over everything.
+      if (collision.geometry.type === 'plane') continue;
       /** @param {Part[]} parts */
       const add = (parts) => {
         for (const part of parts) {

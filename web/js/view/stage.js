@@ -3,7 +3,7 @@
  * is drawn coarser, and once more in full when they rest.
  */
 import {
-  Color, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, SRGBColorSpace, WebGLRenderer,
+  Color, NeutralToneMapping, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, SRGBColorSpace, WebGLRenderer,
   WebGLRenderTarget,
 } from 'three';
 /** @import {Camera} from 'three' */
@@ -14,6 +14,8 @@ const FAST = 15;
 const COARSEST = 0.5;
 /** Milliseconds between new shadows while pictures are slow. */
 const SLOW_SHADOWS = 300;
+/** Makes up for what the tone mapping takes from middle greys. */
+const EXPOSURE = 1.08;
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
 /**
  * A processor that draws in place of a graphics card pays for smooth edges with every picture:
@@ -23,6 +25,8 @@ const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
 const QUALITY = {card: {start: 1, best: 1}, processor: {start: COARSEST, best: 1.5}};
 /** Milliseconds of rest before the full picture. */
 const REST = 600;
+/** Milliseconds between pictures of what creeps: they are drawn in full, for the rest goes on. */
+const CREEP = 1000;
 
 /** The name of what draws. @throws {NoWebGL} */
 function driver() {
@@ -51,6 +55,11 @@ export class Stage {
    * @type {(time: number) => boolean}
    */
   onBeforeDraw = () => false;
+  /**
+   * Called before shadows are drawn.
+   * @type {(renderer: WebGLRenderer, scene: Scene) => void}
+   */
+  onShadows = () => {};
   /** Called when the canvas has another size. */
   onResize = () => {};
 
@@ -63,6 +72,8 @@ export class Stage {
   /** @type {ReturnType<typeof setTimeout>|undefined} */
   #restTimer;
   #lost = false;
+  #creeping = false;
+  #crept = -CREEP;
   /** @type {WebGLSync|null} */
   #fence = null;
   #begun = 0;
@@ -95,6 +106,8 @@ export class Stage {
     } catch (error) {
       throw new NoWebGL(error instanceof Error ? error.message : String(error));
     }
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.toneMappingExposure = EXPOSURE;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
@@ -123,6 +136,24 @@ export class Stage {
   invalidate() {
     if (this.#wanted || this.#lost) return;
     this.#wanted = requestAnimationFrame((time) => this.#frame(time));
+  }
+
+  /**
+   * Something has moved by a pixel or two. A picture at rest shows it in full, now and then.
+   * @returns {boolean} whether it does now; else it comes with the next picture
+   */
+  creep() {
+    const now = performance.now();
+    if (this.fps || this.#wanted || this.#lost || now - this.#crept < CREEP) return false;
+    this.#crept = now;
+    this.#creeping = this.#shadowsWanted = true;
+    this.invalidate();
+    return true;
+  }
+
+  /** Something has changed that nobody can see yet: the picture at rest will show it. */
+  owe() {
+    this.#shadowsWanted = true;
   }
 
   /** Something that throws a shadow, or its light, has changed. */
@@ -173,6 +204,11 @@ export class Stage {
     // Pictures that wait behind others would only make the mouse feel late.
     if (this.#isDrawing()) {
       this.invalidate();
+      return;
+    }
+    if (this.#creeping) {
+      this.#creeping = false;
+      this.#drawInFull();
       return;
     }
     if (this.#next !== null) {
@@ -248,8 +284,9 @@ export class Stage {
     const more = this.onBeforeDraw(time);
     const shadows = this.#shadowsWanted &&
       (this.#quality >= 1 || time - this.#shadowed > SLOW_SHADOWS);
-    renderer.shadowMap.needsUpdate = shadows;
     if (shadows) {
+      this.onShadows(renderer, this.scene);
+      renderer.shadowMap.needsUpdate = true;
       this.#shadowsWanted = false;
       this.#shadowed = time;
     }

@@ -1,18 +1,24 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
-import {Vector3} from 'three';
-import {subtract} from '../pose.js';
+import {Box3, Vector3} from 'three';
+import {hullOf} from '../building/plane_geometry.js';
+import {remembered} from '../panels/dom.js';
+import {subtract, transform} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
-import {CameraRig} from './camera_rig.js';
+import {BoxSelect} from './box_select.js';
+import {CameraRig, savedConfiguration} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
 import {Forces} from './force_arrows.js';
 import {Lights} from './light_views.js';
 import {Manipulator} from './manipulator.js';
 import {Materials} from './materials.js';
+import {Measure} from './measure.js';
 import {Meshes} from './mesh_files.js';
 import {Models} from './model_views.js';
 import {Overlays} from './overlays.js';
+import {OrientationCube} from './orientation_cube.js';
+import {PeopleMarks} from './people_marks.js';
 import {Picker} from './picking.js';
 import {Placer} from './insert_ghost.js';
 import {PivotMark} from './markers.js';
@@ -58,6 +64,9 @@ const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs 
   acceleration in the browser's settings, update the graphics driver, or allow software rendering
   (Chromium: --enable-unsafe-swiftshader).`;
 
+/** Milliseconds after which it is told that meshes and textures are on their way. */
+const SLOW_FILES = 500;
+
 /** What stands in for the view where there is no WebGL. @param {HTMLElement} element */
 function withoutWebGL(element) {
   const text = document.createElement('p');
@@ -68,6 +77,48 @@ function withoutWebGL(element) {
   return {
     fps: 0, available: false, thumbnail: async () => null, redraw: () => {},
     dispose: () => text.remove(),
+  };
+}
+
+/**
+ * Numbers over the view while something is dragged; '' hides them.
+ * @param {HTMLElement} parent
+ */
+function readout(parent) {
+  const element = document.createElement('output');
+  element.className = 'readout';
+  element.hidden = true;
+  parent.append(element);
+  return (/** @type {string} */ text) => {
+    element.hidden = !text;
+    element.textContent = text;
+  };
+}
+
+/**
+ * Tells of a number that grows, once it has taken so long that somebody waits, and of its end.
+ * @param {(done: number, of: number) => void} tell
+ */
+function counted(tell) {
+  /** @type {ReturnType<typeof setTimeout>|undefined} */
+  let timer;
+  /** @type {[number, number]} */
+  let news = [0, 0];
+  let shown = false;
+  return (/** @type {number} */ done, /** @type {number} */ of) => {
+    news = [done, of];
+    if (done < of) {
+      timer ??= setTimeout(() => {
+        timer = undefined;
+        shown = news[0] < news[1];
+        if (shown) tell(...news);
+      }, shown ? 100 : SLOW_FILES);
+      return;
+    }
+    clearTimeout(timer);
+    timer = undefined;
+    if (shown) tell(done, of);
+    shown = false;
   };
 }
 
@@ -90,6 +141,8 @@ class View {
   #store;
   #stage;
   #stock;
+  /** For pictures of the library. @type {Stock} */
+  #gallery;
   #models;
   #lights;
   #rig;
@@ -100,9 +153,16 @@ class View {
   #overlays;
   #pointer;
   #actors;
+  #surroundings;
   #marks;
+  #people;
+  #measure;
+  #cube;
+  #readout;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
+  /** What of it the camera was last turned to. @type {Box3|null} */
+  #framed = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
   #thumbnails = new Map();
   /** Names of the models that are shown elsewhere. @type {string[]} */
@@ -119,12 +179,18 @@ class View {
     const meshes = new Meshes((message) =>
       store.addIssue({severity: 'warning', code: 'resource', message}));
     meshes.onArrived = () => stage.invalidate();
+    meshes.onCount = counted((done, of) => store.emit('loading', {
+      type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
+    // Pictures of models that nobody has asked for say nothing of what they lack.
+    const unseen = new Meshes(() => {});
+    this.#gallery = {meshes: unseen, materials: new Materials(unseen.manager)};
     const batches = new Batches(stage.scene);
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
     const rig = new CameraRig({stage, store, models});
+    models.unitAt = (point) => rig.unitAt(Array.from(point));
     const picker = new Picker(stage);
     const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
       picker};
@@ -133,24 +199,36 @@ class View {
     this.#lights = lights;
     this.#rig = rig;
     this.#picker = picker;
-    new Surroundings({stage, store, materials});
+    this.#surroundings = new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
     this.#marks = new TopicMarks({...shared, topics});
     this.#boxes = new SelectionBoxes(shared);
+    this.#people = new PeopleMarks(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
+    const selector = new Selector(shared);
+    this.#measure = new Measure({...shared, selector});
+    this.#cube = new OrientationCube(element, actions);
+    this.#readout = readout(element);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
       placer: new Placer(shared), faceSnap: new FaceSnap(shared), forces: this.#forces,
-      selector: new Selector(shared), pivotMark: new PivotMark(shared)});
+      selector, measure: this.#measure, pivotMark: new PivotMark(shared),
+      boxSelect: new BoxSelect(element, store, (name) => this.pixelOf(name))});
     this.#connect();
     actions.attachView(this);
+    const kept = savedConfiguration();
+    if (kept) Object.assign(store.overlays.scene, kept.overlays);
+    this.#rig.apply();
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
 
   /** Names of the topics that are drawn, for tests. */
   get drawnTopics() { return this.#marks.drawn; }
+
+  /** Names of what others hold or have selected, for tests. */
+  get sharedMarks() { return this.#people.shown; }
 
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
@@ -162,18 +240,26 @@ class View {
   }
 
   #connect() {
+    this.#models.onArrived = () => this.#rig.frameAll();
     this.#models.onMoved = (ids) => {
       this.#rig.follow();
       this.#boxes.follow(ids);
       this.#overlays.follow(ids);
       this.#marks.follow(ids);
+      this.#people.follow(ids);
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();
-    this.#rig.onMoved = () => this.#manipulator.update();
+    this.#manipulator.onNumbers = (text) => this.#readout(text);
+    this.#rig.onMoved = () => {
+      this.#manipulator.update();
+      this.#measure.follow();
+      this.#cube.update(this.#rig.view);
+    };
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
+      this.#models.catchUp();
       const moving = this.#rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();
@@ -199,9 +285,22 @@ class View {
       : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
     const centre = position.map((part, index) => part + ahead[index] * distance);
     this.#lights.cover(centre, Math.max(distance * 1.3, 4));
+    this.#surroundings.cover(centre, this.#rig.orthographic
+      ? Math.max(distance, this.#stage.width / this.#rig.zoomLevel) : distance);
   }
 
   // ---- what actions ask
+
+  /** Where the camera is. */
+  get camera() { return this.#rig.view; }
+
+  /** What the measure tool says, for tests. */
+  get measured() { return this.#measure.texts; }
+
+  /** @param {import('../camera_math.js').View} view */
+  flyTo(view) {
+    this.#rig.fly(view);
+  }
 
   /** @param {string} side */
   viewFrom(side) {
@@ -234,6 +333,22 @@ class View {
   bounds(name) {
     const box = this.#models.bounds(name);
     return box && {min: box.min.toArray(), max: box.max.toArray()};
+  }
+
+  /**
+   * The outline of a model on the ground, m; null for planes and for what is not drawn.
+   * @param {string} name
+   */
+  footprint(name) {
+    const pose = this.#models.shownPose(name);
+    const box = pose && this.#models.bounds(name, pose);
+    const model = this.#store.model(name);
+    const isPlane = model?.links.every(({visuals}) =>
+      visuals.every(({geometry}) => geometry.type === 'plane'));
+    if (!pose || !box || isPlane) return null;
+    const corners = [box.min.x, box.max.x].flatMap((x) => [box.min.y, box.max.y].flatMap((y) =>
+      [box.min.z, box.max.z].map((z) => transform(pose, [x, y, z]).slice(0, 2))));
+    return hullOf(corners);
   }
 
   /**
@@ -270,6 +385,17 @@ class View {
     return this.#models.carry(poses, asked);
   }
 
+  /** Remembers camera and overlays for worlds that have no camera of their own. */
+  saveConfiguration() {
+    const {projection, controller} = this.#store.camera;
+    remembered.set('configuration', {...this.#rig.view, projection, controller,
+      overlays: this.#store.overlays.scene});
+  }
+
+  resetConfiguration() {
+    remembered.set('configuration', null);
+  }
+
   cancelDrag() {
     return this.#manipulator.cancel();
   }
@@ -299,9 +425,22 @@ class View {
       // It can be picked before it is drawn for the first time.
       group.updateMatrixWorld(true);
       this.#stage.scene.add(group);
-      ready.then(() => this.#stage.shadowsChanged());
-    }
+      ready.then(() => {
+        this.#frame(new Box3().setFromObject(group));
+        this.#stage.shadowsChanged();
+      });
+    } else this.#framed = null;
     this.#stage.shadowsChanged();
+  }
+
+  /**
+   * What is drawn beside the world is in sight when it begins, and when it has outgrown that.
+   * @param {Box3} box
+   */
+  #frame(box) {
+    if (box.isEmpty() || this.#framed?.containsBox(box)) return;
+    this.#framed = box.clone().expandByScalar(box.getSize(new Vector3()).length() * 0.15);
+    this.#rig.flyTo(this.#framed);
   }
 
   /**
@@ -337,7 +476,7 @@ class View {
   async #drawThumbnail(uri, address) {
     const found = await this.#connection.request('library_get', {uri}).catch(() => null);
     const model = found?.model;
-    const blob = model && await thumbnail(this.#stage, model, this.#stock);
+    const blob = model && await thumbnail(this.#stage, model, this.#gallery);
     if (!blob) return null;
     if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);
     return URL.createObjectURL(blob);

@@ -11,14 +11,21 @@ from ...simulator.simulator import Simulator
 
 
 class Drags:
-    """Who drags what, and where it was before. For one thread at a time."""
+    """Who drags what, and where it was before. For one thread at a time.
+
+    Two may hold the same body: it is where the last of them moved it, and stays where the last one
+    releases it.
+    """
 
     def __init__(self, simulator: Simulator) -> None:
         self._world = simulator
         self._before: Dict[int, Dict[str, Pose]] = {}
 
-    def drag(self, client: int, poses: Dict[str, Pose]) -> None:
-        """Move things that a client drags; what has gone meanwhile is let go of."""
+    def drag(self, client: int, poses: Dict[str, Pose]) -> List[str]:
+        """Move things that a client drags; what has gone meanwhile is let go of.
+
+        Returns what the client has just taken hold of.
+        """
         mine = self._before.setdefault(client, {})
         fresh = [name for name in poses if name not in mine]
         for name in fresh:
@@ -35,23 +42,56 @@ class Drags:
                 place(self._world, name, Pose(pose.position, normalised(pose.orientation)))
             except CommandError:
                 mine.pop(name)
+        return [name for name in fresh if name in mine]
 
-    def taken(self, names: List[str]) -> Dict[str, Pose]:
-        """Where these were before they were dragged, as far as they are."""
-        return {name: before[name] for before in self._before.values()
-                for name in names if name in before}
+    def held(self) -> Dict[int, List[str]]:
+        """Names of what is dragged, by client."""
+        return {client: sorted(before) for client, before in self._before.items() if before}
 
-    def moved(self, names: List[str]) -> None:
-        """A move has ended the drags of these; they are let go of."""
-        for before in self._before.values():
+    def others(self, client: int, names: List[str]) -> Dict[int, List[str]]:
+        """Which of these others drag, by client."""
+        return {other: shared for other, held in self.held().items()
+                for shared in [[name for name in names if name in held]]
+                if shared and other != client}
+
+    def taken(self, client: int, names: List[str]) -> Dict[str, Pose]:
+        """Where these were before the client dragged them, as far as it does."""
+        mine = self._before.get(client, {})
+        return {name: mine[name] for name in names if name in mine}
+
+    def moved(self, client: int, names: List[str]) -> None:
+        """A move has ended the client's drags of these; for others they begin anew."""
+        for other, before in self._before.items():
             for name in names:
-                before.pop(name, None)
+                if name not in before:
+                    continue
+                if other == client:
+                    before.pop(name)
+                    continue
+                try:
+                    before[name] = pose_of(self._world, name)
+                except CommandError:
+                    before.pop(name)
         self._hold()
+
+    def gone(self) -> Dict[int, List[str]]:
+        """Names that were dragged and are no more, by client; forgets them."""
+        lost: Dict[int, List[str]] = {}
+        for client, before in self._before.items():
+            for name in list(before):
+                try:
+                    pose_of(self._world, name)
+                except CommandError:
+                    before.pop(name)
+                    lost.setdefault(client, []).append(name)
+        return lost
 
     def end(self, client: int) -> None:
         """A client drags nothing any more; what it has not put down goes back."""
         before = self._before.pop(client, {})
         for name, pose in before.items():
+            if self.others(client, [name]):
+                continue  # another hand is on it
             try:
                 place(self._world, name, pose)
             except CommandError:

@@ -7,6 +7,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ...description.light import Light
 from ...description.model import Model
+from ...description.scoped_names import split_scoped
 from ...description.unflatten import unflattened
 from ...engine.commands import JointPid
 from ...errors import CommandError, Issue
@@ -46,9 +47,10 @@ from .inserts import (
     taken_names,
     world_of,
 )
+from .model_building import ModelBuilding
 from .model_scaling import resized
 from .property_path import made
-from .property_target import property_change
+from .property_target import property_change, split_target
 
 _MOST_IN_A_GROUP = 5000
 _MOST_STEPS = 1000000
@@ -80,14 +82,15 @@ class Edits:
         self._protocol = protocol
         self._tell = tell
         self._dragged = dragged
+        self._building = ModelBuilding(simulator, resolver, tell)
 
-    def do(self, op: Dict[str, Any]) -> Dict[str, Any]:
-        """Carry out one operation as one step of the history; returns the reply's value.
+    def do(self, op: Dict[str, Any], author: str = "") -> Dict[str, Any]:
+        """Carry out one operation as one step of its author's; returns the reply's value.
 
         Raises CommandError, InputError; then nothing has changed.
         """
         label, operation, value = self._planned(op, 0)
-        self._history.do(label, operation)
+        self._history.do(label, operation, author)
         return value
 
     def copy(self, names: List[str]) -> str:
@@ -112,7 +115,7 @@ class Edits:
             "insert": self._insert, "insert_light": self._insert_light, "delete": self._delete,
             "move": self._move, "scale": self._scale, "rename": self._rename, "set": self._set,
             "paste": self._paste, "wrench": self._wrench, "reset": self._reset,
-            "joint": self._joint,
+            "joint": self._joint, **self._building.planners(),
         }
         return planners[kind](op)
 
@@ -232,7 +235,12 @@ class Edits:
     def _set(self, op: Dict[str, Any]) -> Planned:
         target, path = op["target"], op["path"]
         operation = property_change(self._world, self._resolver, target, path, op.get("value"))
-        return history_labels.set_property(target, path, op.get("value")), operation, {}
+        model = split_target(self._world, target)[0] if self._is_of_model(target) else None
+        label = history_labels.set_property(target, path, op.get("value"), model)
+        return label, operation, {}
+
+    def _is_of_model(self, target: str) -> bool:
+        return bool(split_scoped(target, self._world.models.has)[0])
 
     def _reset(self, op: Dict[str, Any]) -> Planned:
         words = {"time": "time", "poses": "model poses", "world": "world"}[op["what"]]

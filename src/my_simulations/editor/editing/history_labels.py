@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Dict, Sequence
+from typing import Any, Dict, Optional, Sequence
 
+from ...description.model import Model
 from ...geometry import Vec3
 
 _WORDS: Dict[str, str] = {
@@ -33,15 +34,35 @@ def listed(names: Sequence[str]) -> str:
     return shown if more <= 0 else f"{shown} and {more} more"
 
 
-def set_property(target: str, path: str, value: Any) -> str:
-    """`Set friction of unit_box::link::collision to 0.5`; vectors and objects are not shown.
+def short(target: str, model: Optional[Model]) -> str:
+    """A scoped name without the parts that nobody needs: a model's only link, and so on.
+
+    `unit_box::link::collision:collision` of a box is `unit_box`; of a robot it stays
+    `robot::wheel::collision`.
+    """
+    plain = _PART.sub("::", target)
+    if model is None or len(model.links) != 1:
+        return plain
+    link = model.links[0]
+    whole = f"{model.name}::{link.name}"
+    if target == whole:
+        return model.name
+    for kind, parts in (("collision", link.collisions), ("visual", link.visuals)):
+        if target.startswith(f"{whole}::{kind}:") and len(parts) == 1:
+            return model.name
+    return plain
+
+
+def set_property(target: str, path: str, value: Any, model: Optional[Model] = None) -> str:
+    """`Set friction of unit_box to 0.5`; vectors and objects are not shown.
 
     Args:
         target: scoped name of what has the property; "" for the world.
         path: of the property, e.g. `surface.mu`.
         value: JSON.
+        model: the target's, if it is of one; see `short`.
     """
-    of = f" of {_PART.sub('::', target)}" if target else ""
+    of = f" of {short(target, model)}" if target else ""
     shown = _shown(value)
     return f"Set {_property(path)}{of}" + (f" to {shown}" if shown else "")
 

@@ -28,31 +28,16 @@ _UPLOADED = SERVED | {".sdf", ".urdf", ".world", ".xml"}
 Export = Callable[[str], "tuple[bytes, str]"]
 
 
-class Pages:
-    """Routes of everything but the web socket.
+class PageFiles:
+    """Routes of the page itself: its HTML, modules and libraries.
 
     Args:
-        options: where things lie.
-        page: the page's folder.
-        documents: knows what may be served.
-        upload_bytes: the largest upload.
-        export: the bytes and the file name of a download; raises CommandError for none.
+        page: the page's folder; "" for the package's own.
     """
 
-    def __init__(self, options: EditorOptions, page: str, documents: Documents,
-                 upload_bytes: int, export: Export) -> None:
-        self.web = page
-        self._modules = node_modules(page)
-        self._documents = documents
-        self._upload_bytes = upload_bytes
-        self._export = export
-        self._thumbs = os.path.join(options.cache_dir, "thumbnails")
-        self._uploads = os.path.join(os.path.dirname(options.data_dir), "uploads")
-
-    @staticmethod
-    def own_folder() -> str:
-        """The page of this package."""
-        return os.path.join(own_directory(), "web")
+    def __init__(self, page: str) -> None:
+        self.web = page or Pages.own_folder()
+        self._modules = node_modules(self.web)
 
     def routes(self) -> List[web.RouteDef]:
         """For the application."""
@@ -60,10 +45,6 @@ class Pages:
             web.get("/", self._index), web.get("/protocol.json", self._protocol),
             web.get("/{part:js|css|img}/{inside:.+}", self._part),
             web.get("/three/{inside:.+}", self._three),
-            web.get("/resource/{root}/{inside:.+}", self._resource),
-            web.get("/solid/{id}.stl", self._solid),
-            web.get("/thumb/{id}.png", self._thumb), web.put("/thumb/{id}.png", self._put_thumb),
-            web.put("/upload/{name}", self._put_upload), web.get("/export/{name}", self._download),
         ]
 
     async def _index(self, request: web.Request) -> web.StreamResponse:
@@ -91,6 +72,42 @@ class Pages:
                                         "the folder web\n")
         folder = os.path.join(self._modules, "three")
         return _page_file(_inside(folder, request.match_info["inside"]))
+
+
+class Pages(PageFiles):
+    """Routes of everything but the web socket.
+
+    Args:
+        options: where things lie.
+        page: the page's folder.
+        documents: knows what may be served.
+        upload_bytes: the largest upload.
+        export: the bytes and the file name of a download; raises CommandError for none.
+    """
+
+    def __init__(self, options: EditorOptions, page: str, documents: Documents,
+                 upload_bytes: int, export: Export) -> None:
+        super().__init__(page)
+        self._documents = documents
+        self._upload_bytes = upload_bytes
+        self._export = export
+        self._thumbs = os.path.join(options.cache_dir, "thumbnails")
+        self._uploads = os.path.join(os.path.dirname(options.data_dir), "uploads")
+
+    @staticmethod
+    def own_folder() -> str:
+        """The page of this package."""
+        return os.path.join(own_directory(), "web")
+
+    def routes(self) -> List[web.RouteDef]:
+        """For the application."""
+        return [
+            *super().routes(),
+            web.get("/resource/{root}/{inside:.+}", self._resource),
+            web.get("/solid/{id}.stl", self._solid),
+            web.get("/thumb/{id}.png", self._thumb), web.put("/thumb/{id}.png", self._put_thumb),
+            web.put("/upload/{name}", self._put_upload), web.get("/export/{name}", self._download),
+        ]
 
     async def _resource(self, request: web.Request) -> web.StreamResponse:
         path = self._documents.served.path(request.match_info["root"],

@@ -90,6 +90,11 @@ class Hub:
         """Show an issue to everybody, and to who comes later; safe from any thread."""
         self._soon(self._tell, issue)
 
+    def tell_some(self, issue: Issue, numbers: Iterable[int]) -> None:
+        """Show an issue to these clients alone; safe from any thread."""
+        message = {"type": "issue", "issue": issue_document(issue)}
+        self._soon(self._push_some, message, list(numbers))
+
     def nudge(self) -> None:
         """Something may have changed: look now; safe from any thread."""
         self._soon(self._nudged.set)
@@ -110,6 +115,10 @@ class Hub:
             self._loop.call_soon_threadsafe(functools.partial(call, *arguments))
         except RuntimeError:
             return  # the server has ended
+
+    def _push_some(self, message: Dict[str, Any], numbers: List[int]) -> None:
+        self.push(message, [self.clients[number] for number in numbers
+                            if number in self.clients])
 
     def _tell(self, issue: Issue) -> None:
         self._issues.append(issue)

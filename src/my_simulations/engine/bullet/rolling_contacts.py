@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import dist
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -80,11 +80,15 @@ class _Roller:
 class RollingContacts:
     """Drops the contact points of lying cylinders before each step.
 
+    Args:
+        dropping: is told, before that, whose points are dropped in which step.
+
     Attributes:
         on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, dropping: Callable[[int, int], None]) -> None:
+        self._dropping = dropping
         self.on_seams: Dict[Key, Vec3] = {}
         self._rollers: Dict[Key, _Roller] = {}
         self._rolling: Dict[Key, collision_groups.Filter] = {}
@@ -165,6 +169,8 @@ class RollingContacts:
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
+        for uid in {uid for uid, _ in self._rolling}:
+            self._dropping(uid, step)
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 

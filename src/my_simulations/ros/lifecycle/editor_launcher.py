@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import threading
-from typing import Any, Callable, Dict, Optional, Protocol
+from typing import Any, Callable, Dict, Optional, Protocol, Tuple
 
 import rospy
 
@@ -13,6 +13,10 @@ from ..issue_logging import log_issue
 
 URL = "~my_simulations/editor_url"
 """Parameter: URL of the editor while it runs; without its token, as others can read it."""
+
+
+_PROGRESS = ("meshes", "model-download")
+"""Codes of the notes that tell how far loading is."""
 
 
 class RunningEditor(Protocol):
@@ -27,8 +31,27 @@ class RunningEditor(Protocol):
         """Show an issue."""
 
 
-StartEditor = Callable[[Simulator, Resolver, Dict[str, Any]], RunningEditor]
-"""Starts an editor with settings as in `editor.EditorOptions`. Raises CommandError."""
+class LoadingPage(Protocol):
+    """Interface of the page before there is a world."""
+
+    public_url: str
+
+    def show(self, title: str, text: str = "", done: int = 0, of: int = 0) -> None:
+        """Show what is under way."""
+
+    def say(self, text: str) -> None:
+        """Show a line about it."""
+
+    def stop(self) -> None:
+        """End it."""
+
+
+StartEditor = Callable[[Simulator, Resolver, Dict[str, Any], Any], RunningEditor]
+"""Starts an editor with settings as in `editor.EditorOptions`, and with the page that was there
+before, or None. Raises CommandError."""
+
+AwaitWorld = Callable[[Dict[str, Any]], LoadingPage]
+"""Serves the page before there is a world, with such settings. Raises CommandError."""
 
 
 class EditorLauncher:
@@ -36,19 +59,19 @@ class EditorLauncher:
 
     Attributes:
         topics: makes what the editor knows of ROS topics (`ros.plugins.topic_graph`).
+        world: what it shows, and what resolves URIs of models; None until they are there.
 
     Args:
         start: starts it.
-        simulator: the world it shows.
-        resolver: resolves URIs of models.
         listen: subscribes a function to all issues, including earlier ones.
         caller: working directory of the user who started the node.
     """
 
-    def __init__(self, start: StartEditor, simulator: Simulator, resolver: Resolver,
-                 listen: Callable[[Callable[[Issue], None]], None], caller: str = "") -> None:
+    def __init__(self, start: StartEditor, listen: Callable[[Callable[[Issue], None]], None],
+                 caller: str = "") -> None:
         self._start = start
-        self._world = (simulator, resolver)
+        self.world: "Optional[Tuple[Simulator, Resolver]]" = None
+        self._loading: Optional[LoadingPage] = None
         self._listen = listen
         self._caller = caller
         self.topics: Callable[[], Any] = lambda: None
@@ -62,6 +85,24 @@ class EditorLauncher:
         """Parameter `~gui`: whether to start the editor with the node."""
         return rospy.get_param("~gui", False) is True
 
+    def open_early(self, await_world: AwaitWorld) -> Optional[LoadingPage]:
+        """Serve the page before there is a world; None, with a message, where that fails."""
+        with self._lock:
+            try:
+                self._loading = await_world({**_settings(), "log": log_issue})
+                self._publish(self._loading.public_url)
+            except CommandError as fault:
+                rospy.logerr("cannot start the world editor: %s", fault)
+            except OSError as fault:
+                rospy.logwarn("the ROS master does not respond: %s", fault)
+            if self._loading is not None:
+                self._listen(self._tell_progress)
+            return self._loading
+
+    def _tell_progress(self, issue: Issue) -> None:
+        if self._loading is not None and issue.code in _PROGRESS:
+            self._loading.say(issue.message)
+
     def open_soon(self) -> None:
         """Start it in the background; errors are logged."""
         threading.Thread(target=self._try, name="editor start", daemon=True).start()
@@ -70,14 +111,20 @@ class EditorLauncher:
         """Start the editor unless it runs; returns its public URL. Raises CommandError."""
         with self._lock:
             if self._editor is None:
-                self._editor = self._start(*self._world, {
+                if self.world is None:
+                    raise CommandError("the world is still being loaded")
+                early, self._loading = self._loading, None
+                self._editor = self._start(*self.world, {
                     **_settings(), "log": log_issue, "caller": self._caller,
-                    "topics": self.topics()})
+                    "topics": self.topics()}, early)
                 self._listen(self._editor.tell)
-                rospy.set_param(URL, self._editor.public_url)
-                rospy.loginfo("the world editor is at %s (gzclient opens it)",
-                              self._editor.public_url)
+                if early is None:
+                    self._publish(self._editor.public_url)
             return self._editor.public_url
+
+    def _publish(self, url: str) -> None:
+        rospy.set_param(URL, url)
+        rospy.loginfo("the world editor is at %s (gzclient opens it)", url)
 
     def announce(self) -> None:
         """Set the parameter with its URL again, if it runs."""
@@ -88,9 +135,12 @@ class EditorLauncher:
     def close(self) -> None:
         """Stop it."""
         with self._lock:
+            if self._loading is not None:
+                self._loading.stop()
             if self._editor is not None:
                 self._editor.stop("the simulator is shutting down")
-                self._editor = None
+            if self._editor is not None or self._loading is not None:
+                self._editor = self._loading = None
                 try:
                     rospy.delete_param(URL)
                 except (OSError, KeyError):

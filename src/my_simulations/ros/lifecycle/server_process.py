@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
 
 from ...errors import CommandError, InputError, error
@@ -23,7 +24,7 @@ from .server_options import ServerOptions
 from .start_profile import StartProfile
 
 if TYPE_CHECKING:
-    from .editor_launcher import EditorLauncher, StartEditor
+    from .editor_launcher import AwaitWorld, EditorLauncher, StartEditor
     from .log_recorder import RunningRecorder, StartRecording
 
 NODE = "gazebo"
@@ -31,6 +32,9 @@ END_SECONDS = 3.0
 """Wall seconds after which a shutdown that hangs in a network call is forced."""
 
 UPKEEP_SECONDS = 1.0
+EARLY_SECONDS = 1.0
+"""Wall seconds after which the editor's page is served before the world is there."""
+
 POLL_SECONDS = 0.05
 """Wall seconds after which a signal interrupts the wait for the world."""
 
@@ -62,6 +66,8 @@ class WorldLoader:
         self._given = (options, engines, log, caller)
         self._profile = profile
         self._on_fault = on_fault
+        self._under_way = ("", "", 0, 0)
+        self._tell: Callable[[str, str, int, int], None] = lambda *_news: None
         self._thread = threading.Thread(target=self._run, name="world loader", daemon=True)
         self._thread.start()
 
@@ -90,7 +96,7 @@ class WorldLoader:
         self.simulator = start_world(
             options.world, self.resolver, engines, log, seed=options.seed or 0,
             profile=options.profile, steps=options.iterations or FOREVER, caller=caller,
-            read=lambda: self._profile.mark("world read"))
+            read=lambda: self._profile.mark("world read"), progress=self._progress)
         self._profile.mark("world loaded into the engine")
 
     @property
@@ -98,10 +104,27 @@ class WorldLoader:
         """Whether the world is still being loaded."""
         return self._thread.is_alive()
 
-    def wait(self, stop: threading.Event) -> None:
-        """Wait until it is done or `stop` is set; raises an internal error."""
+    def _progress(self, title: str, text: str, done: int, of: int) -> None:
+        self._under_way = (title, text, done, of)
+        self._tell(title, text, done, of)
+
+    def tell(self, listener: Callable[[str, str, int, int], None]) -> None:
+        """Have a listener hear what is under way: a title, a text, done of how much."""
+        self._tell = listener
+        listener(*self._under_way)
+
+    def wait(self, stop: threading.Event, slow: Callable[[], None] = lambda: None) -> None:
+        """Wait until it is done or `stop` is set; raises an internal error.
+
+        `slow` is called once when that takes longer than `EARLY_SECONDS`.
+        """
+        until = time.monotonic() + EARLY_SECONDS
+        told = False
         while self.busy and not stop.is_set():
             self._thread.join(POLL_SECONDS)
+            if not told and time.monotonic() > until:
+                told = True
+                slow()
         if self.defect is not None:
             raise self.defect
 
@@ -112,7 +135,8 @@ class Server:
     def __init__(self, options: ServerOptions, argv: Sequence[str], say: Say,
                  engines: EngineSupply, profile: StartProfile, make_node: MakeNode,
                  start_editor: "Optional[StartEditor]" = None, gui: bool = False,
-                 start_recording: "Optional[StartRecording]" = None) -> None:
+                 start_recording: "Optional[StartRecording]" = None,
+                 await_world: "Optional[AwaitWorld]" = None) -> None:
         """Continue a start whose engine process is already starting.
 
         Args:
@@ -125,7 +149,9 @@ class Server:
             start_editor: starts the world editor; None for no editor.
             gui: start the editor with the node, whatever the parameter `~gui` says.
             start_recording: starts the state log of the options.
+            await_world: serves the editor's page while the world is being loaded.
         """
+        self._await_world = await_world
         self._start_recording = start_recording
         self._recorder: "Optional[RunningRecorder]" = None
         self._start_editor, self._gui = start_editor, gui
@@ -156,12 +182,13 @@ class Server:
             self._init_node()
             # Opened early: loading a world may take long and logs its progress.
             self._open_log()
-            loader.wait(self._ended)
+            launcher = self._make_editor_launcher()
+            loader.wait(self._ended, lambda: self._open_page_early(launcher, loader))
             if self._ended.is_set():
                 return OK
             if loader.fault is not None:
                 return self._refuse(loader.fault)
-            node = self._start_node(loader)
+            node = self._start_node(loader, launcher)
             abandonment = Abandonment(self._master, self._name, self._launch,
                                       node.seconds_alone())
             while not self._ended.wait(UPKEEP_SECONDS):
@@ -250,11 +277,21 @@ class Server:
             rospy.loginfo("%s", notice)
         self._log.open(log_issue)
 
-    def _start_node(self, loader: WorldLoader) -> Any:
+    def _open_page_early(self, launcher: "Optional[EditorLauncher]", loader: WorldLoader) -> None:
+        """A world that takes long to load has an address and a page already."""
+        if launcher is None or self._await_world is None:
+            return
+        if self._gui or launcher.wanted():
+            page = launcher.open_early(self._await_world)
+            if page is not None:
+                loader.tell(page.show)
+
+    def _start_node(self, loader: WorldLoader, launcher: "Optional[EditorLauncher]") -> Any:
         import rospy
 
         rospy.loginfo("the world file is %s", loader.simulator.world.file)
-        launcher = self._make_editor_launcher(loader)
+        if launcher is not None:
+            launcher.world = (loader.simulator, loader.resolver)
         node = self._make_node(
             loader.simulator, loader.resolver, self._clock,
             None if launcher is None else launcher.open, self._master,
@@ -289,14 +326,13 @@ class Server:
         self._recorder = begin(self._start_recording, loader.simulator, loader.resolver, wanted)
         self._profile.mark("state log begun")
 
-    def _make_editor_launcher(self, loader: WorldLoader) -> "Optional[EditorLauncher]":
+    def _make_editor_launcher(self) -> "Optional[EditorLauncher]":
         if self._start_editor is None:
             return None
         from .editor_launcher import EditorLauncher
 
-        self._editor_launcher = EditorLauncher(
-            self._start_editor, loader.simulator, loader.resolver, self._log.also,
-            self._launch.folder)
+        self._editor_launcher = EditorLauncher(self._start_editor, self._log.also,
+                                               self._launch.folder)
         return self._editor_launcher
 
     def _refuse(self, fault: InputError) -> int:

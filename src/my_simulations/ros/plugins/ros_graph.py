@@ -10,6 +10,7 @@ import rospy
 
 from ...geometry import Pose
 from ...plugins.graph import Closing, MissingTypeError, Topic, TransformOf
+from ..direct_connection import direct
 
 _TF_QUEUE = 100
 
@@ -18,7 +19,7 @@ class RosTopic:
     """A publisher."""
 
     def __init__(self, publisher: rospy.Publisher) -> None:
-        self._publisher = publisher
+        self._publisher, self._publish = publisher, direct(publisher)
 
     @property
     def wanted(self) -> bool:
@@ -28,7 +29,7 @@ class RosTopic:
     def send(self, message: Any) -> None:
         """Publish; nobody hears it any more while the node ends."""
         try:
-            self._publisher.publish(message)
+            self._publish(message)
         except rospy.ROSException:
             if not rospy.is_shutdown():
                 raise

@@ -1,4 +1,4 @@
-"""Looking at the world for plugins: the sensing process, told of what there is."""
+"""Rays and pictures of the world: the sensing process, told of what there is."""
 from __future__ import annotations
 
 from concurrent.futures import Future
@@ -9,6 +9,7 @@ from ..sensing.api import (
     COLLISIONS,
     VISUALS,
     AddBody,
+    CameraSpec,
     CastRays,
     Mount,
     Pictures,
@@ -18,15 +19,18 @@ from ..sensing.api import (
     RenderCamera,
     SetLights,
 )
-from ..simulator.registry import Entity
-from ..simulator.simulator import Simulator
-from .context import View
+from .registry import Entity
+from .simulator import Simulator
 
 if TYPE_CHECKING:
     from ..sensing.process import SensingProcess
 
 
-class Eyes:
+Shot = Tuple[Mount, CameraSpec, Tuple[str, ...]]
+"""Where a camera is, what it is, and what it gives (outputs of `sensing.api`)."""
+
+
+class SceneSensing:
     """Casts rays and takes pictures; nothing is started before the first. For one thread.
 
     Args:
@@ -47,12 +51,12 @@ class Eyes:
         process = self._running()
         return process.cast(CastRays(mount, fan, VISUALS if visuals else COLLISIONS, self._now()))
 
-    def render(self, views: Sequence[Tuple[Mount, View]]) -> "List[Future[Pictures]]":
-        """Pictures as of now, one of each view."""
+    def render(self, shots: Sequence[Shot]) -> "List[Future[Pictures]]":
+        """Pictures as of now, one of each shot."""
         process, now = self._running(), self._now()
         self._tell_surroundings()
-        return [process.render(RenderCamera(mount, view.camera, view.outputs, now))
-                for mount, view in views]
+        return [process.render(RenderCamera(mount, camera, outputs, now))
+                for mount, camera, outputs in shots]
 
     def _now(self) -> bytes:
         return self._simulator.feed.states()[2]

@@ -1,0 +1,85 @@
+/** Who else has this world open, beside the menus: their names, and what they hold. */
+import {Dialog, labelled} from './dialog.js';
+import {fill, h, remembered} from './dom.js';
+/** @import {Person} from '../protocol.js' */
+/** @import {Page} from './panels.js' */
+
+const COLORS = ['#4f9cf0', '#4bc07a', '#e06c9f', '#b58cf0', '#d9a13a', '#3fc1c9', '#f07860'];
+const SELECTED = 3;
+
+/** What tells somebody's marks from another's. @param {Person} person */
+export const colorOf = ({number}) => COLORS[number % COLORS.length];
+
+/** Who this page is to the simulator: the same after it was loaded again. */
+export function identity() {
+  let person = '';
+  try {
+    person = sessionStorage.getItem('person') ?? '';
+    if (!person) {
+      person = Array.from(crypto.getRandomValues(new Uint32Array(4)), (part) =>
+        part.toString(36)).join('');
+      sessionStorage.setItem('person', person);
+    }
+  } catch {
+    // Storage may be forbidden: then a page that is loaded again is a new guest.
+  }
+  const name = remembered.get('person-name', '');
+  return {...(person ? {person} : {}), ...(name ? {name} : {})};
+}
+
+/** What somebody is at, in words. @param {Person} person */
+export function doing({held, selected}) {
+  if (held.length) return `is moving ${held.join(', ')}`;
+  if (!selected.length) return 'has nothing selected';
+  const more = selected.length - SELECTED;
+  return `has selected ${selected.slice(0, SELECTED).join(', ')}${more > 0 ? ` and ${more} more` : ''}`;
+}
+
+/**
+ * Hidden while nobody else is here.
+ * @param {HTMLElement} element
+ * @param {Page} page
+ */
+export function mountPeople(element, {store}) {
+  const show = () => {
+    const {others, people, me} = store;
+    element.hidden = others.length === 0;
+    const own = people.find(({number}) => number === me);
+    fill(element,
+      ...others.map((person) => h('span', {
+        class: 'person',
+        title: `${person.name} ${doing(person)}`,
+        style: `--person: ${colorOf(person)}`,
+        onclick: () => {
+          const [name] = person.held.length ? person.held : person.selected;
+          if (name && store.entity(name)) store.select([name]);
+        },
+      }, h('i', {'aria-hidden': 'true'}), h('span', {text: person.name}),
+      person.held.length > 0 && h('span', {class: 'soft', text: person.held.join(', ')}))),
+      h('button', {
+        type: 'button', class: 'plain', text: `${own?.name ?? ''} (you)`, title: 'Change your name',
+        onclick: () => askName(store, own?.name ?? ''),
+      }));
+  };
+  for (const event of /** @type {const} */ (['people', 'connection'])) store.listen(event, show);
+  show();
+  let company = 0;
+  store.listen('people', () => {
+    // Who comes is told what is selected here; before, nobody had to know.
+    if (store.others.length > company) store.tellPresence({selected: store.selection});
+    company = store.others.length;
+  });
+}
+
+/** @param {Page['store']} store @param {string} name */
+async function askName(store, name) {
+  const input = h('input', {type: 'text', value: name, maxLength: 30, 'aria-label': 'Your name'});
+  await new Dialog({
+    title: 'Your name',
+    content: [labelled('Name', input)],
+    buttons: [{title: 'Cancel'}, {title: 'OK', primary: true, run: () => {
+      remembered.set('person-name', input.value.trim());
+      store.tellPresence({name: input.value.trim()});
+    }}],
+  }).open();
+}
