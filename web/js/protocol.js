@@ -428,15 +428,13 @@ export const FRAME_RECORD_BYTES = 32;
  *  kind: 'compute_inertial', target: string, density?: number|null
  *}} ComputeInertialOperation */
 
-/** @typedef {{kind: 'compute_inertia', link: string}} ComputeInertiaOperation */
-
 /** @typedef {{kind: 'group', ops: Operation[], label?: string|null}} GroupOperation */
 
 /** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
  *  AddLinkOperation|AddShapeOperation|RenameLinkOperation|AddJointOperation|EditJointOperation|
  *  AddModelOperation|SetPluginsOperation|RemovePartOperation|ComputeInertialOperation|
- *  ComputeInertiaOperation|GroupOperation} Operation */
+ *  GroupOperation} Operation */
 
 /** @typedef {{
  *  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null

@@ -88,7 +88,20 @@ export function mountPanels(document, parts) {
   );
   mountConnectionNote(byId('centre'), page);
   mountHints(byId('view'));
+  mountDrawer();
   return page;
+}
+
+/** In a narrow window the left panel lies over the view, while it is wanted. */
+function mountDrawer() {
+  const button = byId('drawer');
+  /** @param {boolean} open */
+  const set = (open) => {
+    document.body.classList.toggle('drawer', open);
+    button.setAttribute('aria-expanded', String(open));
+  };
+  button.addEventListener('click', () => set(!document.body.classList.contains('drawer')));
+  byId('view').addEventListener('pointerdown', () => set(false));
 }
 
 const TABS = [

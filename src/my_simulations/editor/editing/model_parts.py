@@ -122,6 +122,7 @@ def without(model: Model, rest: str) -> Model:
     Joints of a link that goes, go with it.
 
     Args:
+        model: the model.
         rest: `LINK`, `JOINT`, `NESTED`, `LINK::collision:NAME`, `LINK::visual:NAME`.
 
     Raises CommandError.
