@@ -159,8 +159,8 @@ def film(editor, path):
     page, strip = editor.page, Film(editor)
     strip.take(700)
     at = (480.0, 300.0)
-    for tool, place in (("Box", (-0.2, 1.2, 0)), ("Cylinder", (1.2, 0.3, 0)),
-                        ("Sphere", (0.2, -1.4, 0))):
+    for tool, place in (("Box", (-0.6, -0.8, 0)), ("Cylinder", (0.9, 1.0, 0)),
+                        ("Sphere", (1.6, -1.2, 0))):
         box = editor.button(tool).bounding_box()
         strip.go(at, (box["x"] + 15, box["y"] + 15), 3)
         page.mouse.down()
@@ -200,10 +200,11 @@ def lift(editor, strip, at):
     strip.take(150)
     editor.until("editor.store.worldPose('unit_box')[2] > 1", "the lifted box")
     here = editor.get("editor.view.pixelOf('unit_box')")
-    goal = editor.get("editor.view.pixelOf('unit_cylinder')")
+    height = editor.model("unit_box")["pose"][2]
+    goal = editor.pixel((0.7, 0.9, height))
     strip.go((box[0], box[1] - 120), here, 1)
     page.mouse.down()
-    strip.go(here, (goal[0] - 22, here[1] + 40), 5)
+    strip.go(here, goal, 5)
     page.mouse.up()
     strip.take(300)
 
