@@ -42,6 +42,7 @@ def requirements() -> Tuple[List[str], Dict[str, List[str]]]:
         return [line for line in lines if name_of(line) in names]
 
     extras = {extra: named(names) for extra, names in EXTRAS.items()}
+    extras["gym"] = ["gymnasium>=1.1.1"]  # what the ROS package needs not
     others = {name for names in EXTRAS.values() for name in names}
     return SYSTEM + [line for line in lines if name_of(line) not in others], extras
 

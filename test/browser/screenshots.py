@@ -1,31 +1,51 @@
-"""Make the pictures of the editor in doc/images, of our own worlds: screenshots.py FOLDER."""
+"""Make the pictures of the editor in doc/images, of our own worlds.
+
+screenshots.py FOLDER [NAME...]
+"""
 from __future__ import annotations
 
+import io
 import math
 import os
 import sys
 import tempfile
 
+from PIL import Image
 from support import Browser, Node, wait_for
 
 
-def main(folder):
+def main(folder, *wanted):
     os.makedirs(folder, exist_ok=True)
     browser = Browser()
     try:
         with tempfile.TemporaryDirectory() as home:
             for name, world, color_scheme, prepare in PICTURES:
+                if wanted and name not in wanted:
+                    continue
                 node = Node(os.path.join(home, name), world)
                 try:
                     editor = browser.open(node.url, color_scheme=color_scheme)
+                    without_hints(editor)
                     prepare(editor)
                     settle(editor)
                     editor.page.screenshot(path=os.path.join(folder, f"{name}.png"))
                     editor.close()
                 finally:
                     node.close()
+            if not wanted or FILM in wanted:
+                node = Node(os.path.join(home, FILM), "worlds/empty.world")
+                try:
+                    editor = browser.open(node.url, size=(960, 540), color_scheme="dark")
+                    film(editor, os.path.join(folder, f"{FILM}.webp"))
+                    editor.close()
+                finally:
+                    node.close()
     finally:
         browser.close()
+
+
+def without_hints(editor):
+    editor.button("Close the hints").click()
 
 
 def settle(editor):
@@ -86,11 +106,115 @@ def plots(editor):
     editor.page.get_by_label("Find a variable").fill("")
 
 
+def model(editor):
+    """A cart in the model editor."""
+    from test_model_editor import build_cart
+
+    build_cart(editor)
+    look(editor, (1.9, -2.3, 1.5), (-0.15, 0.0, 0.4))
+    editor.get("editor.store.select(['untitled::link_1'])")
+    editor.get("editor.actions.setOverlay('joints', true, 'untitled')")
+
+
+class Film:
+    """Pictures of the page, one after the other, with a mouse that can be seen."""
+
+    def __init__(self, editor):
+        self.editor = editor
+        self.frames = []
+        self.durations = []
+        editor.page.evaluate(CURSOR)
+
+    def take(self, milliseconds=90):
+        data = self.editor.page.screenshot()
+        self.frames.append(Image.open(io.BytesIO(data)).convert("RGB"))
+        self.durations.append(milliseconds)
+
+    def go(self, start, end, steps=6):
+        for step in range(1, steps + 1):
+            self.editor.page.mouse.move(*(a + (b - a) * step / steps for a, b in zip(start, end)))
+            self.take()
+
+    def save(self, path):
+        first, *others = self.frames
+        first.save(path, save_all=True, append_images=others, duration=self.durations, loop=0,
+                   quality=72, method=6, minimize_size=True)
+
+
+CURSOR = """(() => {
+  const cursor = document.createElement('div');
+  cursor.innerHTML = '<svg width="18" height="24"><path d="M2 1v17l4-4 3 7 3-1-3-7h6z"' +
+    ' fill="#fff" stroke="#111" stroke-width="1.3"/></svg>';
+  Object.assign(cursor.style,
+    {position: 'fixed', zIndex: 9999, pointerEvents: 'none', left: '-30px'});
+  document.body.append(cursor);
+  addEventListener('pointermove', ({clientX, clientY}) =>
+    Object.assign(cursor.style, {left: `${clientX - 2}px`, top: `${clientY - 1}px`}), true);
+})()"""
+
+
+def film(editor, path):
+    """Three shapes are put down, one is lifted over another, physics runs."""
+    without_hints(editor)
+    page, strip = editor.page, Film(editor)
+    strip.take(700)
+    at = (480.0, 300.0)
+    for tool, place in (("Box", (-0.2, 1.2, 0)), ("Cylinder", (1.2, 0.3, 0)),
+                        ("Sphere", (0.2, -1.4, 0))):
+        box = editor.button(tool).bounding_box()
+        strip.go(at, (box["x"] + 15, box["y"] + 15), 4)
+        page.mouse.down()
+        page.mouse.up()
+        at = editor.pixel(place)
+        strip.go((box["x"] + 15, box["y"] + 15), at, 7)
+        before = len(editor.names())
+        page.mouse.down()
+        page.mouse.up()
+        wait_for(lambda: len(editor.names()) > before, tool)
+        strip.take(200)
+    lift(editor, strip, at)
+    page.keyboard.press("Escape")
+    page.keyboard.press("Escape")
+    strip.take(300)
+    for _ in range(22):
+        editor.get("editor.actions.step(60)")
+        strip.take(70)
+    strip.take(1200)
+    strip.save(path)
+
+
+def lift(editor, strip, at):
+    """The box by its handles: up, then over the cylinder."""
+    page = editor.page
+    box = editor.get("editor.view.pixelOf('unit_box')")
+    strip.go(at, box, 4)
+    page.mouse.down()
+    page.mouse.up()
+    page.keyboard.press("t")
+    strip.take(400)
+    page.keyboard.down("z")
+    page.mouse.down()
+    strip.go(box, (box[0], box[1] - 120), 8)
+    page.mouse.up()
+    page.keyboard.up("z")
+    strip.take(150)
+    editor.until("editor.store.worldPose('unit_box')[2] > 1", "the lifted box")
+    here = editor.get("editor.view.pixelOf('unit_box')")
+    goal = editor.get("editor.view.pixelOf('unit_cylinder')")
+    strip.go((box[0], box[1] - 120), here, 2)
+    page.mouse.down()
+    strip.go(here, (goal[0] - 22, here[1] + 40), 8)
+    page.mouse.up()
+    strip.take(300)
+
+
+FILM = "editor-film"
 PICTURES = [
     ("editor-room", "lab_room.world", "dark", room),
     ("editor-library", "worlds/empty.world", "light", library),
     ("editor-plots", "worlds/empty.world", "dark", plots),
+    ("editor-model", "worlds/empty.world", "dark", model),
 ]
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

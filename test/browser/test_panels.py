@@ -556,7 +556,7 @@ def test_a_model_s_own_panel_sets_mass_size_and_colour(launch, browser):
     editor.close()
 
 
-def test_several_selected_models_are_set_together(launch, browser):
+def test_several_models_are_set_together_and_an_empty_selection_gives_room(launch, browser):
     editor = browser.open(launch("worlds/empty.world").url)
     editor.place("Box", (0.0, 0.0, 0.0))
     editor.place("Sphere", (2.0, 0.0, 0.0))

@@ -6,7 +6,7 @@ import signal
 import xmlrpc.client
 
 from pytest import approx
-from support import wait_for
+from support import free_port, wait_for
 
 
 def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, browser):
@@ -104,6 +104,24 @@ def test_unsaved_changes_survive_a_killed_node_and_are_offered_again(launch, bro
     assert again.model("unit_cylinder")["pose"] == approx(pose, abs=1e-5)
     again.until("editor.store.history.dirty", "the mark of unsaved changes")
     again.close()
+
+
+def test_an_open_page_says_how_to_open_a_simulator_that_was_started_again(launch, browser):
+    port = free_port()
+    node = launch("worlds/empty.world", f"editor_port:={port}")
+    left_open = browser.open(node.url)
+    node.close()
+    again = launch("worlds/empty.world", f"editor_port:={port}")
+    assert again.url != node.url and again.url.partition("?")[0] == node.url.partition("?")[0]
+    left_open.page.get_by_text("Run “gzclient”").wait_for()
+    assert left_open.get("editor.store.connected") is False
+    # What gzclient does: it opens the new address, whose token the browser keeps.
+    page = left_open.context.new_page()
+    page.goto(again.url)
+    left_open.until("editor.store.connected", "the connection of the page that was left open")
+    assert not left_open.page.get_by_text("Run “gzclient”").is_visible()
+    page.close()
+    left_open.close()
 
 
 def told(editor, text):

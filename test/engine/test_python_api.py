@@ -13,7 +13,7 @@ import pytest
 
 import my_simulations
 from my_simulations.errors import CommandError, EngineLostError, InputError
-from my_simulations.python_api.readings import pose_of
+from my_simulations.python_api.plain_values import pose_of
 
 ROOT = Path(__file__).resolve().parents[2]
 LIST = str(ROOT / "config/test/object_locations.yaml")
@@ -197,3 +197,25 @@ def test_it_needs_no_ros():
                           timeout=120, env={"PATH": os.environ["PATH"], "HOME": os.environ["HOME"],
                                             "PYTHONPATH": str(ROOT / "src")})
     assert done.stdout == "['ground_plane']\n", done.stderr
+
+
+def test_a_motor_keeps_a_rate_a_servo_a_position_and_a_release_lets_go(world):
+    world.spawn(PENDULUM)
+    world.drive_joint("pin", rate=1.5, effort=100.0)
+    world.step(1000)
+    assert world.joints().rate["pendulum::pin"] == pytest.approx(1.5, abs=1e-3)
+    world.move_joint("pin", math.pi / 2, effort=100.0, rate=2.0)
+    world.step(2000)
+    assert world.joints().position["pendulum::pin"] == pytest.approx(math.pi / 2, abs=1e-3)
+    world.release_joint("pin")
+    world.step(100)
+    assert abs(world.joints().rate["pendulum::pin"]) > 0.1
+
+
+def test_a_joint_is_driven_with_finite_numbers(world):
+    world.spawn(PENDULUM)
+    for rate, effort in ((math.nan, 1.0), (1.0, math.inf)):
+        with pytest.raises(CommandError, match="finite"):
+            world.drive_joint("pin", rate, effort)
+    with pytest.raises(CommandError, match="nobody"):
+        world.drive_joint("nobody", 1.0, 1.0)

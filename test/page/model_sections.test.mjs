@@ -33,7 +33,7 @@ test('a new size is that of collision and visual, and the inertia follows', () =
   assert.deepEqual(ops, [
     {kind: 'set', target: 'a::link::collision:c', path: 'geometry.size', value: [1, 2, 3]},
     {kind: 'set', target: 'a::link::visual:v', path: 'geometry.size', value: [1, 2, 3]},
-    {kind: 'compute_inertia', link: 'a::link'},
+    {kind: 'compute_inertial', target: 'a::link'},
   ]);
 });
 

@@ -108,6 +108,7 @@ test('the context menu is that of Gazebo; a light takes no force and no overlays
     'Move To',
     'Follow',
     'Apply Force/Torque',
+    'Edit Model',
     'View',
     'Copy',
     'Paste',

@@ -45,19 +45,34 @@ about $minutes minutes; this user's next workspace will find it in $(pybullet_wh
   rm -rf -- "$work"
 }
 
-# install_compiler: what compiles, where it is not there. Debian 13 has the headers of NumPy in a
-# package of their own, Debian 12 has none of that name.
+# compile_packages: what compiles it. The headers of NumPy come with python3-numpy.
+compile_packages() {
+  packages_of "$CLONE/tools/apt-packages-compile.txt"
+  # Elsewhere glcontext has no wheel either, and needs the headers of X11.
+  [ "$(uname -m)" = x86_64 ] || printf 'libx11-dev\n'
+}
+
+# needs_compiler: whether PyBullet has no wheel for this interpreter and processor, neither on the
+# package index (3.7 to 3.11 on x86-64) nor in the cache.
+needs_compiler() {
+  local minor
+  [ -z "$(ls "$(pybullet_wheels)" 2>/dev/null)" ] || return 1
+  [ "$(uname -m)" = x86_64 ] || return 0
+  minor=$("$PYTHON" -c 'import sys; print(sys.version_info[1])' 2>/dev/null) || return 1
+  [ "$minor" -gt 11 ]
+}
+
+# install_compiler: what compiles, where it is not there.
 install_compiler() {
-  local wanted missing
-  mapfile -t wanted < <(packages_of "$CLONE/tools/apt-packages-compile.txt")
-  ! apt-cache show python3-numpy-dev >/dev/null 2>&1 || wanted+=(python3-numpy-dev)
+  local wanted missing advice="Is there a network, and room on the disk (df -h)? Then run $COMMAND again."
+  mapfile -t wanted < <(compile_packages)
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   [ "${#missing[@]}" -gt 0 ] || return 0
   may_install || stop "PyBullet must be compiled, ${#missing[@]} system packages are missing for \
 that, and there is neither root nor sudo." \
     "As root: apt-get install --no-install-recommends ${missing[*]}"
-  apt_install -compile "Is there a network, and room on the disk (df -h)? Then run $COMMAND again." \
-    "${missing[@]}"
+  apt_update || failed apt-update "$?" "$advice"
+  apt_install apt-install-compile "$advice" "${missing[@]}"
 }
 
 # compile_pybullet FOLDER SOURCES: a wheel in FOLDER/wheel; says how many of the SOURCES are done.

@@ -10,6 +10,7 @@ PYTHON_NAME=0
 USE_COMPANIONS="${MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS:-0}"
 OVERLAY=0
 SET_UP_STEPS=6
+APT_LISTS_ARE_NEW=0
 
 # source_setup FILE: catkin's setup files use unset variables and failing tests.
 source_setup() {
@@ -21,6 +22,7 @@ source_setup() {
 
 set_up() {
   find_workspace
+  [ -z "${BUNDLE_FILE:-}" ] || open_bundle "$BUNDLE_FILE"
   install_system_packages
   prepare_workspace
   prepare_python "$CLONE/requirements.txt"
@@ -111,42 +113,68 @@ apt_get() {
   recorded "$name" as_root env DEBIAN_FRONTEND=noninteractive apt-get -q "$@"
 }
 
-# apt_install NAME ADVICE PACKAGE...: install the packages or stop; the logs have that NAME in theirs.
+# apt_update: fetch apt's lists, once in a run: a second time takes seconds and finds nothing new.
+apt_update() {
+  [ "$APT_LISTS_ARE_NEW" = 0 ] || return 0
+  apt_get apt-update update || return
+  APT_LISTS_ARE_NEW=1
+}
+
+# apt_install NAME ADVICE PACKAGE...: install the packages or stop; the log has that NAME.
 apt_install() {
   local name="$1" advice="$2"
   shift 2
-  apt_get "apt-update$name" update || failed "apt-update$name" "$?" "$advice"
-  apt_get "apt-install$name" -y --no-install-recommends install "$@" ||
-    failed "apt-install$name" "$?" "$advice"
+  apt_get "$name" -y --no-install-recommends install "$@" || failed "$name" "$?" "$advice"
+}
+
+# system_packages PURPOSE: the names of what apt must have installed here: `run` for what a workspace
+# that is built needs, `all` for what sets it up, too.
+system_packages() {
+  local lists=(packages) list
+  [ "$1" = run ] || lists+=(packages-build)
+  case $(ros_source) in
+    apt)
+      lists+=(packages-ros)
+      [ "$1" = run ] || lists+=(packages-ros-build) ;;
+    noetic) lists+=(packages-noetic) ;;
+  esac
+  [ "$WITH_TEST_TOOLS" = 0 ] || lists+=(packages-test)
+  [ "$PYTHON_NAME" = 0 ] || lists+=(packages-python)
+  [ "$1" = run ] || ! lacks_npm || lists+=(packages-page)
+  for list in "${lists[@]}"; do packages_of "$CLONE/tools/apt-$list.txt"; done
+  embree_packages
+}
+
+# lacks_npm: whether npm must be installed. A Node.js from elsewhere is as good, and Debian's npm brings
+# 300 packages; what is there or comes from an archive needs none.
+lacks_npm() {
+  ! command -v npm >/dev/null || return 1
+  [ "$WITH_TEST_TOOLS" = 0 ] || return 0
+  [ -z "${BUNDLED:-}" ] && ! page_is_there
 }
 
 install_system_packages() {
   begin "System packages"
-  local lists=("$CLONE/tools/apt-packages.txt") wanted missing
-  if [ -f "$ROS_PREFIX/setup.bash" ]; then
-    source_setup "$ROS_PREFIX/setup.bash"
-  else
-    lists+=("$CLONE/tools/apt-packages-ros.txt")
-  fi
-  [ "$WITH_TEST_TOOLS" = 0 ] || lists+=("$CLONE/tools/apt-packages-test.txt")
-  [ "$PYTHON_NAME" = 0 ] || lists+=("$CLONE/tools/apt-packages-python.txt")
-  # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
-  command -v npm >/dev/null || lists+=("$CLONE/tools/apt-packages-page.txt")
-  mapfile -t wanted < <(for list in "${lists[@]}"; do packages_of "$list"; done)
+  local wanted missing
+  [ ! -f "$ROS_PREFIX/setup.bash" ] || source_setup "$ROS_PREFIX/setup.bash"
+  mapfile -t wanted < <(system_packages all)
   mapfile -t missing < <(missing_packages "${wanted[@]}")
   SYSTEM_REMARK="all there"
   if [ "${#missing[@]}" -gt 0 ]; then
-    may_install || stop "${#missing[@]} system packages are missing, and there is neither root nor \
-sudo." "As root: apt-get install --no-install-recommends ${missing[*]}"
+    may_install || ask_administrator "there is neither root nor sudo" "${missing[@]}"
     say "installing ${#missing[@]}, a few minutes"
     # Asks for the password now, while the screen is free for it.
-    [ "$(id -u)" = 0 ] || sudo true || stop "sudo did not let the system packages be installed." \
-      "As root: apt-get install --no-install-recommends ${missing[*]}"
-    apt_install "" "Is there a network, and room on the disk (df -h)? Then run $COMMAND again." \
+    [ "$(id -u)" = 0 ] || sudo true || ask_administrator "sudo does not let this user install them" \
       "${missing[@]}"
+    apt_update || failed apt-update "$?" "Is there a network? Then run $COMMAND again."
+    # New lists may name more than old ones did: some packages are asked for where apt has them.
+    mapfile -t wanted < <(system_packages all)
+    mapfile -t missing < <(missing_packages "${wanted[@]}")
+    refuse_unknown "${missing[@]}"
+    apt_install apt-install "Is there room on the disk (df -h)? Then run $COMMAND again." "${missing[@]}"
     SYSTEM_REMARK="${#missing[@]} installed"
   fi
-  if [ "$COMMON_PACKAGES" = 1 ] && [ ! -f "$ROS_PREFIX/setup.bash" ]; then
+  if [ "$COMMON_PACKAGES" = 1 ] && [ "$(ros_source)" = apt ]; then
     install_optional common "other packages"
   fi
   [ "$WITH_TEST_TOOLS" = 0 ] || install_optional sdformat "some tests"
@@ -169,7 +197,7 @@ install_optional() {
   [ "$(cat "$tried" 2>/dev/null || true)" != "${missing[*]}" ] || return 0
   if may_install; then
     say "installing ${#missing[@]} that $2 commonly ask for"
-    if apt_get "apt-update-$1" update &&
+    if apt_update &&
        apt_get "apt-install-$1" -y --no-install-recommends install "${missing[@]}"; then
       SYSTEM_REMARK="$SYSTEM_REMARK, ${#missing[@]} for $2 installed"
       return 0
@@ -183,7 +211,7 @@ apt-get install --no-install-recommends ${missing[*]}$(optional_reason "$1")"
 # optional_reason NAME: why the optional packages NAME were not installed, for the end of a sentence.
 optional_reason() {
   local reason
-  reason=$(sed -n 's/^E: //p' "$LOGS/apt-update-$1.log" "$LOGS/apt-install-$1.log" 2>/dev/null |
+  reason=$(sed -n 's/^E: //p' "$LOGS/apt-update.log" "$LOGS/apt-install-$1.log" 2>/dev/null |
     head -n 1)
   printf '%s' "${reason:+ ($reason)}"
 }
@@ -243,6 +271,11 @@ pip_install() {
     --only-binary pybullet -r "$2")
   wheels=$(pybullet_wheels)
   [ ! -d "$wheels" ] || command+=(--find-links "$wheels")
+  if [ -n "$BUNDLED" ]; then
+    command+=(--no-index --find-links "$BUNDLED/wheels")
+    logged "pip-$1" "The archive lacks what is named: make it again from this clone." "${command[@]}"
+    return 0
+  fi
   recorded "pip-$1" "${command[@]}" || status=$?
   [ "$status" -ne 0 ] || return 0
   pybullet_lacks_wheel "pip-$1" || failed "pip-$1" "$status" "$advice"
@@ -250,17 +283,33 @@ pip_install() {
   logged "pip-$1" "$advice" "${command[@]}" --find-links "$wheels"
 }
 
+page_stamp() { sha256sum <"$CLONE/web/package-lock.json"; }
+
+# page_is_there: whether the workspace has what the editor's page needs, in this version.
+page_is_there() {
+  local stamped="${WORKSPACE:-}/.my_simulations/.page"
+  [ -f "$stamped" ] && [ "$(cat "$stamped")" = "$(page_stamp)" ]
+}
+
 # prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor
 # finds it.
 prepare_page() {
   begin "Packages of the editor's page"
   local place="$WORKSPACE/.my_simulations" stamp
-  stamp=$(sha256sum <"$CLONE/web/package-lock.json")
-  if [ "$(cat "$place/.page" 2>/dev/null || true)" = "$stamp" ]; then
+  stamp=$(page_stamp)
+  if page_is_there; then
     finish "all there"
     return
   fi
   mkdir -p -- "$place"
+  if [ -n "$BUNDLED" ]; then
+    [ "$(cat "$BUNDLED/page/.page")" = "$stamp" ] || stop "the archive has modules of another version." \
+      "Make it again from this clone."
+    rm -rf -- "$place/node_modules"
+    cp -a -- "$BUNDLED/page/." "$place/"
+    finish "taken from the archive"
+    return
+  fi
   rm -f -- "$place/.page"
   cp -- "$CLONE/web/package.json" "$CLONE/web/package-lock.json" "$place/"
   logged npm "Is there a network? Then run $COMMAND again." \
@@ -353,9 +402,11 @@ use_loopback() {
 machine can connect, others cannot. To change that, add the name to /etc/hosts."
 }
 
+localhost_resolves() { timeout 5 getent hosts localhost >/dev/null; }
+
 # resolve_localhost: add localhost to /etc/hosts if it does not resolve; roslaunch needs it.
 resolve_localhost() {
-  ! timeout 5 getent hosts localhost >/dev/null || return 0
+  ! localhost_resolves || return 0
   may_install && as_root sh -c 'echo "127.0.0.1 localhost" >>/etc/hosts' ||
     stop "the name localhost does not resolve, and roslaunch needs it." \
       "As root: echo '127.0.0.1 localhost' >>/etc/hosts"
@@ -368,4 +419,8 @@ one_at_a_time() {
   flock -n 9 || { printf '(waiting for another set-up of this workspace) '; flock 9; }
 }
 
-release() { exec 9>&-; }
+# release: let another set-up of this workspace go on.
+release() {
+  rm -rf -- "$OWN/bundle"  # what was unpacked of an archive is installed
+  exec 9>&-
+}

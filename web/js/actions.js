@@ -6,6 +6,7 @@
  */
 import {alignMoves} from './align.js';
 import {RequestError} from './connection.js';
+import {linkMoves, linkRemovals} from './model_editor/model_edits.js';
 import {remembered} from './panels/dom.js';
 import {linkOf} from './view_link.js';
 import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
@@ -34,8 +35,8 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
  *   ShownWrench
  */
 
-/** @typedef {'newWorld'|'open'|'saveAs'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
- *            'building'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
+/** @typedef {'newWorld'|'open'|'saveAs'|'cloneWorld'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
+ *            'building'|'modelEditor'|'saveModel'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
 
 /** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
 
@@ -99,6 +100,7 @@ export function createActions({store, connection}) {
      * @returns {Promise<Outcome|void>}
      */
     async save() {
+      if (store.modelEditing) return dialog('saveModel');
       if (!store.history.file) return actions.saveAs();
       const outcome = await ask('save', {}, {quiet: true});
       // A world that was launched from a file is not written over without a word.
@@ -110,6 +112,18 @@ export function createActions({store, connection}) {
     /** @param {string} [path] @param {{overwrite?: boolean}} [options] */
     saveAs: (path, options = {}) =>
       path ? ask('save', {path, ...options}, {quiet: true}) : dialog('saveAs'),
+    /** A copy of the world as it is now, for another simulator. */
+    cloneWorld: () => dialog('cloneWorld'),
+    /** Remembers the camera and what is shown, for this browser's next visits. */
+    saveConfiguration() {
+      view?.saveConfiguration();
+      note('Saved the camera and the View menu\'s choices for this browser.');
+    },
+    /** Forgets them. */
+    resetConfiguration() {
+      view?.resetConfiguration();
+      note('The next world opens with the default camera and View menu.');
+    },
     /** @param {string} [path] */
     folders: (path) => ask('folders', path ? {path} : {}),
     /** @param {'restore'|'discard'} action */
@@ -128,6 +142,8 @@ export function createActions({store, connection}) {
     redo: (to) => moveInHistory('redo', to),
     /** @returns {Promise<Outcome>} */
     remove(names = store.selection) {
+      const parts = linkRemovals(edited(), names);
+      if (parts.length) return edit(parts.length > 1 ? {kind: 'group', ops: parts, label: 'Remove links'} : parts[0]);
       const whole = [...new Set(names.map((name) => store.entity(name)?.model?.name ?? name))];
       return whole.length ? edit({kind: 'delete', names: whole}) : Promise.resolve(NOTHING);
     },
@@ -147,7 +163,12 @@ export function createActions({store, connection}) {
      * @param {Record<string, number[]>} poses  pose7 in the world by name
      * @param {string} [label]
      */
-    move: (poses, label) => edit({kind: 'move', poses, ...(label ? {label} : {})}),
+    move(poses, label) {
+      const model = edited();
+      const ops = model ? linkMoves(model, store.worldPose(model.name) ?? model.pose, poses) : [];
+      if (ops.length) return edit({kind: 'group', ops, label: `Move ${Object.keys(poses).join(', ')}`});
+      return edit({kind: 'move', poses, ...(label ? {label} : {})});
+    },
     /** @param {string} name @param {Vec3} factors */
     scale: (name, factors) => edit({kind: 'scale', name, scale: factors}),
     /** @param {Operation[]} ops @param {string} label */
@@ -186,7 +207,8 @@ export function createActions({store, connection}) {
       if (!SHAPES.includes(shape)) throw new RangeError(`no shape ${shape}`);
       store.setPlacing({
         kind: 'model', document: shapeModel(shape), shape,
-        op: (pose) => ({kind: 'insert', shape, pose}),
+        op: (pose) => store.modelEditing ? {kind: 'add_link', model: store.modelEditing.name, shape, pose}
+          : {kind: 'insert', shape, pose},
       });
     },
     /** @param {LightType} type */
@@ -207,7 +229,8 @@ export function createActions({store, connection}) {
       if (!outcome.ok) return outcome;
       const {model, light} = outcome.value;
       /** @type {(pose: Pose7) => Operation} */
-      const op = (pose) => ({kind: 'insert', uri, pose});
+      const op = (pose) => store.modelEditing?.name
+        ? {kind: 'add_model', model: store.modelEditing.name, uri, pose} : {kind: 'insert', uri, pose};
       if (model) store.setPlacing({kind: 'model', document: model, uri, op});
       else if (light) store.setPlacing({kind: 'light', document: light, uri, op});
       return outcome;
@@ -224,8 +247,14 @@ export function createActions({store, connection}) {
       const outcome = await edit(placing.op(pose));
       const {name, names} = outcome.value ?? {};
       if (names) store.select(names);
-      else if (name) store.select([name]);
+      else if (name) actions.placed(name);
       return outcome;
+    },
+    /** What has come is selected; the model editor's first link begins its model. @param {string} name */
+    placed(name) {
+      const owner = name.split('::')[0];
+      if (store.modelEditing && !store.modelEditing.name && owner !== name) store.setModelEditing({name: owner});
+      store.select([name]);
     },
     /**
      * Files or folders of the desktop that were dropped on the ground; a dialog asks.
@@ -345,10 +374,10 @@ export function createActions({store, connection}) {
     setLayer: (layer, shown) => store.setLayer(layer, shown),
 
     // ---- time
-    play: () => ask('play'),
+    play: () => whileRunning(() => ask('play')),
     pause: () => ask('pause'),
-    togglePlay: () => ask(store.stats.paused ? 'play' : 'pause'),
-    step: (steps = 1) => ask('step', {steps}),
+    togglePlay: () => whileRunning(() => ask(store.stats.paused ? 'play' : 'pause')),
+    step: (steps = 1) => whileRunning(() => ask('step', {steps})),
 
     // ---- forces and joints
     /** @param {{link: string, force: number[], torque: number[], point?: number[],
@@ -403,6 +432,8 @@ export function createActions({store, connection}) {
     logs: () => dialog('logs'),
     joints: () => dialog('joints'),
     building: () => dialog('building'),
+    /** Opens the model editor, or leaves it. @param {string} [name]  of the model to edit */
+    modelEditor: (name) => dialog('modelEditor', name ? {target: name} : {}),
     togglePanels: () => dialog('togglePanels'),
     find: () => dialog('find'),
     renameSelected: () => dialog('rename'),
@@ -419,6 +450,24 @@ export function createActions({store, connection}) {
      */
     previewPick: (clientX, clientY) => view?.previewPick(clientX, clientY) ?? null,
   };
+
+  /** The model that the model editor has. */
+  function edited() {
+    const name = store.modelEditing?.name;
+    return name ? store.model(name) : undefined;
+  }
+
+  /**
+   * Time stands still while a model is built.
+   * @template T
+   * @param {() => Promise<Outcome<T>>} run
+   * @returns {Promise<Outcome<T|{}>>}
+   */
+  async function whileRunning(run) {
+    if (!store.modelEditing) return run();
+    note('Leave the model editor (Ctrl+M) to run the simulation.');
+    return NOTHING;
+  }
 
   /**
    * One history for everybody: whose edit it was is said.

@@ -182,6 +182,29 @@ export function framing(view, {min, max}, fov, aspect) {
   return {...view, position: subtract(centre, scale(forward(view), distance))};
 }
 
+/** How steeply the first view of a world looks down, rad. */
+const FIRST_PITCH = -0.42;
+/** Things smaller than this, m, are not looked at from nearer. */
+const SMALLEST = 0.9;
+/** Of the sphere round all there is, which is larger than what one sees of it. */
+const FILL = 0.82;
+
+/**
+ * The first view of a world that has no camera: all of a box from Gazebo's side, a little from above.
+ * @param {{min: Vec3, max: Vec3}} box
+ * @param {number} fov
+ * @param {number} aspect
+ * @returns {View}
+ */
+export function first({min, max}, fov, aspect) {
+  const centre = scale(add(min, max), 0.5);
+  const half = scale(subtract(max, min), 0.5);
+  const grown = scale(half, Math.max(SMALLEST / 2 / Math.max(length(half), 1e-9), FILL));
+  const direction = {position: subtract(centre, forward({yaw: HOME.yaw, pitch: FIRST_PITCH})),
+    yaw: HOME.yaw, pitch: FIRST_PITCH};
+  return framing(direction, {min: subtract(centre, grown), max: add(centre, grown)}, fov, aspect);
+}
+
 /**
  * Between two views; `part` 0..1, slow at both ends; the shorter way round.
  * @param {View} a

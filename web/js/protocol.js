@@ -65,6 +65,8 @@ export const FRAME_RECORD_BYTES = 32;
  *  alpha_test: number, blended: boolean
  *}} Material */
 
+/** @typedef {'box'|'sphere'|'cylinder'|'capsule'|'cone'|'ellipsoid'} SolidShape */
+
 /** @typedef {{type: 'box', size: vec3}} Box */
 
 /** @typedef {{type: 'sphere', radius: number}} Sphere */
@@ -399,13 +401,41 @@ export const FRAME_RECORD_BYTES = 32;
  *  gains?: Gains|null
  *}} JointOperation */
 
-/** @typedef {{kind: 'compute_inertia', link: string}} ComputeInertiaOperation */
+/** @typedef {{
+ *  kind: 'add_link', model?: string|null, shape?: SolidShape|null, uri?: string|null,
+ *  pose?: pose|null
+ *}} AddLinkOperation */
+
+/** @typedef {{
+ *  kind: 'add_shape', link: string, part: 'visual'|'collision'|'both', shape?: SolidShape|null,
+ *  uri?: string|null
+ *}} AddShapeOperation */
+
+/** @typedef {{kind: 'rename_link', link: string, to: string}} RenameLinkOperation */
+
+/** @typedef {{kind: 'add_joint', model: string, joint: Partial<Joint>}} AddJointOperation */
+
+/** @typedef {{kind: 'edit_joint', joint: string, values: Partial<Joint>}} EditJointOperation */
+
+/** @typedef {{
+ *  kind: 'add_model', model: string, uri: string, pose?: pose|null
+ *}} AddModelOperation */
+
+/** @typedef {{kind: 'set_plugins', model: string, text: string}} SetPluginsOperation */
+
+/** @typedef {{kind: 'remove_part', target: string}} RemovePartOperation */
+
+/** @typedef {{
+ *  kind: 'compute_inertial', target: string, density?: number|null
+ *}} ComputeInertialOperation */
 
 /** @typedef {{kind: 'group', ops: Operation[], label?: string|null}} GroupOperation */
 
 /** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
- *  ComputeInertiaOperation|GroupOperation} Operation */
+ *  AddLinkOperation|AddShapeOperation|RenameLinkOperation|AddJointOperation|EditJointOperation|
+ *  AddModelOperation|SetPluginsOperation|RemovePartOperation|ComputeInertialOperation|
+ *  GroupOperation} Operation */
 
 /** @typedef {{
  *  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null
@@ -484,7 +514,7 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {step: number}},
  *  save: {fields: {
  *      path?: string|null, overwrite?: boolean|null, format?: 'full'|'includes'|null,
- *      state?: boolean|null, launched?: boolean|null
+ *      state?: boolean|null, launched?: boolean|null, copy?: boolean|null
  *    },
  *    reply: {path: string, left_out: string[]}},
  *  open: {fields: {path: string, discard?: boolean|null},
@@ -506,6 +536,10 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {locations: Location[]}},
  *  import_model: {fields: {
  *      name: string, files: ImportFile[], density?: number|null, overwrite?: boolean|null
+ *    },
+ *    reply: {uri: string, path: string}},
+ *  save_model: {fields: {
+ *      model: string, name: string, overwrite?: boolean|null, about?: BuildingAbout|null
  *    },
  *    reply: {uri: string, path: string}},
  *  library_get: {fields: {uri: string},

@@ -12,7 +12,7 @@ import {splitScoped} from './scoped_names.js';
 /** @import {Pose7} from './pose.js' */
 /** @import {ShapeName} from './new_entities.js' */
 
-/** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'measure'|'insert'} Mode */
+/** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'measure'|'insert'|'connect'} Mode */
 /** @typedef {'grid'|'origin'|'transparent'|'wireframe'|'collisions'|'joints'|'com'|'inertia'|
  *            'contacts'|'frames'|'skeleton'} OverlayFlag */
 
@@ -64,6 +64,8 @@ import {splitScoped} from './scoped_names.js';
  * @property {undefined} clipboard
  * @property {undefined} camera
  * @property {undefined} preview
+ * @property {undefined} modelEditing
+ * @property {{model: string, link: string}} pick  a link was clicked in the mode `connect`
  * @property {undefined} people  who is here, what they hold and have selected
  * @property {LoadingPush} loading
  * @property {WatchPush} watch
@@ -139,6 +141,11 @@ export class Store extends Emitter {
   camera = {projection: 'perspective', controller: 'orbit', following: null};
   /** A model document shown beside the world, e.g. a building being drawn. @type {Model|null} */
   preview = null;
+  /**
+   * While the model editor is open: the model, null until it has a first link.
+   * @type {{name: string|null}|null}
+   */
+  modelEditing = null;
 
   /** From a link's id to the document of its model. @type {Map<number, Model>} */
   #owners = new Map();
@@ -462,6 +469,12 @@ export class Store extends Emitter {
   setPreview(document) {
     this.preview = document;
     this.emit('preview');
+  }
+
+  /** @param {{name: string|null}|null} editing */
+  setModelEditing(editing) {
+    this.modelEditing = editing;
+    this.emit('modelEditing');
   }
 
   /** @param {Issue} issue */

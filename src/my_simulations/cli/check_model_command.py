@@ -108,7 +108,7 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
     models = [flattened(model) for model in _models(loaded)]
     if not any(_with_plugins(model) for model in models):
         return []
-    from ..plugins.host import plugins_of
+    from ..plugins.found_plugins import plugins_of
     from ..plugins.registry import PluginRegistry, library_name
     from ..resources.ros_packages import PackageIndex
 

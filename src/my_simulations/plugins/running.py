@@ -1,25 +1,20 @@
-"""Plugins of a description, and plugins at work."""
+"""Plugins at work, and which of them the models of the world have."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Iterator, Optional
+from collections import deque
+from dataclasses import dataclass
+from typing import Callable, Deque, Dict, Iterator, List, Optional, Tuple
 
-from ..description.model import Model
-from ..description.plugin import PluginSpec
-from ..description.sensor import Sensor
+from ..description.model import WORLD, Model
+from ..geometry import IDENTITY
+from ..simulator.registry import Entity
+from ..simulator.simulator import Simulator
 from .base import Plugin
+from .found_plugins import Found, plugins_of
 from .simulated_context import SimulatedContext
 
-
-@dataclass(frozen=True)
-class Found:
-    """A plugin in a description: where it belongs. `scope` is that of a nested model, `inner::`."""
-
-    spec: PluginSpec
-    scope: str = ""
-    link: str = ""
-    joint: str = ""
-    sensor: Optional[Sensor] = field(default=None, compare=False)
+WORLD_SCOPE = ""
+"""Stands for the world among the names of models."""
 
 
 @dataclass
@@ -31,22 +26,81 @@ class Running:
     plugin: Optional[Plugin]
 
 
-def plugins_of(model: Model, scope: str = "") -> Iterator[Found]:
-    """The plugins of a flattened model: its own, those of the sensors of links and
-    joints, those of nested models.
+class ModelPlugins:
+    """Follows the models of a simulator.
+
+    Attributes:
+        revision: of the models that were looked at last.
+        leaving: plugins whose models have gone; whoever ends them takes them out.
+
+    Args:
+        simulator: the world.
+        rebind: is told of a plugin whose model has other rows, or was edited.
     """
-    for spec in model.plugins:
-        yield Found(spec, scope)
-    if not scope:
-        for link in model.links:
-            inner = link.name.rpartition("::")[0]
-            for sensor in link.sensors:
-                for spec in sensor.plugins:
-                    yield Found(spec, f"{inner}::" if inner else "", link.name, "", sensor)
-        for joint in model.joints:
-            inner = joint.name.rpartition("::")[0]
-            for sensor in joint.sensors:
-                for spec in sensor.plugins:
-                    yield Found(spec, f"{inner}::" if inner else "", "", joint.name, sensor)
-    for nested in (model.guide.models if model.guide is not None else model.models):
-        yield from plugins_of(nested, f"{scope}{nested.name}::")
+
+    def __init__(self, simulator: Simulator, rebind: Callable[[Running, Entity], None]) -> None:
+        self._simulator, self._rebind = simulator, rebind
+        self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
+        self._to_load: Deque[Tuple[str, Found]] = deque()
+        self.leaving: Deque[Running] = deque()
+        self.revision = -1
+
+    def all(self) -> Iterator[Running]:
+        """All plugins of models that are there; from any thread."""
+        for _, running in list(self._models.values()):
+            yield from list(running)
+
+    def look(self) -> None:
+        """Note which plugins are to be loaded and ended; tell of other rows those that stay."""
+        if self._simulator.models.revision == self.revision:
+            return
+        self.revision, entities = self._simulator.models.inventory()
+        self._compare({WORLD_SCOPE: self._world_entity(),
+                       **{entity.model.name: entity for entity in entities}})
+
+    def next_to_load(self) -> Optional[Tuple[Entity, List[Running], Found]]:
+        """The model of the next one to load, the list it belongs into, and which it is."""
+        if not self._to_load:
+            return None
+        name, found = self._to_load.popleft()
+        return (*self._models[name], found)
+
+    def end_all(self) -> None:
+        """All models go."""
+        for name in list(self._models):
+            self._end(name)
+
+    def _compare(self, present: Dict[str, Entity]) -> None:
+        for name in [name for name in self._models if name not in present]:
+            self._end(name)
+        for name, entity in present.items():
+            before = self._models.get(name)
+            if before is not None and before[0] is entity:
+                continue
+            found = list(plugins_of(entity.model))
+            known = [] if before is None else [
+                *(one.found for one in before[1]),
+                *(one for owner, one in self._to_load if owner == name)]
+            if before is not None and known == found:
+                self._models[name] = (entity, before[1])
+                for running in before[1]:
+                    self._rebind(running, entity)
+                continue
+            if before is not None:
+                self._end(name)
+            self._models[name] = (entity, [])
+            self._to_load += [(name, one) for one in found]
+
+    def _world_entity(self) -> Entity:
+        """What stands for the world as owner of its plugins."""
+        world = self._simulator.world  # plugins of actors are unknown here, and told so
+        plugins = [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
+        before = self._models.get(WORLD_SCOPE)
+        if before is not None and before[0].model.plugins == plugins:
+            return before[0]
+        return Entity(0, Model(WORLD, plugins=plugins), IDENTITY, 0, 0)
+
+    def _end(self, name: str) -> None:
+        _, all_running = self._models.pop(name)
+        self._to_load = deque(one for one in self._to_load if one[0] != name)
+        self.leaving += all_running

@@ -8,8 +8,8 @@ from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns, SensingError
+from ..simulator.scene_sensing import SceneSensing
 from .context import View
-from .eyes import Eyes
 
 _SCAN_S = 10.0      # of wall time, for rays
 _PICTURES_S = 60.0  # and for pictures, which only a world that is stepped manually waits for
@@ -40,15 +40,15 @@ class SensingRequests:
     Pictures come in streams, one for each camera that a plugin looks through by itself.
 
     Args:
-        eyes: who looks.
+        scene: casts rays and takes pictures.
         inbox: of the plugin; functions that hand answers over are put there.
         wake: have somebody look into the inbox.
         warn: tells the user.
     """
 
-    def __init__(self, eyes: Eyes, inbox: Deque[Callable[[], None]], wake: Callable[[], None],
-                 warn: Callable[[str], None]) -> None:
-        self._eyes, self._inbox, self._wake, self._warn = eyes, inbox, wake, warn
+    def __init__(self, scene: SceneSensing, inbox: Deque[Callable[[], None]],
+                 wake: Callable[[], None], warn: Callable[[str], None]) -> None:
+        self._scene, self._inbox, self._wake, self._warn = scene, inbox, wake, warn
         self._scan: Optional[_Scan] = None
         self._shots: Dict[str, _Shot] = {}
         self._unsent: Dict[str, Deque[None]] = {}
@@ -73,7 +73,7 @@ class SensingRequests:
              call: Callable[[RayReturns, int], None], ns: int) -> None:
         """Cast rays, after the answer to those before has been handed over."""
         self._end_scan(self._scan)
-        scan = self._scan = _Scan(self._eyes.cast(mount, fan, visuals), call, ns)
+        scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals), call, ns)
         scan.future.add_done_callback(lambda _: self._hear(lambda: self._end_scan(scan)))
 
     def _hear(self, call: Callable[[], None]) -> None:
@@ -84,6 +84,8 @@ class SensingRequests:
         if scan is None or scan is not self._scan:
             return
         self._scan = None
+        if not scan.future.done():
+            self._scene.send()
         try:
             found = scan.future.result(_SCAN_S)
         except (SensingError, FutureTimeoutError) as fault:
@@ -116,7 +118,8 @@ class SensingRequests:
         if stream in self._shots or unsent:
             self._leave_out()
             return False
-        shot = self._shots[stream] = _Shot(self._eyes.render(views), call, ns, stream)
+        futures = self._scene.render([(mount, view.camera, view.outputs) for mount, view in views])
+        shot = self._shots[stream] = _Shot(futures, call, ns, stream)
         for future in shot.futures:
             future.add_done_callback(lambda _: self._hear(lambda: self._end_shot(shot)))
         return True

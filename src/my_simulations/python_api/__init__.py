@@ -1,6 +1,8 @@
 """Worlds from Python, without ROS: `my_simulations.open_world` (see doc/python_api.md)."""
-from .open_world import OpenWorld, WorldChoice, open_world
+from .open_world import OpenWorld, open_world
 from .readings import ContactReading, JointReadings, Readings, SavedState
+from .world_choice import WorldChoice
+from .world_pictures import Picture
 
-__all__ = ["ContactReading", "JointReadings", "OpenWorld", "Readings", "SavedState", "WorldChoice",
-           "open_world"]
+__all__ = ["ContactReading", "JointReadings", "OpenWorld", "Picture", "Readings", "SavedState",
+           "WorldChoice", "open_world"]

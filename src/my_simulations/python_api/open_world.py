@@ -1,24 +1,27 @@
 """A world that a Python program opens, steps and closes."""
 from __future__ import annotations
 
+import math
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import TracebackType
 from typing import Callable, List, Optional, Sequence, Tuple, Type
 
 from ..description.model import Model
-from ..description.world import World
 from ..engine.api import Engine
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, EngineLostError, InputError, Issue, error, errors_of
 from ..formats.mesh.loading import collision_meshes
 from ..formats.reading import Entity, LoadedWorld, Text, read_entity, read_file
-from ..geometry import ZERO3, Pose, Twist, Vec3, compose
+from ..geometry import ZERO3, Pose, Twist, compose
 from ..resources.resolver import Resolver
+from ..sensing.api import CameraSpec
 from ..simulator.saving import save_world
+from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from ..simulator.world_loading import load_world
 from .object_placement import Alter, place_objects
+from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
 from .readings import (
     ContactReading,
     JointReadings,
@@ -28,30 +31,11 @@ from .readings import (
     joint_readings,
     link_readings,
     model_readings,
-    pose_of,
 )
+from .world_choice import WorldChoice
+from .world_pictures import Photographer, Picture, camera_pose
 
 Log = Callable[[Issue], None]
-
-@dataclass(frozen=True)
-class WorldChoice:
-    """Which world to open; see `open_world`.
-
-    Attributes:
-        models: name, path of a URDF or SDF file, and pose of each model to spawn besides.
-        alter: changes the description of the world before it is loaded; it must leave its argument
-            as it is.
-        alter_model: the same for each object and model; `Model.pose` is its place.
-    """
-
-    world: str = "worlds/empty.world"
-    seed: int = 0
-    profile: str = ""
-    objects: Tuple[str, ...] = ()
-    object_list: str = ""
-    models: Tuple[Tuple[str, str, Pose], ...] = ()
-    alter: Callable[[World], World] = lambda world: world
-    alter_model: Alter = lambda model: model
 
 
 _MOST_STEPS = 1_000_000
@@ -111,6 +95,7 @@ class OpenWorld:
         loaded = self._load()
         self.simulator = Simulator(loaded.world, engine_factory=engine, paused=True, log=self._log,
                                    meshes=loaded.meshes)
+        self._photographer = Photographer(self.simulator, SceneSensing(self.simulator, self._log))
         try:
             self.simulator.start()
             self._furnish()
@@ -127,6 +112,7 @@ class OpenWorld:
 
     def close(self) -> None:
         """End the engine. Nothing else may be called afterwards."""
+        self._photographer.close()
         self.simulator.close()
 
     # -- time --------------------------------------------------------------------------------------
@@ -208,6 +194,37 @@ class OpenWorld:
         self._refuse_lost()
         return joint_readings(*self.simulator.states.latest())
 
+    def render(self, pose: Sequence[float], *, frame: str = "",
+               look_at: Optional[Sequence[float]] = None, width: int = 320, height: int = 240,
+               hfov: float = 1.047, near: float = 0.05, far: float = 100.0,
+               outputs: Sequence[str] = ("rgb",)) -> Picture:
+        """A picture of the world as it is now, without screen or graphics card.
+
+        The process that draws starts with the first picture and takes what `pip install
+        my_simulations[sensors]` and EGL bring. Same world, same picture.
+
+        Args:
+            pose: of the camera in `frame`: +x looks forward, y is left, z up.
+            frame: model or link that carries the camera; "" for the world.
+            look_at: point of `frame` that the camera is turned to; only the position of `pose`
+                counts then.
+            width: pixels.
+            height: pixels.
+            hfov: horizontal angle of view, rad.
+            near: m along the optical axis; what is nearer is not drawn.
+            far: m along the optical axis; what is farther is not drawn.
+            outputs: some of "rgb", "depth" and "labels".
+
+        Raises:
+            CommandError: also if nothing is installed to draw with; it says what is missing.
+        """
+        self._refuse_lost()
+        at = pose_of(pose)
+        if look_at is not None:
+            at = camera_pose(at.position, vector_of(look_at, "look_at"))
+        camera = CameraSpec(int(width), int(height), float(hfov), float(near), float(far))
+        return self._photographer.take(frame, at, camera, outputs)
+
     def contacts(self) -> List[ContactReading]:
         """The contact points of the last step."""
         self._refuse_lost()
@@ -246,7 +263,7 @@ class OpenWorld:
             pose: of its frame.
             twist: m/s and rad/s (vx vy vz wx wy wz) that it then has; None for at rest.
         """
-        speed = Twist() if twist is None else _twist(twist)
+        speed = Twist() if twist is None else twist_of(twist)
         states = self.simulator.states
         if self.simulator.models.has(name):
             states.set_model_state(name, pose_of(pose), speed)
@@ -268,8 +285,8 @@ class OpenWorld:
             point: m from the centre of mass, or from the frame's origin where one is given.
         """
         self.simulator.wrenches.apply_wrench(
-            link, _vector(force, "force"), _vector(torque, "torque"), frame=frame,
-            point=_vector(point, "point"), duration_ns=_nanoseconds(duration))
+            link, vector_of(force, "force"), vector_of(torque, "torque"), frame=frame,
+            point=vector_of(point, "point"), duration_ns=nanoseconds_of(duration))
 
     def apply_effort(self, joint: str, effort: float, *, duration: Optional[float] = None) -> None:
         """Drive a joint axis by a torque (N m) or force (N) from the next step on.
@@ -280,7 +297,33 @@ class OpenWorld:
             duration: s of sim time; None for until the world is reset.
         """
         self.simulator.wrenches.apply_effort(joint, float(effort),
-                                             duration_ns=_nanoseconds(duration))
+                                             duration_ns=nanoseconds_of(duration))
+
+    def drive_joint(self, joint: str, rate: float, effort: float) -> None:
+        """Drive a joint axis at a rate by a motor of limited effort, until another call.
+
+        Args:
+            joint: the joint.
+            rate: rad/s or m/s.
+            effort: most that the motor spends, N m or N.
+        """
+        self.simulator.drives.drive_axis(joint, float(rate), float(effort))
+
+    def move_joint(self, joint: str, position: float, effort: float, rate: float = math.inf
+                   ) -> None:
+        """Move a joint axis to a position and hold it there, until another call.
+
+        Args:
+            joint: the joint.
+            position: rad or m.
+            effort: most that the motor spends, N m or N.
+            rate: fastest that it moves, rad/s or m/s.
+        """
+        self.simulator.drives.hold_axis(joint, float(position), float(effort), float(rate))
+
+    def release_joint(self, joint: str) -> None:
+        """Switch off what `drive_joint` or `move_joint` has set."""
+        self.simulator.drives.release_axis(joint)
 
     # -- keeping -----------------------------------------------------------------------------------
 
@@ -355,20 +398,3 @@ class OpenWorld:
     def _refuse_lost(self) -> None:
         if self._lost is not None:
             raise EngineLostError(f"the world has lost its state, call reset: {self._lost}")
-
-
-def _vector(values: Sequence[float], what: str) -> Vec3:
-    numbers = [float(value) for value in values]
-    if len(numbers) != 3:
-        raise CommandError(f"{what} has 3 numbers, not {len(numbers)}")
-    return numbers[0], numbers[1], numbers[2]
-
-
-def _twist(values: Sequence[float]) -> Twist:
-    if len(values) != 6:
-        raise CommandError(f"a twist has 6 numbers, not {len(values)}")
-    return Twist(_vector(values[:3], "linear"), _vector(values[3:], "angular"))
-
-
-def _nanoseconds(duration: Optional[float]) -> int:
-    return -1 if duration is None else max(0, round(duration * 1e9))

@@ -8,8 +8,7 @@ import numpy as np
 
 from ..engine.commands import Contact
 from ..engine.ring import LINK_WIDTH, Snapshot
-from ..errors import CommandError
-from ..geometry import IDENTITY, Pose, Twist, normalised, pose_from_xyzrpy
+from ..geometry import IDENTITY, Pose, Twist
 from ..simulator.registry import Entity
 from ..simulator.world_state import WorldState
 
@@ -165,24 +164,6 @@ def contact_reading(first: str, second: str, contact: Contact) -> ContactReading
     """A contact between two links with their scoped names."""
     return ContactReading((first, second), np.array(contact.position), np.array(contact.normal),
                           contact.depth, contact.force, np.array(contact.friction))
-
-
-def pose_of(values: Sequence[float]) -> Pose:
-    """A pose from 3 (position), 6 (x y z roll pitch yaw, as in SDF) or 7 numbers (see `Readings`).
-
-    Raises:
-        CommandError: another number of values.
-    """
-    numbers = [float(value) for value in values]
-    if len(numbers) == 3:
-        return Pose((numbers[0], numbers[1], numbers[2]))
-    if len(numbers) == 6:
-        return pose_from_xyzrpy(*numbers)
-    if len(numbers) == POSE_WIDTH:
-        return Pose((numbers[0], numbers[1], numbers[2]),
-                    normalised((numbers[3], numbers[4], numbers[5], numbers[6])))
-    raise CommandError(f"a pose has 3 numbers (x y z), 6 (x y z roll pitch yaw) or 7 (x y z and a "
-                       f"quaternion x y z w), not {len(numbers)}")
 
 
 def pose_row(pose: Pose) -> Tuple[float, ...]:

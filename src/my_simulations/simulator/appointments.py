@@ -38,31 +38,30 @@ class Rate:
     """Appointments at a rate in Hz of sim time; 0 or less means every step."""
 
     def __init__(self, hertz: float) -> None:
-        from fractions import Fraction  # a world without appointments starts without it
-
-        self._period_ps = Fraction(0)
+        self._beats, self._per_ps = 0, 1   # appointments in a number of picoseconds
         if hertz > 1e-6:
-            self._period_ps = _PS / Fraction(hertz).limit_denominator(10 ** 6)
+            from fractions import Fraction  # a world without appointments starts without it
+
+            exact = Fraction(hertz).limit_denominator(10 ** 6)
+            self._beats, self._per_ps = exact.numerator, exact.denominator * _PS
 
     def after(self, step: int, clock: Clock) -> int:
         """Step count of the first appointment after `step`."""
-        if not self._period_ps or self._period_ps <= clock.step_ps:
+        beats, per_ps = self._beats, self._per_ps
+        if not beats or per_ps <= beats * clock.step_ps:
             return step + 1
-        number = (clock.epoch_ns * 1000 + (step - clock.epoch_step) * clock.step_ps) \
-            // self._period_ps
+        epoch_ps = clock.epoch_ns * 1000
+        number = (epoch_ps + (step - clock.epoch_step) * clock.step_ps) * beats // per_ps
         while True:
             number += 1
-            found = self._step_of(number, clock)
+            ahead = number * per_ps - epoch_ps * beats
+            found = clock.epoch_step - (-ahead // (clock.step_ps * beats))
             if found > step:
                 return found
 
     def is_at(self, step: int, clock: Clock) -> bool:
         """Whether `step` is an appointment."""
         return self.after(step - 1, clock) == step
-
-    def _step_of(self, number: int, clock: Clock) -> int:
-        ahead = number * self._period_ps - clock.epoch_ns * 1000
-        return clock.epoch_step + -int(-ahead // clock.step_ps)
 
 
 class Consumer:

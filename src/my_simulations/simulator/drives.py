@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ..engine.commands import (
     Batch,
@@ -17,6 +17,8 @@ from ..engine.commands import (
     SetWheelSlips,
     WheelSlip,
 )
+from ..errors import CommandError
+from ..geometry import is_finite
 from .registry import Entity
 from .session import Session
 
@@ -76,6 +78,39 @@ class Drives:
             self._planar.update(moved)
             self._keep(steered)
             return True
+
+    def drive_axis(self, joint: str, rate: float, effort: float) -> None:
+        """Drive an axis, given by name, at a rate (rad/s or m/s) with a limited effort (N m or N).
+
+        Raises CommandError: no such joint, or numbers that are not finite.
+        """
+        with self._session.structure_lock:
+            row = self._session.axis_row(joint)
+            self._end_servo(row)
+            self.set([JointMotor(row, *_finite(rate, effort))])
+
+    def hold_axis(self, joint: str, position: float, effort: float, rate: float) -> None:
+        """Move an axis, given by name, to a position (rad or m) and hold it there.
+
+        `effort` (N m or N) and `rate` (rad/s or m/s) limit the motor. Raises CommandError.
+        """
+        with self._session.structure_lock:
+            row = self._session.axis_row(joint)
+            target, limit = _finite(position, effort)
+            self.set(servos=[JointServo(row, "position", target, most_rate=rate,
+                                        most_effort=limit)])
+
+    def release_axis(self, joint: str) -> None:
+        """Switch off motor and servo of an axis, given by name. Raises CommandError."""
+        with self._session.structure_lock:
+            row = self._session.axis_row(joint)
+            self._end_servo(row)
+            if row in self._motors:
+                self.set([JointMotor(row, 0.0, 0.0)])
+
+    def _end_servo(self, row: int) -> None:
+        if row in self._servos:
+            self.set(servos=[JointServo(row, "")])
 
     def efforts(self, rows: Sequence[int]) -> List[float]:
         """What servos and motors spent on joint axes in the last step, N m or N.
@@ -177,3 +212,9 @@ class Drives:
                 self._servos[servo.row] = servo
             else:
                 self._servos.pop(servo.row, None)
+
+
+def _finite(first: float, second: float) -> Tuple[float, float]:
+    if not is_finite(first, second):
+        raise CommandError("a joint's motor needs finite numbers")
+    return first, second

@@ -63,6 +63,15 @@ class States:
             snapshot = session.snapshot()
         return relative(snapshot.link(row), anchor, snapshot)
 
+    def mounting(self, frame: str) -> Tuple[int, Pose]:
+        """Row of the link with which a frame moves, and its pose in that link.
+
+        -1 and the world pose for a frame that stands still. Raises UnknownFrameError.
+        """
+        with self._session.registry_lock:
+            found = self._session.registry.frame(frame)
+        return (-1, IDENTITY) if found is None else (found.row, found.offset)
+
     def link_at(self, row: int) -> Tuple[Pose, Twist]:
         """World pose and twist of the link in a row, for callers that know the row."""
         return self._session.ring.link(row)

@@ -62,7 +62,8 @@ class Supervisor:
     @property
     def engine(self) -> Engine:
         """The engine; waits until it has been created."""
-        self._made.wait()
+        if self._engine is None:
+            self._made.wait()
         if self._engine is None:
             raise CommandError(self._failure or "cannot start the physics engine")
         return self._engine

@@ -8,7 +8,7 @@ from ..description.model import Inertial, Link, Model
 from ..description.shapes import Surface
 from ..description.world import World
 from ..geometry import Pose, quat_from_rpy, rpy_from_quat
-from ..python_api.readings import pose_of
+from ..python_api.plain_values import pose_of
 from .variation import Parameter, Setting, Target
 
 _ON_MODELS = ("pose", "mass", "friction", "restitution")

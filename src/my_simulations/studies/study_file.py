@@ -7,7 +7,7 @@ from typing import Any, List, Mapping, Optional, Sequence, Tuple
 from ..errors import CommandError, InputError, Issue, errors_of
 from ..geometry import Pose
 from ..objects.yaml_source import KeyPath, read_yaml
-from ..python_api.readings import pose_of
+from ..python_api.plain_values import pose_of
 from .expressions import Expression, ExpressionError, parse
 from .study import Limits, Plan, Seeds, Study, StudyModel, Trajectory
 from .value_reader import ValueReader, kind_of
@@ -162,10 +162,13 @@ class StudyReader(ValueReader):
                           self.names(inside.get("models"), (*path, "models")))
 
     def _limits(self, value: Any) -> Limits:
-        inside = self.mapping(value, ("limits",), ("processor_seconds", "steps", "attempts"))
+        inside = self.mapping(value, ("limits",), ("processor_seconds", "steps", "attempts",
+                                                   "memory_mb"))
         default = Limits()
         return Limits(
             self.number(inside.get("processor_seconds", default.processor_seconds),
                         ("limits", "processor_seconds"), above=0.0),
             self.whole(inside.get("steps", default.steps), ("limits", "steps"), 1),
-            self.whole(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10))
+            self.whole(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10),
+            self.number(inside.get("memory_mb", default.memory_mb), ("limits", "memory_mb"),
+                        above=0.0))

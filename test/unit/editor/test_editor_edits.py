@@ -89,6 +89,22 @@ EDITS = {
     "drive a joint to": {"kind": "joint", "joint": "arm::hinge", "mode": "position", "value": 0.3},
     "turn a joint": {"kind": "joint", "joint": "arm::hinge", "mode": "velocity", "value": 1.0,
                      "gains": {"p": 9}},
+    "begin a model": {"kind": "add_link", "shape": "capsule", "pose": POSE},
+    "add a link": {"kind": "add_link", "model": "arm", "shape": "cylinder", "pose": POSE},
+    "add a collision": {"kind": "add_shape", "link": "a::link", "part": "collision",
+                        "shape": "cone"},
+    "rename a link": {"kind": "rename_link", "link": "arm::tip", "to": "hand"},
+    "add a joint": {"kind": "add_joint", "model": "arm", "joint": {
+        "type": "fixed", "parent": "world", "child": "base"}},
+    "edit a joint": {"kind": "edit_joint", "joint": "arm::hinge", "values": {
+        "name": "slider", "type": "prismatic", "pose": POSE}},
+    "nest a model": {"kind": "add_model", "model": "arm", "uri": "model://table", "pose": POSE},
+    "set plugins": {"kind": "set_plugins", "model": "arm",
+                    "text": "<plugin name='p' filename='libnone.so'><rate>5</rate></plugin>"},
+    "remove a link": {"kind": "remove_part", "target": "arm::tip"},
+    "remove a joint": {"kind": "remove_part", "target": "arm::hinge"},
+    "remove a visual": {"kind": "remove_part", "target": "a::link::visual:visual"},
+    "compute inertia": {"kind": "compute_inertial", "target": "a::link", "density": 500},
     "reset poses": {"kind": "reset", "what": "poses"},
     "reset the world": {"kind": "reset", "what": "world"},
     "several as one": {"kind": "group", "label": "Two things", "ops": [
@@ -128,6 +144,20 @@ REFUSED = {
     "taken_name": {"kind": "rename", "name": "a", "to": "arm"},
     "empty_name": {"kind": "rename", "name": "a", "to": " "},
     "scoped_name": {"kind": "rename", "name": "a", "to": "x::y"},
+    "joint_to_nowhere": {"kind": "add_joint", "model": "arm", "joint": {
+        "type": "fixed", "parent": "nix", "child": "tip"}},
+    "joint_to_itself": {"kind": "add_joint", "model": "arm", "joint": {
+        "type": "revolute", "parent": "tip", "child": "tip"}},
+    "gearbox_without_a_third_link": {"kind": "add_joint", "model": "arm", "joint": {
+        "type": "gearbox", "parent": "base", "child": "tip"}},
+    "taken_link_name": {"kind": "rename_link", "link": "arm::tip", "to": "hinge"},
+    "only_link": {"kind": "remove_part", "target": "a::link"},
+    "unknown_part": {"kind": "remove_part", "target": "arm::nix"},
+    "mesh_that_is_not_there": {"kind": "add_link", "uri": "model://nix/meshes/nix.dae"},
+    "shape_and_mesh": {"kind": "add_link", "uri": "model://a/b.dae", "shape": "box"},
+    "plugins_with_links": {"kind": "set_plugins", "model": "a", "text": "<link name='x'/>"},
+    "plugins_that_are_no_xml": {"kind": "set_plugins", "model": "a", "text": "<plugin"},
+    "inertia_of_nothing": {"kind": "compute_inertial", "target": "a::link", "density": 0},
     "unknown_uri": {"kind": "insert", "uri": "model://no_such_model_anywhere"},
     "two_sources": {"kind": "insert", "shape": "box", "uri": "model://table"},
     "text_that_is_no_sdf": {"kind": "insert", "sdf": "<nix/>"},

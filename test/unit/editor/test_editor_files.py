@@ -40,6 +40,28 @@ def test_save_asks_for_a_name_once_and_replaces_its_own_file_later(case):
     made.browse(save)
 
 
+def test_a_copy_has_the_state_and_leaves_the_file_of_the_world_alone(case):
+    made = case(box("a"))
+
+    async def clone(browser):
+        await browser.ask("save", path="mine")
+        await browser.edit("insert", shape="box")
+        await browser.ask("step", steps=5)
+        with pytest.raises(Refused) as refused:
+            await browser.ask("save", path="mine", copy=True)
+        assert refused.value.code == "exists"
+        path = (await browser.ask("save", path="clone", copy=True))["path"]
+        assert path == str(made.worlds / "clone.world")
+        assert browser.last("history")["file"] == str(made.worlds / "mine.world")
+        assert browser.last("history")["dirty"]
+        with open(path, encoding="utf-8") as stream:
+            world, _ = parse_world(stream.read(), Resolver())
+        assert [model.name for model in world.models] == ["a", "unit_box"]
+        assert world.state is not None and world.state.sim_time_ns == 5_000_000
+
+    made.browse(clone)
+
+
 def test_no_file_is_replaced_without_asking(case):
     made = case(box("a"))
     there = made.worlds / "there.world"

@@ -14,13 +14,16 @@ from my_simulations.sensing.api import CameraSpec, Mount, SensingGoneError
 VIEW = (Mount(), View("head", Pose(), CameraSpec(), ("rgb",)))
 
 
-class Eyes:
+class Sensing:
     def __init__(self):
         self.asked = []
 
     def render(self, views):
         self.asked.append([Future() for _ in views])
         return self.asked[-1]
+
+    def send(self):
+        self.sent = True
 
     def cast(self, mount, fan, visuals):
         self.asked.append(Future())
@@ -29,8 +32,8 @@ class Eyes:
 
 class Case:
     def __init__(self):
-        self.eyes, self.inbox, self.said, self.seen = Eyes(), deque(), [], []
-        self.requests = SensingRequests(self.eyes, self.inbox, lambda: None, self.said.append)
+        self.sensing, self.inbox, self.said, self.seen = Sensing(), deque(), [], []
+        self.requests = SensingRequests(self.sensing, self.inbox, lambda: None, self.said.append)
 
     def shoot(self, ns, wait=False, views=1):
         return self.requests.photograph([VIEW] * views, lambda got, at: self.seen.append((got, at)),
@@ -44,7 +47,7 @@ class Case:
 def test_a_picture_is_handed_over_with_its_moment():
     case = Case()
     assert case.shoot(5)
-    case.eyes.asked[0][0].set_result("picture")
+    case.sensing.asked[0][0].set_result("picture")
     assert not case.seen
     case.deliver()
     assert case.seen == [(["picture"], 5)]
@@ -53,7 +56,7 @@ def test_a_picture_is_handed_over_with_its_moment():
 def test_pictures_of_one_moment_are_handed_over_together():
     case = Case()
     case.shoot(5, views=2)
-    first, second = case.eyes.asked[0]
+    first, second = case.sensing.asked[0]
     second.set_result("b")
     case.deliver()
     assert not case.seen
@@ -66,15 +69,15 @@ def test_a_late_picture_leaves_others_out_and_this_is_told_once():
     case = Case()
     assert [case.shoot(ns) for ns in (1, 2, 3)] == [True, False, False]
     assert len(case.said) == 1 and "late" in case.said[0]
-    case.eyes.asked[0][0].set_result("picture")
-    assert case.shoot(4) and len(case.eyes.asked) == 2
+    case.sensing.asked[0][0].set_result("picture")
+    assert case.shoot(4) and len(case.sensing.asked) == 2
     assert case.seen == [(["picture"], 1)]
 
 
 def test_a_world_stepped_by_hand_waits_for_late_pictures():
     case = Case()
     case.shoot(1)
-    threading.Timer(0.05, case.eyes.asked[0][0].set_result, ["picture"]).start()
+    threading.Timer(0.05, case.sensing.asked[0][0].set_result, ["picture"]).start()
     assert case.shoot(2, wait=True) and not case.said
     assert case.seen == [(["picture"], 1)]
 
@@ -91,7 +94,7 @@ def test_a_lost_picture_is_told_and_the_next_is_taken():
     case = Case()
     for ns in (1, 2):
         case.shoot(ns)
-        case.eyes.asked[-1][0].set_exception(SensingGoneError("it was killed"))
+        case.sensing.asked[-1][0].set_exception(SensingGoneError("it was killed"))
         case.deliver()
     assert case.said == ["a picture is left out: it was killed"] and case.shoot(3)
 
@@ -100,7 +103,7 @@ def test_a_picture_of_a_time_that_was_set_back_is_forgotten():
     case = Case()
     case.shoot(5)
     case.requests.forget()
-    case.eyes.asked[0][0].set_result("picture")
+    case.sensing.asked[0][0].set_result("picture")
     case.deliver()
     assert not case.seen and case.shoot(1)
 

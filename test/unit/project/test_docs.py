@@ -215,41 +215,6 @@ def test_job_files_are_yaml_with_jobs():
             "catkin_test_results build/test_results"), "its status is the job's"
 
 
-def dockerfile() -> List[Tuple[str, str]]:
-    text = text_of(REPOSITORY / "docker" / "Dockerfile").replace("\\\n", " ")
-    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-    return [(line.split()[0], line.split(None, 1)[1]) for line in lines]
-
-
-def test_container_does_not_run_as_root():
-    users = [words for word, words in dockerfile() if word == "USER"]
-    assert users and users[-1] != "root"
-    after = [word for word, _ in dockerfile()]
-    assert after.index("USER") < after.index("CMD")
-    assert not any("sudo" in words for _, words in dockerfile())
-
-
-def test_container_copies_files_that_exist():
-    copied = [words.split() for word, words in dockerfile() if word == "COPY"]
-    for words in copied:
-        for source in words[:-1]:
-            assert source.startswith("--") or (REPOSITORY / source).exists(), source
-    (entry,) = (words for word, words in dockerfile() if word == "ENTRYPOINT")
-    program = REPOSITORY / entry.strip('[]"').split("/my_simulations/")[1]
-    assert program.stat().st_mode & 0o111
-
-
-def test_container_serves_the_editor_to_its_host_with_a_launch_file_that_exists():
-    (command,) = (words for word, words in dockerfile() if word == "CMD")
-    words = re.findall(r'"([^"]+)"', command)
-    assert words[:2] == ["roslaunch", "gazebo_ros"]
-    (path,) = (REPOSITORY / "compat" / "gazebo_ros" / "launch").glob(f"{words[2]}*")
-    names = {argument.get("name") for argument in ElementTree.parse(path).getroot().findall("arg")}
-    assert {word.split(":=")[0] for word in words[3:]} <= names
-    assert "editor_host:=0.0.0.0" in words
-    assert ("EXPOSE", "11346") in dockerfile()
-
-
 # -- the package's papers ------------------------------------------------------------------------
 
 def test_maintainers_have_an_address_that_catkin_takes():

@@ -2,6 +2,7 @@
 import {ask, faultText} from '../panels/dialog.js';
 import {byId, fill, h, onceAFrame} from '../panels/dom.js';
 import {mountMenuBar} from '../panels/menubar.js';
+import {styled} from '../panels/stylesheet.js';
 import {Canvas} from './plan_canvas.js';
 import {forgetDraft, keepDraft, leftDraft} from './unsaved_plan.js';
 import {MeasureTool} from './draw_tools.js';
@@ -44,7 +45,7 @@ import {isEmpty, withoutImages} from './plan.js';
  *   answers false when the user stays; leaving by the editor's own menu emits `exit` on the element
  */
 export async function mount(element, {store, request, actions}) {
-  await styled();
+  await styled('building.css');
   const session = new Session();
   const draft = leftDraft();
   session.endTool = () => { session.tool = new SelectTool(session); };
@@ -284,13 +285,4 @@ function askBeforeUnload(session) {
   const asked = (event) => { if (session.dirty) event.preventDefault(); };
   window.addEventListener('beforeunload', asked);
   return () => window.removeEventListener('beforeunload', asked);
-}
-
-/** The style sheet of the building editor, loaded once. */
-function styled() {
-  const href = new URL('../../css/building.css', import.meta.url).href;
-  if (document.querySelector(`link[href="${href}"]`)) return Promise.resolve();
-  return new Promise((resolve) => {
-    document.head.append(h('link', {rel: 'stylesheet', href, onload: resolve, onerror: resolve}));
-  });
 }

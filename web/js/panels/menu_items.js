@@ -80,6 +80,10 @@ export function menus(page) {
         item('Save World As…', 'saveAs'),
         LINE,
         item('Recover…', 'recover'),
+        LINE,
+        item('Save Configuration', 'saveConfiguration'),
+        item('Reset Configuration', 'resetConfiguration'),
+        item('Clone World…', 'cloneWorld'),
       ],
     },
     {
@@ -102,6 +106,7 @@ export function menus(page) {
         item('Reset Time', 'resetTime'),
         LINE,
         item('Building Editor', 'building'),
+        item('Model Editor', 'modelEditor', {checked: () => Boolean(store.modelEditing)}),
       ],
     },
     {
@@ -240,6 +245,8 @@ export function contextMenu(page, name) {
       ? {title: 'Stop Following', run: () => actions.follow(null)}
       : {title: 'Follow', run: () => actions.follow(whole)},
     ...force,
+    ...(model && !isPlane(entity.model)
+      ? [{title: 'Edit Model', run: () => actions.modelEditor(model), enabled: () => !store.modelEditing}] : []),
     LINE,
     ...view,
     ...(light ? [] : [LINE]),
@@ -257,3 +264,7 @@ export function contextMenu(page, name) {
     },
   ];
 }
+
+/** A ground: nothing of it can be edited by hand. @param {import('../protocol.js').Model|undefined} model */
+const isPlane = (model) => Boolean(model?.links.every((link) =>
+  link.visuals.length && link.visuals.every(({geometry}) => geometry.type === 'plane')));

@@ -92,7 +92,7 @@ export function bodySections(model) {
       hint: 'Inertia of the mass from the collision shapes, at uniform density',
       ops: () => ({label: `Compute inertia of ${name}`,
         ops: links.filter(({collisions}) => collisions.length).map((link) => (
-          {kind: 'compute_inertia', link: linkTarget(link, name)}))})});
+          {kind: 'compute_inertial', target: linkTarget(link, name)}))})});
   }
   return [{key: `${name}|Body`, title: 'Body', target: name, entity, fields}];
 }
@@ -128,7 +128,7 @@ function sizeFields(model, shared, entity) {
       ops: (value) => ({label: `Set ${name} of ${model.name}`, ops: [
         set(`${target}::collision:${link.collisions[0].name}`, `geometry.${name}`, value),
         set(`${target}::visual:${link.visuals[0].name}`, `geometry.${name}`, value),
-        ...(model.static ? [] : [{kind: 'compute_inertia', link: target}]),
+        ...(model.static ? [] : [{kind: 'compute_inertial', target}]),
       ]})});
   });
 }

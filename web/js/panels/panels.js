@@ -18,12 +18,13 @@
 import {HOTKEYS} from '../hotkeys.js';
 import {ask, closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
-import {newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
+import {cloneDialog, newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
+import {mountHints} from './hint_line.js';
 import {InsertTab} from './insert_tab.js';
 import {JointsPanel} from './joints_panel.js';
 import {mountLayers} from './layers_tab.js';
@@ -86,6 +87,7 @@ export function mountPanels(document, parts) {
     ),
   );
   mountConnectionNote(byId('centre'), page);
+  mountHints(byId('view'));
   mountDrawer();
   return page;
 }
@@ -214,6 +216,8 @@ class Windows {
   #open = new Set();
   /** @type {{close: () => Promise<boolean>}|null} */
   #building = null;
+  /** @type {import('../model_editor/model_editor.js').ModelEditor|null} */
+  #model = null;
 
   /** @param {DialogRequest} detail */
   show(detail) {
@@ -221,6 +225,7 @@ class Windows {
     const windows = {
       open: () => this.#files(openDialog, 'Opened'),
       saveAs: () => this.#files(saveAsDialog, 'Saved'),
+      cloneWorld: () => cloneDialog(this.page),
       newWorld: () => newWorld(this.page),
       recover: () => recoverDialog(this.page),
       importFiles: () => importDialog(this.page, detail.entries ?? [], detail.place ?? [0, 0, 0]),
@@ -232,6 +237,8 @@ class Windows {
       joints: () => this.#toggleSide('joints'),
       topics: () => this.#toggleSide('topics'),
       building: () => this.#toggleBuilding(),
+      modelEditor: () => this.#toggleModelEditor(detail.target ?? null),
+      saveModel: () => this.#model?.save(),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
       rename: () => this.#inWorld((world) => world.rename()),
@@ -302,7 +309,32 @@ class Windows {
     this[name].show(!section.hidden);
   }
 
+  /** @param {string|null} name  of the model to edit */
+  async #toggleModelEditor(name) {
+    if (this.#model) {
+      await this.#model.close();
+      return;
+    }
+    if (this.#building) {
+      this.page.notices.say('Leave the building editor first (Ctrl+B).');
+      return;
+    }
+    const {ModelEditor} = await import('../model_editor/model_editor.js');
+    const {store, request, actions, notices} = this.page;
+    this.#model = new ModelEditor({store, request, actions, notices});
+    this.#model.onExit = () => {
+      closeDialogs();
+      this.#model = null;
+      byId('view').focus();
+    };
+    await this.#model.open(name);
+  }
+
   async #toggleBuilding() {
+    if (this.#model) {
+      this.page.notices.say('Leave the model editor first (Ctrl+M).');
+      return;
+    }
     const element = byId('building');
     if (this.#building) {
       const closed = await this.#building.close();
@@ -368,7 +400,7 @@ async function offerRestore(page, {found, file, time, others}) {
  * @param {HTMLElement} element
  * @param {Page} page
  */
-function mountConnectionNote(element, {store}) {
+function mountConnectionNote(element, {store, connection}) {
   const text = h('span');
   const detail = h('span', {class: 'soft'});
   const bar = h('progress', {'aria-label': 'Progress'});
@@ -378,6 +410,10 @@ function mountConnectionNote(element, {store}) {
   /** @type {LoadingPush|null} */
   let loading = null;
   const words = () => {
+    if (connection.refused) {
+      return 'The simulator was started again, with a new token. Run “gzclient”: it opens the ' +
+        'editor, and this page connects again.';
+    }
     if (loading) return loading.title || 'Loading the world';
     return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';
   };
@@ -396,6 +432,7 @@ function mountConnectionNote(element, {store}) {
     loading = null;
     show();
   });
+  connection.listen('refused', show);
   store.listen('loading', ({detail: news}) => {
     loading = news.of && news.done >= news.of && store.connected ? null : news;
     show();

@@ -275,7 +275,7 @@ export class Properties {
       if (field.ops) {
         const {label, ops} = field.ops(value);
         await this.#told(this.row?.model ?? '', () =>
-          this.request('edit', {op: ops.length === 1 && ops[0].kind === 'compute_inertia'
+          this.request('edit', {op: ops.length === 1 && ops[0].kind === 'compute_inertial'
             ? ops[0] : {kind: 'group', ops, label}}));
       } else if (field.rename) await this.#rename(section.target, String(value));
       else if (field.path === 'geometry.type') {

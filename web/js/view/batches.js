@@ -3,6 +3,7 @@
  * handful on; fewer are meshes of their own, which are left out when they are not in sight.
  */
 import {InstancedMesh, Mesh, DynamicDrawUsage} from 'three';
+import {CASTERS} from './contact_shadows.js';
 /** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
 /** @import {Owner} from './model_views.js' */
 
@@ -98,6 +99,7 @@ class Batch {
   /** @param {Mesh} mesh */
   #show(mesh) {
     mesh.castShadow = this.sample.castShadow;
+    if (mesh.castShadow) mesh.layers.enable(CASTERS);
     mesh.receiveShadow = this.sample.receiveShadow;
     mesh.renderOrder = this.sample.renderOrder;
     this.scene.add(mesh);

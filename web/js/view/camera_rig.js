@@ -1,12 +1,22 @@
 /** The camera: the user's moves, flights between views, following, the two projections. */
-import {Matrix4, Vector3} from 'three';
+import {Box3, Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
+import {remembered} from '../panels/dom.js';
 import {add, length, scale, subtract} from '../pose.js';
 import {readLink} from '../view_link.js';
 /** @import {GuiCamera} from '../protocol.js' */
 /** @import {Vec3} from '../pose.js' */
 /** @import {View} from '../camera_math.js' */
 /** @import {ViewParts} from './view.js' */
+
+/**
+ * What Save Configuration has kept in this browser.
+ * @typedef {View & {projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
+ *   overlays: Partial<Record<import('../store.js').OverlayFlag, boolean>>}} Configuration
+ */
+
+/** @returns {Configuration|null} */
+export const savedConfiguration = () => remembered.get('configuration', null);
 
 const FLIGHT = 500;
 const TURN_FLIGHT = 1000;
@@ -33,6 +43,11 @@ export class CameraRig {
   #followed = null;
   /** File and name of the world. @type {string|null} */
   #world = null;
+  /** Models that the first view shall show, until the user has moved the camera. @type {string[]} */
+  #toFrame = [];
+  /** The first view as it was set: another one is the user's. @type {View|null} */
+  #framed = null;
+  #whole = new Box3();
 
   /** @param {Pick<ViewParts, 'stage'|'store'|'models'>} viewParts */
   constructor({stage, store, models}) {
@@ -235,18 +250,64 @@ export class CameraRig {
     if (!this.#store.document) return;
     const {gui_camera: camera, file, name} = this.#store.document;
     const which = JSON.stringify([file, name]);
-    if (which === this.#world) return;
+    if (which === this.#world) {
+      if (this.view === this.#framed) this.#beginWithAll();
+      return;
+    }
     this.#world = which;
-    this.#home = camera ? views.fromPose(camera.pose) : views.HOME;
     this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
+    const kept = savedConfiguration();
+    if (camera) {
+      this.#toFrame = [];
+      this.#home = views.fromPose(camera.pose);
+      this.set(this.#home);
+    } else if (kept) {
+      this.#toFrame = [];
+      this.#home = {position: kept.position, yaw: kept.yaw, pitch: kept.pitch};
+      this.set(this.#home);
+    } else this.#beginWithAll();
     const link = readLink(globalThis.location?.hash ?? '');
-    this.set(link?.view ?? this.#home);
-    if (link) this.#store.select(link.selection.filter((name) => this.#store.entity(name)));
+    if (link) {
+      if (link.view) {
+        this.#toFrame = [];
+        this.set(link.view);
+      }
+      this.#store.select(link.selection.filter((name) => this.#store.entity(name)));
+    }
     this.#store.setCamera({
-      projection: camera?.projection_type === 'orthographic' ? 'orthographic' : 'perspective',
-      controller: camera?.view_controller === 'fps' ? 'fps' : 'orbit',
+      projection: camera ? (camera.projection_type === 'orthographic' ? 'orthographic' : 'perspective')
+        : kept?.projection ?? 'perspective',
+      controller: camera ? (camera.view_controller === 'fps' ? 'fps' : 'orbit') : kept?.controller ?? 'orbit',
       following: camera?.track && this.#store.model(camera.track) ? camera.track : null,
     });
+  }
+
+  /** A world without a camera is seen as a whole, save grounds; an empty one as in Gazebo. */
+  #beginWithAll() {
+    const isGround = (/** @type {import('../protocol.js').Model} */ model) =>
+      model.links.every((link) => link.visuals.every(({geometry}) => geometry.type === 'plane'));
+    this.#toFrame = (this.#store.document?.models ?? []).filter((model) => !isGround(model))
+      .map((model) => model.name);
+    this.#home = views.HOME;
+    this.set(this.#home);
+    this.#framed = this.view;
+    this.frameAll();
+  }
+
+  /** Shows more of the world as its meshes arrive, unless the user has begun to look round. */
+  frameAll() {
+    if (!this.#toFrame.length || this.view !== this.#framed) return;
+    const whole = new Box3();
+    for (const name of this.#toFrame) {
+      const box = this.#models.bounds(name);
+      if (box) whole.union(box);
+    }
+    if (whole.isEmpty() || whole.equals(this.#whole)) return;
+    this.#whole.copy(whole);
+    this.#home = views.first({min: whole.min.toArray(), max: whole.max.toArray()}, this.fov,
+      this.#stage.aspect);
+    this.set(this.#home);
+    this.#framed = this.view;
   }
 
   #applyChoices() {

@@ -1,104 +1,17 @@
-/** Background, sky, fog, grid, origin and roads: what the world and the view's flags say. */
-import {
-  BackSide, BufferAttribute, BufferGeometry, Color, Fog, FogExp2, LineBasicMaterial, LineSegments,
-  Mesh, ShaderMaterial, SphereGeometry, Vector3,
-} from 'three';
+/**
+ * Background, sky, fog, grid, origin, contact shadows and roads: what the world and the view's flags
+ * say, and the view's own gradient and haze where the world says nothing.
+ */
+import {BufferAttribute, BufferGeometry, Fog, FogExp2, Mesh} from 'three';
+import {ContactShadows} from './contact_shadows.js';
+import {GroundGrid, makeOrigin} from './ground_grid.js';
+import {groundHeight} from './ground.js';
 import {colorOf} from './three_convert.js';
-import {SKY, SKY_COLOR} from './palette.js';
+import {Gradient, WorldSky, leavesBackground} from './sky.js';
 /** @import {Materials} from './materials.js' */
-/** @import {Road, Sky} from '../protocol.js' */
+/** @import {Road} from '../protocol.js' */
 /** @import {Stage} from './stage.js' */
 /** @import {Store} from '../store.js' */
-
-const GRID_CELLS = 20;
-
-/** @param {number[]} points @param {number[]} [colors] */
-function lines(points, colors) {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array(points), 3));
-  if (colors) geometry.setAttribute('color', new BufferAttribute(new Float32Array(colors), 3));
-  return geometry;
-}
-
-/** Gazebo's grid: 20 x 20 cells of 1 m; every fifth line a little stronger. */
-function makeGrid() {
-  const half = GRID_CELLS / 2;
-  const points = [];
-  const colors = [];
-  for (let at = -half; at <= half; at++) {
-    points.push(-half, at, 0, half, at, 0, at, -half, 0, at, half, 0);
-    const shade = at % 5 === 0 ? 0.06 : 0.2;
-    for (let end = 0; end < 4; end++) colors.push(shade, shade, shade);
-  }
-  const grid = new LineSegments(lines(points, colors), new LineBasicMaterial({
-    vertexColors: true, transparent: true, opacity: 0.5, depthWrite: false, fog: true}));
-  grid.renderOrder = 1;
-  return grid;
-}
-
-/** The axes at the world's origin. */
-function makeOrigin() {
-  const points = [0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1];
-  const colors = [1, 0.1, 0.1, 1, 0.1, 0.1, 0.1, 0.75, 0.1, 0.1, 0.75, 0.1, 0.2, 0.3, 1, 0.2, 0.3,
-    1];
-  const origin = new LineSegments(lines(points, colors), new LineBasicMaterial({
-    vertexColors: true, depthWrite: false}));
-  origin.renderOrder = 2;
-  return origin;
-}
-
-const SKY_VERTEX = `
-varying vec3 ahead;
-void main() {
-  ahead = position;
-  vec4 place = projectionMatrix * vec4(mat3(viewMatrix) * position, 1.0);
-  gl_Position = place.xyww;
-}`;
-
-const SKY_FRAGMENT = `
-varying vec3 ahead;
-${SKY_COLOR}void main() {
-  gl_FragColor = vec4(sky(normalize(ahead)), 1.0);
-  #include <colorspace_fragment>
-}`;
-
-const DAY = {zenith: new Color(SKY.day_zenith), horizon: new Color(SKY.day_horizon)};
-const NIGHT = {zenith: new Color(SKY.night_zenith), horizon: new Color(SKY.night_horizon)};
-const DUSK = new Color(SKY.dusk);
-
-function makeSky() {
-  const dome = new Mesh(new SphereGeometry(1, 32, 24), new ShaderMaterial({
-    vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: BackSide, depthWrite: false,
-    depthTest: false, fog: false,
-    uniforms: {sun: {value: new Vector3()}, zenith: {value: new Color()},
-      horizon: {value: new Color()}, cloud_color: {value: new Color()}, cover: {value: 0.5},
-      size: {value: 1}, drift: {value: 0}},
-  }));
-  dome.renderOrder = -10;
-  dome.frustumCulled = false;
-  return dome;
-}
-
-/**
- * Hours of the day put the sun and its colours where they belong.
- * @param {Mesh<SphereGeometry, ShaderMaterial>} dome
- * @param {Sky} sky
- */
-function colorSky(dome, sky) {
-  const {uniforms} = dome.material;
-  const day = sky.sunset - sky.sunrise;
-  const part = day > 0 ? (sky.time - sky.sunrise) / day : 0.5;
-  const elevation = Math.sin(Math.PI * part);
-  uniforms.sun.value.set(Math.cos(Math.PI * part), -0.25, elevation).normalize();
-  const light = Math.min(Math.max(elevation * 3 + 0.15, 0), 1);
-  uniforms.zenith.value.lerpColors(NIGHT.zenith, DAY.zenith, light);
-  uniforms.horizon.value.lerpColors(NIGHT.horizon, DAY.horizon, light)
-    .lerp(DUSK, Math.max(0, 0.6 - Math.abs(elevation) * 2.5));
-  uniforms.cloud_color.value.copy(colorOf(sky.cloud_ambient)).multiplyScalar(1.15 * light + 0.05);
-  uniforms.cover.value = Math.min(Math.max(sky.cloud_humidity, 0), 1);
-  uniforms.size.value = 0.6 + sky.cloud_mean_size;
-  uniforms.drift.value = sky.cloud_direction;
-}
 
 /**
  * Gazebo's fog in three's: constant has no thinning with distance but its density.
@@ -136,7 +49,8 @@ function ribbon({points, width}) {
       triangles.push(at - 2, at - 1, at, at, at - 1, at + 1);
     }
   });
-  const geometry = lines(corners);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(corners), 3));
   geometry.setAttribute('uv', new BufferAttribute(new Float32Array(uvs), 2));
   geometry.setIndex(triangles);
   geometry.computeVertexNormals();
@@ -145,13 +59,20 @@ function ribbon({points, width}) {
 
 const ASPHALT = {texture: {pattern: 'road', scale: [1, 1]}};
 
+/** Where the view's own haze begins and ends, in distances of the eye from what it looks at. */
+const HAZE = {from: 5, to: 22, nearest: 45};
+
 export class Surroundings {
   #stage;
   #store;
   #materials;
-  #grid = makeGrid();
+  #grid = new GroundGrid();
   #origin = makeOrigin();
-  #sky = makeSky();
+  #sky = new WorldSky();
+  #gradient = new Gradient();
+  #contact = new ContactShadows();
+  /** @type {Fog|null} */
+  #haze = null;
   /** @type {Mesh[]} */
   #roads = [];
 
@@ -160,46 +81,76 @@ export class Surroundings {
     this.#stage = stage;
     this.#store = store;
     this.#materials = materials;
-    stage.scene.add(this.#grid, this.#origin);
+    stage.scene.add(this.#grid.mesh, this.#origin, this.#contact.mesh);
+    stage.onShadows = (renderer, scene) => this.#contact.render(renderer, scene);
     store.listen('document', () => this.#apply());
     store.listen('overlays', () => this.#flags());
     store.listen('entity', ({detail}) => {
       if (detail.kind === 'world') this.#apply();
+      else if (detail.kind === 'model') this.#contact.stand(this.#ground());
     });
   }
 
-  /** Hides the helpers, for a thumbnail. */
-  get helpers() {
-    return [this.#grid, this.#origin];
+  /**
+   * Follows the camera.
+   * @param {number[]} centre  of what is looked at, world, m
+   * @param {number} distance  of the eye from it, m
+   */
+  cover(centre, distance) {
+    this.#grid.cover(centre, distance);
+    this.#contact.cover(centre, distance);
+    if (!this.#haze) return;
+    this.#haze.near = Math.max(distance * HAZE.from, HAZE.nearest);
+    this.#haze.far = this.#haze.near * HAZE.to / HAZE.from;
   }
 
   #flags() {
     const {scene} = this.#store.document ?? {};
-    this.#grid.visible = this.#store.overlays.scene.grid && scene?.grid !== false;
+    this.#grid.mesh.visible = this.#store.overlays.scene.grid && scene?.grid !== false;
     this.#origin.visible = this.#store.overlays.scene.origin && scene?.origin_visual !== false;
     this.#stage.invalidate();
   }
 
+  /** Contact shadows belong to a world with shadows. */
+  #ground() {
+    const {document} = this.#store;
+    return document?.scene.shadows ? groundHeight(document.models) : null;
+  }
+
   #apply() {
     if (!this.#store.document) return;
-    const {scene: settings, roads} = this.#store.document;
+    const {scene: settings} = this.#store.document;
     const {scene} = this.#stage;
+    scene.remove(this.#sky.dome, this.#gradient.dome);
     scene.fog = fogOf(settings.fog);
     scene.background = scene.fog && !settings.sky ? scene.fog.color.clone()
       : colorOf(settings.background);
-    scene.remove(this.#sky);
+    this.#haze = null;
+    let distant = scene.background;
     if (settings.sky) {
-      colorSky(this.#sky, settings.sky);
-      scene.add(this.#sky);
+      this.#sky.take(settings.sky);
+      scene.add(this.#sky.dome);
+      distant = this.#sky.horizon;
+    } else if (leavesBackground(settings)) {
+      scene.add(this.#gradient.dome);
+      distant = this.#gradient.horizon;
+      scene.fog = this.#haze = new Fog(distant, HAZE.nearest, 4 * HAZE.nearest);
     }
-    for (const road of this.#roads) scene.remove(road);
-    this.#roads = roads.filter(({points}) => points.length > 1).map((road) => {
+    this.#materials.setDistance(distant);
+    this.#contact.stand(this.#ground());
+    this.#layRoads();
+    this.#flags();
+  }
+
+  #layRoads() {
+    const {scene} = this.#stage;
+    scene.remove(...this.#roads);
+    this.#roads = (this.#store.document?.roads ?? []).filter(({points}) => points.length > 1).map((road) => {
       const mesh = new Mesh(ribbon(road),
         this.#materials.get(road.material ?? ASPHALT, {}, {doubleSided: true}));
       mesh.receiveShadow = true;
       scene.add(mesh);
       return mesh;
     });
-    this.#flags();
   }
 }

@@ -1,8 +1,9 @@
 /** The world's lights, what stands for them in the picture, and the light that is everywhere. */
 import {
-  BufferAttribute, BufferGeometry, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
+  BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, PointLight, Quaternion, SphereGeometry, SpotLight, Vector3,
 } from 'three';
+import {leavesAmbient} from './sky.js';
 import {lightColorOf, place} from './three_convert.js';
 /** @import {Light} from '../protocol.js' */
 /** @import {Pose7} from '../pose.js' */
@@ -17,6 +18,9 @@ import {lightColorOf, place} from './three_convert.js';
 
 /** three's lamps are physical: what falls on a white wall is divided by pi there. */
 const STRENGTH = Math.PI;
+/** Daylight is bluish from above, warm from the ground; what a world sets is left as it is. */
+const FROM_ABOVE = new Color(1.02, 1.1, 1.22);
+const FROM_BELOW = new Color(1.0, 0.95, 0.88);
 const SHADOW_SIZE = 2048;
 /** More shadow maps than this, and simple machines stutter. */
 const MOST_SHADOWS = 4;
@@ -112,7 +116,7 @@ function prepareShadow(lamp) {
   lamp.shadow.mapSize.set(size, size);
   lamp.shadow.bias = lamp instanceof DirectionalLight ? -0.0004 : -0.002;
   lamp.shadow.normalBias = 0.02;
-  lamp.shadow.radius = 2;
+  lamp.shadow.radius = 3.5;
 }
 
 export class Lights {
@@ -180,6 +184,10 @@ export class Lights {
     const {lights, scene: settings} = this.#store.document;
     this.#ambient.color.copy(lightColorOf(settings.ambient));
     this.#ambient.groundColor.copy(this.#ambient.color).multiplyScalar(0.6);
+    if (leavesAmbient(settings)) {
+      this.#ambient.color.multiply(FROM_ABOVE);
+      this.#ambient.groundColor.multiply(FROM_BELOW);
+    }
     this.#ambient.intensity = STRENGTH;
     let shadows = 0;
     for (const light of lights) {

@@ -156,7 +156,9 @@ export class Manipulator {
     const name = selection.at(-1);
     const entity = name ? this.#store.entity(name) : null;
     if (!name || !entity) return null;
-    if (entity.kind === 'link') return entity.model.name;
+    if (entity.kind === 'link') {
+      return this.#store.modelEditing?.name === entity.model.name ? name : entity.model.name;
+    }
     if (entity.kind === 'light' && mode === 'scale') return null;
     return name;
   }

@@ -1,7 +1,7 @@
 /** three materials for the document's, one object for each appearance, so that they are shared. */
 import {
   CanvasTexture, DoubleSide, FrontSide, MeshBasicMaterial, MeshLambertMaterial, MeshPhongMaterial,
-  RepeatWrapping, SRGBColorSpace, TextureLoader,
+  RepeatWrapping, SRGBColorSpace, TextureLoader, Vector3,
 } from 'three';
 import {colorOf} from './three_convert.js';
 import {patternCanvas} from './builtin_textures.js';
@@ -13,8 +13,9 @@ import {DULLEST, GREY, GROUND, SHININESS} from './palette.js';
 /** @typedef {import('../protocol.js').Texture} TextureDocument */
 /** @typedef {import('three').Material} ThreeMaterial */
 /**
- * How a surface is drawn; `pushed`: it lies just behind others.
- * @typedef {{doubleSided?: boolean, pushed?: boolean}} MaterialUse
+ * How a surface is drawn; `pushed`: it lies just behind others; `endless`: its rim goes over into
+ * what is behind it.
+ * @typedef {{doubleSided?: boolean, pushed?: boolean, endless?: boolean}} MaterialUse
  */
 
 const DULL = [0, 0, 0, 1];
@@ -31,6 +32,8 @@ export class Materials {
   /** @type {Map<string, Texture|null>} */
   #textures = new Map();
   #manager;
+  /** Colour in which endless grounds end, as the screen shows it. */
+  #distance = {value: new Vector3(0.7, 0.7, 0.7)};
 
   /** @param {LoadingManager} manager  tells when pictures have arrived */
   constructor(manager) {
@@ -58,6 +61,12 @@ export class Materials {
     return made;
   }
 
+  /** @param {import('three').Color} color  of what is behind an endless ground */
+  setDistance(color) {
+    const {r, g, b} = color.clone().convertLinearToSRGB();
+    this.#distance.value.set(r, g, b);
+  }
+
   /**
    * A mesh's own material in another appearance.
    * @param {ThreeMaterial} material
@@ -79,8 +88,42 @@ export class Materials {
     return made;
   }
 
-  /** @param {Paint|null} material */
-  #make(material, {opacity = 1, wireframe = false}, {doubleSided = false, pushed = false}) {
+  /**
+   * @param {Paint|null} material
+   * @param {Variant} variant
+   * @param {MaterialUse} surface
+   */
+  #make(material, variant, surface) {
+    const made = this.#plain(material, variant, surface);
+    if (surface.endless) this.#fadeRim(made);
+    return made;
+  }
+
+  /**
+   * Lets a plane end in the colour of what is behind it, from half of the way to its rim on.
+   * @param {ThreeMaterial} material
+   */
+  #fadeRim(material) {
+    material.onBeforeCompile = (shader) => {
+      shader.uniforms.distance_color = this.#distance;
+      shader.vertexShader = `varying vec2 out_of_middle;\n${shader.vertexShader}`.replace(
+        '#include <begin_vertex>', `#include <begin_vertex>
+          out_of_middle = position.xy * 2.0;`);
+      shader.fragmentShader = `uniform vec3 distance_color;
+        varying vec2 out_of_middle;
+        ${shader.fragmentShader}`.replace('#include <fog_fragment>', `#include <fog_fragment>
+          gl_FragColor.rgb = mix(gl_FragColor.rgb, distance_color,
+            smoothstep(0.3, 0.97, length(out_of_middle)));`);
+    };
+    material.customProgramCacheKey = () => 'endless';
+  }
+
+  /**
+   * @param {Paint|null} material
+   * @param {Variant} variant
+   * @param {MaterialUse} surface
+   */
+  #plain(material, {opacity = 1, wireframe = false}, {doubleSided = false, pushed = false}) {
     const diffuse = material?.diffuse ?? material?.ambient ??
       (material?.texture ? [1, 1, 1, 1] : GREY);
     // The simulator has put the colour's alpha into the transparency; what is not from there has not.

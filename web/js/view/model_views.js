@@ -4,6 +4,7 @@ import {canonicalLink} from '../store.js';
 import {compose, displacement, inverse} from '../pose.js';
 import {matrixOf} from './three_convert.js';
 import {boxOf, visualParts} from './shape_meshes.js';
+import {tinted} from './tints.js';
 /** @import {Batches, Item} from './batches.js' */
 /** @import {Link, Model, Visual} from '../protocol.js' */
 /** @import {Part, Stock} from './shape_meshes.js' */
@@ -86,6 +87,8 @@ export class Models {
    * @type {(ids: Set<number>|null) => void}
    */
   onMoved = () => {};
+  /** Called when a mesh that was waited for can be seen. */
+  onArrived = () => {};
 
   /**
    * Metres that a pixel covers at a point.
@@ -133,7 +136,10 @@ export class Models {
   hold(poses) {
     for (const [name, pose] of Object.entries(poses)) {
       const view = this.#views.get(name);
-      if (!view) continue;
+      if (!view) {
+        this.#holdLink(name, pose);
+        continue;
+      }
       const here = this.#store.worldPose(name);
       if (!here) continue;
       const toModel = inverse(here);
@@ -152,10 +158,8 @@ export class Models {
    */
   release(names, {keep = false} = {}) {
     for (const name of names) {
-      const view = this.#views.get(name);
       this.#stretched.delete(name);
-      if (!view) continue;
-      for (const [id, linkView] of view.links) {
+      for (const [view, id, linkView] of this.#linksOf(name)) {
         const pose = this.#held.get(id);
         if (keep && pose) this.#store.poses.get(id)?.set(pose);
         this.#held.delete(id);
@@ -163,6 +167,28 @@ export class Models {
       }
     }
     this.#changed(null);
+  }
+
+  /** One link of a model that is being built. @param {string} name @param {Pose7} pose */
+  #holdLink(name, pose) {
+    for (const [view, id, linkView] of this.#linksOf(name)) {
+      this.#held.set(id, pose);
+      this.#moveLink(view, linkView);
+    }
+  }
+
+  /**
+   * The links of a model, or the one that is named.
+   * @param {string} name
+   * @returns {[ModelView, number, LinkView][]}
+   */
+  #linksOf(name) {
+    const view = this.#views.get(name);
+    if (view) return [...view.links].map(([id, linkView]) => [view, id, linkView]);
+    const entity = this.#store.entity(name);
+    const owner = entity?.kind === 'link' ? this.#views.get(entity.model.name) : null;
+    const linkView = entity?.kind === 'link' ? owner?.links.get(entity.link.id) : null;
+    return entity?.kind === 'link' && owner && linkView ? [[owner, entity.link.id, linkView]] : [];
   }
 
   /**
@@ -293,13 +319,14 @@ export class Models {
       linkView.radius = 0;
       this.#moveLink(view, linkView);
     };
-    const parts = visualParts(visual, this.#stock, look);
+    const parts = visualParts(tinted(view.document, visual, this.#store.modelEditing?.name === name), this.#stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {
         if (view.gone) return;
         add(ready);
         this.#changed(null);
+        this.onArrived();
       });
     }
   }

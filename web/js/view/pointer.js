@@ -130,7 +130,7 @@ export class Pointer {
     this.#press = press;
     if (event.button !== 0 || store.mode === 'insert') return;
     if (forces.grab(event)) press.owner = 'force';
-    else if (manipulator.grab(event, () => selector.movable(event), this.#keys.axis)) {
+    else if (manipulator.grab(event, () => selector.grasped(event), this.#keys.axis)) {
       press.owner = 'manipulator';
     } else if (store.mode === 'select' && (event.ctrlKey || event.metaKey)) press.owner = 'box';
   }
@@ -202,6 +202,7 @@ export class Pointer {
       else if (press.button === 2 && clicked) this.#parts.actions.escape();
     } else if (clicked && press.button === 0) {
       if (store.mode === 'snap') faceSnap.click(event);
+      else if (store.mode === 'connect') selector.pick(event);
       else if (store.mode === 'measure') this.#parts.measure.click(event);
       else selector.click(event);
     } else if (clicked && press.button === 2) selector.menu(event);
@@ -226,6 +227,7 @@ export class Pointer {
     let cursor = '';
     if (store.mode === 'insert') placer.follow(event);
     else if (store.mode === 'snap') faceSnap.hover(event);
+    else if (store.mode === 'connect') cursor = 'crosshair';
     else if (forces.hover(event) || manipulator.hover(event)) cursor = 'grab';
     if (stage.canvas.style.cursor !== cursor) stage.canvas.style.cursor = cursor;
   }

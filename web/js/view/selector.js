@@ -58,6 +58,19 @@ export class Selector {
     return hit && !hit.plane ? hit : null;
   }
 
+  /** As `movable`; of the model that is being built, its link. @param {MousePoint} event */
+  grasped(event) {
+    const hit = this.movable(event);
+    const built = hit?.link && this.#store.modelEditing?.name === hit.name;
+    return hit && built ? {...hit, name: `${hit.name}::${hit.link}`} : hit;
+  }
+
+  /** A link is chosen, for a joint. @param {MousePoint} event */
+  pick(event) {
+    const hit = this.movable(event);
+    if (hit?.link) this.#store.emit('pick', {model: hit.name, link: hit.link});
+  }
+
   /**
    * The point under the mouse: of a body, of the ground, or 10 m ahead.
    * @param {MousePoint} event
@@ -86,7 +99,8 @@ export class Selector {
 
   /** The second click on a model of several links means the link. @param {Under} under */
   #wantsLink({name, link}) {
-    const {selection, mode} = this.#store;
+    const {selection, mode, modelEditing} = this.#store;
+    if (link && modelEditing?.name === name) return true;
     const [chosen] = selection;
     const model = this.#store.model(name);
     return mode === 'select' && link && selection.length === 1 && model && model.links.length > 1 &&

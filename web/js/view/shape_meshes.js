@@ -27,7 +27,7 @@ import {Materials} from './materials.js';
  */
 
 /** A geometry of a shape before its material is chosen; `own`: the material of the mesh file.
- * @typedef {{geometry: BufferGeometry, matrix: Matrix4, pushed?: boolean, own?: Material|Material[]}} BasicPart */
+ * @typedef {{geometry: BufferGeometry, matrix: Matrix4, pushed?: boolean, endless?: boolean, own?: Material|Material[]}} BasicPart */
 
 /**
  * @typedef {object} Part
@@ -35,6 +35,9 @@ import {Materials} from './materials.js';
  * @property {Material|Material[]} material
  * @property {Matrix4} matrix  link frame from geometry
  */
+
+/** Planes from this size on, m, stand for a ground without end. */
+const ENDLESS = 40;
 
 const X_TO_Z = new Matrix4().makeRotationX(Math.PI / 2);
 
@@ -78,7 +81,7 @@ function capsule({radius, length}) {
 function plane({normal, size}) {
   const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1),
     new Vector3().fromArray(normal).normalize());
-  return [{geometry: UNIT.plane, pushed: true,
+  return [{geometry: UNIT.plane, pushed: true, endless: Math.min(size[0], size[1]) >= ENDLESS,
     matrix: new Matrix4().compose(new Vector3(), turn, new Vector3(size[0], size[1], 1))}];
 }
 
@@ -199,7 +202,7 @@ function finished(part, shape, materials, {material, opacity = 1, wireframe = fa
   }
   made ??= materials.get(shape.material ?? null, variant,
     {doubleSided: shape.geometry.type !== 'box' && shape.geometry.type !== 'plane',
-      pushed: part.pushed ?? false});
+      pushed: part.pushed ?? false, endless: Boolean(part.endless && !shape.material?.texture)});
   return {geometry: part.geometry, material: made,
     matrix: matrixOf(shape.pose).multiply(part.matrix)};
 }

@@ -3,7 +3,7 @@
  * is drawn coarser, and once more in full when they rest.
  */
 import {
-  Color, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, SRGBColorSpace, WebGLRenderer,
+  Color, NeutralToneMapping, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, SRGBColorSpace, WebGLRenderer,
   WebGLRenderTarget,
 } from 'three';
 /** @import {Camera} from 'three' */
@@ -14,6 +14,8 @@ const FAST = 15;
 const COARSEST = 0.5;
 /** Milliseconds between new shadows while pictures are slow. */
 const SLOW_SHADOWS = 300;
+/** Makes up for what the tone mapping takes from middle greys. */
+const EXPOSURE = 1.08;
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
 /**
  * A processor that draws in place of a graphics card pays for smooth edges with every picture:
@@ -53,6 +55,11 @@ export class Stage {
    * @type {(time: number) => boolean}
    */
   onBeforeDraw = () => false;
+  /**
+   * Called before shadows are drawn.
+   * @type {(renderer: WebGLRenderer, scene: Scene) => void}
+   */
+  onShadows = () => {};
   /** Called when the canvas has another size. */
   onResize = () => {};
 
@@ -99,6 +106,8 @@ export class Stage {
     } catch (error) {
       throw new NoWebGL(error instanceof Error ? error.message : String(error));
     }
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.toneMappingExposure = EXPOSURE;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
@@ -275,8 +284,9 @@ export class Stage {
     const more = this.onBeforeDraw(time);
     const shadows = this.#shadowsWanted &&
       (this.#quality >= 1 || time - this.#shadowed > SLOW_SHADOWS);
-    renderer.shadowMap.needsUpdate = shadows;
     if (shadows) {
+      this.onShadows(renderer, this.scene);
+      renderer.shadowMap.needsUpdate = true;
       this.#shadowsWanted = false;
       this.#shadowed = time;
     }

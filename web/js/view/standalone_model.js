@@ -2,6 +2,7 @@
 import {Group, Mesh} from 'three';
 import {place} from './three_convert.js';
 import {meshOf, visualParts} from './shape_meshes.js';
+import {tinted} from './tints.js';
 /** @import {Model} from '../protocol.js' */
 /** @import {Part, Stock} from './shape_meshes.js' */
 
@@ -31,7 +32,7 @@ export function standaloneModel(model, stock, look = {}) {
           linkGroup.add(mesh);
         }
       };
-      const parts = visualParts(visual, stock, look);
+      const parts = visualParts(tinted(model, visual), stock, look);
       if (parts instanceof Promise) waits.push(parts.then(add));
       else add(parts);
     }

@@ -1,11 +1,12 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
 import {Box3, Vector3} from 'three';
 import {hullOf} from '../building/plane_geometry.js';
+import {remembered} from '../panels/dom.js';
 import {subtract, transform} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
 import {BoxSelect} from './box_select.js';
-import {CameraRig} from './camera_rig.js';
+import {CameraRig, savedConfiguration} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
 import {Forces} from './force_arrows.js';
@@ -152,6 +153,7 @@ class View {
   #overlays;
   #pointer;
   #actors;
+  #surroundings;
   #marks;
   #people;
   #measure;
@@ -197,7 +199,7 @@ class View {
     this.#lights = lights;
     this.#rig = rig;
     this.#picker = picker;
-    new Surroundings({stage, store, materials});
+    this.#surroundings = new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
     this.#marks = new TopicMarks({...shared, topics});
@@ -215,6 +217,8 @@ class View {
       boxSelect: new BoxSelect(element, store, (name) => this.pixelOf(name))});
     this.#connect();
     actions.attachView(this);
+    const kept = savedConfiguration();
+    if (kept) Object.assign(store.overlays.scene, kept.overlays);
     this.#rig.apply();
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
@@ -239,6 +243,7 @@ class View {
   }
 
   #connect() {
+    this.#models.onArrived = () => this.#rig.frameAll();
     this.#models.onMoved = (ids) => {
       this.#rig.follow();
       this.#boxes.follow(ids);
@@ -283,6 +288,8 @@ class View {
       : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
     const centre = position.map((part, index) => part + ahead[index] * distance);
     this.#lights.cover(centre, Math.max(distance * 1.3, 4));
+    this.#surroundings.cover(centre, this.#rig.orthographic
+      ? Math.max(distance, this.#stage.width / this.#rig.zoomLevel) : distance);
   }
 
   // ---- what actions ask
@@ -379,6 +386,17 @@ class View {
   carry(poses, asked) {
     this.setPreviewPoses(null);
     return this.#models.carry(poses, asked);
+  }
+
+  /** Remembers camera and overlays for worlds that have no camera of their own. */
+  saveConfiguration() {
+    const {projection, controller} = this.#store.camera;
+    remembered.set('configuration', {...this.#rig.view, projection, controller,
+      overlays: this.#store.overlays.scene});
+  }
+
+  resetConfiguration() {
+    remembered.set('configuration', null);
   }
 
   cancelDrag() {

@@ -47,10 +47,10 @@ from .inserts import (
     taken_names,
     world_of,
 )
+from .model_building import ModelBuilding
 from .model_scaling import resized
 from .property_path import made
 from .property_target import property_change, split_target
-from .solid_inertia import of_shapes
 
 _MOST_IN_A_GROUP = 5000
 _MOST_STEPS = 1000000
@@ -82,6 +82,7 @@ class Edits:
         self._protocol = protocol
         self._tell = tell
         self._dragged = dragged
+        self._building = ModelBuilding(simulator, resolver, tell)
 
     def do(self, op: Dict[str, Any], author: str = "") -> Dict[str, Any]:
         """Carry out one operation as one step of its author's; returns the reply's value.
@@ -114,7 +115,7 @@ class Edits:
             "insert": self._insert, "insert_light": self._insert_light, "delete": self._delete,
             "move": self._move, "scale": self._scale, "rename": self._rename, "set": self._set,
             "paste": self._paste, "wrench": self._wrench, "reset": self._reset,
-            "joint": self._joint, "compute_inertia": self._compute_inertia,
+            "joint": self._joint, **self._building.planners(),
         }
         return planners[kind](op)
 
@@ -240,17 +241,6 @@ class Edits:
 
     def _is_of_model(self, target: str) -> bool:
         return bool(split_scoped(target, self._world.models.has)[0])
-
-    def _compute_inertia(self, op: Dict[str, Any]) -> Planned:
-        owner, rest = split_target(self._world, op["link"])
-        link = next((one for one in owner.links if one.name == rest), None)
-        if link is None:
-            raise CommandError(f"unknown link {op['link']!r}")
-        meshes, _ = checked(owner)
-        changed = replace(link, inertial=of_shapes(link, meshes))
-        model = replace(owner, links=[changed if one is link else one for one in owner.links])
-        whose = history_labels.short(op["link"], self._world.models.get(owner.name))
-        return f"Compute inertia of {whose}", EditModel(owner.name, model, meshes), {}
 
     def _reset(self, op: Dict[str, Any]) -> Planned:
         words = {"time": "time", "poses": "model poses", "world": "world"}[op["what"]]

@@ -16,6 +16,7 @@ from ..transport.hub import Hub
 from ..transport.web_socket import Route
 from .model_import import import_model
 from .model_library import Library
+from .model_saving import save_model
 
 _LOOK_S = 2.0
 
@@ -46,7 +47,7 @@ class LibraryRequests:
         handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
             "library": self._list, "library_add": self._add, "library_remove": self._remove,
             "library_get": self._get, "preview": self._preview,
-            "import_model": self._import,
+            "import_model": self._import, "save_model": self._save,
         }
         return {kind: Route(handler, self._pool) for kind, handler in handlers.items()}
 
@@ -98,6 +99,12 @@ class LibraryRequests:
 
     def _import(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         reply, issues = import_model(message, self._resolver)
+        for issue in issues:
+            self._tell(issue)
+        return reply
+
+    def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        reply, issues = save_model(message, self._hub.simulator, self._resolver)
         for issue in issues:
             self._tell(issue)
         return reply

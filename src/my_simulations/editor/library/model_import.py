@@ -8,7 +8,8 @@ import re
 import shutil
 import tempfile
 from dataclasses import replace
-from typing import Any, Dict, List, Tuple
+from types import MappingProxyType
+from typing import Any, Dict, List, Mapping, Tuple
 
 from ...description.model import Inertial, Link, Model
 from ...description.shapes import Collision, Mesh, Visual
@@ -45,10 +46,7 @@ def import_model(message: Dict[str, Any], resolver: Resolver) -> Tuple[Dict[str,
         EditRefusedError: `exists`, where a folder of that name is there and must not be replaced.
         CommandError: the request itself is at fault.
     """
-    name = message["name"].strip()
-    if not _NAME.fullmatch(name) or name.endswith("."):
-        raise CommandError(f"{name!r} cannot be the name of a model folder; use letters, digits,"
-                           " _, - and spaces")
+    name = checked_folder_name(message["name"])
     files = _contents(message["files"])
     target = os.path.join(default_folder(), name)
     if os.path.lexists(target) and not message.get("overwrite"):
@@ -64,15 +62,24 @@ def import_model(message: Dict[str, Any], resolver: Resolver) -> Tuple[Dict[str,
             else:
                 issues += _mesh_model(folder, name, files, float(message.get("density")
                                                                  or _DENSITY))
-            issues += _tried(folder, resolver)
+            issues += tried(folder, resolver)
             _name_meshes(folder, name)
         except InputError as fault:
-            raise InputError([_placed(issue, folder, target) for issue in fault.issues]) from fault
+            raise InputError([placed(issue, folder, target) for issue in fault.issues]) from fault
         if os.path.lexists(target):
             shutil.rmtree(target)
         os.rename(folder, target)
     return ({"uri": f"model://{name}", "path": target},
-            [_placed(issue, folder, target) for issue in issues])
+            [placed(issue, folder, target) for issue in issues])
+
+
+def checked_folder_name(name: str) -> str:
+    """The name of a model folder without spaces round it. Raises CommandError."""
+    name = name.strip()
+    if not _NAME.fullmatch(name) or name.endswith("."):
+        raise CommandError(f"{name!r} cannot be the name of a model folder; use letters, digits,"
+                           " _, - and spaces")
+    return name
 
 
 def _contents(given: List[Dict[str, str]]) -> Dict[str, bytes]:
@@ -108,7 +115,7 @@ def _write(folder: str, files: Dict[str, bytes]) -> None:
             stream.write(data)
     if "model.config" not in files:
         described = min(path for path in files if path.lower().endswith(".sdf"))
-        _write(folder, {"model.config": _config(os.path.basename(folder), described)})
+        _write(folder, {"model.config": config_text(os.path.basename(folder), described)})
 
 
 def _mesh_model(folder: str, name: str, files: Dict[str, bytes], density: float) -> List[Issue]:
@@ -120,7 +127,7 @@ def _mesh_model(folder: str, name: str, files: Dict[str, bytes], density: float)
     if not 0.0 < density < 1e6:
         raise CommandError(f"the density must be between 0 and 1e6 kg/m^3, is {density:g}")
     _write(folder, {**{f"meshes/{path}": data for path, data in files.items()},
-                    "model.config": _config(name, "model.sdf")})
+                    "model.config": config_text(name, "model.sdf")})
     path = os.path.join(folder, "meshes", meshes[0])
     uri = f"meshes/{meshes[0]}"
     inertial, issues = _inertial(path, uri, density)
@@ -167,18 +174,32 @@ def _inertial(path: str, uri: str, density: float) -> Tuple[Inertial, List[Issue
                     iyz=float(moments[1][2])), issues
 
 
-def _config(name: str, described: str) -> bytes:
+def config_text(name: str, described: str,
+                about: Mapping[str, str] = MappingProxyType({})) -> bytes:
+    """A model.config.
+
+    Args:
+        name: of the model.
+        described: file with the description.
+        about: `version`, `description`, `author` and `email`, as far as known.
+    """
     from lxml import etree
 
     root = etree.Element("model")
     etree.SubElement(root, "name").text = name
-    etree.SubElement(root, "version").text = "1.0"
+    etree.SubElement(root, "version").text = about.get("version") or "1.0"
     etree.SubElement(root, "sdf", version="1.7").text = described
+    if about.get("author") or about.get("email"):
+        author = etree.SubElement(root, "author")
+        etree.SubElement(author, "name").text = about.get("author") or ""
+        etree.SubElement(author, "email").text = about.get("email") or ""
+    if about.get("description"):
+        etree.SubElement(root, "description").text = about["description"]
     etree.indent(root, space="  ")
     return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8"))
 
 
-def _tried(folder: str, resolver: Resolver) -> List[Issue]:
+def tried(folder: str, resolver: Resolver) -> List[Issue]:
     """What the simulator says of the model. Raises InputError, CommandError."""
     entity, issues = entity_of_uri(f"file://{folder}", resolver)
     if isinstance(entity, Model):
@@ -186,7 +207,7 @@ def _tried(folder: str, resolver: Resolver) -> List[Issue]:
     return issues
 
 
-def _placed(issue: Issue, scratch: str, target: str) -> Issue:
+def placed(issue: Issue, scratch: str, target: str) -> Issue:
     """An issue that names the files where they end up."""
     return replace(issue, file=issue.file.replace(scratch, target),
                    message=issue.message.replace(scratch, target))

@@ -57,9 +57,12 @@ class WorldFiles:
     def save(self, message: Dict[str, Any]) -> Dict[str, Any]:
         """`save`: to a path, or to where the world was opened or saved.
 
-        What is chosen with a path, holds for the next saves without one.
+        What is chosen with a path, holds for the next saves without one. A `copy` leaves the file
+        and the choices of this world as they are: it is the world as it is now, state and all.
         """
         with self._lock:
+            if message.get("copy"):
+                return self._copy(message)
             path, overwrite = message.get("path") or "", bool(message.get("overwrite"))
             if not path:
                 if self.file not in self._ours or ships(self.file):
@@ -68,14 +71,7 @@ class WorldFiles:
                         "file name" if self._world.models.losses
                         else "the world has no file yet; give a file name")
                 path, overwrite = self.file, True
-            if not os.path.splitext(path)[1]:
-                path += EXTENSIONS[0]
-            target = allowed_path(path, self.roots())
-            refuse_shipped(target)
-            if os.path.lexists(target) and not overwrite:
-                raise EditRefusedError("exists", f"{target} already exists"
-                                       + self._would_lose(target),
-                                       "overwrite it, or choose another name")
+            target = self._target(path, overwrite)
             inline = message.get("format") != "includes"
             for choice in self._chosen:
                 if message.get(choice) is not None or message.get("path"):
@@ -88,6 +84,24 @@ class WorldFiles:
             self._ours.add(self.file)
             self._history.saved()
             return {"path": self.file, "left_out": left_out}
+
+    def _copy(self, message: Dict[str, Any]) -> Dict[str, Any]:
+        overwrite = bool(message.get("overwrite"))
+        target = self._target(message.get("path") or "", overwrite)
+        path = save_world(self._world, target, roots=self.roots(), resolver=self._resolver,
+                          overwrite=overwrite, despite_losses=True, state=True, launched=True)
+        return {"path": path, "left_out": []}
+
+    def _target(self, path: str, overwrite: bool) -> str:
+        """The file to write. Raises CommandError, EditRefusedError."""
+        if not os.path.splitext(path)[1]:
+            path += EXTENSIONS[0]
+        target = allowed_path(path, self.roots())
+        refuse_shipped(target)
+        if os.path.lexists(target) and not overwrite:
+            raise EditRefusedError("exists", f"{target} already exists" + self._would_lose(target),
+                                   "overwrite it, or choose another name")
+        return target
 
     def _would_lose(self, target: str) -> str:
         losses = self._world.models.losses

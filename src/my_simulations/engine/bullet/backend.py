@@ -78,7 +78,7 @@ class BulletBackend:
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
         self._readout = StateReadout(self._on_diverged)
         self._residual = ResidualFriction()
-        self._rolling = RollingContacts()
+        self._rolling = RollingContacts(lambda uid, step: self._landing.see_rolling(uid, step))
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
         self._forces = Forces(self._waker.around,

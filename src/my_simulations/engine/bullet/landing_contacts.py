@@ -174,6 +174,15 @@ class LandingContacts:
         turn = EVERY * (look + looks_until_turn(len(watched), look, _ROUNDS))
         return max(step, min(turn, self._next))
 
+    def see_rolling(self, uid: int, step: int) -> None:
+        """The contact points of a body that rolls are about to be dropped for this step.
+
+        Without them it would be taken for one that flies, and be looked at in every step.
+        """
+        flight = self._flights.get(uid)
+        if flight is not None and flight.look <= step:
+            self._is_on_ground(flight, step)
+
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Look for flights now and then, and find the points of those that end in this step."""
         if step % EVERY == 0:
@@ -225,19 +234,26 @@ class LandingContacts:
     def _plan(self) -> None:
         self._next = min((flight.look for flight in self._flights.values()), default=FAR)
 
+    def _is_on_ground(self, flight: _Flight, step: int) -> bool:
+        """Whether a body touches something; then it is not looked at for some steps."""
+        uid = flight.body.uid
+        if not any(contact[9] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
+            return False
+        flight.on_ground += 1
+        if flight.on_ground > _BOUNCES or norm(pybullet.getBaseVelocity(uid)[0]) <= _RESTS:
+            del self._flights[uid]
+        flight.look = step + _BOUNCE
+        flight.through.clear()
+        flight.tried.clear()
+        return True
+
     def _look(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[_Touch]:
         """What a body will touch in this step, deepest first; finds out when to look again."""
         uid = flight.body.uid
-        linear, angular = pybullet.getBaseVelocity(uid)
-        if any(contact[9] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
-            flight.on_ground += 1
-            if norm(linear) <= _RESTS or flight.on_ground > _BOUNCES:
-                del self._flights[uid]
-            flight.look = step + _BOUNCE
-            flight.through.clear()
-            flight.tried.clear()
+        if self._is_on_ground(flight, step):
             return []
         flight.on_ground = 0
+        linear, angular = pybullet.getBaseVelocity(uid)
         low, high = _extent(flight.body)
         fall = norm(gravity) * dt
         speed = norm(linear) + norm(angular) * norm(subtract(high, low)) + _AHEAD * fall

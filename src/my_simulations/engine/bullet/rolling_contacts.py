@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import dist
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -73,9 +73,14 @@ class _Roller:
 
 
 class RollingContacts:
-    """Drops the contact points of lying cylinders before each step."""
+    """Drops the contact points of lying cylinders before each step.
 
-    def __init__(self) -> None:
+    Args:
+        dropping: is told, before that, whose points are dropped in which step.
+    """
+
+    def __init__(self, dropping: Callable[[int, int], None]) -> None:
+        self._dropping = dropping
         self._rollers: Dict[Tuple[int, int], _Roller] = {}
         self._rolling: Dict[Tuple[int, int], collision_groups.Filter] = {}
         self._standing: Dict[int, Pose] = {}
@@ -142,6 +147,8 @@ class RollingContacts:
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
+        for uid in {uid for uid, _ in self._rolling}:
+            self._dropping(uid, step)
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 

@@ -6,6 +6,7 @@ Python module knows no instances. Source of names and numbers: Embree's API docu
 from __future__ import annotations
 
 import ctypes
+import ctypes.util
 import glob
 import importlib.util
 import os
@@ -65,8 +66,8 @@ class Embree:
         path = library_path()
         if path is None:
             raise SensingUnavailableError(
-                "lasers need the Python package 'embreex', which is not installed or has no "
-                "library for this processor: pip install embreex")
+                "lasers need Embree 4: on x86-64 'pip install embreex'; on other processors the "
+                "system's library (Debian 13: apt-get install libembree4-4)")
         try:
             # Calls are short: to let other threads run meanwhile costs more than the calls.
             library, building = ctypes.PyDLL(path), ctypes.CDLL(path)
@@ -112,7 +113,11 @@ class Embree:
 
 
 def library_path() -> Optional[str]:
-    """The wheel's library, found without importing its module; None where there is none."""
+    """The wheel's library, found without importing its module, else the system's; None for none."""
+    return _library_of_wheel() or ctypes.util.find_library("embree4")
+
+
+def _library_of_wheel() -> Optional[str]:
     spec = importlib.util.find_spec("embreex")
     if spec is None or not spec.submodule_search_locations:
         return None

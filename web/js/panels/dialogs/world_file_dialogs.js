@@ -240,6 +240,34 @@ export function saveAsDialog({store, request}) {
   });
 }
 
+/**
+ * A copy of the world as it is now, for a second simulator beside this one.
+ * @param {FileDialogPage} page
+ */
+export async function cloneDialog({store, request}) {
+  const name = baseName(store.history?.file || store.document?.file).replace(/\.[^.]*$/, '');
+  const path = await filesDialog(request, {
+    title: 'Clone World',
+    button: 'Clone',
+    nameless: 'Enter a file name.',
+    field: {value: `${name || 'untitled'}_clone.world`},
+    more: [h('p', {class: 'soft', text: 'The world as it is now, with sim time, velocities and launched models. ' +
+      'This world keeps its own file.'})],
+    run: (chosen) => saveTo(request, {path: withEnding(chosen), copy: true}),
+  });
+  if (!path) return;
+  const command = `ROS_MASTER_URI=http://localhost:11399 gazebo ${/^[\w./-]+$/.test(path) ? path : `'${path.replaceAll("'", "'\\''")}'`}`;
+  const line = h('input', {type: 'text', value: command, readonly: true, 'aria-label': 'Command'});
+  await new Dialog({
+    title: 'World Cloned',
+    content: [h('p', {text: `Saved ${path}. To run the clone beside this world, without ROS, type in another terminal:`}), line],
+    buttons: [{title: 'Copy Command', run: async () => {
+      await navigator.clipboard.writeText(command);
+      return false;
+    }}, {title: 'Close', primary: true}],
+  }).open();
+}
+
 /** What a saved world holds besides its models: what the launch file spawned, and its state. */
 class SaveChoices {
   constructor() {
@@ -279,7 +307,7 @@ class SaveChoices {
 
 /**
  * @param {RequestFunction} request
- * @param {{path: string, launched: boolean, state: boolean}} wanted
+ * @param {{path: string, launched?: boolean, state?: boolean, copy?: boolean}} wanted
  */
 async function saveTo(request, wanted) {
   let said = '';

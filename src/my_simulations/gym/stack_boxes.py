@@ -1,0 +1,113 @@
+"""A gripper on three linear axes puts one box on another."""
+from __future__ import annotations
+
+import math
+import os
+from typing import Any, Dict, Optional
+
+import gymnasium
+import numpy as np
+
+from ..geometry import Pose
+from ..python_api import OpenWorld, WorldChoice
+from ..resources.package_files import own_directory
+from .world_env import Judgement, View, WorldEnv, seen, within
+
+SIZE = 0.05       # m, of a box
+FASTEST = 0.25    # m/s, of an axis
+GRIP = 10.0       # N, of each finger
+AXES = ("x", "y", "z")
+FINGERS = ("left_finger", "right_finger")
+_DRIVE = 200.0    # N, of an axis
+_OPENING = 0.2    # m/s, of a finger
+_FAR = 10.0       # m, bound of observations
+_CENTRED, _LEVEL = 0.015, 0.004  # m, how well the upper box must stand
+
+_BOX = """<sdf version="1.6"><model name="{name}"><link name="link">
+<inertial><mass>0.1</mass><inertia><ixx>4.2e-5</ixx><iyy>4.2e-5</iyy><izz>4.2e-5</izz></inertia>
+</inertial>
+<collision name="collision"><geometry><box><size>0.05 0.05 0.05</size></box></geometry>
+<surface><friction><ode><mu>0.8</mu><mu2>0.8</mu2></ode></friction></surface></collision>
+<visual name="visual"><geometry><box><size>0.05 0.05 0.05</size></box></geometry>
+<material><ambient>{colour}</ambient><diffuse>{colour}</diffuse></material></visual>
+</link></model></sdf>"""
+
+
+class StackBoxes:
+    """Task: put the red box on the blue one and let go.
+
+    Action: speeds of the x, y and z axes, each -1 to 1 of 0.25 m/s; and the fingers, above 0 to
+    close with 10 N each, below to open.
+    Observation, 14 numbers: positions of the axes and of both fingers (m), of the red and of the
+    blue box (m, world frame), and red minus blue.
+    Reward: metres by which the fingers came nearer to the red box and the red box nearer to its
+    place on the blue one; 1 more on success.
+    """
+
+    period = 0.05
+    view = View((0.7, -0.7, 0.6), (0.0, 0.0, 0.1))
+
+    def __init__(self) -> None:
+        gripper = os.path.join(own_directory(), "models", "gantry_gripper", "model.sdf")
+        self.choice = WorldChoice(models=(
+            ("gripper", gripper, Pose()),
+            ("red", _BOX.format(name="red", colour="0.8 0.1 0.1 1"), Pose()),
+            ("blue", _BOX.format(name="blue", colour="0.1 0.2 0.8 1"), Pose((0.2, 0.0, 0.025)))))
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
+        self.observation_space = within(14 * [_FAR])
+        self._left = 0.0
+
+    def begin(self, world: OpenWorld, random: np.random.Generator,
+              options: Dict[str, Any]) -> None:
+        """Lay the boxes on the ground at random, apart from each other."""
+        world.set_pose("red", [*random.uniform((-0.25, -0.2), (-0.05, 0.2)), SIZE / 2])
+        world.set_pose("blue", [*random.uniform((0.05, -0.2), (0.25, 0.2)), SIZE / 2])
+        self.act(world, np.array([0.0, 0.0, 0.0, -1.0]))
+        self._left = self._distance(world)
+
+    def act(self, world: OpenWorld, action: Any) -> None:
+        """Set the motors of axes and fingers."""
+        *speeds, grip = (float(value) for value in np.clip(action, -1.0, 1.0))
+        for axis, speed in zip(AXES, speeds):
+            world.drive_joint(f"gripper::{axis}", speed * FASTEST, _DRIVE)
+        for finger in FINGERS:
+            world.drive_joint(f"gripper::{finger}", _OPENING if grip > 0.0 else -_OPENING, GRIP)
+
+    def observe(self, world: OpenWorld) -> np.ndarray:
+        """See the class."""
+        position, pose = world.joints().position, world.states().pose
+        red, blue = pose["red"][:3], pose["blue"][:3]
+        axes = [float(position[f"gripper::{joint}"]) for joint in (*AXES, *FINGERS)]
+        return seen(self.observation_space, [*axes, *red, *blue, *(red - blue)])
+
+    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+        """See the class."""
+        before, self._left = self._left, self._distance(world)
+        stands = self._stands(world)
+        return Judgement(before - self._left + stands, stands, {"is_success": stands})
+
+    @staticmethod
+    def _distance(world: OpenWorld) -> float:
+        """From between the fingers to the red box, and from there to its place; m."""
+        links, pose = world.links().pose, world.states().pose
+        middle = (links["gripper::left_finger"][:3] + links["gripper::right_finger"][:3]) / 2
+        red = pose["red"][:3]
+        goal = pose["blue"][:3] + np.array([0.0, 0.0, SIZE])
+        return math.dist(middle, red) + math.dist(red, goal)
+
+    @staticmethod
+    def _stands(world: OpenWorld) -> bool:
+        """Whether red rests on blue, at rest, and is not held."""
+        states = world.states()
+        apart = states.pose["red"][:3] - states.pose["blue"][:3]
+        level = abs(apart[2] - SIZE) < _LEVEL and float(np.abs(apart[:2]).max()) < _CENTRED
+        if not level or float(np.abs(states.twist["red"]).max()) > 0.01:
+            return False
+        return not any("red::link" in contact.links and contact.force > 0.0
+                       and any(link.startswith("gripper::") for link in contact.links)
+                       for contact in world.contacts())
+
+
+def make(render_mode: Optional[str] = None) -> WorldEnv:
+    """The environment `my_simulations/StackBoxes-v0`."""
+    return WorldEnv(StackBoxes(), render_mode)

@@ -1,0 +1,148 @@
+"""A world as an environment of gymnasium: what is common to all tasks."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Dict, Optional, Protocol, Sequence, Tuple
+
+import gymnasium
+import numpy as np
+
+from ..errors import EngineLostError
+from ..python_api import OpenWorld, WorldChoice
+
+
+@dataclass(frozen=True)
+class View:
+    """The camera of `render`: position and the point it looks at in m, world frame; pixels."""
+
+    position: Tuple[float, float, float] = (1.5, -1.5, 1.2)
+    target: Tuple[float, float, float] = (0.0, 0.0, 0.2)
+    width: int = 480
+    height: int = 360
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What a step was worth.
+
+    Attributes:
+        reward: of the step.
+        terminated: the task has come to its end, by success or failure.
+        info: what else is to be told.
+    """
+
+    reward: float
+    terminated: bool = False
+    info: Dict[str, Any] = field(default_factory=dict)
+
+
+class Task(Protocol):
+    """What an environment is about; `WorldEnv` does the rest.
+
+    Attributes:
+        choice: the world.
+        period: s of sim time between two actions.
+        action_space: of gymnasium.
+        observation_space: of gymnasium.
+        view: the camera of pictures.
+    """
+
+    choice: WorldChoice
+    period: float
+    action_space: "gymnasium.Space[Any]"
+    observation_space: "gymnasium.Space[Any]"
+    view: View
+
+    def begin(self, world: OpenWorld, random: np.random.Generator,
+              options: Dict[str, Any]) -> None:
+        """Arrange the world, which has just been reset, for an episode."""
+
+    def act(self, world: OpenWorld, action: Any) -> None:
+        """Apply an action; the world makes its steps afterwards."""
+
+    def observe(self, world: OpenWorld) -> Any:
+        """The observation, a member of the space."""
+
+    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+        """What the step was worth."""
+
+
+class WorldEnv(gymnasium.Env[Any, Any]):
+    """An environment with a world of its own, in an engine process of its own.
+
+    Episodes with equal seeds and actions repeat bit for bit. If the engine dies, the episode is
+    truncated with the reason under "fault" of the info, and the next `reset` opens the world anew.
+
+    Args:
+        task: what it is about.
+        render_mode: "rgb_array", or None.
+    """
+
+    metadata: Dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}
+
+    def __init__(self, task: Task, render_mode: Optional[str] = None) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode is 'rgb_array' or None, not '{render_mode}'")
+        self.task = task
+        self.render_mode = render_mode
+        self.action_space = task.action_space
+        self.observation_space = task.observation_space
+        self.metadata = {**self.metadata, "render_fps": round(1.0 / task.period)}
+        self._world: Optional[OpenWorld] = None
+        self._last: Any = None
+
+    @property
+    def world(self) -> OpenWorld:
+        """The open world. Raises gymnasium.error.ResetNeeded before the first reset."""
+        if self._world is None:
+            raise gymnasium.error.ResetNeeded("call reset before step and render")
+        return self._world
+
+    def reset(self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
+              ) -> Tuple[Any, Dict[str, Any]]:
+        """Begin an episode; see gymnasium.Env.reset. `options` goes to the task."""
+        super().reset(seed=seed)
+        if self._world is None:
+            self._world = OpenWorld(self.task.choice)
+        else:
+            self._world.reset()
+        self.task.begin(self._world, self.np_random, options or {})
+        self._last = self.task.observe(self._world)
+        return self._last, {}
+
+    def step(self, action: Any) -> Tuple[Any, float, bool, bool, Dict[str, Any]]:
+        """Apply an action and make the steps of a period; see gymnasium.Env.step."""
+        world = self.world
+        try:
+            self.task.act(world, action)
+            world.step(max(1, round(self.task.period / world.step_size)))
+            self._last = self.task.observe(world)
+            judged = self.task.judge(world, action)
+        except EngineLostError as fault:
+            return self._last, 0.0, False, True, {"fault": str(fault)}
+        return self._last, float(judged.reward), judged.terminated, False, judged.info
+
+    def render(self) -> Optional[np.ndarray]:
+        """A picture, uint8 (height, width, 3); None without render_mode."""
+        if self.render_mode is None:
+            return None
+        view = self.task.view
+        return self.world.render(view.position, look_at=view.target, width=view.width,
+                                 height=view.height).rgb
+
+    def close(self) -> None:
+        """End the engine."""
+        if self._world is not None:
+            self._world.close()
+            self._world = None
+
+
+def within(bounds: Sequence[float]) -> gymnasium.spaces.Box:
+    """A space of float32 numbers between plus and minus each of the bounds."""
+    high = np.asarray(bounds, dtype=np.float32)
+    return gymnasium.spaces.Box(-high, high, dtype=np.float32)
+
+
+def seen(space: gymnasium.spaces.Box, values: Sequence[float]) -> np.ndarray:
+    """An observation of `within`, cut to its bounds."""
+    return np.clip(np.asarray(values, dtype=np.float32), space.low, space.high)

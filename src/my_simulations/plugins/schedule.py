@@ -1,0 +1,107 @@
+"""When plugins are called: at rates of sim time, or once."""
+from __future__ import annotations
+
+import heapq
+from typing import Any, Callable, List, Optional, Tuple
+
+from ..simulator.appointments import Moment, Rate
+from ..simulator.wrenches import first_step
+
+
+class Appointment:
+    """Something that is called at a rate, or once.
+
+    Attributes:
+        owner: whom the schedule was told that it belongs to.
+        call: what is called.
+        ended: never again.
+        single: over after the first call.
+    """
+
+    def __init__(self, owner: Any, rate: Optional[Rate], call: Callable[[], None],
+                 ns: int = 0) -> None:
+        self.owner, self._rate, self._ns = owner, rate, ns
+        self.call = call
+        self.ended = False
+        self.single = rate is None
+
+    def next(self, moment: Moment) -> int:
+        """The first step after a moment at which it is due."""
+        if self._rate is not None:
+            return self._rate.after(moment.step, moment.clock)
+        return max(moment.step + 1, first_step(moment.clock, self._ns))
+
+    def end(self) -> None:
+        """Never again."""
+        self.ended = True
+
+
+class Schedule:
+    """All appointments, the next first; of those at one step the one that was made first.
+
+    Attributes:
+        moment: where the world stands; None before the first look at it.
+        sim_ns: sim time then.
+    """
+
+    def __init__(self) -> None:
+        self.moment: Optional[Moment] = None
+        self.sim_ns = 0
+        self._heap: List[Tuple[int, int, Appointment]] = []
+        self._made = 0
+
+    def set_moment(self, moment: Moment) -> None:
+        """The world stands there now."""
+        self.moment, self.sim_ns = moment, moment.sim_ns
+
+    def every(self, owner: Any, hertz: float, call: Callable[[], None]) -> Appointment:
+        """A call at a rate in Hz; 0 or less is every step."""
+        return self._add(Appointment(owner, Rate(hertz), call))
+
+    def once(self, owner: Any, ns: int, call: Callable[[], None]) -> Appointment:
+        """One call, in the first step from now on that does not begin before a sim time."""
+        return self._add(Appointment(owner, None, call, ns))
+
+    def _add(self, made: Appointment) -> Appointment:
+        self._made += 1
+        self._put(self._made, made)
+        return made
+
+    def _put(self, number: int, appointment: Appointment) -> None:
+        due = appointment.next(self.moment) if self.moment is not None else 0
+        heapq.heappush(self._heap, (due, number, appointment))
+
+    def take_due(self) -> List[Appointment]:
+        """Those that are due now; those of a rate are due again when that says so."""
+        assert self.moment is not None
+        found: List[Tuple[int, Appointment]] = []
+        while self._heap and self._heap[0][0] <= self.moment.step:
+            _, number, appointment = heapq.heappop(self._heap)
+            if not appointment.ended:
+                found.append((number, appointment))
+        for number, appointment in found:
+            if not appointment.single:
+                self._put(number, appointment)
+        return [appointment for _, appointment in sorted(found, key=lambda one: one[0])]
+
+    @property
+    def next_step(self) -> Optional[int]:
+        """The step at which somebody must be called next."""
+        while self._heap and self._heap[0][2].ended:
+            heapq.heappop(self._heap)
+        return self._heap[0][0] if self._heap else None
+
+    def make_anew(self, clock_was_set: bool) -> None:
+        """Count from `moment` on; with another clock, what was to be done once is over."""
+        before, self._heap = self._heap, []
+        for _, number, appointment in before:
+            if appointment.single and clock_was_set:
+                appointment.end()
+            if not appointment.ended:
+                self._put(number, appointment)
+
+    def end_all(self, owner: Any) -> None:
+        """End the appointments of one owner."""
+        for _, _, appointment in self._heap:
+            if appointment.owner is owner:
+                appointment.end()

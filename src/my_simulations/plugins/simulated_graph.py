@@ -1,0 +1,190 @@
+"""Topics, services and parameters of one plugin in a running simulator."""
+from __future__ import annotations
+
+import threading
+from collections import deque
+from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+
+from ..geometry import Pose
+from .context import PluginError
+from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .message_maker import Later
+
+_LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
+
+
+class Offer:
+    """A topic of a plugin; what is published leaves once the world goes on."""
+
+    def __init__(self, owner: "PluginGraph", topic: Topic) -> None:
+        self._owner, self._topic = owner, topic
+
+    @property
+    def wanted(self) -> bool:
+        """Whether anybody listens."""
+        return self._topic.wanted
+
+    def publish(self, message: Any) -> None:
+        """Publish."""
+        self._owner.outbox.append((self._topic, message))
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what another thread makes."""
+        self._owner.outbox.append((self._topic, Later(make, self._owner.unsent())))
+
+    def close(self) -> None:
+        """Take it off the graph, after what was published."""
+        waiting = [one for one in self._owner.outbox if one[0] is self._topic]
+        self._owner.outbox = [one for one in self._owner.outbox if one[0] is not self._topic]
+        for _, message in waiting:
+            self._topic.send(message.make() if isinstance(message, Later) else message)
+        self._owner.close_one(self._topic)
+
+
+class OpenEnd:
+    """A subscription or service of a plugin."""
+
+    def __init__(self, owner: "PluginGraph", end: Closing) -> None:
+        self._owner, self._end = owner, end
+
+    def close(self) -> None:
+        """Take it off the graph."""
+        self._owner.close_one(self._end)
+
+
+class PluginGraph:
+    """What a plugin has on the graph. For the thread of the host.
+
+    Attributes:
+        outbox, transforms: what it has published since they were last taken.
+        inbox: what has come for it: functions to be called.
+
+    Args:
+        graph: ROS.
+        inbox: as above; `wake` has the host look at it.
+        unsent: gives the list that a message which is being made leaves a mark in.
+    """
+
+    def __init__(self, graph: Graph, inbox: Deque[Callable[[], None]], wake: Callable[[], None],
+                 unsent: Callable[[], Deque[None]]) -> None:
+        self._graph, self._wake = graph, wake
+        self.inbox, self.unsent = inbox, unsent
+        self.outbox: List[Tuple[Topic, Any]] = []
+        self.transforms: List[TransformOf] = []
+        self._opened: List[Closing] = []
+        self._uses: Dict[int, Tuple[str, str, bool]] = {}
+        self._namespace = ""
+        self._closed = threading.Event()
+
+    def close(self) -> None:
+        """Take everything off the graph."""
+        for one in self._opened:
+            one.close()
+        self._opened.clear()
+        self._uses.clear()
+        self._closed.set()
+
+    def close_one(self, end: Closing) -> None:
+        """Take one thing off the graph."""
+        if end in self._opened:
+            self._opened.remove(end)
+            self._uses.pop(id(end), None)
+            end.close()
+
+    def uses(self) -> List[Tuple[str, str, bool]]:
+        """Name, type, and whether it is heard, of each topic that is open; from any thread."""
+        return list(self._uses.values())
+
+    def _open(self, begin: Callable[[str], Any], name: str, kind: str,
+              heard: Optional[bool] = None) -> Any:
+        """Begin something under its full name; `heard` for topics."""
+        full = self._name(name)
+        try:
+            end = begin(full)
+        except MissingTypeError as missing:
+            raise PluginError(str(missing)) from missing
+        self._opened.append(end)
+        if heard is not None:
+            self._uses[id(end)] = (full, kind, heard)
+        return end
+
+    def use_namespace(self, namespace: str) -> None:
+        """What names are relative to."""
+        self._namespace = namespace.strip().rstrip("/")
+
+    def _name(self, name: str) -> str:
+        if name.startswith(("/", "~")) or not self._namespace:
+            return name
+        return f"{self._namespace}/{name}"
+
+    def message(self, kind: str) -> Any:
+        """A new message."""
+        try:
+            return self._graph.message(kind)
+        except MissingTypeError as missing:
+            raise PluginError(str(missing)) from missing
+
+    def stamp(self, ns: int) -> Any:
+        """A time as messages have it."""
+        return self._graph.stamp(ns)
+
+    def publish(self, name: str, kind: str, queue: int, latch: bool) -> Offer:
+        """Offer a topic."""
+        return Offer(self, self._open(
+            lambda full: self._graph.publish(full, kind, queue, latch), name, kind, False))
+
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> OpenEnd:
+        """Hear a topic."""
+        waiting: Deque[Any] = deque(maxlen=max(1, queue))
+
+        def deliver() -> None:
+            while waiting:
+                call(waiting.popleft())
+
+        def arrived(message: Any) -> None:
+            waiting.append(message)
+            self.inbox.append(deliver)
+            self._wake()
+
+        return OpenEnd(self, self._open(
+            lambda full: self._graph.subscribe(full, kind, arrived, queue), name, kind, True))
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
+        """Offer a service."""
+        def asked(request: Any, response: Any) -> None:
+            done = threading.Event()
+
+            fault: List[str] = []
+
+            def answer() -> None:
+                try:
+                    call(request, response)
+                except Exception as raised:  # the caller hears of it as well
+                    fault.append(str(raised))
+                    raise
+                finally:
+                    done.set()
+
+            self.inbox.append(answer)
+            self._wake()
+            while not done.wait(_LOOK_S):
+                if self._closed.is_set():
+                    fault.append("the plugin has ended")
+                    break
+            if fault:
+                raise PluginError(fault[0])
+
+        return OpenEnd(self, self._open(
+            lambda full: self._graph.serve(full, kind, asked), name, kind))
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace."""
+        return self._graph.parameter(self._namespace, name, default)
+
+    def search_parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace or above."""
+        return self._graph.search_parameter(self._namespace, name, default)
+
+    def transform(self, parent: str, child: str, pose: Pose) -> None:
+        """Broadcast to tf."""
+        self.transforms.append((parent, child, pose))

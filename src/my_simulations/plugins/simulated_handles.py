@@ -1,0 +1,95 @@
+"""Links and joints as a plugin holds them, and what it has ordered for its model."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Dict, Optional, Tuple
+
+from ..description.model import Inertial
+from ..description.model import Joint as JointSpec
+from ..engine.commands import JointMotor, JointServo, PlanarVelocity
+from ..geometry import Pose, Twist, Vec3
+from ..simulator.states import States
+
+
+@dataclass
+class Orders:
+    """What a plugin has ordered since it was last taken to the engine.
+
+    Attributes:
+        motors, servos: by joint row.
+        planar: of the model.
+        pushes: force and torque by the scoped name of a link.
+    """
+
+    motors: Dict[int, JointMotor] = field(default_factory=dict)
+    servos: Dict[int, JointServo] = field(default_factory=dict)
+    planar: Optional[PlanarVelocity] = None
+    pushes: Dict[str, Tuple[Vec3, Vec3]] = field(default_factory=dict)
+
+
+class SimulatedLink:
+    """A link, by the row it has now."""
+
+    def __init__(self, states: States, name: str) -> None:
+        self.name = name
+        self._states = states
+        self.row = -1
+        self.inertial = Inertial()
+
+    @property
+    def pose(self) -> Pose:
+        """World pose of the link frame."""
+        return self._states.link_at(self.row)[0]
+
+    @property
+    def twist(self) -> Twist:
+        """Twist at the link's origin, world axes."""
+        return self._states.link_at(self.row)[1]
+
+
+class SimulatedJoint:
+    """A joint axis, by the row it has now."""
+
+    def __init__(self, states: States, orders: Orders, spec: JointSpec, name: str) -> None:
+        self.name, self.spec_name = name, spec.name
+        self.parent, self.child = spec.parent, spec.child
+        self._states, self._orders = states, orders
+        self.row = -1
+        self.motor: Optional[JointMotor] = None
+        self.servo: Optional[JointServo] = None
+        self.spec = spec
+
+    @property
+    def position(self) -> float:
+        """rad or m."""
+        return self._states.axis_at(self.row)[0]
+
+    @property
+    def velocity(self) -> float:
+        """rad/s or m/s."""
+        return self._states.axis_at(self.row)[1]
+
+    def drive(self, rate: float, effort: float) -> None:
+        """Turn the motor."""
+        self.motor = JointMotor(self.row, rate, effort)
+        self._orders.motors[self.row] = self.motor
+
+    def steer(self, servo: JointServo) -> None:
+        """Hand over to a servo."""
+        self.servo = replace(servo, row=self.row)
+        self._orders.servos[self.row] = self.servo
+
+    def moved_to(self, row: int) -> None:
+        """The axis has another row: what was ordered is ordered again."""
+        self.row = row
+        if self.motor is not None:
+            self.drive(self.motor.rate, self.motor.effort)
+        if self.servo is not None:
+            self.steer(self.servo)
+
+    def release(self) -> None:
+        """Switch off the motor and the servo."""
+        if self.motor is not None:
+            self.drive(0.0, 0.0)
+        if self.servo is not None:
+            self.steer(JointServo(self.row, ""))

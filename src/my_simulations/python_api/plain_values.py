@@ -1,0 +1,47 @@
+"""Arguments of Python programs: poses, vectors and times as plain numbers."""
+from __future__ import annotations
+
+from typing import Optional, Sequence
+
+from ..errors import CommandError
+from ..geometry import Pose, Twist, Vec3, normalised, pose_from_xyzrpy
+
+_POSE_WIDTH = 7
+
+
+def pose_of(values: Sequence[float]) -> Pose:
+    """A pose from 3 (position), 6 (x y z roll pitch yaw, as in SDF) or 7 numbers (see `Readings`).
+
+    Raises:
+        CommandError: another number of values.
+    """
+    numbers = [float(value) for value in values]
+    if len(numbers) == 3:
+        return Pose((numbers[0], numbers[1], numbers[2]))
+    if len(numbers) == 6:
+        return pose_from_xyzrpy(*numbers)
+    if len(numbers) == _POSE_WIDTH:
+        return Pose((numbers[0], numbers[1], numbers[2]),
+                    normalised((numbers[3], numbers[4], numbers[5], numbers[6])))
+    raise CommandError(f"a pose has 3 numbers (x y z), 6 (x y z roll pitch yaw) or 7 (x y z and a "
+                       f"quaternion x y z w), not {len(numbers)}")
+
+
+def vector_of(values: Sequence[float], what: str) -> Vec3:
+    """Three numbers; `what` names them. Raises CommandError."""
+    numbers = [float(value) for value in values]
+    if len(numbers) != 3:
+        raise CommandError(f"{what} has 3 numbers, not {len(numbers)}")
+    return numbers[0], numbers[1], numbers[2]
+
+
+def twist_of(values: Sequence[float]) -> Twist:
+    """A twist from vx vy vz (m/s) wx wy wz (rad/s). Raises CommandError."""
+    if len(values) != 6:
+        raise CommandError(f"a twist has 6 numbers, not {len(values)}")
+    return Twist(vector_of(values[:3], "linear"), vector_of(values[3:], "angular"))
+
+
+def nanoseconds_of(duration: Optional[float]) -> int:
+    """A duration in s as nanoseconds; -1 for None, which is for ever."""
+    return -1 if duration is None else max(0, round(duration * 1e9))

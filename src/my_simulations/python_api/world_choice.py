@@ -1,0 +1,30 @@
+"""Which world a Python program opens."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Tuple
+
+from ..description.world import World
+from ..geometry import Pose
+from .object_placement import Alter
+
+
+@dataclass(frozen=True)
+class WorldChoice:
+    """Which world to open; see `open_world`.
+
+    Attributes:
+        models: name, path of a URDF or SDF file, and pose of each model to spawn besides.
+        alter: changes the description of the world before it is loaded; it must leave its argument
+            as it is.
+        alter_model: the same for each object and model; `Model.pose` is its place.
+    """
+
+    world: str = "worlds/empty.world"
+    seed: int = 0
+    profile: str = ""
+    objects: Tuple[str, ...] = ()
+    object_list: str = ""
+    models: Tuple[Tuple[str, str, Pose], ...] = ()
+    alter: Callable[[World], World] = lambda world: world
+    alter_model: Alter = lambda model: model

@@ -1,0 +1,125 @@
+"""Pictures of an open world, taken by the sensing process."""
+from __future__ import annotations
+
+import math
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Dict, Optional, Sequence, Tuple
+
+from ..errors import CommandError
+from ..geometry import Pose, Vec3, compose, norm, quat_from_rpy, subtract
+from ..sensing.api import DEPTH, LABELS, NO_ROW, RGB, CameraSpec, Mount, SensingError
+from ..simulator.scene_sensing import SceneSensing
+from ..simulator.simulator import Simulator
+
+if TYPE_CHECKING:
+    import numpy as np
+
+_OUTPUTS = (RGB, DEPTH, LABELS)
+_LARGEST = 8192   # pixels of a side
+_PATIENCE_S = 120.0  # the first picture of a heavy world loads its meshes and textures
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What a camera has seen; None for what was not asked for. The first row is the upper one.
+
+    Attributes:
+        time: sim time in s.
+        rgb: uint8 (height, width, 3).
+        depth: float32 (height, width), metres along the optical axis; inf where there is nothing.
+        labels: int32 (height, width), the number of the link in `names` that is seen, -1 for none.
+        names: the links, as `model::link`.
+    """
+
+    time: float
+    rgb: "Optional[np.ndarray]"
+    depth: "Optional[np.ndarray]"
+    labels: "Optional[np.ndarray]"
+    names: Tuple[str, ...]
+
+
+def camera_pose(position: Vec3, target: Vec3) -> Pose:
+    """The pose of a camera (+x looks forward, +z up) that looks at a point, level.
+
+    Raises:
+        CommandError: both points are one.
+    """
+    line = subtract(target, position)
+    if norm(line) < 1e-12:
+        raise CommandError("a camera cannot look at the point where it is")
+    yaw = math.atan2(line[1], line[0])
+    pitch = math.atan2(-line[2], math.hypot(line[0], line[1]))
+    return Pose(position, quat_from_rpy(0.0, pitch, yaw))
+
+
+def checked_camera(camera: CameraSpec, outputs: Sequence[str]) -> None:
+    """Raises CommandError for a camera that cannot take a picture, or an unknown output."""
+    if not (0 < camera.width <= _LARGEST and 0 < camera.height <= _LARGEST):
+        raise CommandError(f"width and height must be between 1 and {_LARGEST} pixels, are"
+                           f" {camera.width} and {camera.height}")
+    if not 0.0 < camera.hfov < math.pi:
+        raise CommandError(f"hfov must be between 0 and pi rad, is {camera.hfov}")
+    if not 0.0 < camera.near < camera.far < math.inf:
+        raise CommandError(f"0 < near < far is needed, near is {camera.near}, far {camera.far}")
+    unknown = [output for output in outputs if output not in _OUTPUTS]
+    if unknown or not outputs:
+        raise CommandError(f"outputs are {', '.join(_OUTPUTS)}; there is no"
+                           f" '{unknown[0] if unknown else ''}'")
+
+
+class Photographer:
+    """Takes pictures; the process that draws is started by the first.
+
+    Args:
+        simulator: the world.
+        scene: draws it.
+    """
+
+    def __init__(self, simulator: Simulator, scene: SceneSensing) -> None:
+        self._simulator, self._scene = simulator, scene
+
+    def close(self) -> None:
+        """End the process that draws."""
+        self._scene.close()
+
+    def take(self, frame: str, pose: Pose, camera: CameraSpec, outputs: Sequence[str]) -> Picture:
+        """A picture as of now.
+
+        Args:
+            frame: model or link that carries the camera; "" for the world.
+            pose: of the camera in the frame: +x looks forward, y is left, z up.
+            camera: what it is.
+            outputs: of `sensing.api`.
+
+        Raises:
+            CommandError: no such frame, a camera that cannot be, or there is nothing to draw with.
+        """
+        checked_camera(camera, outputs)
+        row, offset = self._simulator.states.mounting(frame)
+        mount = Mount(row, compose(offset, pose))
+        time = self._simulator.clock.sim_ns * 1e-9
+        (future,) = self._scene.render([(mount, camera, tuple(outputs))])
+        try:
+            found = future.result(_PATIENCE_S)
+        except SensingError as fault:
+            raise CommandError(f"no picture: {fault}") from fault
+        except FutureTimeoutError as fault:
+            raise CommandError(f"no picture within {_PATIENCE_S:g} s") from fault
+        numbers, names = self._links()
+        labels = None if found.labels is None else _numbered(found.labels, numbers)
+        return Picture(time, found.rgb, found.depth, labels, names)
+
+    def _links(self) -> Tuple[Dict[int, int], Tuple[str, ...]]:
+        """Numbers of links in the order of `names`, by row; and the names."""
+        rows = self._simulator.states.link_names()
+        return {row: number for number, row in enumerate(rows)}, tuple(rows.values())
+
+
+def _numbered(rows: "np.ndarray", numbers: Dict[int, int]) -> "np.ndarray":
+    import numpy as np
+
+    table = np.full(max([NO_ROW, *numbers, int(rows.max(initial=NO_ROW))]) + 2, -1, np.int32)
+    for row, number in numbers.items():
+        table[row] = number
+    return table[rows]  # NO_ROW is the last entry, which stays -1

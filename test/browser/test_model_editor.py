@@ -1,0 +1,171 @@
+"""The model editor by hand: a cart is built, saved, and its wheels turn in a fresh node."""
+from __future__ import annotations
+
+import os
+import subprocess
+
+import pytest
+import rospy
+from gazebo_msgs.srv import ApplyJointEffort, GetJointProperties
+from pytest import approx
+from std_srvs.srv import Empty
+from support import wait_for
+
+WORLD = """<sdf version="1.7"><world name="default">
+  <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
+  <include><uri>model://cart</uri><pose>0 0 0.1 0 0 0</pose></include>
+</world></sdf>"""
+
+
+def type_into(editor, target, path, *values):
+    """Types numbers into a property's fields; each is taken before the next is typed."""
+    fields = editor.page.locator(
+        f'.properties .field[data-target="{target}"][data-path="{path}"] input')
+    fields.first.wait_for()
+    for field, value in zip(fields.all(), values):
+        field.fill(str(value))
+        field.press("Enter")
+        done = editor.page.locator(f'.properties .field[data-target="{target}"]'
+                                   f'[data-path="{path}"].pending')
+        wait_for(lambda: done.count() == 0, f"{path} of {target}")
+
+
+def add_link(editor, shape, point):
+    """Takes a shape of the palette and clicks where it shall stand; returns the link's name."""
+    before = editor.get("editor.store.history.undo.length")
+    editor.button(f"Link: {shape}").click()
+    x, y = editor.pixel(point)
+    editor.page.mouse.move(x - 30, y - 20)
+    editor.page.mouse.move(x, y, steps=4)
+    editor.page.mouse.click(x, y)
+    editor.until(f"editor.store.history.undo.length === {before + 1}", f"the {shape}")
+    editor.until("editor.store.selection[0]?.includes('::')", "the selected link")
+    return editor.get("editor.store.selection[0]")
+
+
+def build_cart(editor):
+    editor.page.keyboard.press("Control+m")
+    editor.page.get_by_role("region", name="Model editor").wait_for()
+    body = add_link(editor, "box", (0.0, 0.0, 0.0))
+    assert body == "untitled::link_0"
+    for part in ("collision:collision", "visual:visual"):
+        type_into(editor, f"{body}::{part}", "geometry.size", 0.6, 0.6, 0.3)
+    wheels = []
+    for side, y in (("right", -0.6), ("left", 0.6)):
+        wheel = add_link(editor, "cylinder", (0.0, 4 * y, 0.0))
+        for part in ("collision:collision", "visual:visual"):
+            type_into(editor, f"{wheel}::{part}", "geometry.length", 0.2)
+        type_into(editor, wheel, "pose", 0, y, 0.5, "90deg")
+        wheels.append(wheel)
+    for wheel, seen in zip(wheels, ((0.0, -0.7, 0.5), (0.0, 0.6, 0.97))):
+        connect(editor, (0.1, -0.1, 0.65), seen)
+        assert editor.get("editor.store.selection[0]") == wheel
+    compute_inertia(editor)
+
+
+def connect(editor, parent, child):
+    joints = "editor.store.model('untitled').joints.length"
+    before = editor.get(joints)
+    editor.button("Connect").click()
+    editor.click(parent)
+    editor.page.get_by_text("Click the child link.").wait_for()
+    editor.click(child)
+    editor.until(f"{joints} === {before + 1}", "the joint")
+
+
+def compute_inertia(editor):
+    editor.button("Inertia of all links").click()
+    editor.button("Compute").click()
+    editor.until("editor.store.history.undo[0].startsWith('Compute inertia')", "the inertia")
+
+
+def save_as(editor, name):
+    editor.page.keyboard.press("Control+s")
+    editor.page.get_by_label("Name", exact=True).last.fill(name)
+    editor.page.locator(".dialog").get_by_role("button", name="Save", exact=True).click()
+    wait_for(lambda: not editor.page.locator(".dialog").count(), "the end of saving")
+
+
+def test_a_cart_built_by_mouse_loads_without_a_warning_and_its_wheels_turn(launch, browser):
+    node = launch("worlds/empty.world")
+    editor = browser.open(node.url)
+    build_cart(editor)
+    model = editor.model("untitled")
+    assert [(one["type"], one["parent"], one["child"]) for one in model["joints"]] == [
+        ("revolute", "link_0", "link_1"), ("revolute", "link_0", "link_2")]
+    assert model["links"][1]["inertial"]["ixx"] == approx((3 * 0.25 + 0.04) / 12, rel=1e-6)
+    save_as(editor, "cart")
+    editor.page.keyboard.press("Control+m")
+    editor.page.get_by_role("region", name="Model editor").wait_for(state="detached")
+    assert editor.faults == []
+    editor.close()
+    node.close()
+
+    folder = os.path.join(node.home, ".gazebo", "models", "cart")
+    assert sorted(os.listdir(folder)) == ["model.config", "model.sdf"]
+    said = subprocess.run(["rosrun", "my_simulations", "check_model",
+                           os.path.join(folder, "model.sdf")],
+                          capture_output=True, text=True, timeout=60, check=True)
+    assert "warning" not in said.stdout + said.stderr
+    world = os.path.join(node.worlds, "cart.world")
+    with open(world, "w", encoding="utf-8") as stream:
+        stream.write(WORLD)
+    fresh = launch(world)
+    assert "warning" not in fresh.said().lower()
+    for wheel in ("link_1_joint", "link_2_joint"):
+        assert fresh.ask("apply_joint_effort", ApplyJointEffort, effort=2.0,
+                         joint_name=f"cart::{wheel}", duration=rospy.Duration(-1.0)).success
+    fresh.ask("unpause_physics", Empty)
+    for wheel in ("link_1_joint", "link_2_joint"):
+        wait_for(lambda name=wheel: fresh.ask(
+            "get_joint_properties", GetJointProperties,
+            joint_name=f"cart::{name}").position[0] > 0.5, f"turns of {wheel}")
+
+
+@pytest.fixture
+def editor(launch, browser):
+    page = browser.open(launch("worlds/empty.world").url)
+    yield page
+    assert page.faults == []
+    page.close()
+
+
+def test_a_link_is_moved_by_its_handles_and_back_by_undo(editor):
+    editor.page.keyboard.press("Control+m")
+    link = add_link(editor, "box", (0.0, 0.0, 0.0))
+    add_link(editor, "sphere", (1.0, 2.5, 0.0))
+    editor.click((0.3, -0.5, 0.5))
+    editor.until(f"editor.store.selection[0] === {link!r}", "the clicked link")
+    editor.page.keyboard.press("t")
+    editor.drag((0.3, -0.5, 0.3), (1.3, -0.5, 0.3), keys=("x",))
+    editor.until("editor.store.history.undo[0].startsWith('Move')", "the move")
+    pose = "editor.store.model('untitled').links[0].pose"
+    assert editor.get(pose)[:3] == approx([1.0, 0.0, 0.5], abs=0.05)
+    assert editor.get("editor.store.model('untitled').links[1].pose")[1] == approx(2.5, abs=0.05)
+    editor.page.keyboard.press("Control+z")
+    wait_for(lambda: editor.get(pose)[:3] == approx([0.0, 0.0, 0.5], abs=1e-6), "the way back")
+
+
+def test_what_is_discarded_is_gone_and_time_goes_on(editor):
+    editor.get("editor.actions.play()")
+    editor.until("!editor.store.stats.paused", "running physics")
+    editor.page.keyboard.press("Control+m")
+    add_link(editor, "capsule", (0.0, 0.0, 0.0))
+    editor.page.keyboard.press("Space")
+    assert editor.get("editor.store.stats.paused")
+    editor.page.keyboard.press("Control+m")
+    editor.button("Discard Changes").click()
+    editor.until("!editor.store.model('untitled') && !editor.store.modelEditing", "the end")
+    editor.until("!editor.store.stats.paused", "running physics again")
+
+
+def test_a_model_of_the_world_is_edited_and_keeps_its_name(editor):
+    name = editor.place("Box", (0.0, 0.0, 0.0))
+    editor.row(name).click(button="right")
+    editor.page.get_by_role("menuitem", name="Edit Model").click()
+    editor.page.get_by_role("region", name="Model editor").wait_for()
+    assert add_link(editor, "cone", (0.0, -2.0, 0.0)) == f"{name}::link_0"
+    editor.button("Exit model editor").click()
+    editor.button("Keep in World").click()
+    editor.until("!editor.store.modelEditing", "the end")
+    assert [link["name"] for link in editor.model(name)["links"]] == ["link", "link_0"]

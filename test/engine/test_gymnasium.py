@@ -1,0 +1,175 @@
+"""Worlds as environments of gymnasium."""
+from __future__ import annotations
+
+import math
+import os
+import re
+import signal
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import my_simulations.gym
+from my_simulations.gym import push_box, stack_boxes
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PUSH, STACK = "my_simulations/PushBox-v0", "my_simulations/StackBoxes-v0"
+
+
+@pytest.fixture
+def make():
+    made = []
+
+    def one(name, **options):
+        made.append(gymnasium.make(name, **options))
+        return made[-1]
+
+    yield one
+    for env in made:
+        env.close()
+
+
+@pytest.mark.parametrize("name", [PUSH, STACK])
+def test_gymnasiums_own_checker_finds_nothing(make, name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(make(name, render_mode="rgb_array").unwrapped)
+
+
+def _episode(env, seed, steps=15):
+    observation, _ = env.reset(seed=seed)
+    generator, found = np.random.default_rng(seed), [observation]
+    for _ in range(steps):
+        found.append(env.step(generator.uniform(-1, 1, env.action_space.shape))[0])
+    return np.array(found)
+
+
+def test_an_episode_repeats_bit_for_bit_in_the_same_and_in_another_engine(make):
+    env = make(PUSH)
+    first = _episode(env, 4)
+    assert (_episode(env, 5) != first).any()
+    assert (_episode(env, 4) == first).all()
+    assert (_episode(make(PUSH), 4) == first).all()
+
+
+def test_environments_side_by_side_do_what_each_does_alone(make):
+    together = my_simulations.gym.WorldVectorEnv([push_box.make, push_box.make])
+    try:
+        seen, _ = together.reset(seed=7)
+        actions = np.array([[1.0, 0.2], [0.5, -0.4]], dtype=np.float32)
+        for _ in range(5):
+            seen, rewards, ended, cut, infos = together.step(actions)
+        assert rewards.shape == ended.shape == cut.shape == (2,)
+        assert infos["is_success"].tolist() == [False, False]
+    finally:
+        together.close()
+    for number in range(2):
+        env = make(PUSH)
+        env.reset(seed=7 + number)
+        for _ in range(5):
+            alone = env.step(actions[number])[0]
+        assert (alone == seen[number]).all()
+
+
+def test_an_ended_episode_of_several_begins_anew_with_the_next_step():
+    together = my_simulations.gym.WorldVectorEnv([push_box.make])
+    try:
+        start, _ = together.reset(seed=1)
+        os.kill(together.envs[0].world.simulator.engine_pid, signal.SIGKILL)
+        action = np.ones((1, 2), dtype=np.float32)
+        _, _, ended, cut, infos = together.step(action)
+        assert cut[0] and not ended[0] and "SIGKILL" in infos["fault"][0]
+        seen, rewards, ended, cut, _ = together.step(action)
+        assert not cut[0] and rewards[0] == 0.0 and seen[0][0] == start[0][0] == 0.0
+    finally:
+        together.close()
+
+
+def test_what_is_used_before_the_first_reset_says_so(make):
+    env = make(PUSH).unwrapped
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(np.zeros(2, dtype=np.float32))
+    with pytest.raises(ValueError, match="human"):
+        push_box.make("human")
+
+
+def test_the_environment_of_the_manual_passes_the_checker():
+    text = (REPOSITORY / "doc" / "gymnasium.md").read_text(encoding="utf-8")
+    code = re.findall(r"```python\n(.*?)```", text, re.DOTALL)[-1]
+    names = {}
+    exec(compile(code, "doc/gymnasium.md", "exec"), names)
+    try:
+        check_env(names["env"], skip_render_check=True)
+    finally:
+        names["env"].close()
+
+
+def test_gymnasium_imports_the_package_that_a_name_begins_with():
+    code = ("import gymnasium\n"
+            f"print(gymnasium.make('my_simulations.gym:{PUSH}').spec.id)\n")
+    done = subprocess.run([sys.executable, "-c", code], check=True, timeout=60,
+                          capture_output=True, text=True)
+    assert done.stdout.strip() == PUSH
+
+
+def _push(seen):
+    """Drive behind the box, as seen from the mark; then push it there."""
+    x, y, cos, sin, _, _, bx, by, mx, my, apart = (float(value) for value in seen)
+    away = np.array([bx - mx, by - my]) / apart
+    behind = np.array([bx, by]) + 0.35 * away
+    along = (np.array([x, y]) - (bx, by)) @ away
+    across = abs(np.cross(away, np.array([x, y]) - (bx, by)))
+    goal = np.array([bx, by]) if along > 0.15 and across < 0.06 else behind
+    bearing = math.atan2(goal[1] - y, goal[0] - x) - math.atan2(sin, cos)
+    bearing = math.remainder(bearing, 2 * math.pi)
+    return np.clip([0.6 if abs(bearing) < 0.3 else 0.0, 1.5 * bearing], -1, 1)
+
+
+def test_the_robot_can_push_the_box_to_the_mark(make):
+    env = make(PUSH)
+    seen, _ = env.reset(seed=3)
+    total, ended, cut = 0.0, False, False
+    while not (ended or cut):
+        seen, reward, ended, cut, info = env.step(_push(seen))
+        total += reward
+    assert ended and info["is_success"] and total > 1.0 and seen[10] < push_box.NEAR
+
+
+class _Stacker:
+    """Moves to the red box, grips it, lifts it, carries it over the blue one, and lets go."""
+
+    def __init__(self):
+        self.stage, self.since = 0, 0
+
+    def __call__(self, seen):
+        seen = seen.astype(float)
+        at, red, blue = seen[:3], seen[5:8], seen[8:11]
+        # The fingers' middle is 0.355 m above the ground at z = 0.
+        height = 0.355 + at[2]
+        goals = [(red, 0.2, -1), (red, 0.034, -1), (red, 0.034, 1), (at, 0.2, 1),
+                 (blue, 0.2, 1), (blue, 0.085, 1), (blue, 0.085, -1), (at, 0.2, -1)]
+        where, up, grip = goals[self.stage]
+        off = np.array([where[0] - at[0], where[1] - at[1], up - height])
+        if self.stage == 4:  # the box, not the palm, is to be above the other
+            off[:2] = (blue - red)[:2]
+        self.since += 1
+        waits = self.since >= 8 if self.stage in (2, 6) else np.abs(off).max() < 0.004
+        if waits and self.stage < len(goals) - 1:
+            self.stage, self.since = self.stage + 1, 0
+        return np.clip([*off * 30.0, grip], -1, 1)
+
+
+def test_the_gripper_can_put_one_box_on_the_other(make):
+    env = make(STACK)
+    seen, _ = env.reset(seed=2)
+    stacker, ended, cut = _Stacker(), False, False
+    while not (ended or cut):
+        seen, reward, ended, cut, info = env.step(stacker(seen))
+    assert ended and info["is_success"] and reward > 0.5
+    assert seen[13] == pytest.approx(stack_boxes.SIZE, abs=0.004)

@@ -1,0 +1,94 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+import {createActions} from '../../web/js/actions.js';
+import {
+  axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, pluginText, stepsSince,
+} from '../../web/js/model_editor/model_edits.js';
+import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
+import {Store} from '../../web/js/store.js';
+import {near} from './near.mjs';
+import {model, NotingConnection, world} from './scene.mjs';
+
+function begun() {
+  const connection = new NotingConnection();
+  const store = new Store(connection);
+  store.receive({type: 'world', revision: 1, document: world()});
+  return {connection, store, actions: createActions({store, connection})};
+}
+
+const turned = [2, 1, 0, 0, 0, Math.SQRT1_2, Math.SQRT1_2];
+
+test('a link dragged in the world is described in the frame of its model', () => {
+  const [op] = linkMoves(model('a', 1, turned), turned, {'a::link': [2, 2, 0.5, ...turned.slice(3)]});
+  assert.deepEqual([op.kind, op.target, op.path], ['set', 'a::link', 'pose']);
+  near(op.value, [1, 0, 0.5, 0, 0, 0, 1], 1e-9);
+});
+
+test('models and links of other models are not moved as links', () => {
+  assert.deepEqual(linkMoves(model('a', 1, turned), turned, {a: turned, 'b::link': turned}), []);
+});
+
+test('links of the edited model are removed one by one', () => {
+  assert.deepEqual(linkRemovals(model('a', 1, turned), ['a::link', 'a', 'b::link']),
+    [{kind: 'remove_part', target: 'a::link'}]);
+  assert.deepEqual(linkRemovals(undefined, ['a::link']), []);
+  assert.equal(isLinkOf(model('a', 1, turned), 'a::nix'), false);
+});
+
+test('two clicks make a joint', () => {
+  assert.deepEqual(connection('m', 'revolute', 'base', 'tip'),
+    {kind: 'add_joint', model: 'm', joint: {type: 'revolute', parent: 'base', child: 'tip'}});
+});
+
+test('each type of joint has its axes', () => {
+  assert.deepEqual(JOINT_TYPES.map(axesOf), [1, 2, 1, 0, 2, 1, 2, 0]);
+  assert.equal(axisOr(null).upper, 1e16);
+  assert.equal(axisOr({...axisOr(null), upper: 2}).upper, 2);
+});
+
+test('joints and plugins are shown as text', () => {
+  assert.equal(jointText({name: 'j', type: 'ball', parent: 'a', child: 'b'}), 'a → b: ball');
+  assert.equal(pluginText({plugins: [{xml: '<plugin/>\n'}, {xml: '<plugin name="b"/>'}]}),
+    '<plugin/>\n<plugin name="b"/>');
+});
+
+test('steps are counted from where the editor was opened', () => {
+  assert.equal(stepsSince(['c', 'b', 'a'], 1), 2);
+  assert.equal(stepsSince([], 1), 0);
+});
+
+test('ghosts of links stand on the ground', () => {
+  for (const shape of SOLID_SHAPES) {
+    const {pose, links} = solidModel(shape);
+    assert.equal(links[0].visuals[0].geometry.type, shape);
+    assert.ok(pose[2] > 0);
+  }
+});
+
+test('a shape of the tool bar becomes a link while a model is built', async () => {
+  const {connection, store, actions} = begun();
+  connection.answers.edit = {name: 'untitled::link_0'};
+  store.setModelEditing({name: null});
+  actions.insertShape('box');
+  await actions.place([1, 2, 0.5, 0, 0, 0, 1]);
+  assert.deepEqual(connection.requests.at(-1)[1].op,
+    {kind: 'add_link', model: null, shape: 'box', pose: [1, 2, 0.5, 0, 0, 0, 1]});
+  assert.deepEqual(store.modelEditing, {name: 'untitled'});
+  assert.deepEqual(store.selection, ['untitled::link_0']);
+});
+
+test('time stands still while a model is built', async () => {
+  const {connection, store, actions} = begun();
+  store.setModelEditing({name: 'a'});
+  await actions.togglePlay();
+  assert.equal(connection.requests.length, 0);
+  assert.match(store.issues.at(-1).message, /Ctrl\+M/);
+});
+
+test('Delete takes the chosen link of the edited model, not the model', async () => {
+  const {connection, store, actions} = begun();
+  store.setModelEditing({name: 'a'});
+  store.select(['a::link']);
+  await actions.remove();
+  assert.deepEqual(connection.requests.at(-1)[1].op, {kind: 'remove_part', target: 'a::link'});
+});

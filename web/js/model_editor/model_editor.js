@@ -1,0 +1,168 @@
+/**
+ * The model editor: a palette over the 3D view. The model that is built stands in the world, whose tree,
+ * properties, tools and history work on it as ever; the palette adds links, joints and the rest.
+ */
+import {ask} from '../panels/dialog.js';
+import {byId} from '../panels/dom.js';
+import {styled} from '../panels/stylesheet.js';
+import {ConnectTool} from './connect_tool.js';
+import {stepsSince} from './model_edits.js';
+import {ModelFiles} from './model_files.js';
+import {Palette} from './model_palette.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {RequestFunction} from '../connection.js' */
+/** @import {Model} from '../protocol.js' */
+/** @import {Notices} from '../panels/notices.js' */
+/** @import {Store} from '../store.js' */
+
+/** @typedef {{store: Store, request: RequestFunction, actions: Actions, notices: Notices}} EditorParts */
+
+/** Shown of the edited model alone. */
+const OVERLAYS = /** @type {const} */ (['joints', 'transparent']);
+
+export class ModelEditor {
+  /** @param {EditorParts} parts */
+  constructor({store, request, actions, notices}) {
+    this.store = store;
+    this.request = request;
+    this.actions = actions;
+    this.notices = notices;
+    this.files = new ModelFiles(request);
+    this.connect = new ConnectTool(this);
+  }
+
+  /** Called when the editor has ended by itself. */
+  onExit = () => {};
+  /** @type {Palette|null} */
+  #palette = null;
+  #running = false;
+  /** Steps of the history before the first change. */
+  #mark = 0;
+  /** The latest step when the model was saved. @type {string} */
+  #savedAt = '';
+  /** @type {(() => void)[]} */
+  #ends = [];
+  /** Names of the links of the model when it was last seen, to know it under another name. */
+  #links = '';
+
+  /** The model that is edited, once it has a first link. @returns {Model|undefined} */
+  get model() {
+    const name = this.store.modelEditing?.name;
+    return name ? this.store.model(name) : undefined;
+  }
+
+  /** Whether something has changed that no folder has. */
+  get dirty() {
+    return this.steps > 0 && this.#marker() !== this.#savedAt;
+  }
+
+  /** Steps of the history since the editor was opened. */
+  get steps() { return stepsSince(this.store.history.undo, this.#mark); }
+
+  #marker() {
+    const {undo} = this.store.history;
+    return `${undo.length} ${undo[0] ?? ''}`;
+  }
+
+  /** Begins; time stands still meanwhile. @param {string|null} name  of the model to edit; null: a new one */
+  async open(name) {
+    await styled('model_editor.css');
+    const {store, actions} = this;
+    this.#running = !store.stats.paused;
+    if (this.#running) await actions.pause();
+    this.#mark = store.history.undo.length;
+    store.setModelEditing({name});
+    this.#palette = new Palette(byId('view'), this);
+    document.body.classList.add('model-editing');
+    this.#ends = [
+      ...(/** @type {const} */ (['entity', 'document'])).map((event) => store.listen(event, () => this.#follow())),
+      store.listen('modelEditing', () => this.#show()),
+      ...(/** @type {const} */ (['selection', 'history'])).map((event) =>
+        store.listen(event, () => this.#palette?.update())),
+      this.connect.listen(),
+    ];
+    this.#show();
+    if (name) store.select([name]);
+  }
+
+  /** Saves; a first time asks for a name. @param {boolean} [as] asks for another name */
+  async save(as = false) {
+    const {model} = this;
+    if (!model) {
+      this.notices.say('There is nothing to save yet: add a link first.');
+      return false;
+    }
+    const path = await (as ? this.files.saveAs(model.name) : this.files.save(model.name));
+    if (!path) return false;
+    this.#savedAt = this.#marker();
+    this.notices.say(`Saved ${path}`);
+    this.#palette?.update();
+    return true;
+  }
+
+  /** Asks what becomes of changes, and leaves. @returns {Promise<boolean>} false: the user stays */
+  async close() {
+    if (this.dirty) {
+      const answer = await ask('Exit model editor?', 'The model has changes that are not saved as a model folder.', [
+        {title: 'Cancel'},
+        {title: 'Discard Changes', value: 'discard', danger: true},
+        {title: 'Keep in World', value: 'keep'},
+        {title: 'Save and Exit', value: 'save', primary: true},
+      ]);
+      if (!answer) return false;
+      if (answer === 'save' && !await this.save()) return false;
+      if (answer === 'discard') await this.#discard();
+    }
+    await this.#end();
+    return true;
+  }
+
+  async #discard() {
+    const {steps} = this;
+    if (steps > 0) await this.actions.undo(steps > 1 ? steps : undefined);
+  }
+
+  async #end() {
+    for (const end of this.#ends.splice(0)) end();
+    this.#overlay(null);
+    this.connect.stop();
+    this.#palette?.remove();
+    document.body.classList.remove('model-editing');
+    this.store.setModelEditing(null);
+    if (this.#running) await this.actions.play();
+    this.onExit();
+  }
+
+  /** The model may have got another name, or have gone: undone, say. */
+  #follow() {
+    const {store, model} = this;
+    if (!store.modelEditing) return;
+    if (!model && store.modelEditing.name) {
+      const renamed = store.document?.models.find((one) =>
+        one.links.map((link) => link.name).join() === this.#links && store.selection.includes(one.name));
+      store.setModelEditing({name: renamed?.name ?? null});
+      return;
+    }
+    this.#show();
+  }
+
+  #show() {
+    const {model} = this;
+    if (model) this.#links = model.links.map((link) => link.name).join();
+    this.#overlay(model?.name ?? null);
+    this.#palette?.update();
+  }
+
+  /** @type {string|null} */
+  #overlaid = null;
+
+  /** @param {string|null} name */
+  #overlay(name) {
+    if (name === this.#overlaid) return;
+    for (const flag of OVERLAYS) {
+      if (this.#overlaid) this.actions.setOverlay(flag, null, this.#overlaid);
+      if (name) this.actions.setOverlay(flag, true, name);
+    }
+    this.#overlaid = name;
+  }
+}

@@ -1,0 +1,65 @@
+/** What the model editor asks of the simulator, as operations. Pure. */
+import {compose, inverse} from '../pose.js';
+/** @import {Joint, Axis, Model, Operation} from '../protocol.js' */
+/** @import {Pose7} from '../pose.js' */
+
+export const JOINT_TYPES = Object.freeze(['revolute', 'revolute2', 'prismatic', 'ball', 'universal', 'screw',
+  'gearbox', 'fixed']);
+
+/** How many axes a type has. @param {string} type */
+export const axesOf = (type) =>
+  ['fixed', 'ball'].includes(type) ? 0 : ['revolute2', 'universal', 'gearbox'].includes(type) ? 2 : 1;
+
+/** Whether a name is that of a link of the model. @param {Model|undefined} model @param {string} name */
+export const isLinkOf = (model, name) =>
+  Boolean(model && name.startsWith(`${model.name}::`) &&
+    model.links.some((link) => `${model.name}::${link.name}` === name));
+
+/**
+ * Links at new places in the world, which their model then describes.
+ * @param {Model} model
+ * @param {Pose7} frame  where the model is
+ * @param {Record<string, Pose7>} poses  in the world, by scoped name
+ * @returns {Operation[]}
+ */
+export function linkMoves(model, frame, poses) {
+  return Object.entries(poses).filter(([name]) => isLinkOf(model, name)).map(([target, pose]) =>
+    ({kind: 'set', target, path: 'pose', value: compose(inverse(frame), pose)}));
+}
+
+/** Selected links of a model away. @param {Model|undefined} model @param {string[]} names @returns {Operation[]} */
+export function linkRemovals(model, names) {
+  return names.filter((name) => isLinkOf(model, name))
+    .map((target) => ({kind: 'remove_part', target}));
+}
+
+/**
+ * Two clicked links, or the world and one, as a joint.
+ * @param {string} model
+ * @param {string} type
+ * @param {string} parent  link or "world"
+ * @param {string} child
+ * @returns {Operation}
+ */
+export const connection = (model, type, parent, child) =>
+  ({kind: 'add_joint', model, joint: {type, parent, child}});
+
+/** An axis without limits. @type {Axis} */
+const FREE = {xyz: [0, 0, 1], lower: -1e16, upper: 1e16, effort: -1, velocity: -1, damping: 0, friction: 0,
+  spring_reference: 0, spring_stiffness: 0, motor_rate: 0};
+
+/** The axis of a joint, or a new one. @param {Axis|null|undefined} axis @returns {Axis} */
+export const axisOr = (axis) => ({...FREE, ...axis});
+
+/** In a list. @param {Joint} joint */
+export const jointText = ({type, parent, child}) => `${parent} → ${child}: ${type}`;
+
+/** All plugins of a model as text, for editing. @param {Pick<Model, 'plugins'>} model */
+export const pluginText = ({plugins}) => plugins.map(({xml}) => xml.trim()).join('\n');
+
+/**
+ * How many steps of the history have come since a mark; the history that is sent is cut.
+ * @param {string[]} undo  the latest first
+ * @param {number} mark    its length before
+ */
+export const stepsSince = (undo, mark) => Math.max(undo.length - mark, 0);

@@ -1,0 +1,98 @@
+/** What lies behind everything: the world's sky, or a plain gradient where the world names none. */
+import {BackSide, Color, Mesh, ShaderMaterial, SphereGeometry, Vector3} from 'three';
+import {colorOf} from './three_convert.js';
+import {SKY, SKY_COLOR} from './palette.js';
+/** @import {Scene as SceneSettings, Sky} from '../protocol.js' */
+
+/** Gazebo's defaults (SDF spec 1.7, scene): a world that has these has not chosen. */
+const DEFAULTS = {ambient: [0.4, 0.4, 0.4], background: [0.7, 0.7, 0.7]};
+/** Colours of the gradient, sRGB. */
+const GRADIENT = {zenith: 0x3f7cc4, horizon: 0xdbe6f0};
+
+/** @param {number[]|null|undefined} color @param {number[]} other */
+const same = (color, other) =>
+  other.every((part, index) => Math.abs((color?.[index] ?? part) - part) < 1e-3);
+
+/**
+ * Whether a world leaves its background to whoever shows it.
+ * @param {Pick<SceneSettings, 'background'|'sky'|'fog'>} settings
+ */
+export const leavesBackground = ({background, sky, fog}) =>
+  !sky && (!fog || fog.type === 'none') && same(background, DEFAULTS.background);
+
+/** Whether a world leaves its ambient light so. @param {Pick<SceneSettings, 'ambient'>} settings */
+export const leavesAmbient = ({ambient}) => same(ambient, DEFAULTS.ambient);
+
+const VERTEX = `
+varying vec3 ahead;
+void main() {
+  ahead = position;
+  // An orthographic camera looks the same way everywhere.
+  float radius = projectionMatrix[3][3] == 1.0 ? 1.0e5 : 1.0;
+  vec4 place = projectionMatrix * vec4(radius * (mat3(viewMatrix) * position), 1.0);
+  gl_Position = place.xyww;
+}`;
+
+const SKY_FRAGMENT = `
+varying vec3 ahead;
+${SKY_COLOR}void main() {
+  gl_FragColor = vec4(sky(normalize(ahead)), 1.0);
+  #include <colorspace_fragment>
+}`;
+
+const GRADIENT_FRAGMENT = `
+varying vec3 ahead;
+uniform vec3 zenith, horizon;
+void main() {
+  float height = max(normalize(ahead).z, 0.0);
+  gl_FragColor = vec4(mix(horizon, zenith, pow(height, 0.52)), 1.0);
+  #include <colorspace_fragment>
+}`;
+
+/** @param {string} fragmentShader @param {Record<string, {value: unknown}>} uniforms */
+function dome(fragmentShader, uniforms) {
+  const mesh = new Mesh(new SphereGeometry(1, 32, 24), new ShaderMaterial({
+    vertexShader: VERTEX, fragmentShader, uniforms, side: BackSide, depthWrite: false, fog: false}));
+  // Last of what is opaque: only what nothing covers is computed.
+  mesh.renderOrder = 0.5;
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+const DAY = {zenith: new Color(SKY.day_zenith), horizon: new Color(SKY.day_horizon)};
+const NIGHT = {zenith: new Color(SKY.night_zenith), horizon: new Color(SKY.night_horizon)};
+const DUSK = new Color(SKY.dusk);
+
+/** The sky that a world describes. */
+export class WorldSky {
+  dome = dome(SKY_FRAGMENT, {sun: {value: new Vector3()}, zenith: {value: new Color()},
+    horizon: {value: new Color()}, cloud_color: {value: new Color()}, cover: {value: 0.5},
+    size: {value: 1}, drift: {value: 0}});
+
+  /** @returns {Color} of what is level with the eye and below */
+  get horizon() { return this.dome.material.uniforms.horizon.value; }
+
+  /** Hours of the day put the sun and its colours where they belong. @param {Sky} sky */
+  take(sky) {
+    const {uniforms} = this.dome.material;
+    const day = sky.sunset - sky.sunrise;
+    const part = day > 0 ? (sky.time - sky.sunrise) / day : 0.5;
+    const elevation = Math.sin(Math.PI * part);
+    uniforms.sun.value.set(Math.cos(Math.PI * part), -0.25, elevation).normalize();
+    const light = Math.min(Math.max(elevation * 3 + 0.15, 0), 1);
+    uniforms.zenith.value.lerpColors(NIGHT.zenith, DAY.zenith, light);
+    uniforms.horizon.value.lerpColors(NIGHT.horizon, DAY.horizon, light)
+      .lerp(DUSK, Math.max(0, 0.6 - Math.abs(elevation) * 2.5));
+    uniforms.cloud_color.value.copy(colorOf(sky.cloud_ambient)).multiplyScalar(1.15 * light + 0.05);
+    uniforms.cover.value = Math.min(Math.max(sky.cloud_humidity, 0), 1);
+    uniforms.size.value = 0.6 + sky.cloud_mean_size;
+    uniforms.drift.value = sky.cloud_direction;
+  }
+}
+
+/** The gradient of the view itself. */
+export class Gradient {
+  horizon = new Color(GRADIENT.horizon);
+  dome = dome(GRADIENT_FRAGMENT, {zenith: {value: new Color(GRADIENT.zenith)},
+    horizon: {value: this.horizon}});
+}
