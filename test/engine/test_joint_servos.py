@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from conftest import Lab, arm
@@ -9,11 +10,16 @@ from conftest import Lab, arm
 from my_simulations.description.model import JointAxis
 from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import (
+    FOREVER,
+    AddTimedForces,
+    ClearTimedForces,
+    JointPid,
     JointServo,
     PhysicsSettings,
     PidGains,
     ReadEfforts,
     SetServos,
+    TimedEffort,
 )
 from my_simulations.engine.spline import Spline, segment_between
 
@@ -40,6 +46,24 @@ def test_a_position_drive_goes_there_and_holds_a_weight(lab: Lab):
     assert lab.joint(model)[0] == pytest.approx(-0.4, abs=0.01)  # as fast as it may
     lab.seconds(1.0)
     assert lab.joint(model)[0] == pytest.approx(-0.5, abs=1e-4)
+
+
+@pytest.mark.parametrize("servo", [
+    JointServo(0, "position", 0.5), JointServo(0, "velocity", 0.0),
+    JointServo(0, "effort", 0.5, gains=PidGains(400.0, 0.0, 40.0))], ids=lambda one: one.drive)
+def test_a_servo_yields_to_the_loop_of_a_user_and_goes_on_after_it(lab: Lab, servo):
+    model, row = level(lab)
+    lab.apply(SetServos((replace(servo, row=row),)))
+    lab.seconds(1.0)
+    before = lab.joint(model)[0]
+    loop = JointPid(-0.4, p=50.0, i=0.0, d=15.0)
+    lab.apply(AddTimedForces((TimedEffort(7, row, lab.step, FOREVER, 0.0, loop),)))
+    lab.seconds(4.0)
+    assert lab.joint(model)[0] == pytest.approx(-0.4, abs=2e-3)
+    lab.apply(ClearTimedForces((7,)))
+    lab.seconds(1.0)
+    assert lab.joint(model)[0] == pytest.approx(
+        -0.4 if servo.drive == "velocity" else before, abs=2e-3)
 
 
 def test_a_position_drive_is_where_its_spline_is(lab: Lab):

@@ -26,6 +26,7 @@ from my_simulations.sensing.api import (
     AddBody,
     Body,
     CameraSpec,
+    CastBatch,
     CastRays,
     LoadScene,
     Mount,
@@ -214,6 +215,17 @@ def test_a_sensor_on_a_link_that_the_state_lacks_is_refused_and_bodies_without_r
     with pytest.raises(SensingError, match="no link 7"):
         sensing.cast(CastRays(Mount(7), AHEAD, at=PLACES)).result(DEADLINE_S)
     assert 7 not in picture(sensing).labels
+
+
+def test_sensors_of_one_state_are_answered_together_and_fail_each_by_itself(sensing):
+    one, other = sensing.cast(CastRays(MOUNT, FAN, at=PLACES)), CastRays(Mount(7), AHEAD)
+    first, second, third = sensing.cast_all(CastBatch(
+        (CastRays(MOUNT, FAN), other, CastRays(MOUNT, FAN, VISUALS)), PLACES)).result(DEADLINE_S)
+    alone = one.result(DEADLINE_S)
+    assert np.array_equal(first.ranges, alone.ranges)
+    assert np.array_equal(first.link_rows, alone.link_rows)
+    assert isinstance(second, SensingError)
+    assert third.ranges == pytest.approx(alone.ranges, abs=1e-6)
 
 
 def test_an_unreadable_mesh_is_left_out_and_named_once_for_rays_and_once_for_cameras(sensing):

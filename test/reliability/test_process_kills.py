@@ -289,8 +289,9 @@ def test_a_killed_sensing_process_costs_its_requests_only(record):
         # Rows as the ring holds them: poses and twists of the world and of the wall.
         places = np.array([[x, 0, 0, 0, 0, 0, 1, *[0] * 6] for x in (0.0, 5.1)]).tobytes()
         expected = sensing.cast(CastRays(mount, fan, at=places)).result(LONGEST_CALL_S).ranges
-        for _ in range(kills):
+        for n in range(kills):
             asked = [sensing.cast(CastRays(mount, fan, at=places)) for _ in range(20)]
+            asked[n % len(asked)].result(LONGEST_CALL_S)
             os.kill(sensing.pid, signal.SIGKILL)
             for one in asked:
                 try:

@@ -38,6 +38,8 @@ _PAGE = 4096
 _LINK_WORDS = LINKS * LINK_WIDTH
 _JOINT_WORDS = JOINTS * JOINT_WIDTH
 _SLOT_WORDS = -(-(HEAD_WORDS + _LINK_WORDS + _JOINT_WORDS) * 8 // _PAGE) * _PAGE // 8
+_FIRST_SLOT = _PAGE // 8
+_FIRST_JOINT = HEAD_WORDS + _LINK_WORDS
 SIZE = _PAGE + (SLOTS + POSE_SLOTS) * _SLOT_WORDS * 8
 
 # Words of the control page. The first group is the engine's, the second the simulator's.
@@ -148,12 +150,12 @@ class Memory:
     @staticmethod
     def slot(sequence: int) -> int:
         """First word of the slot that holds snapshot `sequence`."""
-        return _PAGE // 8 + (sequence % SLOTS) * _SLOT_WORDS
+        return _FIRST_SLOT + (sequence % SLOTS) * _SLOT_WORDS
 
     @staticmethod
     def pose_slot(number: int) -> int:
         """First word of the slot that holds poses number `number`."""
-        return _PAGE // 8 + (SLOTS + number % POSE_SLOTS) * _SLOT_WORDS
+        return _FIRST_SLOT + (SLOTS + number % POSE_SLOTS) * _SLOT_WORDS
 
 
 class RingWriter:
@@ -275,12 +277,13 @@ class RingReader:
 
     def joint(self, row: int) -> "tuple[float, float]":
         """Newest position and rate of one joint axis, without copying the rest."""
+        words, doubles = self.words, self.memory.doubles
         while True:
-            sequence = self.words[LATEST]
-            slot = self.memory.slot(sequence)
-            at = slot + HEAD_WORDS + _LINK_WORDS + row * JOINT_WIDTH
-            found = self.memory.doubles[at], self.memory.doubles[at + 1]
-            if self._is_whole(slot, sequence):
+            sequence = words[LATEST]
+            slot = _FIRST_SLOT + sequence % SLOTS * _SLOT_WORDS  # in line: robots read many
+            at = slot + _FIRST_JOINT + row * JOINT_WIDTH
+            found = doubles[at], doubles[at + 1]
+            if words[slot + SEQ_BEGIN] == sequence == words[slot + SEQ_END]:
                 return found
 
     def link(self, row: int) -> "tuple[Pose, Twist]":

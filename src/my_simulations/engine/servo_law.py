@@ -81,6 +81,10 @@ class ServoLaw:
         self._begin, self._end = math.inf, -math.inf
         self._coefficients: Coefficients = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self.gives_effort = servo.drive == "effort" or self._inner is not None
+        # Most loops: a fixed target, an effort, and limits that are seldom reached.
+        self._plain = (servo.spline is None and servo.drive == "effort" and servo.soft is None
+                       and self._outer is not None and not servo.of_rate and not servo.wraps
+                       and not servo.by_rates and not servo.target_rate * servo.feedforward)
         self.steady = (servo.spline is None and servo.gains is None and self._inner is None
                        and (servo.drive != "effort" or servo.target == 0.0)
                        and servo.soft is None)
@@ -95,6 +99,16 @@ class ServoLaw:
     def advance(self, position: float, rate: float, step: int) -> float:
         """The effort or rate for the step that begins at count `step`."""
         servo, dt = self.servo, self._dt
+        outer = self._outer
+        if self._plain and outer is not None:
+            command = outer.command(servo.target - position, dt)
+            most = servo.most_effort
+            if servo.lower <= position <= servo.upper and (
+                    -servo.most_rate <= rate <= servo.most_rate):
+                self.last = -most if command < -most else most if command > most else command
+            else:
+                self.last = self._effort(command, position, rate)
+            return self.last
         if servo.spline is None:
             wanted, wanted_rate = servo.target, servo.target_rate
         else:

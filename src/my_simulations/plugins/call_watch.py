@@ -114,12 +114,11 @@ class CallWatch:
             try:
                 call(*arguments)
             finally:
-                with self._lock:
-                    abandoned = self._call is not mine
-                    if not abandoned:
-                        self._call = None
-                    if mine.interrupted:
-                        _raise_in(mine.thread, None)  # it has come back by itself in this moment
+                abandoned = False
+                if mine.looked:
+                    abandoned = self._end(mine)
+                else:  # a look comes long before an interruption: most calls need no lock
+                    self._call = None
         except CallOverdue:
             with self._lock:
                 if self._call is mine:
@@ -127,6 +126,16 @@ class CallWatch:
             raise CallOverdue(f"{mine.why}{mine.where}") from None
         if abandoned:
             raise CallOverdue(mine.why)
+
+    def _end(self, mine: _Call) -> bool:
+        """A call has come back; whether its thread was left behind."""
+        with self._lock:
+            abandoned = self._call is not mine
+            if not abandoned:
+                self._call = None
+            if mine.interrupted:
+                _raise_in(mine.thread, None)  # it has come back by itself in this moment
+            return abandoned
 
     def _watch(self) -> None:
         while not self._stop.wait(_LOOK_S):

@@ -164,6 +164,7 @@ class PluginHost:
         while self._rung:
             self._deliver(self._rung.popleft())
         self._serve()
+        self._scene.send()
         if self._touched:
             self._give_orders()
         self._go_on(moment)

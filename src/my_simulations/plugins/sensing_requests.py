@@ -84,6 +84,8 @@ class SensingRequests:
         if scan is None or scan is not self._scan:
             return
         self._scan = None
+        if not scan.future.done():
+            self._scene.send()
         try:
             found = scan.future.result(_SCAN_S)
         except (SensingError, FutureTimeoutError) as fault:

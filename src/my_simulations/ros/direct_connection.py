@@ -10,15 +10,19 @@ from __future__ import annotations
 import contextlib
 import select
 import socket
+import struct
 import threading
 from collections import deque
-from typing import Any, Callable, Deque, Dict, Optional
+from io import BytesIO
+from typing import Any, Callable, Deque, Dict, List, Optional
 
 import rospy
 from rospy.exceptions import TransportTerminated
 from rospy.impl.transport import Transport
 
 _LOOK_S = 0.1   # between two looks for connections that were closed
+_LENGTH = struct.Struct("<I")
+_NO_LENGTH = _LENGTH.pack(0)
 
 
 class DirectConnection:
@@ -147,10 +151,38 @@ def direct(publisher: rospy.Publisher) -> Callable[[Any], None]:
         implementation.add_connection = add_connection
     implementation.set_queue_size(None)
 
+    buffer = BytesIO()
+
     def publish(message: Any) -> None:
         lock = implementation.publock
         if publisher.impl is None or lock is None:
             raise rospy.ROSException("the topic is closed")
         with lock:
-            implementation.publish(message)
+            if implementation.is_latch:
+                implementation.publish(message)
+            elif implementation.connections:
+                implementation.seq += 1
+                data = _packed(buffer, message, implementation.seq)
+                implementation.message_data_sent += len(data)
+                _send(data, implementation.connections)
     return publish
+
+
+def _packed(buffer: BytesIO, message: Any, number: int) -> bytes:
+    """A message as it goes over the wire: its length, and what it is; it is given its number."""
+    if message._has_header:
+        message.header.seq = number
+    buffer.seek(0)
+    buffer.truncate()
+    buffer.write(_NO_LENGTH)
+    message.serialize(buffer)
+    _LENGTH.pack_into(buffer.getbuffer(), 0, buffer.tell() - _LENGTH.size)
+    return buffer.getvalue()
+
+
+def _send(data: bytes, connections: List[Any]) -> None:
+    for connection in connections:
+        try:
+            connection.write_data(data)
+        except (TransportTerminated, OSError):
+            connection.close()  # which takes it out of the list: a new one, not the one at hand

@@ -169,6 +169,17 @@ class CastRays:
 
 
 @dataclass(frozen=True)
+class CastBatch:
+    """Ask for the ranges of several sensors in one state, `at`, instead of in their own.
+
+    Answered with a list: `RayReturns` or a `SensingError` for each.
+    """
+
+    casts: Tuple[CastRays, ...]
+    at: At = None
+
+
+@dataclass(frozen=True)
 class RenderCamera:
     """Ask for pictures of one moment. Answered with `Pictures`."""
 
@@ -263,7 +274,7 @@ class SetLights:
 
 
 Change = Union[LoadScene, AddBody, RemoveBody, SetLights]
-Request = Union[CastRays, RenderCamera]
+Request = Union[CastRays, CastBatch, RenderCamera]
 
 
 class Sensing(Protocol):
@@ -278,6 +289,9 @@ class Sensing(Protocol):
 
     def cast(self, request: CastRays) -> "Future[RayReturns]":
         """Rays; the first request starts the process. The future fails with a `SensingError`."""
+
+    def cast_all(self, request: CastBatch) -> "Future[List[Union[RayReturns, SensingError]]]":
+        """Rays of several sensors, in one message each way."""
 
     def render(self, request: RenderCamera) -> "Future[Pictures]":
         """Pictures; rays do not wait for them. The future fails with a `SensingError`."""

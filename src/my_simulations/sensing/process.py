@@ -10,13 +10,14 @@ import subprocess
 import threading
 import time
 from concurrent.futures import Future
-from typing import Any, Callable, Dict, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 from ..engine import child_process
 from ..engine.message_pipe import Wire
 from .api import (
     READY,
     TROUBLE,
+    CastBatch,
     CastRays,
     Change,
     Pictures,
@@ -97,6 +98,10 @@ class SensingProcess:
 
     def cast(self, request: CastRays) -> "Future[RayReturns]":
         """Ask for ranges; see `api.Sensing`."""
+        return self._submit(request)
+
+    def cast_all(self, request: CastBatch) -> "Future[List[Union[RayReturns, SensingError]]]":
+        """Ask for the ranges of several sensors; see `api.Sensing`."""
         return self._submit(request)
 
     def render(self, request: RenderCamera) -> "Future[Pictures]":

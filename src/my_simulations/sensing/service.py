@@ -18,6 +18,7 @@ from .api import (
     WORLD_ROW,
     At,
     Body,
+    CastBatch,
     CastRays,
     Change,
     Mount,
@@ -70,7 +71,7 @@ class Service:
         except SensingError as fault:
             self._reply(number, fault)
             return
-        worker = self._rays if isinstance(message, CastRays) else self._camera
+        worker = self._rays if isinstance(message, (CastRays, CastBatch)) else self._camera
         worker.put(number, message, state)
 
     def _state(self, at: At) -> State:
@@ -160,7 +161,19 @@ class _Rays:
                 if before.get(name) is not body:
                     self._add(scene, sees, body)
 
-    def answer(self, request: CastRays, state: State) -> RayReturns:
+    def answer(self, request: Union[CastRays, CastBatch],
+               state: State) -> Union[RayReturns, List[Union[RayReturns, SensingError]]]:
+        if isinstance(request, CastRays):
+            return self._cast(request, state)
+        found: List[Union[RayReturns, SensingError]] = []
+        for one in request.casts:
+            try:
+                found.append(self._cast(one, state))
+            except SensingError as fault:
+                found.append(fault)
+        return found
+
+    def _cast(self, request: CastRays, state: State) -> RayReturns:
         scene = self._scenes.get(request.sees) or self._made(request.sees)
         poses, step = state
         frame = sensor_frame(request.mount, poses)

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from ..errors import Issue, warning
 from ..sensing.api import (
@@ -10,6 +10,7 @@ from ..sensing.api import (
     VISUALS,
     AddBody,
     CameraSpec,
+    CastBatch,
     CastRays,
     Mount,
     Pictures,
@@ -17,6 +18,7 @@ from ..sensing.api import (
     RayReturns,
     RemoveBody,
     RenderCamera,
+    SensingError,
     SetLights,
 )
 from .registry import Entity
@@ -42,14 +44,35 @@ class SceneSensing:
         self._simulator, self._log = simulator, log
         self._process: "Optional[SensingProcess]" = None
         self._materials: Any = None
+        self._casts: "List[Tuple[CastRays, Future[RayReturns]]]" = []
+        self._cast_at = b""
         self._known: Dict[str, Entity] = {}
         self._revision = -1
         self._surroundings: Tuple[Any, ...] = ()
 
     def cast(self, mount: Mount, fan: RayFan, visuals: bool) -> "Future[RayReturns]":
-        """Ranges as of now. `visuals`: rays see what is drawn, else what collides."""
-        process = self._running()
-        return process.cast(CastRays(mount, fan, VISUALS if visuals else COLLISIONS, self._now()))
+        """Ranges as of now, once `send` is called. `visuals`: rays see what is drawn, else what
+        collides.
+
+        What several sensors ask for in one moment travels as one request.
+        """
+        self._running()
+        now = self._now()
+        future: "Future[RayReturns]" = Future()
+        if now != self._cast_at:
+            self.send()
+            self._cast_at = now
+        self._casts.append((CastRays(mount, fan, VISUALS if visuals else COLLISIONS), future))
+        return future
+
+    def send(self) -> None:
+        """Send what `cast` has gathered."""
+        if not self._casts:
+            return
+        casts, self._casts = self._casts, []
+        futures = [future for _, future in casts]
+        batch = CastBatch(tuple(cast for cast, _ in casts), self._cast_at)
+        self._running().cast_all(batch).add_done_callback(lambda done: _hand_out(done, futures))
 
     def render(self, shots: Sequence[Shot]) -> "List[Future[Pictures]]":
         """Pictures as of now, one of each shot."""
@@ -105,3 +128,15 @@ class SceneSensing:
                 or self._surroundings[1] is not scene:
             self._surroundings = (lights, scene)
             self._process.change(SetLights(list(lights), scene))
+
+
+def _hand_out(done: "Future[List[Union[RayReturns, SensingError]]]",
+              futures: "List[Future[RayReturns]]") -> None:
+    """Give each of the futures its part of an answer, or the fault of all."""
+    fault = done.exception()
+    found: Sequence[Any] = [fault] * len(futures) if fault is not None else done.result()
+    for future, one in zip(futures, found):
+        if isinstance(one, BaseException):
+            future.set_exception(one)
+        else:
+            future.set_result(one)

@@ -22,6 +22,9 @@ class Sensing:
         self.asked.append([Future() for _ in views])
         return self.asked[-1]
 
+    def send(self):
+        self.sent = True
+
     def cast(self, mount, fan, visuals):
         self.asked.append(Future())
         return self.asked[-1]

@@ -230,6 +230,9 @@ class View {
   /** Names of what others hold or have selected, for tests. */
   get sharedMarks() { return this.#people.shown; }
 
+  /** Meshes and textures that are on their way. */
+  get waiting() { return this.#stock.meshes.waiting; }
+
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
 

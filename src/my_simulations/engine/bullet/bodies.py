@@ -23,6 +23,7 @@ from ...geometry import (
 )
 from ..body_plan import BASE
 from . import surface_coefficients
+from .collision_shapes import Recipe
 
 SLEEP_THRESHOLD = 0.01
 """Bodies slower than about 0.1 m/s (measured) for 2 s of sim time may sleep, as Gazebo's."""
@@ -113,6 +114,7 @@ class Body:
         seen_at: its centre of mass at the last read-out; parting an overlap moves it without
             velocity.
         ties: how many joints connect it with other models.
+        shapes: its collision shapes, by PyBullet's numbers.
         pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).
     """
 
@@ -131,6 +133,7 @@ class Body:
     still: int = 0
     seen_at: Optional[Vec3] = None
     ties: int = 0
+    shapes: Tuple[Tuple[Recipe, int], ...] = ()
     pieces: Tuple[Part, ...] = ()
     lead_row: int = field(init=False)
 

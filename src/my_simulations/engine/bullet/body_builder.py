@@ -134,11 +134,12 @@ class Builder:
     def _build_rigid(self, rigid: _Rigid, pose: Pose, dt: float) -> Body:
         link, masses = self._model.links[rigid.number], rigid.masses
         at = compose(pose, rigid.model_from_com)
+        taken = tuple((piece, self._shapes.take(piece)) for piece in rigid.pieces)
         uids = [
             pybullet.createMultiBody(masses.mass, shape, self._shapes.unseen, at.position,
                                      at.orientation,
                                      useMaximalCoordinates=int(not self._articulated))
-            for shape in ([piece.make() for piece in rigid.pieces] or [-1])
+            for shape in ([shape for _, shape in taken] or [-1])
         ]
         for uid, piece in zip(uids, rigid.pieces):
             (collision_groups.static(link, piece.role) if rigid.static
@@ -148,7 +149,7 @@ class Builder:
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
                     is_ball=[type(c.geometry) for c in link.collisions] == [Sphere],
-                    may_sleep=self._may_sleep(link))
+                    may_sleep=self._may_sleep(link), shapes=taken)
         for uid in uids:
             set_dynamics(uid, BASE, link, masses.mass, masses.moments,
                          body.may_sleep and not rigid.static)
@@ -220,7 +221,7 @@ class Builder:
 
     def _build_tree(self, tree: _Tree, pose: Pose) -> Body:
         fixed, unseen = tree.plan.fixed_base, self._shapes.unseen
-        shapes = [-1 if recipe is None else recipe.make() for recipe in tree.shapes]
+        shapes = [-1 if recipe is None else self._shapes.take(recipe) for recipe in tree.shapes]
         base_shape, hung = (-1, shapes) if fixed else (shapes[0], shapes[1:])
         at = compose(pose, tree.model_from_base)
         uid = pybullet.createMultiBody(
@@ -228,7 +229,10 @@ class Builder:
             basePosition=at.position, baseOrientation=at.orientation,
             linkCollisionShapeIndices=hung, linkVisualShapeIndices=[unseen] * len(hung),
             **tree.arguments)
-        return self._finish_tree(uid, tree)
+        body = self._finish_tree(uid, tree)
+        body.shapes = tuple((recipe, shape) for recipe, shape in zip(tree.shapes, shapes)
+                            if recipe is not None)
+        return body
 
     def _finish_tree(self, uid: int, tree: _Tree) -> Body:
         parts: List[Part] = []
@@ -283,6 +287,7 @@ class Builder:
         self._ignore_each_other(built, False)
         for body in built:
             remove(body)
+            self._shapes.give(body.shapes)
 
     def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:
         """Links of one model collide only when self_collide asks (SDF 1.7, model/self_collide)."""

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 import pybullet
 
@@ -24,6 +24,7 @@ class _Loops:
         self.uid = uid
         self.indices: List[int] = []
         self.efforts: List[Tuple[int, int, ServoLaw]] = []   # place in `indices`, row, law
+        self.effort_indices: List[int] = []
         self.motors: List[Tuple[int, ServoLaw]] = []
         self.motor_indices: List[int] = []
         self.forces: List[float] = []
@@ -33,6 +34,7 @@ class _Loops:
         self.indices.append(axis.index)
         if law.gives_effort:
             self.efforts.append((place, axis.row, law))
+            self.effort_indices.append(axis.index)
         else:
             self.motors.append((place, law))
             self.motor_indices.append(axis.index)
@@ -48,12 +50,23 @@ class JointServos:
         self._laws: Dict[int, ServoLaw] = {}
         self._friction: Dict[int, Tuple[float, float]] = {}
         self._busy: Dict[int, _Loops] = {}
+        self._yielding: Set[int] = set()
         self._dt = 0.0
 
     @property
     def idle(self) -> bool:
         """Whether nothing must be computed."""
         return not self._busy
+
+    def yield_to(self, rows: Set[int]) -> None:
+        """PID loops drive these axes: their servos rest meanwhile, only friction stays."""
+        changed, self._yielding = rows ^ self._yielding, set(rows)
+        for row in changed & self._laws.keys():
+            body, axis = self._axes[row]
+            self._laws[row].disturbed()
+            self._release(body, axis)
+            self._drive(body, axis)
+        self._sort()
 
     def set(self, servos: Iterable[JointServo], dt: float) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
@@ -111,14 +124,27 @@ class JointServos:
         """All bodies are gone."""
         for table in (self._laws, self._friction, self._busy):
             table.clear()
+        self._yielding.clear()
 
-    def add_to(self, efforts: Dict[int, float], step: int) -> None:
-        """Add the efforts of the step that begins at a count, N m or N by row; set motors."""
-        for loops in self._busy.values():
-            states = pybullet.getJointStates(loops.uid, loops.indices)
-            for place, row, law in loops.efforts:
-                position, rate, _, _ = states[place]
-                efforts[row] = efforts.get(row, 0.0) + law.advance(position, rate, step)
+    def act(self, efforts: Dict[int, float], shared: Set[int], step: int) -> None:
+        """Act in the step that begins at a count.
+
+        The efforts of bodies (PyBullet's numbers) that something else acts on, too, are added to
+        `efforts`, N m or N by row; those of others are given at once, a body at a time.
+        """
+        for uid, loops in self._busy.items():
+            states = pybullet.getJointStates(uid, loops.indices)
+            if uid in shared:
+                for place, row, law in loops.efforts:
+                    efforts[row] = efforts.get(row, 0.0) + law.advance(
+                        states[place][0], states[place][1], step)
+            elif loops.efforts:
+                given = []
+                for place, _, law in loops.efforts:
+                    position, rate, _, _ = states[place]
+                    given.append(law.advance(position, rate, step))
+                pybullet.setJointMotorControlArray(
+                    uid, loops.effort_indices, pybullet.TORQUE_CONTROL, forces=given)
             if loops.motors:
                 rates = [law.advance(states[place][0], states[place][1], step)
                          for place, law in loops.motors]
@@ -134,7 +160,7 @@ class JointServos:
             if row not in self._axes:
                 found.append(0.0)
             elif law is not None and law.gives_effort:
-                found.append(law.last)
+                found.append(0.0 if row in self._yielding else law.last)
             else:
                 body, axis = self._axes[row]
                 found.append(float(pybullet.getJointState(body.uid, axis.index)[3]))
@@ -144,7 +170,7 @@ class JointServos:
         """Find out anew what must be computed for which body."""
         self._busy = {}
         for row, law in self._laws.items():
-            if not law.steady:
+            if not law.steady and row not in self._yielding:
                 body, axis = self._axes[row]
                 self._busy.setdefault(body.uid, _Loops(body.uid)).add(axis, law)
 
@@ -157,7 +183,7 @@ class JointServos:
     def _drive(self, body: Body, axis: Axis) -> None:
         """Hand over what PyBullet does by itself."""
         law = self._laws.get(axis.row)
-        if law is None or not law.steady or law.gives_effort:
+        if law is None or not law.steady or law.gives_effort or axis.row in self._yielding:
             return
         servo = law.servo
         if servo.drive == "velocity":

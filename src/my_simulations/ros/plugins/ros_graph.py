@@ -8,9 +8,9 @@ from typing import Any, Callable, Dict, List
 import genpy
 import rospy
 
-from ...geometry import Pose
 from ...plugins.graph import Closing, MissingTypeError, Topic, TransformOf
 from ..direct_connection import direct
+from .packed_transforms import PackedTransforms
 
 _TF_QUEUE = 100
 
@@ -24,7 +24,8 @@ class RosTopic:
     @property
     def wanted(self) -> bool:
         """Whether anybody listens."""
-        return bool(self._publisher.get_num_connections() > 0)
+        implementation = self._publisher.impl
+        return implementation is not None and bool(implementation.connections)
 
     def send(self, message: Any) -> None:
         """Publish; nobody hears it any more while the node ends."""
@@ -55,6 +56,7 @@ class RosGraph:
     def __init__(self) -> None:
         self._types: Dict[str, Any] = {}
         self._tf: Any = None
+        self._stamp = (0, genpy.Time())
 
     def message(self, kind: str) -> Any:
         """A new message."""
@@ -62,7 +64,9 @@ class RosGraph:
 
     def stamp(self, ns: int) -> Any:
         """A time."""
-        return genpy.Time(ns // 10 ** 9, ns % 10 ** 9)
+        if ns != self._stamp[0]:  # all plugins that act in one step have one
+            self._stamp = (ns, genpy.Time(ns // 10 ** 9, ns % 10 ** 9))
+        return self._stamp[1]
 
     def publish(self, name: str, kind: str, queue: int, latch: bool) -> Topic:
         """Offer a topic."""
@@ -106,18 +110,8 @@ class RosGraph:
         """Broadcast to /tf, all in one message."""
         if self._tf is None:
             self._tf = self.publish("/tf", "tf2_msgs/TFMessage", _TF_QUEUE, False)
-        message = self.message("tf2_msgs/TFMessage")
-        stamp = self.stamp(ns)
-        message.transforms = [self._transform(*one, stamp) for one in transforms]
-        self._tf.send(message)
-
-    def _transform(self, parent: str, child: str, pose: Pose, stamp: Any) -> Any:
-        found = self.message("geometry_msgs/TransformStamped")
-        found.header.stamp, found.header.frame_id, found.child_frame_id = stamp, parent, child
-        at, turn = found.transform.translation, found.transform.rotation
-        at.x, at.y, at.z = pose.position
-        turn.x, turn.y, turn.z, turn.w = pose.orientation
-        return found
+        if self._tf.wanted:
+            self._tf.send(PackedTransforms(transforms, ns))
 
     def _type(self, kind: str, sort: str) -> Any:
         if kind not in self._types:

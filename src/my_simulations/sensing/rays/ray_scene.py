@@ -174,6 +174,8 @@ class RayScene:
 
     def move(self, poses: np.ndarray) -> None:
         """Put every link where (n, 7) poses of link rows say; a link without a row is not seen."""
+        if poses is self._poses and not self._changed:
+            return  # another sensor in the same state
         if self._changed:
             self._index()
         here = self._rows < len(poses)
