@@ -7,8 +7,8 @@ import struct
 import time
 
 import pytest
-from geometry_msgs.msg import TransformStamped
 from genpy import Time
+from geometry_msgs.msg import TransformStamped
 from rospy.exceptions import TransportTerminated
 from tf2_msgs.msg import TFMessage
 
