@@ -50,6 +50,14 @@ def key_within(seconds: float) -> str:
     return ""
 
 
+def single_keys() -> None:
+    """Read keys one by one; Ctrl-C is one of them, so that the node can still stop the robot."""
+    tty.setcbreak(sys.stdin.fileno())
+    modes = termios.tcgetattr(sys.stdin)
+    modes[3] &= ~termios.ISIG
+    termios.tcsetattr(sys.stdin, termios.TCSADRAIN, modes)
+
+
 def twist(move: Tuple[int, int, int, int], speed: float, turn: float) -> Twist:
     """A command, m/s and rad/s."""
     made = Twist()
@@ -71,7 +79,7 @@ def main() -> None:
     print(f"{HELP}\nspeed {speed:g} m/s, turn {turn:g} rad/s")  # noqa: T201
     try:
         if before is not None:
-            tty.setcbreak(sys.stdin.fileno())
+            single_keys()
         while not rospy.is_shutdown():
             key = key_within(wait)
             if key == ENDS:

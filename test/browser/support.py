@@ -15,7 +15,8 @@ from playwright.sync_api import sync_playwright
 
 from my_simulations.editor.transport import address_file
 
-SECONDS = 30.0
+SECONDS = 60.0
+"""Until something must have happened; a machine under load draws a picture in seconds."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -79,6 +80,7 @@ class Node:
 
         # Each node has a master of its own; rospy asks the one of the environment at each call.
         with mock.patch.dict(os.environ, ROS_MASTER_URI=self.master):
+            rospy.wait_for_service(f"/gazebo/{service}", SECONDS)
             return rospy.ServiceProxy(f"/gazebo/{service}", service_class)(**fields)
 
     def close(self):

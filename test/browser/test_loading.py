@@ -4,8 +4,9 @@ from __future__ import annotations
 import re
 
 import trimesh
+from support import wait_for
 
-HEAVY = 3
+HEAVY = 2
 """Meshes that must be divided before the world can run."""
 
 WORLD = """<?xml version="1.0"?>
@@ -22,7 +23,7 @@ def heavy_world(folder):
     models = ""
     for number in range(HEAVY):
         path = folder / f"ring_{number}.stl"
-        trimesh.creation.torus(0.4, 0.1 + 0.02 * number, 96, 48).export(str(path))
+        trimesh.creation.torus(0.4, 0.1 + 0.02 * number, 64, 32).export(str(path))
         models += MODEL.format(number, path)
     path = folder / "heavy.world"
     path.write_text(WORLD.format(models))
@@ -33,9 +34,10 @@ def test_a_heavy_world_has_a_page_first_which_tells_the_progress(launch, browser
     node = launch(heavy_world(tmp_path))
     editor = browser.open(node.url, wait=False)
     note = editor.page.locator(".connection-note")
-    note.get_by_text(re.compile(r"mesh \d of 3")).wait_for()
+    note.get_by_text(re.compile(r"mesh \d of 2")).wait_for()
     assert editor.get("editor.store.document") is None
     assert "world editor is at" in node.said()
+    wait_for(lambda: editor.get("Boolean(editor.store.document)"), "the divided meshes", 300.0)
     editor.wait_for_world()
     assert editor.names() == [f"ring_{number}" for number in range(HEAVY)]
     note.wait_for(state="hidden")

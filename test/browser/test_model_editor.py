@@ -21,9 +21,8 @@ def type_into(editor, target, path, *values):
     """Types numbers into a property's fields; each is taken before the next is typed."""
     fields = editor.page.locator(
         f'.properties .field[data-target="{target}"][data-path="{path}"] input')
+    fields.first.wait_for()
     for field, value in zip(fields.all(), values):
-        if value is None:
-            continue
         field.fill(str(value))
         field.press("Enter")
         done = editor.page.locator(f'.properties .field[data-target="{target}"]'

@@ -529,3 +529,48 @@ def test_a_mesh_that_is_dropped_becomes_a_body_of_the_density_asked_for(editor):
     assert editor.model("ball")["pose"][:3] == approx([-1.0, 0.0, 0.25], abs=0.05)
     mass = editor.model("ball")["links"][0]["inertial"]["mass"]
     assert mass == approx(500 * 4 / 3 * math.pi * 0.25 ** 3, rel=0.01)
+
+
+def test_a_model_s_own_panel_sets_mass_size_and_colour(launch, browser):
+    editor = browser.open(launch("worlds/empty.world").url)
+    editor.place("Box", (0.0, 0.0, 0.0))
+    editor.until("editor.store.selection.join() === 'unit_box'", "the selection")
+    size = editor.field("size x")
+    size.fill("0.4")
+    size.press("Enter")
+    editor.until("editor.store.model('unit_box').links[0].visuals[0].geometry.size[0] === 0.4",
+                 "the size")
+    link = "editor.store.model('unit_box').links[0]"
+    assert editor.get(f"{link}.collisions[0].geometry.size") == [0.4, 1, 1]
+    assert editor.get(f"{link}.inertial.iyy") == approx((0.16 + 1) / 12, rel=1e-3)
+    editor.field("mass").fill("3")
+    editor.field("mass").press("Enter")
+    editor.until(f"{link}.inertial.mass === 3", "the mass")
+    editor.until("editor.store.history.undo[0] === 'Set mass of unit_box to 3'", "its label")
+    # What was made by hand is no solid's: computing it mends that, in one step.
+    editor.get("editor.actions.setProperty('unit_box::link', 'inertial.ixx', 0.9)")
+    editor.until(f"{link}.inertial.ixx === 0.9", "the odd inertia")
+    editor.button("Compute inertia").click()
+    editor.until(f"Math.abs({link}.inertial.ixx - 3 * 2 / 12) < 1e-6", "the computed inertia")
+    assert editor.faults == []
+    editor.close()
+
+
+def test_several_models_are_set_together_and_an_empty_selection_gives_room(launch, browser):
+    editor = browser.open(launch("worlds/empty.world").url)
+    editor.place("Box", (0.0, 0.0, 0.0))
+    editor.place("Sphere", (2.0, 0.0, 0.0))
+    editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("Escape")
+    tall = editor.page.locator(".world-tree").bounding_box()["height"]
+    editor.get("editor.store.select(['unit_box', 'unit_sphere'])")
+    editor.page.get_by_text("2 models", exact=True).wait_for()
+    assert editor.page.locator(".world-tree").bounding_box()["height"] < tall - 100
+    editor.field("friction mu").fill("0.25")
+    editor.field("friction mu").press("Enter")
+    editor.until("['unit_box', 'unit_sphere'].every((name) => "
+                 "editor.store.model(name).links[0].collisions[0].surface.mu === 0.25)",
+                 "the friction of both")
+    editor.until("editor.store.history.undo[0] === 'Set friction of 2 models to 0.25'", "one step")
+    assert editor.faults == []
+    editor.close()

@@ -6,7 +6,7 @@ import signal
 import xmlrpc.client
 
 from pytest import approx
-from support import wait_for
+from support import free_port, wait_for
 
 
 def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, browser):
@@ -55,9 +55,9 @@ def test_two_people_at_one_world_see_whose_hand_is_where(launch, browser):
     second.page.mouse.move(x, y)
     second.page.mouse.down()
     second.page.mouse.move(x - 60, y, steps=6)
-    first.page.get_by_text("Guest 2 is dragging unit_box too").wait_for()
+    told(first, "Guest 2 is dragging unit_box too")
     second.page.mouse.up()
-    first.page.get_by_text("Guest 2 released unit_box, which you are dragging").wait_for()
+    told(first, "Guest 2 released unit_box, which you are dragging")
     first.page.mouse.up()
     first.until("editor.store.history.undo.length === 3", "two moves")
 
@@ -69,7 +69,7 @@ def test_two_people_at_one_world_see_whose_hand_is_where(launch, browser):
     wait_for(lambda: second.get("editor.store.others[0].held.join()") == "unit_box", "the hand")
     second.row("unit_box").click()
     second.page.keyboard.press("Delete")
-    first.page.get_by_text("unit_box, which you were dragging, was deleted by Guest 2").wait_for()
+    told(first, "unit_box, which you were dragging, was deleted by Guest 2")
     first.page.mouse.move(x + 50, y, steps=4)
     first.page.mouse.up()
     assert first.get("editor.store.issues.filter(({severity}) => severity === 'error')") == []
@@ -77,8 +77,8 @@ def test_two_people_at_one_world_see_whose_hand_is_where(launch, browser):
     # An undo of another's edit says whose it was.
     first.page.locator("#view").focus()
     first.page.keyboard.press("Control+z")
-    first.page.get_by_text("Undid an edit of Guest 2: Delete unit_box").wait_for()
-    second.page.get_by_text("Guest 1 undid your edit: Delete unit_box").wait_for()
+    told(first, "Undid an edit of Guest 2: Delete unit_box")
+    told(second, "Guest 1 undid your edit: Delete unit_box")
     assert first.faults == second.faults == []
     first.close()
     second.close()
@@ -104,6 +104,29 @@ def test_unsaved_changes_survive_a_killed_node_and_are_offered_again(launch, bro
     assert again.model("unit_cylinder")["pose"] == approx(pose, abs=1e-5)
     again.until("editor.store.history.dirty", "the mark of unsaved changes")
     again.close()
+
+
+def test_an_open_page_says_how_to_open_a_simulator_that_was_started_again(launch, browser):
+    port = free_port()
+    node = launch("worlds/empty.world", f"editor_port:={port}")
+    left_open = browser.open(node.url)
+    node.close()
+    again = launch("worlds/empty.world", f"editor_port:={port}")
+    assert again.url != node.url and again.url.partition("?")[0] == node.url.partition("?")[0]
+    left_open.page.get_by_text("Run “gzclient”").wait_for()
+    assert left_open.get("editor.store.connected") is False
+    # What gzclient does: it opens the new address, whose token the browser keeps.
+    page = left_open.context.new_page()
+    page.goto(again.url)
+    left_open.until("editor.store.connected", "the connection of the page that was left open")
+    assert not left_open.page.get_by_text("Run “gzclient”").is_visible()
+    page.close()
+    left_open.close()
+
+
+def told(editor, text):
+    """Waits for a message; its card may have gone by then."""
+    editor.until(f"editor.store.issues.some(({{message}}) => message.includes({text!r}))", text)
 
 
 def autosaved(folder, name):

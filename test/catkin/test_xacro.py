@@ -14,7 +14,7 @@ XMLNS = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 def _run(*words, **variables):
     return subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          timeout=60, env={**os.environ, **variables})
+                          timeout=300, env={**os.environ, **variables})
 
 
 @pytest.fixture

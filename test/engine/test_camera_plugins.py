@@ -4,7 +4,6 @@ from __future__ import annotations
 import math
 import os
 import signal
-import time
 
 import numpy as np
 import pytest
@@ -128,9 +127,9 @@ def test_a_world_stepped_by_hand_gets_each_picture_and_the_same_ones_again(case)
 def test_a_running_world_leaves_late_pictures_out_and_goes_on(case):
     one = case(CAMERA.format(rate=1000))
     one.sim.clock.unpause()
-    begun, wall = one.sim.clock.sim_ns, time.monotonic()
+    begun = one.sim.clock.sim_ns
     until(lambda: one.sim.clock.sim_ns - begun > 10 ** 9, "the world stands")
-    assert time.monotonic() - wall < 10.0
+    assert len(one.graph.on("cam/image_raw")) < 500     # of 1000 that were due
     until(lambda: one.graph.on("cam/image_raw"), "a picture")
     late = [issue for issue in one.issues if "late" in issue.message]
     assert len(late) == 1 and "left out" in late[0].message

@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -186,9 +188,23 @@ def test_a_mesh_without_volume_is_made_thin_with_a_warning(tmp_path, points, exp
     assert len(parts) == 1 and volume(parts) > 0 and codes == ["mesh-flat"]
 
 
-def test_a_second_call_finds_the_parts_in_the_cache(tmp_path):
-    first, _, _ = divided(angle(), tmp_path)
-    again, _, told = divided(angle(), tmp_path)
+@pytest.fixture(scope="module")
+def known(tmp_path_factory):
+    """A cache that has the parts of the L, and these parts."""
+    folder = tmp_path_factory.mktemp("known")
+    return folder, divided(angle(), folder)[0]
+
+
+@pytest.fixture
+def filled(known, tmp_path):
+    """A cache of one's own with the parts of the L, and these parts."""
+    folder, parts = known
+    return Path(shutil.copytree(folder, tmp_path / "filled")), parts
+
+
+def test_a_second_call_finds_the_parts_in_the_cache(filled):
+    folder, first = filled
+    again, _, told = divided(angle(), folder)
     assert told == []
     for one, other in zip(first, again):
         assert np.array_equal(one.vertices, other.vertices)
@@ -203,13 +219,13 @@ def entry(folder):
 @pytest.mark.parametrize("damage", [
     lambda content: b"", lambda content: b"no archive", lambda content: content[:len(content) // 2],
     lambda content: content[:200] + bytes(100) + content[300:]])
-def test_a_damaged_entry_of_the_cache_is_made_anew(tmp_path, damage):
-    first, _, _ = divided(angle(), tmp_path)
-    path = entry(tmp_path)
+def test_a_damaged_entry_of_the_cache_is_made_anew(filled, damage):
+    folder, first = filled
+    path = entry(folder)
     path.write_bytes(damage(path.read_bytes()))
-    parts, _, told = divided(angle(), tmp_path)
+    parts, _, told = divided(angle(), folder)
     assert len(parts) == len(first) and told != []
-    assert len(load(str(entry(tmp_path))).parts) == len(first)
+    assert len(load(str(entry(folder))).parts) == len(first)
 
 
 @pytest.mark.parametrize("change", ["triangle", "vertex", "nothing"])
@@ -332,10 +348,10 @@ def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path,
     assert "ready after" in told[-1]
 
 
-def test_the_parts_are_the_same_whether_they_were_known_before_or_not(tmp_path):
-    cold, _, _ = divided(angle(), tmp_path / "a")
+def test_the_parts_are_the_same_whether_they_were_known_before_or_not(filled, tmp_path):
+    folder, cold = filled
     again, _, _ = divided(angle(), tmp_path / "b")
-    warm, _, _ = divided(angle(), tmp_path / "a")
+    warm, _, _ = divided(angle(), folder)
     for other in (again, warm):
         assert [part.vertices.tolist() for part in other] == [p.vertices.tolist() for p in cold]
 

@@ -26,10 +26,10 @@ from my_simulations.simulator.simulator import Simulator
 class Case:
     """A world with plugins; `hear` returns when the plugin has heard it."""
 
-    def __init__(self, *models, gravity=(0.0, 0.0, -9.8)):
+    def __init__(self, *models, gravity=(0.0, 0.0, -9.8), **world):
         engine = InlineEngine(BulletBackend)
         self.issues = []
-        self.sim = Simulator(World(models=list(models), gravity=gravity),
+        self.sim = Simulator(World(models=list(models), gravity=gravity, **world),
                              engine_factory=lambda: engine, paused=True, log=self.issues.append)
         self.sim.start()
         self.graph = Graph()
@@ -41,7 +41,7 @@ class Case:
         self.until(lambda: not any(one.context.inbox for one in self.host._at_work()))
 
     def until(self, condition):
-        deadline = time.monotonic() + 20.0
+        deadline = time.monotonic() + 60.0
         while not condition():
             assert time.monotonic() < deadline
             time.sleep(0.001)

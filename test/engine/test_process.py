@@ -50,7 +50,7 @@ def kill(sim: Simulator) -> int:
     return pid
 
 
-def until(condition, failure: str, seconds: float = 20.0) -> None:
+def until(condition, failure: str, seconds: float = 60.0) -> None:
     deadline = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < deadline, failure
@@ -91,7 +91,7 @@ def test_a_running_world_goes_on_after_a_crash_and_reads_never_fail(start):
     sim.states.set_model_state("ball", Pose((0, 0, 50)), STILL)
     pid = sim.engine_pid
     os.kill(pid, signal.SIGKILL)
-    at, deadline = sim.clock.step, time.monotonic() + 20
+    at, deadline = sim.clock.step, time.monotonic() + 60
     while sim.engine_pid == pid or sim.clock.step <= at + 50:
         assert 0.4 < sim.states.model_state("ball")[0].position[2] <= 50.0
         assert time.monotonic() < deadline
@@ -155,7 +155,7 @@ def test_a_model_that_kills_every_engine_is_left_out_by_name_and_the_rest_is_loa
         with pytest.raises(EngineLostError):
             sim.models.spawn(box("killer"))
     assert not sim.clock.paused
-    at, deadline = sim.clock.step, time.monotonic() + 20
+    at, deadline = sim.clock.step, time.monotonic() + 60
     while sim.clock.step <= at:
         assert time.monotonic() < deadline
 
@@ -222,7 +222,7 @@ def test_what_an_engine_has_done_before_it_died_is_not_done_again(start):
     mover = threading.Thread(target=sim.states.set_model_state,
                              args=("box", Pose((1, 0, 0)), STILL, "box"))
     mover.start()
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + 60
     while engine.ring.latest == shown:
         assert time.monotonic() < deadline
     os.kill(engine.pid, signal.SIGKILL)
@@ -262,7 +262,7 @@ def test_the_engine_ends_with_its_parent():
     child = int(parent.stdout.readline())
     parent.kill()
     parent.wait()
-    deadline = time.monotonic() + 10
+    deadline = time.monotonic() + 60
     while os.path.exists(f"/proc/{child}") and _state(child) != "Z":
         assert time.monotonic() < deadline, "the engine outlived its parent"
         time.sleep(0.01)

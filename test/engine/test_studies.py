@@ -165,17 +165,26 @@ def test_a_name_that_is_not_there_refuses_or_fails_the_case(folder):
     assert "nobody" in table(folder, "t")[0]["issue"]
 
 
-def test_a_case_that_uses_up_its_processor_time_is_ended(folder):
-    text = """duration: 3000
+LONG = """duration: 3000
 models:
   box: {file: box.sdf, pose: [0, 0, 1]}
 vary:
   gravity: {set: gravity.z, values: [-9.8, -5]}
 limits: {processor_seconds: 1.5}
 """
-    assert run(folder, text, "--slots", "1") == 1
+
+
+def test_a_case_that_uses_up_its_processor_time_is_ended(folder):
+    assert run(folder, LONG, "--slots", "1") == 1
     assert [row["status"] for row in table(folder)] == ["timed out", "timed out"]
     assert all(0 < int(row["step"]) < 3_000_000 for row in table(folder))
+
+
+def test_a_case_that_fills_the_memory_is_ended_and_told(folder):
+    text = LONG.replace("processor_seconds: 1.5", "memory_mb: 20")
+    assert run(folder, text, "--slots", "1") == 1
+    assert [row["status"] for row in table(folder)] == ["too large", "too large"]
+    assert "20 MB" in table(folder)[0]["issue"]
 
 
 def test_a_state_that_diverges_is_told(folder):

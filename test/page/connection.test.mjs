@@ -113,3 +113,32 @@ test('the web socket is where the page is, and the token goes along', () => {
   assert.equal(webSocketUrl(new URL('http://127.0.0.1:11346/')), 'ws://127.0.0.1:11346/ws');
   assert.equal(webSocketUrl(new URL('https://lab:1/?token=a%26b')), 'wss://lab:1/ws?token=a%26b');
 });
+
+test('a page whose token is refused says so until it is connected again', async () => {
+  Socket.made = [];
+  const timers = [];
+  let answer = true;
+  const connection = new Connection('ws://here/ws', {WebSocket: Socket,
+    setTimeout: (what) => timers.push(what), isRefused: async () => answer});
+  connection.open();
+  const told = once(connection, 'refused');
+  Socket.made[0].drop();
+  await told;
+  assert.equal(connection.refused, true);
+  const gone = once(connection, 'refused');
+  answer = false; // nobody listens there any more
+  timers.pop()();
+  Socket.made[1].drop();
+  await gone;
+  assert.equal(connection.refused, false);
+  answer = true;
+  timers.pop()();
+  const again = once(connection, 'refused');
+  Socket.made[2].drop();
+  await again;
+  timers.pop()();
+  const opened = once(connection, 'open');
+  Socket.made[3].accept();
+  await opened;
+  assert.equal(connection.refused, false);
+});

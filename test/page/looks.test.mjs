@@ -23,6 +23,7 @@ test('grounds, walls, robots and meshes keep their grey', () => {
   const [visual] = grey.links[0].visuals;
   assert.equal(tinted({...grey, static: true}, visual), visual);
   assert.equal(tinted({...grey, links: [grey.links[0], grey.links[0]]}, visual), visual);
+  assert.notEqual(tinted({...grey, links: [grey.links[0], grey.links[0]]}, visual, true), visual, 'while it is built');
   const mesh = {...visual, geometry: {type: 'mesh', uri: 'a.dae'}};
   assert.equal(tinted(grey, mesh), mesh);
 });

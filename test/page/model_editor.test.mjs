@@ -47,7 +47,7 @@ test('each type of joint has its axes', () => {
 });
 
 test('joints and plugins are shown as text', () => {
-  assert.equal(jointText({name: 'j', type: 'ball', parent: 'a', child: 'b'}), 'j (ball): a → b');
+  assert.equal(jointText({name: 'j', type: 'ball', parent: 'a', child: 'b'}), 'a → b: ball');
   assert.equal(pluginText({plugins: [{xml: '<plugin/>\n'}, {xml: '<plugin name="b"/>'}]}),
     '<plugin/>\n<plugin name="b"/>');
 });

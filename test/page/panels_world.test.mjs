@@ -94,6 +94,7 @@ test('a name leads to its row and what must be open', () => {
     opens: ['models', 'model:a::b'],
   });
   assert.equal(rowOf(document, 'nobody'), null);
+  assert.equal(rowOf(document, 'a::not_yet'), null);
   assert.equal(modelOf(document, 'a::b::link').name, 'a::b');
 });
 

@@ -29,10 +29,11 @@ pytestmark = [
 
 
 def slim(root: Path) -> None:
-    """Remove what Debian's slim images lack."""
+    """Remove what Debian's slim images lack; set dpkg as they do, not to wait for the disk."""
     for name in ("usr/share/doc", "usr/share/info", "usr/share/locale", "usr/share/man",
                  "var/cache/apt", "var/lib/apt/lists"):
         shutil.rmtree(root / name, ignore_errors=True)
+    (root / "etc" / "dpkg" / "dpkg.cfg.d" / "docker-apt-speedup").write_text("force-unsafe-io\n")
 
 
 @pytest.fixture(scope="module")

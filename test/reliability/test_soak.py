@@ -11,8 +11,8 @@ SECONDS = scaled(20, 7200)
 SETTLED = 0.4
 """Share of the time after which nothing may grow."""
 
-KEPT_KB = 4.5
-"""PyBullet keeps about 4.2 kB of each removed body until the world is reset (measured)."""
+KEPT_KB = 2.5
+"""PyBullet keeps about 1.4 kB of each removed body until the world is reset (measured)."""
 
 GROWTH, SLACK_MB = 1.05, scaled(4, 0)
 """In a short run a heap may still find its size."""

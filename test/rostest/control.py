@@ -9,6 +9,7 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import actionlib
+import dynamic_reconfigure
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from control_msgs.msg import (
@@ -26,6 +27,7 @@ from controller_manager_msgs.srv import (
     SwitchController,
     UnloadController,
 )
+from dynamic_reconfigure.client import Client
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from support import Collected, Gazebo, run, wait_for
@@ -153,6 +155,17 @@ class Control(unittest.TestCase):
     def test_types_are_listed(self):
         types = manager("list_controller_types", ListControllerTypes)().types
         self.assertIn("diff_drive_controller/DiffDriveController", types)
+
+    def test_gains_are_seen_and_set_by_dynamic_reconfigure(self):
+        gains = "/arm/trajectory/gains/shoulder"
+        self.assertIn(gains, dynamic_reconfigure.find_reconfigure_services())
+        client = Client(gains, timeout=20.0)
+        self.assertEqual(client.get_configuration(timeout=20.0)["p"], 400.0)
+        changed = client.update_configuration({"p": 350.0})
+        self.assertEqual((changed["p"], changed["d"], changed["antiwindup"]), (350.0, 30.0, False))
+        wait_for(lambda: client.get_configuration()["p"] == 350.0, "the new gain")
+        client.update_configuration({"p": 400.0})
+        client.close()
 
     def test_the_command_lists_controllers(self):
         done = subprocess.run(["rosrun", "controller_manager", "controller_manager", "list",

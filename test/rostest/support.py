@@ -21,7 +21,7 @@ from my_simulations.ros import interface
 from my_simulations.ros.registration import class_of
 
 PACKAGE = "my_simulations"
-SECONDS = 20.0
+SECONDS = 60.0
 
 def wait_for(condition, what, seconds=SECONDS):
     """The first true value of `condition()`; an AssertionError that says `what` is missing."""

@@ -82,19 +82,21 @@ check_and_report() {
   if [ "$status" -eq 0 ]; then finish "$(tail -n 1 "$LOG")"; else judge "$1" 0 0 "$status"; fi
 }
 
-# pytest_folder FOLDER SECONDS FILE...: the tests of the given files, long ones where LONG is 1.
-pytest_folder() {
-  local folder="$1" limit="$2" status=0 head name results chosen=()
-  [ "${LONG:-0}" = 1 ] || chosen=(-m "not long")
-  name=${folder//\//-}
+# pytest_files NAME SECONDS FILE...: the tests of the given files, long ones where LONG is 1.
+pytest_files() {
+  local title="$1" limit="$2" status=0 head name results options=()
+  [ "${LONG:-0}" = 1 ] || options=(-m "not long")
+  [ "${PROCESSOR_TIME:-0}" = 0 ] || options+=(--processor-time 60)
+  name=${title//[\/ ]/-}
   results="$RESULTS/$name.xml"
   shift 2
-  begin "$folder"
+  begin "$title"
   attempt "$name" "$limit" env PYTHONPATH="$CLONE/src${PYTHONPATH:+:$PYTHONPATH}" \
     MY_SIMULATIONS_LONG="${LONG:-0}" MY_SIMULATIONS_RELIABILITY="$RESULTS/reliability.jsonl" \
-    "$VENV/bin/python3" -m pytest -p no:cacheprovider --junitxml="$results" "${chosen[@]}" "$@" || status=$?
+    "${TEST_PYTHON:-$VENV/bin/python3}" -m pytest -p no:cacheprovider --junitxml="$results" \
+    "${options[@]}" "$@" || status=$?
   head=$(grep -o '<testsuite [^>]*>' "$results" 2>/dev/null | head -n 1 || true)
-  judge "$folder" $(($(attribute tests "$head") - $(attribute skipped "$head"))) \
+  judge "$title" $(($(attribute tests "$head") - $(attribute skipped "$head"))) \
     $(($(attribute errors "$head") + $(attribute failures "$head"))) "$status"
 }
 

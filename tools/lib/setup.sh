@@ -140,10 +140,17 @@ system_packages() {
   esac
   [ "$WITH_TEST_TOOLS" = 0 ] || lists+=(packages-test)
   [ "$PYTHON_NAME" = 0 ] || lists+=(packages-python)
-  # A Node.js from elsewhere is as good, and Debian's npm brings 300 packages.
-  [ "$1" = run ] || [ -n "${BUNDLED:-}" ] || command -v npm >/dev/null || lists+=(packages-page)
+  [ "$1" = run ] || ! lacks_npm || lists+=(packages-page)
   for list in "${lists[@]}"; do packages_of "$CLONE/tools/apt-$list.txt"; done
   embree_packages
+}
+
+# lacks_npm: whether npm must be installed. A Node.js from elsewhere is as good, and Debian's npm brings
+# 300 packages; what is there or comes from an archive needs none.
+lacks_npm() {
+  ! command -v npm >/dev/null || return 1
+  [ "$WITH_TEST_TOOLS" = 0 ] || return 0
+  [ -z "${BUNDLED:-}" ] && ! page_is_there
 }
 
 install_system_packages() {
@@ -276,13 +283,21 @@ pip_install() {
   logged "pip-$1" "$advice" "${command[@]}" --find-links "$wheels"
 }
 
+page_stamp() { sha256sum <"$CLONE/web/package-lock.json"; }
+
+# page_is_there: whether the workspace has what the editor's page needs, in this version.
+page_is_there() {
+  local stamped="${WORKSPACE:-}/.my_simulations/.page"
+  [ -f "$stamped" ] && [ "$(cat "$stamped")" = "$(page_stamp)" ]
+}
+
 # prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor
 # finds it.
 prepare_page() {
   begin "Packages of the editor's page"
   local place="$WORKSPACE/.my_simulations" stamp
-  stamp=$(sha256sum <"$CLONE/web/package-lock.json")
-  if [ "$(cat "$place/.page" 2>/dev/null || true)" = "$stamp" ]; then
+  stamp=$(page_stamp)
+  if page_is_there; then
     finish "all there"
     return
   fi
@@ -404,4 +419,8 @@ one_at_a_time() {
   flock -n 9 || { printf '(waiting for another set-up of this workspace) '; flock 9; }
 }
 
-release() { exec 9>&-; }
+# release: let another set-up of this workspace go on.
+release() {
+  rm -rf -- "$OWN/bundle"  # what was unpacked of an archive is installed
+  exec 9>&-
+}

@@ -97,15 +97,29 @@ forget_build() {
   [ "$name" != my_simulations_underlay ] || rm -f -- "$devel/bin/roslaunch"
 }
 
-# link_companions: link each package of compat/ that rospack does not find elsewhere.
+# spoken_of NAME: whether a package of the workspace names that package, or controllers of it.
+spoken_of() {
+  local folders
+  [ -z "${ALL_COMPANIONS:-}" ] || return 0
+  folders=$(others_in "$WORKSPACE/src")
+  [ -n "$folders" ] || return 1
+  tr ':' '\n' <<<"$folders" | xargs -d '\n' grep -rqs --include='*.xml' --include='*.yaml' \
+    --include='*.launch' --include='*.py' --exclude-dir='.*' -e "${1%_msgs}_" --
+}
+
+# link_companions: link each package of compat/ that rospack does not find elsewhere; messages of
+# few robots only where somebody speaks of them.
 link_companions() {
   local name target place real
   COMPANIONS=
-  for name in control_msgs controller_manager controller_manager_msgs gazebo_msgs gazebo_ros \
-    my_simulations_msgs teleop_twist_keyboard xacro; do
+  for name in control_msgs controller_manager controller_manager_msgs four_wheel_steering_msgs \
+    gazebo_msgs gazebo_ros my_simulations_msgs teleop_twist_keyboard unitree_legged_msgs xacro; do
     target="$CLONE/compat/$name"
     place="$WORKSPACE/src/$name"
     real=$(real_package "$name" "$WORKSPACE/src")
+    case $name in
+      four_wheel_steering_msgs | unitree_legged_msgs) [ -n "$real" ] || spoken_of "$name" || real=none ;;
+    esac
     if [ -n "$real" ] && [ "$name" = gazebo_ros ] && [ "$USE_COMPANIONS" = 1 ]; then
       case $real/ in
         "$WORKSPACE"/src/*)

@@ -7,6 +7,8 @@
 import {alignMoves} from './align.js';
 import {RequestError} from './connection.js';
 import {linkMoves, linkRemovals} from './model_editor/model_edits.js';
+import {remembered} from './panels/dom.js';
+import {linkOf} from './view_link.js';
 import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
 /** @import {AlignChoice} from './align.js' */
 /** @import {CameraChoices, CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js' */
@@ -37,6 +39,8 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
  *            'building'|'modelEditor'|'saveModel'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
 
 /** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
+
+/** @typedef {{name: string, view: import('./camera_math.js').View}} Bookmark  a camera to come back to */
 
 /** @typedef {ReturnType<typeof createActions>} Actions */
 
@@ -281,6 +285,7 @@ export function createActions({store, connection}) {
     rotateMode: () => manipulate('rotate'),
     scaleMode: () => manipulate('scale'),
     snapMode: () => store.setMode(store.mode === 'snap' ? 'select' : 'snap'),
+    measureMode: () => store.setMode(store.mode === 'measure' ? 'select' : 'measure'),
     selectAll: () => store.select(store.document?.models.map((model) => model.name) ?? []),
 
     // ---- align
@@ -304,6 +309,44 @@ export function createActions({store, connection}) {
     viewFrom: (side) => view?.viewFrom(side),
     resetView: () => view?.viewFrom('home'),
     moveTo: (name = store.selection.at(-1)) => name && view?.moveTo(name),
+    /** The address that opens this page with this camera and selection, to the clipboard. */
+    async copyLink() {
+      const link = actions.viewLink();
+      if (!link) return;
+      try {
+        await navigator.clipboard.writeText(link);
+        note('Copied the link to this view.');
+      } catch {
+        // Without permission it stands in the address bar.
+        history.replaceState(null, '', link);
+        note('The link to this view is in the address bar.');
+      }
+    },
+    viewLink: () => view && `${location.href.split('#')[0]}${linkOf(view.camera, store.selection)}`,
+    /** Cameras that the user keeps, of this world. @returns {Bookmark[]} */
+    bookmarks: () => remembered.get(bookmarksKey(), []),
+    addBookmark() {
+      if (!view) return;
+      const kept = actions.bookmarks();
+      const numbers = kept.map(({name}) => Number(/^View (\d+)$/.exec(name)?.[1] ?? 0));
+      const name = `View ${Math.max(0, ...numbers) + 1}`;
+      remembered.set(bookmarksKey(), [...kept, {name, view: view.camera}]);
+      note(`Kept this camera as ${name}: Camera menu.`);
+    },
+    /** @param {number} at */
+    goToBookmark(at) {
+      const bookmark = actions.bookmarks()[at];
+      if (bookmark) view?.flyTo(bookmark.view);
+    },
+    clearBookmarks: () => remembered.set(bookmarksKey(), []),
+    /**
+     * What the models of the world cover of the ground, but for planes and one of them.
+     * @param {string} [without]
+     */
+    footprints: (without) => (store.document?.models ?? []).flatMap(({name}) => {
+      const outline = name === without ? null : view?.footprint(name);
+      return outline ? [{name, outline}] : [];
+    }),
     /** @param {string|null} name  null ends it @returns {void} */
     follow(name = store.selection.at(-1) ?? null) {
       if (name) store.setMode('select');
@@ -441,6 +484,8 @@ export function createActions({store, connection}) {
     }
     return outcome;
   }
+
+  const bookmarksKey = () => `bookmarks.${store.history.file || store.document?.name || ''}`;
 
   /** @param {Mode} mode */
   function manipulate(mode) {

@@ -14,6 +14,7 @@ import {PROTOCOL_VERSION} from './protocol.js';
  * @typedef {object} ConnectionEvents
  * @property {Requests['hello']['reply']} open  the greeting was answered
  * @property {undefined} close
+ * @property {undefined} refused  the simulator that answers does not know this page's token
  * @property {Push|{type: 'issue', issue: Issue}} message  what the simulator pushed
  * @property {ArrayBuffer} frame
  */
@@ -55,6 +56,21 @@ export function webSocketUrl(location) {
   return `${scheme}//${location.host}/ws${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 }
 
+/**
+ * Whether the server at this address refuses this page's token; false if none answers. A web socket
+ * that cannot be opened does not tell why.
+ * @param {string} url  of the web socket
+ */
+async function isRefused(url) {
+  const address = new URL(url.replace(/^ws/, 'http'));
+  address.pathname = '/protocol.json';
+  try {
+    return (await fetch(address, {cache: 'no-store'})).status === 403;
+  } catch {
+    return false;
+  }
+}
+
 const OPEN = 1;
 
 /**
@@ -66,6 +82,7 @@ export class Connection extends Emitter {
   #url;
   #WebSocket;
   #setTimeout;
+  #isRefused;
   /** @type {WebSocket|null} */
   #socket = null;
   #nextId = 1;
@@ -83,7 +100,8 @@ export class Connection extends Emitter {
   /**
    * @param {string} url  of the web socket
    * @param {{WebSocket?: typeof globalThis.WebSocket, identity?: () => {person?: string, name?: string},
-   *          setTimeout?: (call: () => void, wait: number) => ReturnType<typeof setTimeout>}}
+   *          setTimeout?: (call: () => void, wait: number) => ReturnType<typeof setTimeout>,
+   *          isRefused?: (url: string) => Promise<boolean>}}
    *        [options]  other implementations, for tests
    */
   constructor(url, options = {}) {
@@ -92,10 +110,14 @@ export class Connection extends Emitter {
     this.#identity = options.identity ?? (() => ({}));
     this.#WebSocket = options.WebSocket ?? globalThis.WebSocket;
     this.#setTimeout = options.setTimeout ?? globalThis.setTimeout.bind(globalThis);
+    this.#isRefused = options.isRefused ?? isRefused;
   }
 
   /** True between the answered greeting and the loss of the line. */
   connected = false;
+
+  /** True while a simulator answers that does not know this page's token: another was started. */
+  refused = false;
 
   /** Connects, and connects again whenever the line is lost, until `close`. */
   open() {
@@ -156,6 +178,7 @@ export class Connection extends Emitter {
         ...this.#identity()});
       this.#session = welcome.session;
       this.#attempt = 0;
+      this.refused = false;
       this.connected = true;
       this.emit('open', welcome);
     } catch (error) {
@@ -185,6 +208,13 @@ export class Connection extends Emitter {
     else waiting?.reject(new RequestError(message.issues ?? []));
   }
 
+  async #findOut() {
+    const refused = await this.#isRefused(this.#url);
+    if (refused === this.refused || this.connected) return;
+    this.refused = refused;
+    this.emit('refused');
+  }
+
   /** @param {WebSocket} socket */
   #lost(socket) {
     if (socket !== this.#socket) return;
@@ -197,6 +227,8 @@ export class Connection extends Emitter {
     if (this.connected) {
       this.connected = false;
       this.emit('close');
+    } else if (!this.#closed) {
+      this.#findOut();
     }
     if (!this.#closed) {
       this.#timer = this.#setTimeout(() => this.#connect(), backOff(this.#attempt++));

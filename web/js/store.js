@@ -12,7 +12,7 @@ import {splitScoped} from './scoped_names.js';
 /** @import {Pose7} from './pose.js' */
 /** @import {ShapeName} from './new_entities.js' */
 
-/** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'insert'|'connect'} Mode */
+/** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'measure'|'insert'|'connect'} Mode */
 /** @typedef {'grid'|'origin'|'transparent'|'wireframe'|'collisions'|'joints'|'com'|'inertia'|
  *            'contacts'|'frames'|'skeleton'} OverlayFlag */
 

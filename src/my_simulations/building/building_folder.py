@@ -13,7 +13,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from ..description.model import Model
 from ..errors import CommandError, InputError, Issue, Severity, error
-from ..formats.image.levels import MOST_PIXELS
+from ..formats.image.pixels import opened
 from ..formats.reading import read_file
 from ..formats.sdf.writer.entities import write_entity
 from ..resources.model_config import description_in
@@ -188,23 +188,21 @@ def image_kind(content: bytes, name: str) -> str:
     Raises:
         InputError: not an image, truncated, or too large.
     """
-    from PIL import Image, UnidentifiedImageError
+    from PIL import UnidentifiedImageError
 
     why = ""
     if len(content) > LARGEST_IMAGE:
         why = f"it is larger than {LARGEST_IMAGE >> 20} MB"
     else:
         try:
-            with Image.open(io.BytesIO(content)) as image:
-                if image.width * image.height > MOST_PIXELS:
-                    raise ValueError(f"it has {image.width} x {image.height} pixels")
-                image.load()
+            with opened(io.BytesIO(content)) as image:
                 if image.format in _ENDINGS:
+                    image.load()
                     return str(image.format)
                 why = f"it is {image.format}, not PNG or JPEG"
         except UnidentifiedImageError:
             why = "it is not an image"
-        except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as fault:
+        except (OSError, ValueError, SyntaxError, EOFError) as fault:
             why = str(fault)
     raise InputError([error("image-unreadable", f"the floor plan {name!r} cannot be used: {why}",
                             hint="use a PNG or JPEG file")])

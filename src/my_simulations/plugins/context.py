@@ -178,6 +178,10 @@ class Context(Protocol):
         """Of the world, T, world axes."""
 
     @property
+    def wind(self) -> Vec3:
+        """Of the world, m/s, world axes; as it is set now."""
+
+    @property
     def place_on_earth(self) -> Optional[SphericalCoordinates]:
         """Where the world's origin is; None where the world does not say."""
 
@@ -262,8 +266,9 @@ class Context(Protocol):
         Links by their scoped names; of all models.
         """
 
-    def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
-        """Cast rays from the plugin's sensor, as of now.
+    def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None],
+             place: Optional[Tuple[str, Pose]] = None) -> None:
+        """Cast rays from the plugin's sensor, or from a place on a link, as of now.
 
         `call` gets what they have met, and the sim time (ns) they were cast at, up to one scan
         later; the world does not run further ahead. `visuals`: rays see what is drawn, else what

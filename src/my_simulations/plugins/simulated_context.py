@@ -165,6 +165,11 @@ class SimulatedContext:
         return self.simulator.world.magnetic_field
 
     @property
+    def wind(self) -> Vec3:
+        """m/s, world axes."""
+        return self.simulator.world.wind.linear_velocity
+
+    @property
     def place_on_earth(self) -> Optional[SphericalCoordinates]:
         """Where the world's origin is."""
         return self.simulator.world.spherical_coordinates
@@ -292,11 +297,14 @@ class SimulatedContext:
             {f"{self.model}::{self.joint(name).spec_name}": value
              for name, value in positions.items()})
 
-    def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None]) -> None:
-        """Cast rays from the plugin's sensor."""
-        assert self.sensor is not None
-        self.sensing.scan(Mount(self._rows.link(self.sensor_link), self.sensor.pose), fan, visuals,
-                          call, self.now_ns)
+    def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None],
+             place: Optional[Tuple[str, Pose]] = None) -> None:
+        """Cast rays from the plugin's sensor, or from a place on a link."""
+        if place is None:
+            assert self.sensor is not None
+            place = (self.sensor_link, self.sensor.pose)
+        self.sensing.scan(Mount(self._rows.link(place[0]), place[1]), fan, visuals, call,
+                          self.now_ns)
 
     def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
                    stream: str = "") -> bool:

@@ -196,6 +196,7 @@ class FakeContext:
         self.twist: Twist = STILL
         self.gravity: Vec3 = (0.0, 0.0, -9.8)
         self.magnetic_field: Vec3 = (0.0, 0.0, 0.0)
+        self.wind: Vec3 = (0.0, 0.0, 0.0)
         self.place_on_earth: Optional[SphericalCoordinates] = None
         self.seed = 0
         self.step_size, self.step = step_size, 0
@@ -325,7 +326,8 @@ class FakeContext:
         for name, value in positions.items():
             self.joint(name).position = value
 
-    def scan(self, fan: Any, visuals: bool, call: Callable[[Any, int], None]) -> None:
+    def scan(self, fan: Any, visuals: bool, call: Callable[[Any, int], None],
+             place: Optional[Tuple[str, Pose]] = None) -> None:
         """Rays meet what a test says (`returns`)."""
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)

@@ -6,9 +6,9 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import Any, Dict, Union
 
-OK, FAILED, REFUSED, DIVERGED, CRASHED, TIMED_OUT = (
-    "ok", "failed", "refused", "diverged", "crashed", "timed out")
-STATUSES = (OK, FAILED, REFUSED, DIVERGED, CRASHED, TIMED_OUT)
+OK, FAILED, REFUSED, DIVERGED, CRASHED, TIMED_OUT, TOO_LARGE = (
+    "ok", "failed", "refused", "diverged", "crashed", "timed out", "too large")
+STATUSES = (OK, FAILED, REFUSED, DIVERGED, CRASHED, TIMED_OUT, TOO_LARGE)
 
 Measured = Union[float, bool]
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
 import signal
 import threading
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from ..python_api import OpenWorld, WorldChoice
 from ..simulator.watchdog import process_time
 from .changes import CaseChanges
 from .plan import Case, CasePlan
-from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, Row
+from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, TOO_LARGE, Row
 from .sampling import SignalReader
 from .study import Study
 from .trajectories import CaseTrajectory
@@ -106,7 +107,7 @@ class Slot:
         self._engine: Optional[OneLifeEngine] = None
         self._guard = threading.Lock()
         self._began: Optional[float] = None  # processor time of the engine as the case began
-        self._late = False
+        self._excess = ""  # the status of a case that has used up a limit
 
     def close(self) -> None:
         """End the engine."""
@@ -115,14 +116,21 @@ class Slot:
         self._world = self._engine = None
 
     def look(self) -> None:
-        """End the engine if its case has used up its processor time; from another thread."""
+        """End the engine if its case has used up its processor time or memory.
+
+        Called from another thread.
+        """
+        limits = self._study.limits
         with self._guard:
             engine = self._engine
-            if self._began is None or engine is None or self._late:
+            if self._began is None or engine is None or self._excess:
                 return
-            if _used(engine) - self._began > self._study.limits.processor_seconds:
-                self._late = True
-                engine.kill("the case has used up its processor time")
+            if _used(engine) - self._began > limits.processor_seconds:
+                self._excess = TIMED_OUT
+            elif resident_bytes(engine.pid) > limits.memory_mb * 1e6:
+                self._excess = TOO_LARGE
+            if self._excess:
+                engine.kill("the case has used up a limit of the study")
 
     def run(self, case: Case) -> Tuple[Row, Optional[CaseTrajectory]]:
         """Run a case; once more in a new engine if its engine crashes.
@@ -147,7 +155,7 @@ class Slot:
         row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=attempt,
                   processor=self._processor)
         with self._guard:
-            self._late = False
+            self._excess = ""
             self._began = _used(self._engine) if self._engine is not None else 0.0
         began = self._began
         trajectory = None
@@ -169,15 +177,18 @@ class Slot:
         if engine is None:
             return
         row.step = row.step or engine.ring.step
-        if engine.exit_code is None and not self._late:
+        if engine.exit_code is None and not self._excess:
             row.seconds = round(_used(engine) - began, 2)
             return
-        row.status, row.values, row.hash = (TIMED_OUT if self._late else CRASHED), {}, ""
+        row.status, row.values, row.hash = self._excess or CRASHED, {}, ""
         row.signal, row.issue = engine.ended_by, engine.death or "the physics engine ended"
-        if self._late:
-            limit = self._study.limits.processor_seconds
-            row.signal, row.issue = "", f"used up its processor time of {limit:g} s"
-            row.seconds = limit
+        limits = self._study.limits
+        if self._excess == TIMED_OUT:
+            row.signal = ""
+            row.issue = f"used up its processor time of {limits.processor_seconds:g} s"
+            row.seconds = limits.processor_seconds
+        elif self._excess:
+            row.signal, row.issue = "", f"used more memory than {limits.memory_mb:g} MB"
         self.close()
 
     # -- one attempt -----------------------------------------------------------------------------
@@ -296,6 +307,15 @@ def _divergence(world: OpenWorld) -> str:
 
 def _interval(seconds: float, world: OpenWorld) -> int:
     return max(1, int(math.floor(seconds / world.step_size + 0.5)))
+
+
+def resident_bytes(pid: int) -> int:
+    """Memory of a process that is in use (proc(5), statm); 0 if it does not exist."""
+    try:
+        with open(f"/proc/{pid}/statm", encoding="ascii") as statm:
+            return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        return 0
 
 
 def _used(engine: ProcessEngine) -> float:

@@ -74,11 +74,13 @@ class Limits:
         processor_seconds: of its engine.
         steps: greatest number of steps of a case.
         attempts: how often a case is started whose engine crashes.
+        memory_mb: of its engine, resident, in 10^6 bytes.
     """
 
     processor_seconds: float = 60.0
     steps: int = 10_000_000
     attempts: int = 2
+    memory_mb: float = 4000.0
 
 
 @dataclass(frozen=True)

@@ -162,10 +162,13 @@ class StudyReader(ValueReader):
                           self.names(inside.get("models"), (*path, "models")))
 
     def _limits(self, value: Any) -> Limits:
-        inside = self.mapping(value, ("limits",), ("processor_seconds", "steps", "attempts"))
+        inside = self.mapping(value, ("limits",), ("processor_seconds", "steps", "attempts",
+                                                   "memory_mb"))
         default = Limits()
         return Limits(
             self.number(inside.get("processor_seconds", default.processor_seconds),
                         ("limits", "processor_seconds"), above=0.0),
             self.whole(inside.get("steps", default.steps), ("limits", "steps"), 1),
-            self.whole(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10))
+            self.whole(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10),
+            self.number(inside.get("memory_mb", default.memory_mb), ("limits", "memory_mb"),
+                        above=0.0))

@@ -22,6 +22,7 @@ from my_simulations.building.building_operations import (
 from my_simulations.building.building_plan import FloorImage, Opening, Wall
 from my_simulations.building.plan_json import plan_to_json
 from my_simulations.errors import CommandError, InputError
+from my_simulations.formats.image import pixels
 from my_simulations.formats.reading import read_file
 from my_simulations.resources.resolver import Resolver
 
@@ -206,7 +207,7 @@ def test_a_floor_plan_is_kept_beside_the_plan(form, ending, kind):
 
 
 def test_a_small_picture_of_too_many_pixels_is_refused(monkeypatch):
-    monkeypatch.setattr(folders, "MOST_PIXELS", 7)
+    monkeypatch.setattr(pixels, "MOST_PIXELS", 7)
     plan = two_rooms()
     plan.levels[0].image = FloorImage("scan.png", 100.0, data_url(picture()))
     with pytest.raises(InputError, match="pixels"):

@@ -172,6 +172,28 @@ def test_half_open_connections_end(guarded, monkeypatch, sent):
     asyncio.run(run())
 
 
+def test_hundreds_of_half_open_connections_do_not_use_up_the_descriptors(guarded):
+    made, base, _ = guarded
+    port = int(base.rstrip("/").rpartition(":")[2])
+
+    async def run():
+        opened = [await asyncio.open_connection("127.0.0.1", port) for _ in range(300)]
+        # What nobody has ended yet is as many as may wait.
+        ended = [reader for reader, _ in opened[:-connection_limits.MOST_SILENT]]
+        for reader in ended:
+            try:
+                assert await asyncio.wait_for(reader.read(), 10) == b""
+            except ConnectionResetError:
+                pass
+        async with aiohttp.ClientSession() as session:
+            browser = await Browser.open(session, made.url)
+            assert browser.model("a")
+        for _, writer in opened:
+            writer.close()
+
+    asyncio.run(run())
+
+
 def test_a_refused_connection_is_not_kept(guarded):
     _, base, _ = guarded
     assert request(base)[1]["Connection"] == "close"

@@ -58,7 +58,8 @@ def test_the_protocol_comes_with_the_page(case):
 @pytest.mark.parametrize("headers", [
     {"Host": "evil.example"}, {"Host": "127.0.0.1.evil.example"}, {"Host": ""},
     {"Origin": "http://evil.example"}, {"Origin": "null"}, {"Origin": "http://127.0.0.1:1"},
-    {"Origin": "http://["}, {"Host": "["}, {"Sec-Fetch-Site": "cross-site"}], ids=str)
+    {"Origin": "http://["}, {"Host": "["}, {"Sec-Fetch-Site": "cross-site"},
+    {"Sec-Fetch-Site": "same-site"}], ids=str)
 def test_foreign_pages_and_names_are_refused(case, headers):
     made = case()
     assert request(made.url + "protocol.json", headers=headers)[0] == 403

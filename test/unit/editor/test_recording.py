@@ -24,7 +24,7 @@ from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.lifecycle.server_options import parse
 from my_simulations.simulator.simulator import Simulator
 
-DEADLINE = 10.0
+DEADLINE = 60.0
 
 
 def wait_for(condition):

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
 from my_simulations.description.transmission import Transmission, TransmissionJoint
+from my_simulations.geometry import Pose
 from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
 from my_simulations.plugins.testing import FakeContext, Message
 
@@ -27,17 +28,20 @@ def transmission(joint, interface):
 
 
 class Arm:
-    """A robot of joints `one` and `two`, driven through an interface, and its controllers."""
+    """A robot of joints `one` and `two`, or others, driven through an interface, and its
+    controllers. `places` says where joints are.
+    """
 
     def __init__(self, interface="hardware_interface/PositionJointInterface", inside="",
-                 axis=None, parameters=None, interfaces=None, **controllers):
-        names = ("one", "two")
+                 axis=None, parameters=None, interfaces=None, names=("one", "two"), places=None,
+                 **controllers):
         self.context = FakeContext(f"<plugin>{inside}</plugin>", joints=names)
         axis = axis or JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0,
                                  velocity=50.0)
-        kinds = (interface, interface) if interfaces is None else interfaces
+        kinds = [interface] * len(names) if interfaces is None else interfaces
         self.context.description = Model(
-            NS, links=[Link("base"), *(Link(name) for name in names)],
+            NS, links=[Link("base"), *(Link(name, pose=Pose((places or {}).get(
+                name, (0.0, 0.0, 0.0)))) for name in names)],
             joints=[Joint(name, "revolute", "base", name, axis=axis) for name in names],
             transmissions=[transmission(name, kind) for name, kind in zip(names, kinds)])
         for joint in self.context.description.joints:

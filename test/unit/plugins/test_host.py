@@ -95,7 +95,7 @@ def case():
 
 
 def until(condition):
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + 60.0
     while not condition():
         assert time.monotonic() < deadline, "the condition never came true"
         time.sleep(0.002)

@@ -86,7 +86,8 @@ def test_both_names_of_xacro_are_the_same_program():
     assert (folder / "xacro").read_text() == (folder / "xacro.py").read_text()
 
 
-@pytest.mark.parametrize("name", ["requirements.txt", "requirements-test.txt"])
+@pytest.mark.parametrize("name", ["requirements.txt", "requirements-test.txt",
+                                  "requirements-oldest.txt"])
 def test_pip_requirements_are_pinned(name):
     lines = [line for line in (REPOSITORY / name).read_text().splitlines()
              if line and not line.startswith("#")]

@@ -28,8 +28,9 @@ def make_clone(folder):
         (folder / name).mkdir()
         (folder / name / "ours").write_text("ours")
         (folder / name / "both").write_text("ours")
-    for name in (*CONTROL, "gazebo_msgs", "gazebo_ros", "my_simulations_msgs",
-                 "my_simulations_underlay", "teleop_twist_keyboard", "xacro"):
+    for name in (*CONTROL, "four_wheel_steering_msgs", "gazebo_msgs", "gazebo_ros",
+                 "my_simulations_msgs", "my_simulations_underlay", "teleop_twist_keyboard",
+                 "unitree_legged_msgs", "xacro"):
         make_package(folder / "compat" / name, name)
     make_package(folder, "my_simulations")
     return folder
@@ -264,6 +265,24 @@ def test_companions_are_linked_where_nothing_is_installed(clone, tmp_path):
     assert linked(clone, tmp_path / "home") == [
         *CONTROL, "gazebo_msgs", "gazebo_ros", "my_simulations", "my_simulations_msgs",
         "teleop_twist_keyboard", "xacro"]
+
+
+def test_messages_of_few_robots_are_linked_where_a_package_speaks_of_them(clone, tmp_path):
+    home = tmp_path / "home"
+    package = make_package(home / "simulation_ws" / "src" / "dog", "dog")
+    (package / "config").mkdir()
+    (package / "config" / "legs.yaml").write_text(
+        "hip: {type: unitree_legged_control/UnitreeJointController}\n")
+    found = linked(clone, home)
+    assert "unitree_legged_msgs" in found
+    assert "four_wheel_steering_msgs" not in found
+    (package / "config" / "legs.yaml").unlink()
+    assert "unitree_legged_msgs" not in linked(clone, home)
+
+
+def test_tests_have_the_messages_of_all_robots(clone, tmp_path):
+    found = linked(clone, tmp_path / "home", "ALL_COMPANIONS=1")
+    assert {"four_wheel_steering_msgs", "unitree_legged_msgs"} <= set(found)
 
 
 def test_real_packages_are_preferred_to_the_companions(clone, tmp_path):

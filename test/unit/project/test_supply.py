@@ -15,7 +15,8 @@ REPOSITORY = Path(__file__).resolve().parents[3]
 PINNED = re.compile(r"[A-Za-z0-9._\[\]-]+==[0-9][0-9A-Za-z.]*(; .*)?")
 
 
-@pytest.mark.parametrize("name", ["requirements.txt", "requirements-test.txt"])
+@pytest.mark.parametrize("name", ["requirements.txt", "requirements-test.txt",
+                                  "requirements-oldest.txt"])
 def test_every_python_package_is_pinned(name):
     lines = (line.partition("#")[0].strip()
              for line in (REPOSITORY / name).read_text().splitlines())

@@ -44,8 +44,9 @@ class System:
         shells.fake(home, "uname", f"echo {machine}")
         shells.fake(home, "getent", "exit 0")
         shells.fake(home, "fake_python", "echo 13" if name == "trixie" else "echo 11")
-        shells.fake(home, "dpkg-query", "shift 2; for name; do grep -qx $name $HOME/installed "
-                    "&& echo installed $name; [ $name != ros-noetic-catkin ] || "
+        shells.fake(home, "dpkg-query", "shift 2; mapfile -t all <$HOME/installed; for name; do "
+                    "[[ \" ${all[*]} \" == *\" $name \"* ]] && echo installed $name; "
+                    "[ $name != ros-noetic-catkin ] || "
                     f"{'echo installed $name' if noetic else 'true'}; done")
         shells.fake(home, "apt-get", 'echo "$@" >>$HOME/calls')
         shells.fake(home, "apt-cache", "if [ $1 = policy ]; then "
@@ -231,6 +232,16 @@ def test_set_up_from_an_archive_asks_no_index(classroom):
     assert "--no-index" in install and "bundle/wheels" in install
     assert "npm" not in calls
     assert (classroom.home / "ws" / ".my_simulations" / "node_modules" / "three").is_dir()
+
+
+def test_set_up_after_one_from_an_archive_needs_no_npm(classroom):
+    set_up = classroom.set + "begin X; open_bundle $FILE; prepare_page; release; BUNDLED=\n"
+    done = classroom.run(classroom.set + "rm -rf $OWN/node_modules $OWN/.page; "
+                         "lacks_npm && echo lacks it\n" + set_up + "lacks_npm || echo has it\n"
+                         "[ -e $OWN/bundle ] || echo removed it\n"
+                         "WITH_TEST_TOOLS=1; lacks_npm && echo tests lack it")
+    assert [line for line in done.stdout.splitlines() if line.endswith(" it")] == [
+        "lacks it", "has it", "removed it", "tests lack it"], done.stderr
 
 
 def test_archive_for_another_python_is_refused(classroom):

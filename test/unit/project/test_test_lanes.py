@@ -54,6 +54,18 @@ def test_every_check_is_told_of_in_one_line_and_counted(tmp_path, lanes):
                           "0 passed, 1 failed, 5 steps"]
 
 
+def test_processor_time_of_a_check_and_its_programs_is_added_up(tmp_path):
+    # `times` is what the shell itself counts; 0.3 s are used by a program of a program.
+    burn = 'import time\nwhile time.process_time() < 0.3: pass'
+    lines = output(tmp_path, f"""queue check burns 30 bash -c "python3 -c '{burn}'; true"
+queue check rests 30 sleep 0.4
+trap 'printf "%s\\n" "${{PROCESSOR[@]}}" "$PROCESSOR_MS all"' EXIT""")
+    used = {name: float(seconds) for seconds, name in (
+        line.split() for line in lines if line.endswith((" burns", " rests", " all")))}
+    assert used["burns"] >= 0.3 > used["rests"]
+    assert used["all"] == pytest.approx(1000 * (used["burns"] + used["rests"]))
+
+
 def test_two_lanes_run_at_the_same_time(tmp_path):
     # Each waits for what the other writes.
     meet = "touch $HOME/{0}; until [ -e $HOME/{1} ]; do sleep 0.05; done"
@@ -96,3 +108,14 @@ def test_an_interrupt_ends_all_lanes(tmp_path):
     for path in paths:
         stat = Path(f"/proc/{path.read_text().strip()}/stat")
         assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+def test_the_oldest_python_gets_the_unit_tests_that_import_nothing_of_ros():
+    done = subprocess.run(
+        ["bash", "-c", ". tools/lib/oldest.sh; tests_without_ros"], cwd=REPOSITORY, text=True,
+        capture_output=True, check=True)
+    chosen = done.stdout.split()
+    assert "test/unit/formats/test_mesh.py" in chosen and len(chosen) > 100
+    assert "test/unit/ros/test_ros_texts.py" not in chosen
+    for name in chosen:
+        assert "\nimport rospy" not in (REPOSITORY / name).read_text(encoding="utf-8"), name

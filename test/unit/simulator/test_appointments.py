@@ -14,7 +14,7 @@ from my_simulations.engine.ring import Clock
 from my_simulations.simulator.appointments import Rate
 from my_simulations.simulator.simulator import Simulator
 
-WAIT = 10.0
+WAIT = 60.0
 
 
 def arm():

@@ -137,7 +137,7 @@ def test_a_world_starts_paused_with_its_seed_and_preset_and_stands_after_its_ste
         assert [sim.models.get(name).pose for name in sim.models.names()] == [
             model.pose for model in again.world.models]
         sim.clock.unpause()
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + 60
         while sim.clock.step < 20:
             assert time.monotonic() < deadline, "it stands too early"
             sim.clock.wait_step(sim.clock.step, 0.1)

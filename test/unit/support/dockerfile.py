@@ -96,11 +96,12 @@ class Stage:
 
     def run(self, line: str, limit: float) -> None:
         """Execute a RUN line, with the authorities of this machine; fails with its last lines."""
-        variables = {name: os.environ[name] for name in CERTIFICATES if name in os.environ}
-        for path in set(variables.values()):
-            inside = self.root / path.lstrip("/")
-            inside.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(path, inside)
+        variables = {}
+        for name in CERTIFICATES:
+            if name in os.environ:
+                # Not where it is here: there ca-certificates puts its own.
+                variables[name] = f"/etc/{name.lower()}.crt"
+                shutil.copy(os.environ[name], self.root / variables[name].lstrip("/"))
         shutil.copy("/etc/resolv.conf", self.root / "etc" / "resolv.conf")
         done = subprocess.run(self.command(line, **variables), stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,

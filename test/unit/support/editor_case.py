@@ -19,7 +19,7 @@ from my_simulations.geometry import Pose
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
 
-DEADLINE = 10.0
+DEADLINE = 60.0
 HEAD = struct.Struct("<IIQddII")
 RECORD = struct.Struct("<I7f")
 

@@ -88,6 +88,7 @@ export async function mount(element, {store, request, actions}) {
     canvas.fit();
     opened = session.file ? await modelOf(session, store, request) : null;
     if (opened) actions.setOverlay('transparent', true, opened.name);
+    canvas.showAround(actions.footprints(opened?.name));
   };
   const importPlan = () => importImage(session, (done) => {
     session.tool = new MeasureTool(session, (drawn) => {
@@ -104,7 +105,10 @@ export async function mount(element, {store, request, actions}) {
   mountPalette(palette, {session, importPlan});
   listenToMouse({session, canvas, draw: drawSoon});
   const preview = new Preview({store, session, request, onIssues: (found) => { issues = found; drawSoon(); }});
+  const around = onceAFrame(() => canvas.showAround(actions.footprints(opened?.name)));
+  around();
   const ends = [
+    ...(/** @type {const} */ (['document', 'entity', 'poses'])).map((event) => store.listen(event, around)),
     listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon}),
     listenToView(byId('view'), {session, actions}), () => preview.end(),
     watchSize(sheet, canvas), askBeforeUnload(session), keepDraft(session),
@@ -131,6 +135,19 @@ export async function mount(element, {store, request, actions}) {
     return true;
   }
 
+  /** Shows the new house as soon as it is there. @param {string} name */
+  function lookAt(name) {
+    if (store.model(name)) {
+      actions.moveTo(name);
+      return;
+    }
+    const end = store.listen('entity', ({detail}) => {
+      if (detail.name !== name) return;
+      end();
+      actions.moveTo(name);
+    });
+  }
+
   /** Puts what was saved into the world; what is there unchanged stays. */
   async function place() {
     const plan = session.history.saved;
@@ -139,6 +156,7 @@ export async function mount(element, {store, request, actions}) {
       const building = await request('building_sdf', {plan: withoutImages(plan)});
       const ops = placingOps(store, building, opened);
       await request('edit', {op: {kind: 'group', ops, label: `Insert building ${plan.name}`}});
+      lookAt(building.model.name);
       return true;
     } catch (fault) {
       session.say(`The building was saved, but could not be added to the world: ${faultText(fault)}`);

@@ -7,6 +7,7 @@ import {segmentWords} from './draw_tools.js';
 import {distance, labelPoint, polar} from './plane_geometry.js';
 import {handlesOf, openingDistances} from './hit_test.js';
 import {itemOf, outerLength, placeOf, wallLength, wallYaw} from './plan.js';
+import {spread} from './label_places.js';
 import {roomsOf} from './rooms.js';
 import {
   SCALE, floorPath, onSheet, openingPaths, pathOf, set, stairsPaths, svg, wallPath,
@@ -28,6 +29,8 @@ const ORDER = Object.freeze(['floors', 'stairs', 'walls', 'windows', 'doors']);
  * A text on the sheet: where, what, and its class.
  * @typedef {[Point, string, string]} SheetLabel
  */
+
+/** What of the world stands on the plan. @typedef {{name: string, outline: Point[]}} Footprint */
 
 /** How an item is drawn: attributes of the parts of its group. */
 /** @type {{[K in Kind]: (item: ItemOf[K], level: Level) => Look[]}} */
@@ -61,6 +64,7 @@ export class Canvas {
     this.session = session;
     this.image = svg('image', {class: 'plan-image', preserveAspectRatio: 'none'});
     this.below = svg('g', {class: 'below'});
+    this.context = svg('g', {class: 'context'});
     this.layers = /** @type {Record<Kind, SVGElement>} */ (Object.fromEntries(
       ORDER.map((kind) => [kind, svg('g', {class: `layer ${kind}`})])));
     this.draft = svg('g', {class: 'draft'});
@@ -68,7 +72,7 @@ export class Canvas {
     this.handles = svg('g', {class: 'handles'});
     this.features = svg('g', {}, this.below, ...ORDER.map((kind) => this.layers[kind]), this.draft,
       this.handles, this.labels);
-    this.world = svg('g', {}, this.image, this.axes(), this.features);
+    this.world = svg('g', {}, this.image, this.axes(), this.context, this.features);
     this.minor = gridPattern('building-grid-minor', SCALE / 10, 'minor');
     this.major = gridPattern('building-grid-major', SCALE, 'major');
     this.element = svg('svg', {class: 'plan-sheet', role: 'img', 'aria-label': 'Plan of the building',
@@ -89,6 +93,27 @@ export class Canvas {
   #under = null;
   /** The floor plan that is loaded. @type {FloorImage|null} */
   #picture = null;
+  /** What stands in the world. @type {Footprint[]} */
+  #around = [];
+
+  /** Shows what stands in the world, faintly. @param {Footprint[]} footprints */
+  showAround(footprints) {
+    this.#around = footprints;
+    this.#drawAround();
+  }
+
+  #drawAround() {
+    const size = 11 / this.view.zoom;
+    const names = spread(this.#around.map(({name, outline}) => {
+      const [x, y] = onSheet([0, 1].map((at) =>
+        outline.reduce((sum, point) => sum + point[at], 0) / outline.length));
+      return {x, y, text: name};
+    }), size);
+    this.context.replaceChildren(
+      ...this.#around.map(({name, outline}) => svg('path', {d: pathOf(outline), 'data-model': name})),
+      ...names.map(({x, y, text}) => svg('text', {x, y, 'font-size': size, text})));
+  }
+
   /** Called when the sheet was panned or zoomed. */
   onplace = () => {};
 
@@ -159,6 +184,7 @@ export class Canvas {
     }
     this.element.style.setProperty('--unit', String(1 / zoom));
     this.#labelled = '';
+    this.#drawAround();
     this.draw();
     this.onplace();
   }
@@ -325,10 +351,15 @@ export class Canvas {
     if (now === this.#labelled) return;
     this.#labelled = now;
     const size = 12 / this.view.zoom;
-    this.labels.replaceChildren(...words.map(([point, text, name]) => {
-      const [x, y] = onSheet(point);
-      return svg('text', {x, y, class: name, 'font-size': size, text});
-    }));
+    // What is being drawn says its length where the eye is; the others give way.
+    const first = words.filter(([, , name]) => name === 'live');
+    const placed = spread([...first, ...words.filter(([, , name]) => name !== 'live')]
+      .map(([point, text, name]) => {
+        const [x, y] = onSheet(point);
+        return {x, y, text, name, start: name === 'live'};
+      }), size);
+    this.labels.replaceChildren(...placed.map(({x, y, text, name}) =>
+      svg('text', {x, y, class: name, 'font-size': size, text})));
   }
 }
 

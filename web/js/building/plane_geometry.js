@@ -186,3 +186,28 @@ function segmentsMeet(a, b, c, d) {
   const between = (p, q, r) => Math.sign(side(p, q, r));
   return between(a, b, c) * between(a, b, d) <= 0 && between(c, d, a) * between(c, d, b) <= 0;
 }
+
+/**
+ * The convex hull of points, counterclockwise, from the lowest x on (Andrew's monotone chain).
+ * @param {Point[]} points
+ * @returns {Point[]}
+ */
+export function hullOf(points) {
+  const sorted = [...points].sort(([ax, ay], [bx, by]) => ax - bx || ay - by);
+  /** @param {Point[]} order */
+  const half = (order) => {
+    /** @type {Point[]} */
+    const chain = [];
+    for (const point of order) {
+      while (chain.length > 1 && turn(chain[chain.length - 2], chain[chain.length - 1], point) <= 0) {
+        chain.pop();
+      }
+      chain.push(point);
+    }
+    return chain.slice(0, -1);
+  };
+  return [...half(sorted), ...half(sorted.reverse())];
+}
+
+/** Positive where the way from a by b to c turns left. @param {Point} a @param {Point} b @param {Point} c */
+const turn = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

@@ -52,7 +52,7 @@ const FREE = {xyz: [0, 0, 1], lower: -1e16, upper: 1e16, effort: -1, velocity: -
 export const axisOr = (axis) => ({...FREE, ...axis});
 
 /** In a list. @param {Joint} joint */
-export const jointText = ({name, type, parent, child}) => `${name} (${type}): ${parent} → ${child}`;
+export const jointText = ({type, parent, child}) => `${parent} → ${child}: ${type}`;
 
 /** All plugins of a model as text, for editing. @param {Pick<Model, 'plugins'>} model */
 export const pluginText = ({plugins}) => plugins.map(({xml}) => xml.trim()).join('\n');

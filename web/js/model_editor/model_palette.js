@@ -92,7 +92,7 @@ export class Palette {
     const world = button('World as parent', () => connect.fromWorld(), {class: 'plain'});
     if (connect.active && connect.parent === null) this.#hint.append(' ', world);
     fill(this.#joints, ...(model?.joints ?? []).map((joint) => h('li', {},
-      button(jointText(joint), () => model && this.#editJoint(model, joint), {class: 'plain wide', title: 'Edit joint'}))));
+      button(jointText(joint), () => model && this.#editJoint(model, joint), {class: 'plain wide', title: `Edit ${joint.name}`}))));
     this.#showParts(model);
   }
 

@@ -45,6 +45,7 @@ const SHAPES = {
   copy: ['M7 7h9v10H7z', 'M13 7V3H4v10h3'],
   paste: ['M4 4h12v13H4z', 'M7.5 2.5h5v3h-5z', 'M7 9h6M7 12h6'],
   align: ['M3 2v16', 'fill:M5.5 4.5h11v4h-11zM5.5 11.5h6v4h-6z'],
+  measure: ['M3 14 14 3l3 3L6 17z', 'M6 11l1.5 1.5M9 8l2.5 2.5M12 5l1.5 1.5'],
   snap: ['M5 3v7a5 5 0 0 0 10 0V3h-3.5v7a1.5 1.5 0 0 1-3 0V3z', 'M5 6h3.5M11.5 6H15'],
   views: ['M10 2.5 17 6v8l-7 3.5L3 14V6z', 'fill:M3 6l7 3.5v8L3 14z', 'M3 6l7 3.5L17 6'],
   camera: ['M3 6h3.5l1.5-2h4l1.5 2H17v10H3z', 'M10 8a3 3 0 1 0 0 6 3 3 0 0 0 0-6z'],

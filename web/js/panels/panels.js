@@ -88,7 +88,20 @@ export function mountPanels(document, parts) {
   );
   mountConnectionNote(byId('centre'), page);
   mountHints(byId('view'));
+  mountDrawer();
   return page;
+}
+
+/** In a narrow window the left panel lies over the view, while it is wanted. */
+function mountDrawer() {
+  const button = byId('drawer');
+  /** @param {boolean} open */
+  const set = (open) => {
+    document.body.classList.toggle('drawer', open);
+    button.setAttribute('aria-expanded', String(open));
+  };
+  button.addEventListener('click', () => set(!document.body.classList.contains('drawer')));
+  byId('view').addEventListener('pointerdown', () => set(false));
 }
 
 const TABS = [
@@ -387,7 +400,7 @@ async function offerRestore(page, {found, file, time, others}) {
  * @param {HTMLElement} element
  * @param {Page} page
  */
-function mountConnectionNote(element, {store}) {
+function mountConnectionNote(element, {store, connection}) {
   const text = h('span');
   const detail = h('span', {class: 'soft'});
   const bar = h('progress', {'aria-label': 'Progress'});
@@ -397,6 +410,10 @@ function mountConnectionNote(element, {store}) {
   /** @type {LoadingPush|null} */
   let loading = null;
   const words = () => {
+    if (connection.refused) {
+      return 'The simulator was started again, with a new token. Run “gzclient”: it opens the ' +
+        'editor, and this page connects again.';
+    }
     if (loading) return loading.title || 'Loading the world';
     return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';
   };
@@ -415,6 +432,7 @@ function mountConnectionNote(element, {store}) {
     loading = null;
     show();
   });
+  connection.listen('refused', show);
   store.listen('loading', ({detail: news}) => {
     loading = news.of && news.done >= news.of && store.connected ? null : news;
     show();

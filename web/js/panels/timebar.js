@@ -36,11 +36,11 @@ class Mean {
 const figure = (label, width) =>
   h('output', {class: 'figure', 'aria-label': label, style: `min-width:${width}`});
 
-/** A figure behind its label. @param {HTMLElement} output */
-const labelledFigure = (output) =>
+/** A figure behind its label. @param {HTMLElement} output @param {string} [name] for narrow windows */
+const labelledFigure = (output, name = '') =>
   h(
     'span',
-    {class: 'figure-pair'},
+    {class: `figure-pair figure-${name}`},
     h('span', {class: 'figure-label', text: output.getAttribute('aria-label')}),
     output,
   );
@@ -139,15 +139,15 @@ export class TimeBar {
       this.#step,
       h(
         'label',
-        {class: 'figure-pair'},
+        {class: 'figure-pair figure-steps'},
         h('span', {class: 'figure-label', text: 'Steps'}),
         this.#steps,
       ),
-      labelledFigure(this.#figures.factor),
-      labelledFigure(this.#figures.sim),
-      labelledFigure(this.#figures.real),
-      labelledFigure(this.#figures.iterations),
-      labelledFigure(this.#figures.fps),
+      labelledFigure(this.#figures.factor, 'factor'),
+      labelledFigure(this.#figures.sim, 'sim'),
+      labelledFigure(this.#figures.real, 'real'),
+      labelledFigure(this.#figures.iterations, 'iterations'),
+      labelledFigure(this.#figures.fps, 'fps'),
       reset,
     );
   }

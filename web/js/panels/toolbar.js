@@ -77,6 +77,7 @@ export function mountToolBar(element, page) {
     focusFirst('.popup input');
   });
   const snap = button('snap', 'Snap (N)', () => actions.snapMode());
+  const measure = button('measure', 'Measure (M)', () => actions.measureMode());
   const views = button('views', 'View angle', () => {
     openPopup(viewPanel(page, closePopup), {anchor: views});
     focusFirst('.popup button');
@@ -110,6 +111,7 @@ export function mountToolBar(element, page) {
     line(),
     align,
     snap,
+    measure,
     line(),
     views,
     h('span', {class: 'spring'}),
@@ -127,6 +129,7 @@ export function mountToolBar(element, page) {
       mode.setAttribute('aria-checked', String(store.mode === mode.dataset.mode));
     }
     snap.setAttribute('aria-pressed', String(store.mode === 'snap'));
+    measure.setAttribute('aria-pressed', String(store.mode === 'measure'));
     for (const {list, one, many} of [
       {list: store.history.undo, one: undo, many: undoList},
       {list: store.history.redo, one: redo, many: redoList},

@@ -208,6 +208,8 @@ export function rowOf(document, name) {
   const model = modelOf(document, name);
   if (!model) return null;
   if (model.name === name) return {id: `model:${name}`, opens: ['models']};
+  // A link that was just added may not have come yet.
+  if (!model.links.some((link) => `${model.name}::${link.name}` === name)) return null;
   return {id: `link:${name}`, opens: ['models', `model:${model.name}`]};
 }
 

@@ -3,6 +3,7 @@ import {Box3, Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
 import {remembered} from '../panels/dom.js';
 import {add, length, scale, subtract} from '../pose.js';
+import {readLink} from '../view_link.js';
 /** @import {GuiCamera} from '../protocol.js' */
 /** @import {Vec3} from '../pose.js' */
 /** @import {View} from '../camera_math.js' */
@@ -265,6 +266,14 @@ export class CameraRig {
       this.#home = {position: kept.position, yaw: kept.yaw, pitch: kept.pitch};
       this.set(this.#home);
     } else this.#beginWithAll();
+    const link = readLink(globalThis.location?.hash ?? '');
+    if (link) {
+      if (link.view) {
+        this.#toFrame = [];
+        this.set(link.view);
+      }
+      this.#store.select(link.selection.filter((name) => this.#store.entity(name)));
+    }
     this.#store.setCamera({
       projection: camera ? (camera.projection_type === 'orthographic' ? 'orthographic' : 'perspective')
         : kept?.projection ?? 'perspective',

@@ -2,7 +2,9 @@
 import {
   alongAxis, rotated, roundness, scaled, translated, WORLD_AXES,
 } from '../drag_math.js';
-import {orientation, position, rotate} from '../pose.js';
+import {
+  conjugate, length, multiply, orientation, position, rotate, subtract,
+} from '../pose.js';
 import {LIMITS} from '../protocol.js';
 import {Gizmo} from './gizmo.js';
 /** @import {AxisName, GizmoMode} from './gizmo.js' */
@@ -75,6 +77,25 @@ function graspedPoint(grasp, point) {
   return axis && along ? point.map((part, index) => part + along * axis[index]) : point;
 }
 
+/**
+ * What a drag has come to: position and way, angle, or size.
+ * @param {Grasp} grasp
+ * @param {DragResult} dragResult
+ */
+function numbersOf(grasp, {poses, factors}) {
+  /** @param {ArrayLike<number>} vector */
+  const vector = (vector) => ['x', 'y', 'z'].map((axis, at) => `${axis} ${vector[at].toFixed(3)}`).join('  ');
+  if (factors) return `${vector(grasp.size.map((part, at) => part * factors[at]))} m`;
+  const pose = poses[grasp.name];
+  if (grasp.mode === 'rotate') {
+    const turn = multiply(orientation(pose), conjugate(orientation(grasp.first)));
+    const degrees = 2 * Math.atan2(Math.hypot(turn[0], turn[1], turn[2]), Math.abs(turn[3])) * 180 / Math.PI;
+    return `${degrees.toFixed(1)}°`;
+  }
+  const way = subtract(pose, grasp.first);
+  return `${vector(pose)} m   moved ${length(way).toFixed(3)} m`;
+}
+
 /** How a drag goes: its axis and frame, as one text.
  * @param {AxisName|null} handle
  * @param {AxisName|null} key
@@ -103,6 +124,9 @@ export class Manipulator {
 
   /** Called when something is moved by hand, so that boxes and overlays go along. */
   onMoved = () => {};
+
+  /** Called with what a drag has come to, in numbers; '' at its end. */
+  onNumbers = (/** @type {string} */ _text) => {};
 
   /** @param {ViewParts} viewParts */
   constructor({store, actions, connection, models, lights, rig, picker, stage}) {
@@ -200,6 +224,7 @@ export class Manipulator {
     const made = this.#apply(ray, event, key);
     if (!made) return;
     this.#result = made;
+    if (this.#grasp) this.onNumbers(numbersOf(this.#grasp, made));
     this.#show(made);
     this.#send();
   }
@@ -261,6 +286,7 @@ export class Manipulator {
 
   /** @param {Grasp} grasp @param {boolean} keep */
   #end(grasp, keep) {
+    this.onNumbers('');
     if (grasp.sent) this.#connection.send('drag_end');
     const names = [grasp.name, ...Object.keys(grasp.others)];
     // A next drag may have begun while the simulator answered.

@@ -185,6 +185,11 @@ export class Meshes {
     this.onCount(this.#meshes[0] + this.#textures[0], this.#meshes[1] + this.#textures[1]);
   }
 
+  /** How many meshes and pictures are under way. */
+  get waiting() {
+    return this.#meshes[1] + this.#textures[1] - this.#meshes[0] - this.#textures[0];
+  }
+
   /** Resolves when no picture is under way. @returns {Promise<void>} */
   idle() {
     return this.#busy ? new Promise((resolve) => { this.#waiting.push(resolve); }) : Promise.resolve();

@@ -319,7 +319,7 @@ export class Models {
       linkView.radius = 0;
       this.#moveLink(view, linkView);
     };
-    const parts = visualParts(tinted(view.document, visual), this.#stock, look);
+    const parts = visualParts(tinted(view.document, visual, this.#store.modelEditing?.name === name), this.#stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {

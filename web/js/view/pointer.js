@@ -1,5 +1,6 @@
 /** The mouse and the held keys over the view: who gets a drag, and what a click means. */
 import {closestTo} from '../panels/dom.js';
+import {Touch, TOUCH_PIXELS} from './touch.js';
 /** @import {Vec3} from '../pose.js' */
 /** @import {ViewParts} from './view.js' */
 
@@ -10,16 +11,20 @@ import {closestTo} from '../panels/dom.js';
 /** The parts that the mouse works with.
  * @typedef {{manipulator: import('./manipulator.js').Manipulator, placer: import('./insert_ghost.js').Placer,
  * faceSnap: import('./face_snap.js').FaceSnap, forces: import('./force_arrows.js').Forces,
- * selector: import('./selector.js').Selector, pivotMark: import('./markers.js').PivotMark}} PointerParts */
+ * selector: import('./selector.js').Selector, pivotMark: import('./markers.js').PivotMark,
+ * measure: import('./measure.js').Measure, boxSelect: import('./box_select.js').BoxSelect}} PointerParts */
 /** A pressed button: where it was pressed and who has the drag. @typedef {{x: number, y: number,
  * lastX: number, lastY: number, button: number, moved: number, point: Vec3,
- * owner: 'camera'|'force'|'manipulator'}} Press */
+ * owner: 'camera'|'force'|'manipulator'|'box', touch: boolean}} Press */
 
 const CLICK_PIXELS = 4;
 const PLACE_PIXELS = 50;
 const WHEEL_STEP = 0.15;
 const AXIS_KEYS = /** @type {const} */ (['x', 'y', 'z']);
 const WALK_KEYS = ['w', 'a', 's', 'd'];
+
+/** Pixels within which a press is a click. @param {Press} press */
+const slop = ({touch}) => (touch ? TOUCH_PIXELS : CLICK_PIXELS);
 
 /** Keys that are down, and only while the page has the keyboard. */
 class HeldKeys {
@@ -61,6 +66,7 @@ class HeldKeys {
 export class Pointer {
   #parts;
   #keys;
+  #touch;
   /** @type {Press|null} */
   #press = null;
   /** Each stops one listener. @type {(() => void)[]} */
@@ -72,11 +78,15 @@ export class Pointer {
   constructor(parts) {
     this.#parts = parts;
     const {canvas} = parts.stage;
+    this.#touch = new Touch(parts, (event) => this.#longPress(event));
     this.#keys = new HeldKeys(window, (event) => this.#keysChanged(event));
     this.#listen(canvas, 'pointerdown', (event) => this.#down(event));
     this.#listen(canvas, 'pointermove', (event) => this.#move(event));
     this.#listen(canvas, 'pointerup', (event) => this.#up(event));
-    this.#listen(canvas, 'pointercancel', () => this.#abandon());
+    this.#listen(canvas, 'pointercancel', (event) => {
+      this.#touch.up(event);
+      this.#abandon();
+    });
     this.#listen(canvas, 'pointerleave', () => this.#leave());
     this.#listen(canvas, 'dblclick', (event) => this.#parts.selector.flyTo(event));
     this.#listen(canvas, 'wheel', (event) => this.#wheel(event), {passive: false});
@@ -105,23 +115,37 @@ export class Pointer {
   /** @param {PointerEvent} event */
   #down(event) {
     const {stage, store, manipulator, selector, forces} = this.#parts;
+    if (this.#touch.down(event)) {
+      this.#abandon();
+      return;
+    }
     if (this.#press) return;
     stage.canvas.parentElement?.focus({preventScroll: true});
     stage.canvas.setPointerCapture(event.pointerId);
     const point = selector.point(event);
     /** @type {Press} */
     const press = {x: event.clientX, y: event.clientY, lastX: event.clientX, lastY: event.clientY,
-      button: event.button, moved: 0, point, owner: 'camera'};
+      button: event.button, moved: 0, point, owner: 'camera',
+      touch: event.pointerType === 'touch'};
     this.#press = press;
     if (event.button !== 0 || store.mode === 'insert') return;
     if (forces.grab(event)) press.owner = 'force';
     else if (manipulator.grab(event, () => selector.grasped(event), this.#keys.axis)) {
       press.owner = 'manipulator';
-    }
+    } else if (store.mode === 'select' && (event.ctrlKey || event.metaKey)) press.owner = 'box';
+  }
+
+  /** A finger that rests is the right button. @param {MousePoint} event */
+  #longPress(event) {
+    const press = this.#press;
+    if (!press || press.moved > TOUCH_PIXELS) return;
+    this.#abandon();
+    this.#parts.selector.menu(event);
   }
 
   /** @param {PointerEvent} event */
   #move(event) {
+    if (this.#touch.move(event)) return;
     const press = this.#press;
     if (!press) {
       this.#hover(event);
@@ -134,8 +158,9 @@ export class Pointer {
     press.moved = Math.max(press.moved,
       Math.hypot(event.clientX - press.x, event.clientY - press.y));
     if (this.#parts.store.mode === 'insert') this.#parts.placer.follow(event);
-    if (press.moved < CLICK_PIXELS) return;
-    if (press.owner === 'manipulator') this.#parts.manipulator.drag(event, this.#keys.axis);
+    if (press.moved < slop(press)) return;
+    if (press.owner === 'box') this.#parts.boxSelect.show(press);
+    else if (press.owner === 'manipulator') this.#parts.manipulator.drag(event, this.#keys.axis);
     else if (press.owner === 'force') this.#parts.forces.drag(event);
     else this.#moveCamera(event, press, dx, dy);
   }
@@ -153,7 +178,7 @@ export class Pointer {
     const [x, y] = [dx * times, dy * times];
     if (press.button === 2) rig.zoom(press.point, Math.exp(y * 0.01));
     else if (fps && press.button === 0) rig.look(x, y);
-    else if (press.button === 1 || event.shiftKey) {
+    else if (press.button === 1 || event.shiftKey || press.touch) {
       const only = this.#keys.has('y') ? 'pitch' : this.#keys.has('z') ? 'yaw' : null;
       pivotMark.show(press.point);
       rig.orbit(press.point, x, y, only);
@@ -162,13 +187,15 @@ export class Pointer {
 
   /** @param {PointerEvent} event */
   #up(event) {
+    if (this.#touch.up(event)) return;
     const press = this.#press;
     if (!press || event.button !== press.button) return;
     this.#press = null;
     const {store, manipulator, placer, faceSnap, forces, selector, pivotMark} = this.#parts;
     pivotMark.hide();
-    const clicked = press.moved < CLICK_PIXELS;
+    const clicked = press.moved < slop(press);
     if (press.owner === 'manipulator') manipulator.release();
+    else if (press.owner === 'box' && !clicked) this.#parts.boxSelect.end(press);
     else if (press.owner === 'force') forces.release();
     else if (store.mode === 'insert') {
       if (press.button === 0 && press.moved < PLACE_PIXELS) placer.put(event);
@@ -176,12 +203,14 @@ export class Pointer {
     } else if (clicked && press.button === 0) {
       if (store.mode === 'snap') faceSnap.click(event);
       else if (store.mode === 'connect') selector.pick(event);
+      else if (store.mode === 'measure') this.#parts.measure.click(event);
       else selector.click(event);
     } else if (clicked && press.button === 2) selector.menu(event);
   }
 
   #abandon() {
     this.#press = null;
+    this.#parts.boxSelect.cancel();
     this.#parts.manipulator.cancel();
     this.#parts.pivotMark.hide();
   }

@@ -24,12 +24,13 @@ function plain(material) {
  * moves, has a simple shape and no colour of its own.
  * @param {Model} model
  * @param {Visual} visual
+ * @param {boolean} [built]  the model is being built: all its plain shapes are tinted
  * @returns {Visual}
  */
-export function tinted(model, visual) {
+export function tinted(model, visual, built = false) {
   const tint = TINTS[visual.geometry.type];
-  const alone = model.links.length === 1 && model.links[0].visuals.length === 1;
-  if (!tint || !alone || model.static || !plain(visual.material)) return visual;
+  const alone = model.links.length === 1 && model.links[0].visuals.length === 1 && !model.static;
+  if (!tint || !(alone || built) || !plain(visual.material)) return visual;
   const base = visual.material ?? {name: '', ambient: null, specular: null, emissive: null,
     texture: null, transparency: 0, lighting: true};
   return {...visual, material: {...base, diffuse: tint}};

@@ -1,9 +1,11 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
-import {Vector3} from 'three';
+import {Box3, Vector3} from 'three';
+import {hullOf} from '../building/plane_geometry.js';
 import {remembered} from '../panels/dom.js';
-import {subtract} from '../pose.js';
+import {subtract, transform} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
+import {BoxSelect} from './box_select.js';
 import {CameraRig, savedConfiguration} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
@@ -11,9 +13,11 @@ import {Forces} from './force_arrows.js';
 import {Lights} from './light_views.js';
 import {Manipulator} from './manipulator.js';
 import {Materials} from './materials.js';
+import {Measure} from './measure.js';
 import {Meshes} from './mesh_files.js';
 import {Models} from './model_views.js';
 import {Overlays} from './overlays.js';
+import {OrientationCube} from './orientation_cube.js';
 import {PeopleMarks} from './people_marks.js';
 import {Picker} from './picking.js';
 import {Placer} from './insert_ghost.js';
@@ -73,6 +77,21 @@ function withoutWebGL(element) {
   return {
     fps: 0, available: false, thumbnail: async () => null, redraw: () => {},
     dispose: () => text.remove(),
+  };
+}
+
+/**
+ * Numbers over the view while something is dragged; '' hides them.
+ * @param {HTMLElement} parent
+ */
+function readout(parent) {
+  const element = document.createElement('output');
+  element.className = 'readout';
+  element.hidden = true;
+  parent.append(element);
+  return (/** @type {string} */ text) => {
+    element.hidden = !text;
+    element.textContent = text;
   };
 }
 
@@ -137,8 +156,13 @@ class View {
   #surroundings;
   #marks;
   #people;
+  #measure;
+  #cube;
+  #readout;
   /** @type {ReturnType<typeof standaloneModel>|null} */
   #preview = null;
+  /** What of it the camera was last turned to. @type {Box3|null} */
+  #framed = null;
   /** By model URI. @type {Map<string, Promise<string|null>>} */
   #thumbnails = new Map();
   /** Names of the models that are shown elsewhere. @type {string[]} */
@@ -183,13 +207,19 @@ class View {
     this.#people = new PeopleMarks(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
+    const selector = new Selector(shared);
+    this.#measure = new Measure({...shared, selector});
+    this.#cube = new OrientationCube(element, actions);
+    this.#readout = readout(element);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
       placer: new Placer(shared), faceSnap: new FaceSnap(shared), forces: this.#forces,
-      selector: new Selector(shared), pivotMark: new PivotMark(shared)});
+      selector, measure: this.#measure, pivotMark: new PivotMark(shared),
+      boxSelect: new BoxSelect(element, store, (name) => this.pixelOf(name))});
     this.#connect();
     actions.attachView(this);
     const kept = savedConfiguration();
     if (kept) Object.assign(store.overlays.scene, kept.overlays);
+    this.#rig.apply();
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
   }
@@ -199,6 +229,9 @@ class View {
 
   /** Names of what others hold or have selected, for tests. */
   get sharedMarks() { return this.#people.shown; }
+
+  /** Meshes and textures that are on their way. */
+  get waiting() { return this.#stock.meshes.waiting; }
 
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
@@ -220,7 +253,12 @@ class View {
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();
-    this.#rig.onMoved = () => this.#manipulator.update();
+    this.#manipulator.onNumbers = (text) => this.#readout(text);
+    this.#rig.onMoved = () => {
+      this.#manipulator.update();
+      this.#measure.follow();
+      this.#cube.update(this.#rig.view);
+    };
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
@@ -256,6 +294,17 @@ class View {
 
   // ---- what actions ask
 
+  /** Where the camera is. */
+  get camera() { return this.#rig.view; }
+
+  /** What the measure tool says, for tests. */
+  get measured() { return this.#measure.texts; }
+
+  /** @param {import('../camera_math.js').View} view */
+  flyTo(view) {
+    this.#rig.fly(view);
+  }
+
   /** @param {string} side */
   viewFrom(side) {
     const centres = this.#store.selection.flatMap((name) => {
@@ -287,6 +336,22 @@ class View {
   bounds(name) {
     const box = this.#models.bounds(name);
     return box && {min: box.min.toArray(), max: box.max.toArray()};
+  }
+
+  /**
+   * The outline of a model on the ground, m; null for planes and for what is not drawn.
+   * @param {string} name
+   */
+  footprint(name) {
+    const pose = this.#models.shownPose(name);
+    const box = pose && this.#models.bounds(name, pose);
+    const model = this.#store.model(name);
+    const isPlane = model?.links.every(({visuals}) =>
+      visuals.every(({geometry}) => geometry.type === 'plane'));
+    if (!pose || !box || isPlane) return null;
+    const corners = [box.min.x, box.max.x].flatMap((x) => [box.min.y, box.max.y].flatMap((y) =>
+      [box.min.z, box.max.z].map((z) => transform(pose, [x, y, z]).slice(0, 2))));
+    return hullOf(corners);
   }
 
   /**
@@ -363,9 +428,22 @@ class View {
       // It can be picked before it is drawn for the first time.
       group.updateMatrixWorld(true);
       this.#stage.scene.add(group);
-      ready.then(() => this.#stage.shadowsChanged());
-    }
+      ready.then(() => {
+        this.#frame(new Box3().setFromObject(group));
+        this.#stage.shadowsChanged();
+      });
+    } else this.#framed = null;
     this.#stage.shadowsChanged();
+  }
+
+  /**
+   * What is drawn beside the world is in sight when it begins, and when it has outgrown that.
+   * @param {Box3} box
+   */
+  #frame(box) {
+    if (box.isEmpty() || this.#framed?.containsBox(box)) return;
+    this.#framed = box.clone().expandByScalar(box.getSize(new Vector3()).length() * 0.15);
+    this.#rig.flyTo(this.#framed);
   }
 
   /**

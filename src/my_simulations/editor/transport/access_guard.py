@@ -77,8 +77,9 @@ class Guard:
         origin = request.headers.get("Origin")
         if origin is not None and _netloc_of(origin) != request.headers.get("Host", ""):
             return "pages of other sites may not use this server"
-        if request.headers.get("Sec-Fetch-Site", "none") == "cross-site" and (
-                request.path != "/"):
+        # Another port of this machine is the same site, but another origin.
+        if request.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin") and (
+                request.path != "/" or request.headers.get("Sec-Fetch-Dest") != "document"):
             return "pages of other sites may not use this server"
         shown = (request.query.get("token", ""), request.cookies.get(_cookie(request), ""))
         if self.token and not any(map(self._is_token, shown)):

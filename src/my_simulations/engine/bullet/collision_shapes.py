@@ -1,6 +1,7 @@
 """Collision shapes of a link, in PyBullet's terms."""
 from __future__ import annotations
 
+import functools
 import os
 from dataclasses import dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
@@ -59,8 +60,13 @@ class Recipe:
     role: str = ""
     is_hull: bool = False
 
+    @functools.cached_property
+    def key(self) -> str:
+        """Equal for recipes of equal compounds."""
+        return repr((self.arguments, self.is_hull))
+
     def make(self) -> int:
-        """PyBullet's number of a new one, which goes with its body. Raises ShapeError."""
+        """PyBullet's number of a new one. Raises ShapeError."""
         shape: int = pybullet.createCollisionShapeArray(**self.arguments)
         if shape < 0:
             raise ShapeError(f"the physics engine refused the collision shapes {self.names}")
@@ -75,6 +81,7 @@ class ShapeFactory:
         self._files: Dict[str, str] = {}
         self._count = 0
         self._unseen = -1
+        self._unused: Dict[str, List[int]] = {}
 
     def close(self) -> None:
         """Remove the mesh files."""
@@ -92,9 +99,24 @@ class ShapeFactory:
                 pybullet.GEOM_MESH, vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], indices=[0, 1, 2])
         return self._unseen
 
+    def take(self, recipe: Recipe) -> int:
+        """PyBullet's number of a shape that no body has. Raises ShapeError.
+
+        PyBullet keeps shapes when their body is removed, and refuses to remove them: with a new one
+        for each body it grows by 3.5 kB a body, else by 0.9 kB (measured, 3.2.7).
+        """
+        unused = self._unused.get(recipe.key)
+        return unused.pop() if unused else recipe.make()
+
+    def give(self, taken: Sequence[Tuple[Recipe, int]]) -> None:
+        """Shapes whose body was removed, for the next one like it."""
+        for recipe, number in taken:
+            self._unused.setdefault(recipe.key, []).append(number)
+
     def forget_world(self) -> None:
         """The simulation was reset, and what was made for it is gone; files stay."""
         self._unseen = -1
+        self._unused.clear()
 
     def recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                 static: bool) -> List[Recipe]:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any, Iterator, Optional, Tuple
 
 from ...errors import InputError, error
+from ..reader_process import read_elsewhere
+from .pixels import is_costly, opened
 
-MOST_PIXELS = 64 << 20
-"""Most pixels of an image: Pillow uses up to four bytes for each."""
 _BAND = 256
+_CODE = "image-unreadable"
 _EARTH_M = 6371000.0
 # TIFF tags of GeoTIFF and GDAL.
 _PIXEL_SCALE, _TIE_POINT, _GEO_KEYS, _NO_DATA = 33550, 33922, 34735, 42113
@@ -52,7 +53,8 @@ class Elevations:
 def grey_levels(path: str, widest: int = 0, step: int = 1) -> Levels:
     """The brightest channel of each pixel.
 
-    Only the requested pixels are held in memory: an image of 100 KB may have 60 million.
+    Only the requested pixels are held in memory: an image of 100 KB may have 60 million. A large
+    image is read by another process.
 
     Args:
         path: path of the image.
@@ -62,6 +64,14 @@ def grey_levels(path: str, widest: int = 0, step: int = 1) -> Levels:
     Raises:
         InputError: with one issue, `image-unreadable`.
     """
+    if not _costly(path):
+        return levels_of(path, widest, step)
+    white, arrays = read_elsewhere("levels", path, _CODE, widest=widest, step=step)
+    return Levels(arrays[0], float(white))
+
+
+def levels_of(path: str, widest: int, step: int) -> Levels:
+    """As `grey_levels`, in this process."""
     import numpy as np
 
     with _opened(path) as image:
@@ -82,6 +92,18 @@ def elevations(path: str, widest: int) -> Optional[Elevations]:
     Raises:
         InputError: with one issue, `image-unreadable`.
     """
+    if not _costly(path):
+        return elevations_of(path, widest)
+    found, arrays = read_elsewhere("elevations", path, _CODE, widest=widest)
+    if found is None:
+        return None
+    shape, lowest, highest, extent = found
+    return Elevations(arrays[0], (int(shape[0]), int(shape[1])), float(lowest), float(highest),
+                      None if extent is None else (float(extent[0]), float(extent[1])))
+
+
+def elevations_of(path: str, widest: int) -> Optional[Elevations]:
+    """As `elevations`, in this process."""
     import numpy as np
 
     with _opened(path) as image:
@@ -145,20 +167,29 @@ def _extent(tags: Any, columns: int, rows: int) -> Optional[Tuple[float, float]]
     return x * metres * max(math.cos(math.radians(north)), 1e-6), y * metres
 
 
+def _costly(path: str) -> bool:
+    with _told(path):
+        return is_costly(path)
+
+
 @contextmanager
 def _opened(path: str) -> Iterator[Any]:
-    from PIL import Image, UnidentifiedImageError
+    with _told(path), opened(path) as image:
+        yield image
+
+
+@contextmanager
+def _told(path: str) -> Iterator[None]:
+    """Raises faults of an image as InputError."""
+    from PIL import UnidentifiedImageError
 
     try:
-        with Image.open(path) as image:
-            if image.width * image.height > MOST_PIXELS:
-                raise _fault(path, f"it has {image.width} x {image.height} pixels")
-            yield image
+        yield
     except UnidentifiedImageError:
         raise _fault(path, "it is of no known format") from None
-    except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as fault:
+    except (OSError, ValueError, SyntaxError, EOFError) as fault:
         raise _fault(path, str(fault)) from None
 
 
 def _fault(path: str, why: str) -> InputError:
-    return InputError([error("image-unreadable", f"the image cannot be read: {why}", file=path)])
+    return InputError([error(_CODE, f"the image cannot be read: {why}", file=path)])

@@ -1,6 +1,7 @@
 """Loads mesh files: DAE, STL, OBJ and other formats of trimesh, as triangles in metres."""
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 from dataclasses import replace
@@ -9,12 +10,21 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple
 from ...description.model import Link, Model
 from ...description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
 from ...errors import InputError, Issue, Severity, error
+from ..reader_process import read_elsewhere
 from ..xml.binding import closest
 from .part import MeshError, MeshPart
 from .suspicious_units import odd_size
 from .terrain import solid_mesh
 
 Reader = Callable[[bytes], List[MeshPart]]
+
+_PLAIN_BYTES = {".dae": 4 << 20, ".stl": 8 << 20, ".stla": 8 << 20, ".stlb": 8 << 20,
+                ".obj": 4 << 20}
+"""Largest files that are read in this process."""
+
+_MOST_COPIES, _MOST_COPIED = 10_000, 128 << 20
+_MOST_PRIMITIVES = 2000
+_PRIMITIVES = (b"<tri", b"<pol", b"<p>")
 
 
 def load_mesh(mesh: Mesh) -> MeshData:
@@ -114,7 +124,47 @@ def _fault(code: str, message: str, path: str, line: int = 0, hint: str = "") ->
 def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float], submesh: str,
             center: bool) -> MeshData:
     """Cached by time and size of the file, so that another spawn of an object is fast."""
-    return _to_data(_chosen(_parts(path), submesh, path), path, scale, bool(submesh and center))
+    read = _read_elsewhere if _is_costly(path, size) else triangles_of
+    return _to_data(*read(path, submesh), path, scale, bool(submesh and center))
+
+
+def _is_costly(path: str, size: int) -> bool:
+    """Whether a file may take much more memory or time than its size suggests.
+
+    Bytes of STL and OBJ are read one after the other. COLLADA may name its nodes again and again,
+    and the other formats may have compressed or repeated parts.
+    """
+    extension = os.path.splitext(path)[1].lower()
+    if extension == ".dae" and size <= _PLAIN_BYTES[extension]:
+        with contextlib.suppress(OSError), open(path, "rb") as stream:
+            data = stream.read(size)
+            copies = data.count(b"instance_geometry") << min(data.count(b"<instance_node"), 32)
+            return (copies > _MOST_COPIES or copies * size > _MOST_COPIED
+                    or max(map(data.count, _PRIMITIVES)) > _MOST_PRIMITIVES)
+    return size > _PLAIN_BYTES.get(extension, -1)
+
+
+def _read_elsewhere(path: str, submesh: str) -> Tuple[Any, Any]:
+    """As `triangles_of`, by another process with limits."""
+    _, (vertices, triangles) = read_elsewhere("mesh", path, "mesh-unreadable", submesh=submesh)
+    inside = len(triangles) and 0 <= triangles.min() and triangles.max() < len(vertices)
+    if not inside or not vertices.shape[1:] == triangles.shape[1:] == (3,):
+        raise _fault("mesh-unreadable", "the mesh cannot be read: its reader failed", path)
+    return vertices, triangles
+
+
+def triangles_of(path: str, submesh: str) -> Tuple[Any, Any]:
+    """Vertices (m, unscaled) and triangles of a file or of its parts with a name.
+
+    Read in this process. Raises InputError as `load_mesh`.
+    """
+    parts = _chosen(_parts(path), submesh, path)
+    if not sum(len(part.triangles) for part in parts):
+        raise _fault("mesh-empty", "the mesh has no faces", path)
+    try:
+        return _joined(parts)
+    except MeshError as fault:
+        raise _fault(fault.code, f"the mesh cannot be read: {fault}", path) from None
 
 
 def _reader(path: str, extension: str) -> Optional[Reader]:
@@ -163,16 +213,10 @@ def _chosen(parts: List[MeshPart], submesh: str, path: str) -> List[MeshPart]:
     return chosen
 
 
-def _to_data(parts: List[MeshPart], path: str, scale: Tuple[float, float, float],
+def _to_data(vertices: Any, triangles: Any, path: str, scale: Tuple[float, float, float],
              center: bool) -> MeshData:
     import numpy as np
 
-    if not sum(len(part.triangles) for part in parts):
-        raise _fault("mesh-empty", "the mesh has no faces", path)
-    try:
-        vertices, triangles = _joined(parts)
-    except MeshError as fault:
-        raise _fault(fault.code, f"the mesh cannot be read: {fault}", path) from None
     if not np.isfinite(vertices).all():
         raise _fault("mesh-not-finite", "the mesh has vertices that are not finite numbers", path)
     if center:

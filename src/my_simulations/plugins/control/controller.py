@@ -3,9 +3,11 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List
 
+from ...engine.commands import PidGains
 from ..context import Context, Ending, Handle, Publication
 from .hardware import Hardware, HardwareJoint
 from .settings import Settings
+from .tuning import tunable
 
 INITIALIZED, RUNNING, STOPPED = "initialized", "running", "stopped"
 
@@ -78,6 +80,15 @@ class Controller:
     def keep(self, handle: Handle) -> None:
         """Something else that ends with the controller."""
         self._handles.append(handle)
+
+    def offer_gains(self, path: str, joint: HardwareJoint, gains: PidGains,
+                    changed: Callable[[PidGains], None] = lambda gains: None) -> None:
+        """Let dynamic_reconfigure change gains below its name while a joint follows with them."""
+        def take(wanted: PidGains) -> None:
+            changed(wanted)
+            joint.retune(wanted)
+
+        self.keep(tunable(self.context, f"{self.name}/{path}", gains, take))
 
     def every(self, hertz: float, call: Callable[[], None]) -> None:
         """Be called at a rate in Hz of sim time while it runs."""

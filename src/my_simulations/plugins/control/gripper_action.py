@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 from typing import Any, Optional
 
+from ...engine.commands import PidGains
 from ..actions import ActionServer, Goal
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, POSITION
@@ -20,8 +21,11 @@ class Gripper(Controller):
         """Read parameters; take the joint; offer the action."""
         s = self.settings
         self._joint = self.take(self.interface, s.text("joint"))
-        self._gains = s.needed_gains(f"gains/{self._joint.name}") if self.interface == EFFORT \
-            else None
+        path = f"gains/{self._joint.name}"
+        self._gains: Optional[PidGains] = None
+        if self.interface == EFFORT:
+            self._gains = s.needed_gains(path)
+            self.offer_gains(path, self._joint, self._gains, self._take_gains)
         self._tolerance = abs(s.number("goal_tolerance", 0.01))
         self._default_effort = abs(s.number("max_effort", 0.0))
         self._still = s.number("stall_velocity_threshold", 0.001)
@@ -32,6 +36,9 @@ class Gripper(Controller):
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
                                     "control_msgs/GripperCommand", self._asked, self._cancelled)
         self.keep(self._action)
+
+    def _take_gains(self, gains: PidGains) -> None:
+        self._gains = gains
 
     def start(self) -> None:
         """Hold."""

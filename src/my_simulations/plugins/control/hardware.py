@@ -12,8 +12,10 @@ from ...description.transmission import Transmission
 from ...engine.commands import JointServo, PidGains
 from ...engine.spline import Spline
 from ..context import Context, Joint, PluginError
+from ..reconfigure import Reconfigure
 from .limits import JointLimits, holding_effort, limits_of
 from .settings import Settings
+from .tuning import tunable
 
 STATE, EFFORT, VELOCITY, POSITION = (f"hardware_interface::{kind}Interface" for kind in (
     "JointState", "EffortJoint", "VelocityJoint", "PositionJoint"))
@@ -40,6 +42,7 @@ class HardwareJoint:
             0, DRIVES[interface], drive_gains=None if interface == EFFORT else gains,
             wraps=limits.wraps, lower=limits.lower, upper=limits.upper, most_rate=limits.rate,
             most_effort=most, soft=limits.soft)
+        self._ordered = self._servo
 
     @property
     def position(self) -> float:
@@ -53,17 +56,36 @@ class HardwareJoint:
 
     def command(self, value: float) -> None:
         """An effort, rate or position, as the interface has it."""
-        self._joint.steer(replace(self._servo, target=value))
+        self._steer(replace(self._servo, target=value))
 
     def follow(self, target: float = 0.0, *, spline: Optional[Spline] = None,
                gains: Optional[PidGains] = None, target_rate: float = 0.0, of_rate: bool = False,
                by_rates: bool = False, feedforward: float = 0.0,
                most_effort: float = math.inf) -> None:
         """Have a loop about a target command the interface; see `engine.commands.JointServo`."""
-        self._joint.steer(replace(
+        self._steer(replace(
             self._servo, target=target, target_rate=target_rate, spline=spline, gains=gains,
             of_rate=of_rate, by_rates=by_rates, feedforward=feedforward,
             most_effort=min(most_effort, self._servo.most_effort)))
+
+    def _steer(self, servo: JointServo) -> None:
+        self._ordered = servo
+        self._joint.steer(servo)
+
+    @property
+    def drive_gains(self) -> Optional[PidGains]:
+        """Of the loop between the interface and the joint; None without one."""
+        return self._servo.drive_gains
+
+    def retune(self, gains: PidGains) -> None:
+        """Have the controller's loop go on with other gains."""
+        if self._ordered.gains is not None:
+            self._steer(replace(self._ordered, gains=gains))
+
+    def retune_drive(self, gains: PidGains) -> None:
+        """Have the loop between the interface and the joint go on with other gains."""
+        self._servo = replace(self._servo, drive_gains=gains)
+        self._steer(replace(self._ordered, drive_gains=gains))
 
     def rest(self) -> None:
         """What nobody controls: positions are held, rates and efforts are 0."""
@@ -75,6 +97,7 @@ class Hardware:
 
     def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
         self._context = context
+        self._tunings: List[Reconfigure] = []
         self._all: Dict[Tuple[str, str], HardwareJoint] = {}
         self.names: List[str] = []
         self._first: Dict[str, HardwareJoint] = {}
@@ -110,7 +133,9 @@ class Hardware:
         for interface in known[:1]:
             made = HardwareJoint(joint, interface, limits, gains.gains(joint.name), holding)
             self._all.setdefault((interface, joint.name), made)
-            self._first.setdefault(joint.name, made)
+            if self._first.setdefault(joint.name, made) is made and made.drive_gains is not None:
+                self._tunings.append(tunable(
+                    context, f"{gains.name}/{joint.name}", made.drive_gains, made.retune_drive))
 
     def joint(self, interface: str, name: str) -> HardwareJoint:
         """A joint through an interface. Raises PluginError."""

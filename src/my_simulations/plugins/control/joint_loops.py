@@ -1,6 +1,7 @@
 """Controllers with a PID loop about the position or rate of a joint; the engine runs the loop."""
 from __future__ import annotations
 
+from functools import partial
 from typing import Dict
 
 from ...engine.commands import PidGains
@@ -28,6 +29,10 @@ class JointLoop(Controller):
         self._wanted = 0.0
         self._state = self.publish("state", "control_msgs/JointControllerState")
         self.subscribe("command", "std_msgs/Float64", lambda message: self._go(message.data))
+        self.offer_gains("pid", self._joint, self._gains, self._take_gains)
+
+    def _take_gains(self, gains: PidGains) -> None:
+        self._gains = gains
 
     def start(self) -> None:
         """Stay, or stand."""
@@ -82,6 +87,9 @@ class EffortPositionGroup(Group):
         super().load()
         self._gains: Dict[str, PidGains] = {
             joint.name: self.settings.needed_gains(f"{joint.name}/pid") for joint in self.joints}
+        for joint in self.joints:
+            self.offer_gains(f"{joint.name}/pid", joint, self._gains[joint.name],
+                             partial(self._gains.__setitem__, joint.name))
 
     def start(self) -> None:
         """Stay."""

@@ -5,6 +5,7 @@ looked at 100 times a second of sim time, or as often as `controlPeriod` says.
 """
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, List, Optional, Set, Tuple
 
 from ...engine.commands import PidGains
@@ -42,7 +43,10 @@ class JointTrajectory(Controller):
         self._joints = [self.take(self.interface, name) for name in self._names]
         self._gains: List[Optional[PidGains]] = [None] * len(self._names)
         if self.interface != POSITION:
-            self._gains = [s.needed_gains(f"gains/{name}") for name in self._names]
+            for place, name in enumerate(self._names):
+                self._gains[place] = gains = s.needed_gains(f"gains/{name}")
+                self.offer_gains(f"gains/{name}", self._joints[place], gains,
+                                 partial(self._gains.__setitem__, place))
         self._feedforward = [s.number(f"velocity_ff/{name}", 0.0) for name in self._names]
         self._partial = s.flag("allow_partial_joints_goal", False)
         self._stop_time = s.number("stop_trajectory_duration", 0.0)

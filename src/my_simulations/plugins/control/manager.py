@@ -32,6 +32,17 @@ TYPES: Mapping[str, str] = {
     "effort_controllers/JointTrajectoryController": "joint_trajectory:EffortTrajectory",
     "effort_controllers/GripperActionController": "gripper_action:EffortGripper",
     "diff_drive_controller/DiffDriveController": "diff_drive_controller:DiffDriveController",
+    "ackermann_steering_controller/AckermannSteeringController":
+        "ackermann_steering_controller:AckermannSteeringController",
+    "four_wheel_steering_controller/FourWheelSteeringController":
+        "four_wheel_steering_controller:FourWheelSteeringController",
+    "mecanum_drive_controller/MecanumDriveController":
+        "mecanum_drive_controller:MecanumDriveController",
+    "imu_sensor_controller/ImuSensorController": "sensor_controllers:ImuSensorController",
+    "force_torque_sensor_controller/ForceTorqueSensorController":
+        "sensor_controllers:ForceTorqueSensorController",
+    "unitree_legged_control/UnitreeJointController":
+        "unitree_joint_controller:UnitreeJointController",
 }
 """Classes in this package by type of controller."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, List
 
 from ..base import Plugin
-from .camera_parameters import enter_namespace, rate_of, topics_of
+from .camera_parameters import ImagerRate, enter_namespace, topics_of
 from .picture_stream import PictureStream, blocks_of
 
 _TRIGGERS = 100
@@ -27,7 +27,7 @@ class Camera(Plugin):
         self._stream = PictureStream(context, sensor, context.sensor_link, block,
                                      topics_of(context), p.number("hackBaseline", 0.0),
                                      p.flag("borderCrop", True))
-        context.every(rate_of(context), self.update)
+        self._rate = ImagerRate(context, [self._stream.topics.base], self.update)
 
     def update(self) -> None:
         """Take a picture, if somebody wants one."""
@@ -85,7 +85,8 @@ class MultiCamera(Plugin):
                 context, sensor, context.sensor_link, block,
                 topics_of(context, f"/{side or block.name}"), baseline,
                 p.flag("borderCrop", True)))
-        context.every(rate_of(context), self.update)
+        self._rate = ImagerRate(context, [stream.topics.base for stream in self._streams],
+                                self.update)
 
     def update(self) -> None:
         """Take pictures with the cameras that are listened to."""

@@ -8,13 +8,14 @@ their centres as ROS does (there it is one pixel off); and the lens of the senso
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, List
+from typing import Any, Callable, List, Mapping, Sequence
 
 from ...description.sensor import Camera as CameraBlock
 from ...sensing.api import CameraSpec, Distortion
 from ..context import Context
 from ..frames import prefixed
 from ..parameters import namespace_or
+from ..reconfigure import Option, Reconfigure, Value
 
 USUAL_RATE = 30.0
 """Hz, of a camera that names no rate."""
@@ -57,6 +58,32 @@ def rate_of(context: Context) -> float:
     if context.sensor is not None:
         said.append(context.sensor.update_rate)
     return min((rate for rate in said if rate > 0.0), default=USUAL_RATE)
+
+
+_RATE = Option("imager_rate", 2.0, 1.0, 50.0, "pictures a second of sim time (Hz)")
+
+
+class ImagerRate:
+    """Calls at the rate of a camera, which dynamic_reconfigure can change.
+
+    Args:
+        context: of the plugin.
+        names: of the cameras; "" is one that nobody can change (gazebo_plugins).
+        call: takes a picture.
+    """
+
+    def __init__(self, context: Context, names: Sequence[str], call: Callable[[], None]) -> None:
+        self._context, self._call = context, call
+        rate = rate_of(context)
+        self._timer = context.every(rate, call)
+        self._offers = [Reconfigure(context, name, (_RATE,), {_RATE.name: rate}, self._change)
+                        for name in names if name]
+
+    def _change(self, values: Mapping[str, Value]) -> None:
+        self._timer.end()
+        self._timer = self._context.every(float(values[_RATE.name]), self._call)
+        for offer in self._offers:
+            offer.tell(values)
 
 
 def spec_of(block: CameraBlock, crop: bool = False) -> CameraSpec:

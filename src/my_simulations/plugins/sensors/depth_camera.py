@@ -12,7 +12,7 @@ from typing import Any, List, Optional
 from ...sensing.api import DEPTH, RGB
 from ..base import Plugin
 from ..context import Context
-from .camera_parameters import CameraTopics, enter_namespace, rate_of, topics_of
+from .camera_parameters import CameraTopics, ImagerRate, enter_namespace, topics_of
 from .image_messages import DepthGeometry, Once, cloud_message, header, image
 from .picture_stream import PictureStream, blocks_of
 
@@ -105,7 +105,7 @@ class DepthCamera(Plugin):
             context, self._colors, _names(context, topics), p.number("pointCloudCutoff", 0.4),
             p.number("pointCloudCutoffMax", self.furthest),
             not p.flag("useDepth16UC1Format", False))
-        context.every(rate_of(context), self.update)
+        self._rate = ImagerRate(context, [topics.base], self.update)
 
     def update(self) -> None:
         """Take a picture of what is wanted."""

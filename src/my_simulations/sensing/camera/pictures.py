@@ -7,6 +7,8 @@ import numpy as np
 
 from ...appearance.palette import PATTERNS
 from ...appearance.textures import existing, places_of_mesh
+from ...formats.image.pixels import picture as read
+from ...formats.image.pixels import pixels_of
 
 LARGEST = 1024
 """Pixels along a side; larger pictures are made smaller."""
@@ -17,25 +19,11 @@ Rgb = Tuple[int, int, int]
 
 def read_picture(picture: Any) -> Optional[np.ndarray]:
     """uint8 (h, w, 4), the lowest row first, of a path or a PIL image; None if unreadable."""
-    from PIL import Image, UnidentifiedImageError
-
-    try:
-        image = picture
-        if isinstance(picture, str):
-            path = existing(picture) or next(
-                (hit for hit in map(existing, places_of_mesh(picture, [])) if hit), None)
-            if path is None:
-                return None
-            image = Image.open(path)
-        if max(image.size) > LARGEST:
-            image.draft("RGB", (LARGEST, LARGEST))
-            image = image.convert("RGBA")
-            image.thumbnail((LARGEST, LARGEST), Image.BILINEAR)  # type: ignore[attr-defined]
-        upwards = Image.FLIP_TOP_BOTTOM  # type: ignore[attr-defined]
-        image = image.convert("RGBA").transpose(upwards)
-    except (OSError, ValueError, UnidentifiedImageError, Image.DecompressionBombError):
-        return None
-    return np.asarray(image)
+    if not isinstance(picture, str):
+        return pixels_of(picture, LARGEST)
+    path = existing(picture) or next(
+        (hit for hit in map(existing, places_of_mesh(picture, [])) if hit), None)
+    return None if path is None else read(path, LARGEST)
 
 
 def draw_pattern(name: str) -> Optional[np.ndarray]:

@@ -1,0 +1,50 @@
+"""ackermann_steering_controller: a driven rear axle and a steered front axle, as one wheel each.
+
+`angular.z` of a command is the steering angle, rad, as in the original. Where it differs: with
+`open_loop` the base turns as that angle says (there the angle counts as a yaw rate).
+"""
+from __future__ import annotations
+
+import math
+
+from .base_controller import BaseController, Planar
+from .hardware import POSITION, VELOCITY
+
+
+class AckermannSteeringController(BaseController):
+    """Joints `rear_wheel`, by its rate, and `front_steer`, by its position."""
+
+    def load_wheels(self) -> None:
+        """A wheel and a steering joint."""
+        s = self.settings
+        self._wheel = self.take(VELOCITY, s.text("rear_wheel", "rear_wheel_joint"))
+        self._steer = self.take(POSITION, s.text("front_steer", "front_steer_joint"))
+        wheel, steer = (self.context.joint(one.name).spec for one in (self._wheel, self._steer))
+        base, radius = s.number("wheel_separation_h", 0.0), s.number("wheel_radius", 0.0)
+        if s.get("wheel_separation_h") is None:
+            base = abs(self.place(steer)[0] - self.place(wheel)[0])
+        if s.get("wheel_radius") is None:
+            radius = self.radius_of(wheel)
+        self._base = base * s.number("wheel_separation_h_multiplier", 1.0)
+        self._radius = radius * s.number("wheel_radius_multiplier", 1.0)
+        self._scale = s.number("steer_pos_multiplier", 1.0)
+        self.positive(wheel_separation_h=self._base, wheel_radius=self._radius)
+
+    def drive(self, velocity: Planar) -> None:
+        """The rear wheel rolls, the front one is steered."""
+        self._wheel.command(velocity[0] / self._radius)
+        self._steer.command(velocity[2])
+
+    def begin_count(self) -> None:
+        """From here."""
+        self._turned = self._wheel.position
+
+    def way(self, dt: float) -> Planar:
+        """The rear wheel rolls along a circle that the front wheel's axle points to."""
+        if self.open_loop:
+            forward, angle = self.last[0] * dt, self.last[2]
+        else:
+            before, self._turned = self._turned, self._wheel.position
+            forward, angle = ((self._turned - before) * self._radius,
+                              self._steer.position * self._scale)
+        return forward, 0.0, forward * math.tan(angle) / self._base

@@ -1,0 +1,204 @@
+"""What controllers of wheeled bases share: commands that grow old, limits, odometry, tf.
+
+Parameters, topics and limits are those of ros_controllers. Updates come 100 times a second of sim
+time, or as often as `controlPeriod` says; ramps are exact to that. Odometry is integrated exactly
+along arcs.
+"""
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Any, Deque, Optional, Tuple
+
+from ...description.model import Joint as JointSpec
+from ...description.shapes import Cylinder, Sphere
+from ...geometry import Vec3, transform
+from ..context import PluginError
+from ..drive.odometry import diagonal, fill_pose, planar
+from .controller import Controller
+from .speed_limits import speed_limits
+
+_UPDATE_HZ = 100.0
+_ORIGINAL_HZ = 1000.0
+
+Planar = Tuple[float, float, float]
+"""Along x and y of the base, and about its z: m/s and rad/s, or m and rad."""
+
+STANDING: Planar = (0.0, 0.0, 0.0)
+
+
+class BaseController(Controller):
+    """Hears `cmd_vel`, tells `odom` and the transform from odom to the base.
+
+    Attributes:
+        open_loop: odometry is what was commanded, else what the wheels have done.
+        smooths: the velocity that is told is the mean of the last ones.
+        goes_sideways: a command's `linear.y` counts.
+    """
+
+    smooths = True
+    goes_sideways = False
+
+    # -- for subclasses ----------------------------------------------------------------------------
+
+    def load_wheels(self) -> None:
+        """Read the geometry; take the joints."""
+        raise NotImplementedError
+
+    def drive(self, velocity: Planar) -> None:
+        """Have the wheels turn so that the base moves."""
+        raise NotImplementedError
+
+    def begin_count(self) -> None:
+        """What the wheels have done counts from here."""
+
+    def way(self, dt: float) -> Planar:
+        """How far the base went in the last `dt` s by what its wheels have done: m, m, rad."""
+        raise NotImplementedError
+
+    def limited(self, wanted: Planar, dt: float) -> Planar:
+        """A command within the limits."""
+        found = [limits.limited(new, last, before, dt) for limits, new, last, before in zip(
+            self.limits, wanted, self.last, self.before)]
+        return found[0], found[1], found[2]
+
+    def tell_more(self) -> None:
+        """Publish what goes with the odometry."""
+
+    # -- Controller --------------------------------------------------------------------------------
+
+    def load(self) -> None:
+        """Read parameters; take the wheels; offer topics."""
+        s = self.settings
+        self.load_wheels()
+        self._publish_hz = s.number("publish_rate", 50.0)
+        self.open_loop = s.flag("open_loop", False)
+        self._timeout = s.number("cmd_vel_timeout", 0.5)
+        self.limits = tuple(speed_limits(s, path) for path in ("linear/x", "linear/y", "angular/z"))
+        self._hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
+        window = s.number("velocity_rolling_window_size", 10.0) * self._hertz / _ORIGINAL_HZ
+        self.window = max(1, round(window))
+        self._frames = (s.text("odom_frame_id", "odom"), s.text("base_frame_id", "base_link"))
+        self._broadcasts = s.flag("enable_odom_tf", True)
+        self._covariances = [diagonal(tuple(s.numbers(f"{what}_covariance_diagonal", 6,
+                                                      [0.0] * 6))) for what in ("pose", "twist")]
+        self._odom = self.publish("odom", "nav_msgs/Odometry", 100)
+        self._limited = self.publish("cmd_vel_out", "geometry_msgs/TwistStamped", 100) \
+            if s.flag("publish_cmd", False) else None
+        self.command = STANDING
+        self._heard_ns: Optional[int] = None
+        self.subscribe("cmd_vel", "geometry_msgs/Twist", self._hear)
+        self._pose: Planar = STANDING
+
+    def start(self) -> None:
+        """Stand; count from here."""
+        self._heard_ns, self.command = None, STANDING
+        self.last = self.before = STANDING
+        self._velocities: Deque[Planar] = deque(maxlen=self.window if self.smooths else 1)
+        self.begin_count()
+        self._now_ns = self.context.now_ns
+        self.drive(STANDING)
+        self.every(self._hertz, self._update)
+        if self._publish_hz > 0.0:
+            self.every(self._publish_hz, self._tell)
+
+    def stop(self) -> None:
+        """Stand."""
+        self.drive(STANDING)
+
+    def _hear(self, message: Any) -> None:
+        self.obey((float(message.linear.x),
+                   float(message.linear.y) if self.goes_sideways else 0.0,
+                   float(message.angular.z)))
+
+    def obey(self, command: Planar) -> bool:
+        """Follow a command from now on; one that is not finite is none."""
+        finite = all(map(math.isfinite, command))
+        if finite:
+            self.command, self._heard_ns = command, self.context.now_ns
+        return finite
+
+    def _update(self) -> None:
+        """Odometry first, then the command, as the original."""
+        now = self.context.now_ns
+        dt = (now - self._now_ns) * 1e-9
+        self._now_ns = now
+        if dt <= 0.0:
+            return
+        self._count(dt)
+        wanted = self.command
+        if self._heard_ns is None or (now - self._heard_ns) * 1e-9 > self._timeout:
+            wanted = STANDING
+        limited = self.limited(wanted, dt)
+        self.before, self.last = self.last, limited
+        self.drive(limited)
+        if self._limited is not None:
+            message = self.context.message("geometry_msgs/TwistStamped")
+            message.header.stamp = self.context.stamp()
+            message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = limited
+            self._limited.publish(message)
+
+    def _count(self, dt: float) -> None:
+        """Integrate an arc, exactly."""
+        forward, sideways, turn = self.way(dt)
+        x, y, yaw = self._pose
+        half = turn / 2.0
+        chord = math.sin(half) / half if abs(half) > 1e-9 else 1.0
+        c, s = chord * math.cos(yaw + half), chord * math.sin(yaw + half)
+        self._pose = (x + c * forward - s * sideways, y + s * forward + c * sideways, yaw + turn)
+        self._velocities.append((forward / dt, sideways / dt, turn / dt))
+
+    @property
+    def velocity(self) -> Planar:
+        """What is told of it."""
+        count = max(1, len(self._velocities))
+        forward, sideways, turn = (sum(one[axis] for one in self._velocities) / count
+                                   for axis in range(3))
+        return forward, sideways, turn
+
+    def _tell(self) -> None:
+        pose = planar(*self._pose)
+        if self._broadcasts:
+            self.context.transform(*self._frames, pose)
+        self.tell_more()
+        if self._odom.wanted:
+            self._odom.publish(self._odometry())
+
+    def _odometry(self) -> Any:
+        message = self.context.message("nav_msgs/Odometry")
+        message.header.stamp = self.context.stamp()
+        message.header.frame_id, message.child_frame_id = self._frames
+        fill_pose(message.pose.pose, planar(*self._pose))
+        message.pose.covariance, message.twist.covariance = map(list, self._covariances)
+        twist = message.twist.twist
+        twist.linear.x, twist.linear.y, twist.angular.z = self.velocity
+        return message
+
+    # -- geometry ----------------------------------------------------------------------------------
+
+    def place(self, joint: JointSpec) -> Vec3:
+        """Where a joint is in the model, at joint positions 0."""
+        for link in self.context.description.links:
+            if link.name == joint.child:
+                return transform(link.pose, joint.pose.position)
+        raise PluginError(f"joint '{joint.name}' has no child link")
+
+    def radius_of(self, joint: JointSpec, rollers: bool = False) -> float:
+        """Of the round collision of the wheel, or of a roller on it."""
+        child = joint.child
+        if rollers:
+            child = next((one.child for one in self.context.description.joints
+                          if one.parent == child), child)
+        for link in self.context.description.links:
+            if link.name == child:
+                for collision in link.collisions:
+                    if isinstance(collision.geometry, (Cylinder, Sphere)):
+                        return collision.geometry.radius
+        raise PluginError(f"the wheel of joint '{joint.name}' is no cylinder or sphere: set"
+                          f" {self.name}/wheel_radius")
+
+    def positive(self, **lengths: float) -> None:
+        """Check lengths in m. Raises PluginError."""
+        for name, length in lengths.items():
+            if length <= 0.0:
+                raise PluginError(f"{self.name}: {name} is {length:g} m; it must be positive")

@@ -1,0 +1,81 @@
+"""mecanum_drive_controller: four wheels whose rollers stand at 45 degrees.
+
+Joints, parameters, topics and laws are those of the package of that name for ROS 1. The odometry is
+on `odom`, and on `odomTopic` as in the original.
+"""
+from __future__ import annotations
+
+import math
+from typing import Tuple
+
+from ..context import PluginError
+from .base_controller import BaseController, Planar
+from .hardware import VELOCITY
+
+_CORNERS = ("front_left", "back_left", "back_right", "front_right")
+_UNEQUAL = 1e-3  # m, between radii
+
+
+class MecanumDriveController(BaseController):
+    """Joints `front_left_wheel_joint`, `back_left_wheel_joint` and those on the right."""
+
+    smooths = False
+    goes_sideways = True
+
+    def load_wheels(self) -> None:
+        """Four wheels of one radius."""
+        s = self.settings
+        self._wheels = [self.take(VELOCITY, s.text(f"{corner}_wheel_joint"))
+                        for corner in _CORNERS]
+        joints = [self.context.joint(wheel.name).spec for wheel in self._wheels]
+        if s.get("wheel_radius") is not None:
+            self._radius = s.number("wheel_radius", 0.0)
+        else:
+            rollers = s.flag("use_realigned_roller_joints", False)
+            radii = [self.radius_of(joint, rollers) for joint in joints]
+            if max(radii) - min(radii) > _UNEQUAL:
+                raise PluginError(f"{self.name}: the wheels' radii are not equal:"
+                                  f" {', '.join(f'{one:g} m' for one in radii)}")
+            self._radius = radii[0]
+        if s.get("wheel_separation_x") is not None or s.get("wheel_separation_y") is not None:
+            self._arm = (s.number("wheel_separation_x", 0.0)
+                         + s.number("wheel_separation_y", 0.0)) / 2.0
+        else:
+            places = [self.place(joint) for joint in joints]
+            xs, ys = ([place[axis] for place in places] for axis in (0, 1))
+            self._arm = (xs[0] - xs[1] - xs[2] + xs[3] + ys[0] + ys[1] - ys[2] - ys[3]) / 4.0
+        self.positive(wheel_radius=self._radius, wheel_separation=self._arm)
+        self._offset = tuple(s.number(f"base_frame_offset/{axis}", 0.0)
+                             for axis in ("x", "y", "theta"))
+        self._more = self.publish("odomTopic", "nav_msgs/Odometry", 100)
+
+    def drive(self, velocity: Planar) -> None:
+        """Rollers roll freely, so each wheel sees the part of the motion along its own diagonal."""
+        x, y, yaw = velocity
+        ox, oy, turn = self._offset
+        c, s = math.cos(turn), math.sin(turn)
+        x, y = c * x - s * y + oy * yaw, s * x + c * y - ox * yaw
+        for wheel, side, way in zip(self._wheels, (-1.0, -1.0, 1.0, 1.0), (-1.0, 1.0, -1.0, 1.0)):
+            wheel.command((x + way * y + side * self._arm * yaw) / self._radius)
+
+    def begin_count(self) -> None:
+        """From here."""
+        self._turned = self._positions()
+
+    def _positions(self) -> Tuple[float, ...]:
+        return tuple(wheel.position for wheel in self._wheels)
+
+    def way(self, dt: float) -> Planar:
+        """What four wheels have rolled, by least squares."""
+        before, self._turned = self._turned, self._positions()
+        a, b, c, d = ((now - then) * self._radius / 4.0 for now, then in zip(self._turned, before))
+        x, y, yaw = a + b + c + d, -a + b - c + d, (-a - b + c + d) / self._arm
+        ox, oy, turn = self._offset
+        x, y = x - oy * yaw, y + ox * yaw
+        cosine, sine = math.cos(turn), math.sin(turn)
+        return cosine * x + sine * y, -sine * x + cosine * y, yaw
+
+    def tell_more(self) -> None:
+        """The same odometry under its other name."""
+        if self._more.wanted:
+            self._more.publish(self._odometry())

@@ -1,0 +1,119 @@
+"""imu_sensor_controller and force_torque_sensor_controller: sensors of the robot, by their names.
+
+Topics, rates and frames are those of ros_controllers. In Gazebo a robot's own hardware interface
+brings the sensors; here they are the `<sensor>`s of the model of type imu, and of type force_torque
+of its joints.
+"""
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+from ...description.model import Joint
+from ...description.sensor import ForceTorque, Sensor
+from ...sensing.models import force_torque
+from ...sensing.models.imu import measure
+from ...sensing.models.motion import acceleration_between, velocity_at
+from ..context import Link, PluginError, Publication
+from .controller import Controller
+
+_HANDLES = 4  # messages in a topic's queue, as the original
+
+
+class _SensorController(Controller):
+    """A topic for each sensor, in the robot's namespace."""
+
+    def _rate(self) -> float:
+        if self.settings.get("publish_rate") is None:
+            raise PluginError(f"parameter {self.name}/publish_rate is missing")
+        return self.settings.number("publish_rate", 0.0)
+
+    def _offer(self, name: str, kind: str) -> Publication:
+        topic = self.context.publish(name, kind, _HANDLES)
+        self.keep(topic)
+        return topic
+
+
+class ImuSensorController(_SensorController):
+    """sensor_msgs/Imu of each `<sensor type="imu">`; the frame is that of its link."""
+
+    def load(self) -> None:
+        """Find the sensors."""
+        self._hertz = self._rate()
+        self._sensors: List[Tuple[Sensor, Link, Publication]] = []
+        for link, sensor in self.context.sensors():
+            if sensor.type == "imu":
+                self._sensors.append((sensor, self.context.link(link),
+                                      self._offer(sensor.name, "sensor_msgs/Imu")))
+        if not self._sensors:
+            raise PluginError(f"controller '{self.name}': the robot has no <sensor type=\"imu\">")
+
+    def start(self) -> None:
+        """Publish from now on."""
+        self._before: Dict[str, Any] = {}
+        if self._hertz > 0.0:
+            self.every(self._hertz, self._tell)
+
+    def _tell(self) -> None:
+        for sensor, link, topic in self._sensors:
+            now_ns, now = self.context.now_ns, velocity_at(link.pose, link.twist, sensor.pose)
+            then_ns, then = self._before.get(sensor.name, (now_ns, now))
+            self._before[sensor.name] = (now_ns, now)
+            if not topic.wanted or then_ns == now_ns:
+                continue
+            sample = measure(link.pose, link.twist, acceleration_between(
+                then, now, (now_ns - then_ns) * 1e-9), self.context.gravity, sensor.pose)
+            message = self.context.message("sensor_msgs/Imu")
+            message.header.stamp, message.header.frame_id = self.context.stamp(), link.name
+            turn = message.orientation
+            turn.x, turn.y, turn.z, turn.w = sample.orientation
+            rate, push = message.angular_velocity, message.linear_acceleration
+            rate.x, rate.y, rate.z = sample.angular_velocity
+            push.x, push.y, push.z = sample.linear_acceleration
+            topic.publish(message)
+
+
+class ForceTorqueSensorController(_SensorController):
+    """geometry_msgs/WrenchStamped of each force_torque sensor; the frame is that of the child."""
+
+    def load(self) -> None:
+        """Find the sensors."""
+        self._hertz = self._rate()
+        self._looks: List[Callable[[], None]] = []
+        for joint in self.context.description.joints:
+            for sensor in joint.sensors:
+                if sensor.type == "force_torque":
+                    self._looks.append(self._look(joint, sensor))
+        if not self._looks:
+            raise PluginError(f"controller '{self.name}': no joint of the robot has a"
+                              " <sensor type=\"force_torque\">")
+
+    def _look(self, joint: Joint, sensor: Sensor) -> Callable[[], None]:
+        topic = self._offer(sensor.name, "geometry_msgs/WrenchStamped")
+        block: Optional[ForceTorque] = sensor.force_torque
+        frame, direction = (block.frame, block.measure_direction) if block is not None else (
+            "child", "child_to_parent")
+        named = {"parent": joint.parent, "sensor": sensor.name}.get(frame, joint.child)
+        self.context.joint_wrench(joint.name)   # have the engine measure from now on
+
+        def tell() -> None:
+            wrench = self.context.joint_wrench(joint.name) if topic.wanted else None
+            if wrench is None:
+                return
+            sample = force_torque.measure(wrench, frame, direction, joint.pose, sensor.pose)
+            message = self.context.message("geometry_msgs/WrenchStamped")
+            message.header.stamp, message.header.frame_id = self.context.stamp(), named
+            force, torque = message.wrench.force, message.wrench.torque
+            force.x, force.y, force.z = sample.force
+            torque.x, torque.y, torque.z = sample.torque
+            topic.publish(message)
+
+        return tell
+
+    def start(self) -> None:
+        """Publish from now on."""
+        if self._hertz > 0.0:
+            self.every(self._hertz, self._tell)
+
+    def _tell(self) -> None:
+        for look in self._looks:
+            look()

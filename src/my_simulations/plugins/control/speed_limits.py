@@ -1,0 +1,44 @@
+"""Limits of a base's velocity, acceleration and jerk. Source: ros_controllers."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, Optional, Tuple
+
+from .settings import Settings
+
+
+@dataclass(frozen=True)
+class SpeedLimits:
+    """Limits of one velocity: (least, greatest), or None; m/s or rad/s, and per s, and per s^2."""
+
+    velocity: Optional[Tuple[float, float]] = None
+    acceleration: Optional[Tuple[float, float]] = None
+    jerk: Optional[Tuple[float, float]] = None
+
+    def limited(self, wanted: float, last: float, before: float, dt: float) -> float:
+        """A velocity within the limits, after `last`, and `before` that."""
+        if self.jerk is not None:
+            change = 2.0 * dt * dt
+            wanted = last + (last - before) + clamped(
+                wanted - last - (last - before), self.jerk[0] * change, self.jerk[1] * change)
+        if self.acceleration is not None:
+            wanted = last + clamped(wanted - last, self.acceleration[0] * dt,
+                                    self.acceleration[1] * dt)
+        if self.velocity is not None:
+            wanted = clamped(wanted, *self.velocity)
+        return wanted
+
+
+def speed_limits(settings: Settings, path: str) -> SpeedLimits:
+    """Of `linear/x` or `angular/z`."""
+    found: List[Optional[Tuple[float, float]]] = []
+    for kind in ("velocity", "acceleration", "jerk"):
+        most = settings.number(f"{path}/max_{kind}", 0.0)
+        pair = (settings.number(f"{path}/min_{kind}", -most), most)
+        found.append(pair if settings.flag(f"{path}/has_{kind}_limits", False) else None)
+    return SpeedLimits(*found)
+
+
+def clamped(value: float, least: float, most: float) -> float:
+    """The value, or the nearer limit."""
+    return max(least, min(most, value))

@@ -1,0 +1,30 @@
+"""PID gains that dynamic_reconfigure can change. Names and ranges: control_toolbox's Parameters."""
+from __future__ import annotations
+
+from typing import Callable, Dict
+
+from ...engine.commands import PidGains
+from ..context import Context
+from ..reconfigure import Option, Reconfigure, Value
+
+_OPTIONS = (
+    Option("p", 10.0, -100000.0, 100000.0, "proportional gain"),
+    Option("i", 0.1, -100000.0, 100000.0, "integral gain"),
+    Option("d", 1.0, -1000.0, 1000.0, "derivative gain"),
+    Option("i_clamp_min", -10.0, -100000.0, 0.0, "least integral term"),
+    Option("i_clamp_max", 10.0, 0.0, 100000.0, "greatest integral term"),
+    Option("antiwindup", False, False, True, "the integral itself stays within the limits"),
+)
+
+
+def tunable(context: Context, name: str, gains: PidGains,
+            changed: Callable[[PidGains], None]) -> Reconfigure:
+    """Offer gains under a name; `changed` gets those that were set."""
+    def take(values: Dict[str, Value]) -> None:
+        changed(PidGains(float(values["p"]), float(values["i"]), float(values["d"]),
+                         float(values["i_clamp_min"]), float(values["i_clamp_max"]),
+                         bool(values["antiwindup"])))
+
+    return Reconfigure(context, name, _OPTIONS, {
+        "p": gains.p, "i": gains.i, "d": gains.d, "i_clamp_min": gains.i_min,
+        "i_clamp_max": gains.i_max, "antiwindup": gains.antiwindup}, take)

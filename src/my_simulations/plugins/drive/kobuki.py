@@ -1,0 +1,269 @@
+"""libgazebo_ros_kobuki.so: the base of TurtleBot 2, with bumper, cliff and wheel drop sensors.
+
+Parameters, topics, frames and events are those of kobuki_gazebo_plugins. Where it differs: the way
+comes from the positions of the wheels; an `<update_rate>` of 0 is 50 Hz, that of the real base. The
+messages of events come from the package kobuki_msgs; without it the base drives all the same.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List, Tuple
+
+from ...description.sensor import Sensor
+from ...geometry import rpy_from_quat, scale
+from ...sensing.api import RayReturns
+from ...sensing.models.imu import measure
+from ...sensing.models.motion import acceleration_between, velocity_at
+from ..base import Plugin
+from ..context import PluginError, Publication
+from ..frames import prefixed
+from ..parameters import namespace_or
+from ..sensors.rays import fan_of
+from .odometry import Odometer, planar
+from .wheels import VelocityCommand, WheelStates
+
+_HERTZ = 50.0
+_COVARIANCE = (0.1, 0.1, 1e6, 1e6, 1e6, 0.05)
+_SIDES = ("left", "center", "right")
+_BITS = {"left": 4, "center": 2, "right": 1}    # in kobuki_msgs/SensorState
+_BUMPER_HEIGHT = (0.01, 0.13)                   # m above the base
+_SECTOR = math.pi / 6.0                         # half of a bumper's arc
+_PATIENCE_NS = 10 ** 9                          # of sim time, for rays
+
+
+class Kobuki(Plugin):
+    """Two driven wheels and what the base senses."""
+
+    def load(self) -> None:
+        """Read parameters; offer topics."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._wheels = [context.joint(_needed(p, f"{side}_wheel_joint_name"))
+                        for side in ("left", "right")]
+        self._separation = float(_needed(p, "wheel_separation"))
+        self._radius = float(_needed(p, "wheel_diameter")) / 2.0
+        self._torque = float(_needed(p, "torque"))
+        self._imu_link, self._imu = self._sensor(_needed(p, "imu_name"))
+        self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
+        self._broadcasts = p.flag("publish_tf", False)
+        self._states = WheelStates(context, self._wheels, motion=True)
+        prefix = str(context.parameter("base_prefix", "mobile_base")).strip("/")
+        self._command = VelocityCommand(context, f"{prefix}/commands/velocity",
+                                        p.number("velocity_command_timeout", 0.6))
+        context.subscribe(f"{prefix}/commands/reset_odometry", "std_msgs/Empty",
+                          lambda message: self._begin_count(), 10)
+        self._imu_topic = context.publish(f"{prefix}/sensors/imu_data", "sensor_msgs/Imu")
+        self._events = KobukiEvents(self, prefix)
+        self._powered = True
+        self.reset()
+        hertz = p.number("update_rate", 0.0)
+        context.every(hertz if hertz > 0.0 else _HERTZ, self.update)
+
+    def _sensor(self, name: str) -> Tuple[str, Sensor]:
+        return sensor_named(self, name)
+
+    def power(self, on: bool) -> None:
+        """Switch the motors on or off."""
+        self._powered = on
+
+    def reset(self) -> None:
+        """Stand, and count from here."""
+        self._command.stop()
+        self._begin_count()
+        self.clock_set()
+        self._drive()
+
+    def clock_set(self) -> None:
+        """Accelerations are of what comes."""
+        self._last_ns, self._before = self.context.now_ns, self._imu_velocity()
+        self._events.clock_set()
+
+    def _begin_count(self) -> None:
+        self._place = (0.0, 0.0, 0.0)
+        self._turned = self._positions()
+        self._heading = self._yaw()
+
+    def _positions(self) -> Tuple[float, float]:
+        left, right = (wheel.position for wheel in self._wheels)
+        return left, right
+
+    def _yaw(self) -> float:
+        return rpy_from_quat(self.context.link(self._imu_link).pose.orientation)[2]
+
+    def _imu_velocity(self) -> Tuple[float, float, float]:
+        link = self.context.link(self._imu_link)
+        return velocity_at(link.pose, link.twist, self._imu.pose)
+
+    def update(self) -> None:
+        """Odometry and sensors first, then the command."""
+        now = self.context.now_ns
+        dt = (now - self._last_ns) * 1e-9
+        self._last_ns = now
+        if dt <= 0.0:
+            return
+        self._states.send()
+        self._tell_odometry(dt)
+        self._tell_imu(dt)
+        self._events.update()
+        self._command.look()
+        self._drive()
+
+    def _tell_odometry(self, dt: float) -> None:
+        """The way is that of the wheels, the heading that of the gyroscope, as on the real base."""
+        before, self._turned = self._turned, self._positions()
+        way = sum(now - then for now, then in zip(self._turned, before)) * self._radius / 2.0
+        last, self._heading = self._heading, self._yaw()
+        turn = math.remainder(self._heading - last, 2.0 * math.pi)
+        x, y, yaw = self._place
+        self._place = (x + way * math.cos(yaw + turn / 2.0), y + way * math.sin(yaw + turn / 2.0),
+                       yaw + turn)
+        pose = planar(*self._place)
+        if self._broadcasts:
+            self._odometer.transform(pose)
+        self._odometer.publish(pose, (way / dt, 0.0, turn / dt))
+
+    def _tell_imu(self, dt: float) -> None:
+        before, self._before = self._before, self._imu_velocity()
+        if not self._imu_topic.wanted:
+            return
+        context, link = self.context, self.context.link(self._imu_link)
+        sample = measure(link.pose, link.twist, acceleration_between(before, self._before, dt),
+                         context.gravity, self._imu.pose)
+        message = context.message("sensor_msgs/Imu")
+        message.header.stamp = context.stamp()
+        message.header.frame_id = prefixed(context, "base_link")
+        turn, rate, push = (message.orientation, message.angular_velocity,
+                            message.linear_acceleration)
+        turn.x, turn.y, turn.z, turn.w = sample.orientation
+        rate.x, rate.y, rate.z = sample.angular_velocity
+        push.x, push.y, push.z = sample.linear_acceleration
+        message.orientation_covariance = [1e6, 0.0, 0.0, 0.0, 1e6, 0.0, 0.0, 0.0, 0.05]
+        message.angular_velocity_covariance = list(message.orientation_covariance)
+        self._imu_topic.publish(message)
+
+    def _drive(self) -> None:
+        x, yaw = (self._command.x, self._command.yaw) if self._powered else (0.0, 0.0)
+        for wheel, sign in zip(self._wheels, (-1.0, 1.0)):
+            wheel.drive((x + sign * yaw * self._separation / 2.0) / self._radius, self._torque)
+
+
+class KobukiEvents:
+    """Bumper, cliff and wheel drop events, and the state of all sensors."""
+
+    def __init__(self, base: Kobuki, prefix: str) -> None:
+        self._context, p = base.context, base.context.parameters
+        context = self._context
+        self._cliffs = {side: sensor_named(base, _needed(p, f"cliff_sensor_{side}_name"))
+                        for side in _SIDES}
+        self._edge = float(_needed(p, "cliff_detection_threshold"))
+        self._bumper = sensor_named(base, _needed(p, "bumper_name"))[0]
+        self._drops = {side: sensor_named(base, _needed(p, f"wheel_drop_{side}_sensor_name"))[0]
+                       for side in ("left", "right")}
+        self._pressed: Dict[str, bool] = dict.fromkeys(_SIDES, False)
+        self._over: Dict[str, bool] = dict.fromkeys(_SIDES, False)
+        self._dropped: Dict[str, bool] = dict.fromkeys(self._drops, False)
+        self._look_again_ns = 0
+        self._topics: Dict[str, Publication] = {}
+        try:
+            context.subscribe(f"{prefix}/commands/motor_power", "kobuki_msgs/MotorPower",
+                              lambda message: base.power(bool(message.state)), 10)
+            for name, kind in (("events/cliff", "CliffEvent"), ("events/bumper", "BumperEvent"),
+                               ("events/wheel_drop", "WheelDropEvent"),
+                               ("sensors/core", "SensorState")):
+                self._topics[name] = context.publish(f"{prefix}/{name}", f"kobuki_msgs/{kind}")
+        except PluginError as missing:
+            context.warn(f"no bumper, cliff and wheel drop events: {missing}")
+
+    def clock_set(self) -> None:
+        """What was asked belongs to another time."""
+        self._look_again_ns = 0
+
+    def update(self) -> None:
+        """Compare with what was before, and tell."""
+        if not self._topics:
+            return
+        contacts = self._context.contacts()
+        self._change("events/bumper", "bumper", "BumperEvent", self._pressed,
+                     self._bumps(contacts))
+        touching = {name for one, other, _ in contacts for name in (one, other)}
+        model = self._context.model
+        self._change("events/wheel_drop", "wheel", "WheelDropEvent", self._dropped,
+                     {side: f"{model}::{link}" not in touching
+                      for side, link in self._drops.items()})
+        core, now = self._topics["sensors/core"], self._context.now_ns
+        if now >= self._look_again_ns and (core.wanted or self._topics["events/cliff"].wanted):
+            self._look_again_ns = now + _PATIENCE_NS
+            self._look(list(_SIDES), {})
+        if core.wanted:
+            core.publish(self._state())
+
+    def _bumps(self, contacts: List[Any]) -> Dict[str, bool]:
+        """Which bumpers are pressed, by the direction that the contact comes from."""
+        found = dict.fromkeys(_SIDES, False)
+        pose = self._context.pose
+        heading = rpy_from_quat(pose.orientation)[2]
+        mine = f"{self._context.model}::{self._bumper}"
+        for one, other, contact in contacts:
+            height = contact.position[2] - pose.position[2]
+            if mine not in (one, other) or not (
+                    _BUMPER_HEIGHT[0] <= height <= _BUMPER_HEIGHT[1]):
+                continue
+            x, y, _ = scale(contact.normal, -1.0 if one == mine else 1.0)
+            angle = math.remainder(math.atan2(y, x) - heading, 2.0 * math.pi)
+            if abs(angle) <= _SECTOR:
+                found["center"] = True
+            elif abs(angle) <= 3.0 * _SECTOR:
+                found["left" if angle > 0.0 else "right"] = True
+        return found
+
+    def _look(self, sides: List[str], found: Dict[str, bool]) -> None:
+        """Cast the rays of one cliff sensor after the other."""
+        if not sides:
+            self._look_again_ns = 0
+            self._change("events/cliff", "sensor", "CliffEvent", self._over, found)
+            return
+        link, sensor = self._cliffs[sides[0]]
+        if sensor.ray is None:
+            raise PluginError(f"sensor '{sensor.name}' has no <ray>")
+
+        def seen(returns: RayReturns, ns: int) -> None:
+            first = float(returns.ranges.flat[0])
+            found[sides[0]] = not first < self._edge   # nothing below is a cliff
+            self._look(sides[1:], found)
+
+        self._context.scan(fan_of(sensor.ray), False, seen, (link, sensor.pose))
+
+    def _change(self, topic: str, field: str, kind: str, known: Dict[str, bool],
+                now: Dict[str, bool]) -> None:
+        """Publish an event for each side that is not as before."""
+        for number, side in enumerate(known):
+            if now[side] != known[side]:
+                known[side] = now[side]
+                message = self._context.message(f"kobuki_msgs/{kind}")
+                setattr(message, field, number)
+                message.state = int(now[side])
+                self._topics[topic].publish(message)
+
+    def _state(self) -> Any:
+        message = self._context.message("kobuki_msgs/SensorState")
+        message.header.stamp = self._context.stamp()
+        message.header.frame_id = prefixed(self._context, "base_link")
+        message.bumper = sum(_BITS[side] for side, on in self._pressed.items() if on)
+        message.cliff = sum(_BITS[side] for side, on in self._over.items() if on)
+        message.wheel_drop = (2 if self._dropped["left"] else 0) + self._dropped["right"]
+        return message
+
+
+def sensor_named(base: Kobuki, name: str) -> Tuple[str, Sensor]:
+    """A sensor of the model, and its link. Raises PluginError."""
+    for link, sensor in base.context.sensors():
+        if sensor.name == name:
+            return link, sensor
+    raise PluginError(f"the model has no sensor '{name}'")
+
+
+def _needed(p: Any, name: str) -> str:
+    found: str = p.text(name)
+    if not found:
+        raise PluginError(f"it has no <{name}>")
+    return found

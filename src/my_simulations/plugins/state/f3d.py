@@ -1,0 +1,69 @@
+"""libgazebo_ros_f3d.so: what accelerates a link, as geometry_msgs/WrenchStamped.
+
+Parameters, topic and header are those of gazebo_plugins: N and N m in world axes. It is mass times
+acceleration, and the change of the angular momentum about the centre of mass, over the time between
+two messages: everything that acts, gravity and contacts among it (the original tells what its
+engine happens to have added up).
+"""
+from __future__ import annotations
+
+from typing import Optional, Tuple
+
+from ...geometry import Quat, Vec3, conjugate, multiply, rotate, scale, subtract
+from ...sensing.models.motion import velocity_at
+from ..base import Plugin
+from ..context import PluginError
+from ..frames import prefixed
+from ..parameters import namespace_or
+
+
+class F3d(Plugin):
+    """Publishes after each step while somebody listens."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        for name in ("bodyName", "topicName"):
+            if not p.text(name):
+                raise PluginError(f"it has no <{name}>")
+        self._link = context.link(p.text("bodyName"))
+        self._frame = prefixed(context, p.text("frameName", "world"))
+        self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
+        self.reset()
+        context.every(0.0, self.update)
+
+    def reset(self) -> None:
+        """Changes are of what comes."""
+        self._before: Optional[Tuple[int, Vec3, Vec3]] = None
+
+    clock_set = reset
+
+    def update(self) -> None:
+        """Compare the momenta with those before."""
+        if not self._topic.wanted:
+            self._before = None
+            return
+        linear, angular = self._momenta()
+        before, now = self._before, self.context.now_ns
+        self._before = (now, linear, angular)
+        if before is None or before[0] == now:
+            return
+        per_second = 1e9 / (now - before[0])
+        message = self.context.message("geometry_msgs/WrenchStamped")
+        message.header.stamp, message.header.frame_id = self.context.stamp(), self._frame
+        force, torque = message.wrench.force, message.wrench.torque
+        force.x, force.y, force.z = scale(subtract(linear, before[1]), per_second)
+        torque.x, torque.y, torque.z = scale(subtract(angular, before[2]), per_second)
+        self._topic.publish(message)
+
+    def _momenta(self) -> Tuple[Vec3, Vec3]:
+        """Linear, kg m/s, and angular about the centre of mass, kg m^2/s; world axes."""
+        link, inertial = self._link, self._link.inertial
+        velocity = velocity_at(link.pose, link.twist, inertial.pose)
+        turn: Quat = multiply(link.pose.orientation, inertial.pose.orientation)
+        x, y, z = rotate(conjugate(turn), link.twist.angular)
+        i = inertial
+        momentum = (i.ixx * x + i.ixy * y + i.ixz * z, i.ixy * x + i.iyy * y + i.iyz * z,
+                    i.ixz * x + i.iyz * y + i.izz * z)
+        return scale(velocity, inertial.mass), rotate(turn, momentum)

@@ -1,0 +1,59 @@
+"""libJointControlPlugin.so: holds joints at an effort, a position or a rate.
+
+Parameters are those of Gazebo: `<controller type="force|position|velocity">` with a `<target>`,
+`<pid_gains>` and `<joint>`s, whose names are regular expressions.
+"""
+from __future__ import annotations
+
+import re
+from typing import List
+
+from ...engine.commands import JointServo, PidGains
+from ..base import Plugin
+from ..context import PluginError
+from ..parameters import Parameters
+
+_USUAL = (1.0, 0.1, 0.01)   # gains of Gazebo's joint controller
+
+
+class JointControl(Plugin):
+    """Orders once; the engine does the rest."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        controllers = self.context.parameters.children("controller")
+        if not controllers:
+            raise PluginError("it has no <controller>")
+        for controller in controllers:
+            servo = self._servo(controller)
+            for name in self._names(controller):
+                self.context.joint(name).steer(servo)
+
+    def reset(self) -> None:
+        """Targets go on."""
+        self.load()
+
+    def _servo(self, p: Parameters) -> JointServo:
+        kind, target = p.attribute("type"), p.number("target", 0.0)
+        if kind == "force":
+            return JointServo(0, "effort", target=target)
+        if kind not in ("position", "velocity"):
+            raise PluginError(f"there is no controller of type '{kind}'; there are force, position"
+                              " and velocity")
+        gains = PidGains(*p.vector("pid_gains", _USUAL), -1e9, 1e9)
+        return JointServo(0, "effort", target=target, gains=gains, of_rate=kind == "velocity",
+                          by_rates=kind == "position")
+
+    def _names(self, p: Parameters) -> List[str]:
+        names = [joint.name for joint in self.context.description.joints if joint.type != "fixed"]
+        found: List[str] = []
+        for wanted in p.texts("joint"):
+            try:
+                pattern = re.compile(wanted)
+            except re.error as fault:
+                raise PluginError(f"<joint> {wanted} is no regular expression: {fault}") from fault
+            matching = [name for name in names if pattern.fullmatch(name)]
+            if not matching:
+                self.context.warn(f"<joint> {wanted} fits none of {', '.join(names)}")
+            found += matching
+        return found

@@ -1,0 +1,102 @@
+"""libElevatorPlugin.so and libgazebo_ros_elevator.so: a lift with a door that goes to floors.
+
+Parameters, gains and the order of things are those of Gazebo: close the door, go to the floor, open
+the door, wait, close it; while that goes on other calls are left out. A floor is a number in a
+std_msgs/String. The wait passes in sim time.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, List
+
+from ...engine.commands import JointServo, PidGains
+from ..base import Plugin
+from ..context import Joint, PluginError
+from ..parameters import namespace_or
+
+_HERTZ = 100.0
+_DOOR_GAINS, _LIFT_GAINS = PidGains(2.0, 0.0, 1.0), PidGains(1e5, 0.0, 1e5)
+_OPEN, _CLOSED = 1.0, 0.0        # m, of the door's joint
+_DOOR_NEAR, _LIFT_NEAR = 0.05, 0.15   # m
+
+Stage = Callable[[], bool]
+"""Is called until it says that it is over."""
+
+
+class Elevator(Plugin):
+    """Drives the joints `<lift_joint>` and `<door_joint>`."""
+
+    def load(self) -> None:
+        """Read parameters; hear calls."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._lift, self._door = self._joint("lift_joint"), self._joint("door_joint")
+        self._height = p.number("floor_height", 3.0)
+        self._wait_ns = round(p.number("door_wait_time", 5.0) * 1e9)
+        context.subscribe(p.text("topic") or "elevator", "std_msgs/String", self._hear)
+        self.reset()
+        context.every(_HERTZ, self.update)
+
+    def _joint(self, name: str) -> Joint:
+        found = self.context.parameters.text(name)
+        if not found:
+            raise PluginError(f"it has no <{name}>")
+        return self.context.joint(found.rpartition("::")[2])
+
+    def reset(self) -> None:
+        """On the ground, with a closed door."""
+        self._stages: List[Stage] = []
+        self._go(0)
+        self._move_door(_CLOSED)
+
+    def _hear(self, message: Any) -> None:
+        try:
+            floor = int(str(message.data).strip())
+        except ValueError:
+            self.context.warn(f"'{message.data}' is no floor; a floor is a number")
+            return
+        if not self._stages:
+            self._stages = [self._door_stage(_CLOSED), self._lift_stage(floor),
+                            self._door_stage(_OPEN), self._waiting(), self._door_stage(_CLOSED)]
+
+    def update(self) -> None:
+        """Go on with what was called for."""
+        if self._stages and self._stages[0]():
+            self._stages.pop(0)
+
+    def _go(self, floor: int) -> None:
+        self._level = floor * self._height
+        self._lift.steer(_servo(self._lift, _LIFT_GAINS, self._level))
+
+    def _move_door(self, place: float) -> None:
+        self._door.steer(_servo(self._door, _DOOR_GAINS, place))
+
+    def _door_stage(self, place: float) -> Stage:
+        def go_on() -> bool:
+            self._move_door(place)
+            return abs(self._door.position - place) < _DOOR_NEAR
+
+        return go_on
+
+    def _lift_stage(self, floor: int) -> Stage:
+        def go_on() -> bool:
+            self._go(floor)
+            return abs(self._lift.position - self._level) < _LIFT_NEAR
+
+        return go_on
+
+    def _waiting(self) -> Stage:
+        until: List[int] = []
+
+        def go_on() -> bool:
+            if not until:
+                until.append(self.context.now_ns + self._wait_ns)
+            return self.context.now_ns >= until[0]
+
+        return go_on
+
+
+def _servo(joint: Joint, gains: PidGains, target: float) -> JointServo:
+    axis = joint.spec.axis
+    most = axis.effort if axis is not None and axis.effort > 0.0 else math.inf
+    return JointServo(0, "effort", target=target, gains=gains, by_rates=True, most_effort=most)

@@ -1,0 +1,193 @@
+"""Small windows, fingers, and what is found in other editors: box selection, measuring, links."""
+from __future__ import annotations
+
+import pytest
+from pytest import approx
+from support import Node, wait_for
+
+OVERLAPS = """(() => {
+  const texts = [...document.querySelectorAll('#bars *, #timebar *')].filter((one) =>
+    one.childElementCount === 0 && one.textContent.trim() && one.offsetParent !== null &&
+    one.tagName !== 'OPTION').map((one) =>
+      ({text: one.textContent, box: one.getBoundingClientRect()}));
+  const found = texts.filter(({box}) => box.left < -1 || box.right > innerWidth + 1)
+    .map(({text}) => `${text} is cut off`);
+  texts.forEach((a, at) => texts.slice(at + 1).forEach((b) => {
+    const [p, q] = [a.box, b.box];
+    const beside = p.left >= q.right - 1 || q.left >= p.right - 1;
+    if (!beside && p.top < q.bottom - 1 && q.top < p.bottom - 1) {
+      found.push(`${a.text} lies on ${b.text}`);
+    }
+  }));
+  return found;
+})()"""
+
+
+@pytest.fixture(scope="module")
+def node(tmp_path_factory):
+    running = Node(tmp_path_factory.mktemp("windows"), "worlds/empty.world")
+    yield running
+    running.close()
+
+
+@pytest.fixture
+def open_page(node, browser):
+    """Opens pages on a world with a box and a sphere; each ends with the test."""
+    pages = []
+
+    def open_one(address="", **options):
+        pages.append(browser.open(node.url + address, **options))
+        return pages[-1]
+
+    first = open_one()
+    first.get("(async () => { await editor.actions.newWorld({discard: true}); })()")
+    for shape, x in (("box", 0.0), ("sphere", 1.5)):
+        first.get(f"editor.actions.edit({{kind: 'insert', shape: '{shape}', "
+                  f"name: '{shape}', pose: [{x}, 0, 0.5, 0, 0, 0, 1]}})")
+    first.until("editor.store.model('box') && editor.store.model('sphere')", "both shapes")
+    open_one.first = first
+    yield open_one
+    faults = [fault for page in pages for fault in page.faults]
+    for page in pages:
+        page.close()
+    assert faults == []
+
+
+@pytest.mark.parametrize("size", [(1024, 768), (800, 600)], ids=str)
+def test_no_text_of_the_bars_lies_on_another(open_page, size):
+    editor = open_page(size=size)
+    editor.until("document.querySelector('.figure[aria-label=FPS]').textContent === 'idle'", "rest")
+    assert editor.get(OVERLAPS) == []
+
+
+def test_a_phone_has_a_view_and_panels_over_it(open_page):
+    editor = open_page(size=(400, 800), has_touch=True)
+    box = editor.page.locator("#view").bounding_box()
+    assert box["width"] >= 390 and box["height"] > 450
+    assert editor.get("document.documentElement.scrollWidth") <= 400
+    assert editor.page.locator("#left").is_hidden()
+    editor.page.get_by_role("button", name="Panels").tap()
+    editor.row("box").tap()
+    editor.until("editor.store.selection.join() === 'box'", "the row")
+    editor.page.touchscreen.tap(380, 500)
+    editor.page.locator("#left").wait_for(state="hidden")
+
+
+def test_fingers_select_orbit_pan_zoom_and_open_the_menu(open_page):
+    editor = open_page(size=(400, 800), has_touch=True)
+    fingers = editor.context.new_cdp_session(editor.page)
+
+    def touch(kind, *points):
+        fingers.send("Input.dispatchTouchEvent", {
+            "type": kind, "touchPoints": [{"x": x, "y": y, "id": n}
+                                          for n, (x, y) in enumerate(points)]})
+
+    def view():
+        return editor.get("editor.view.camera")
+
+    x, y = editor.get("editor.view.pixelOf('box')")
+    editor.page.touchscreen.tap(x, y)
+    editor.until("editor.store.selection.join() === 'box'", "the tap's selection")
+    before = view()
+    touch("touchStart", (x, y))
+    for step in range(1, 9):
+        touch("touchMove", (x + 12 * step, y))
+    touch("touchEnd")
+    turned = view()
+    assert abs(turned["yaw"] - before["yaw"]) > 0.2
+    touch("touchStart", (150, 400), (250, 400))
+    for step in range(1, 9):
+        touch("touchMove", (150 - 6 * step, 400), (250 + 6 * step, 400))
+    touch("touchEnd")
+    near = view()
+    assert near["yaw"] == approx(turned["yaw"])
+    assert near["position"] != turned["position"]
+    x, y = editor.get("editor.view.pixelOf('box')")
+    touch("touchStart", (x, y))
+    editor.page.get_by_role("menuitem", name="Move To").wait_for()
+    touch("touchEnd")
+
+
+def test_a_rectangle_selects_what_is_in_it(open_page):
+    editor = open_page.first
+    (x0, y0), (x1, y1) = (editor.get(f"editor.view.pixelOf('{name}')") for name in
+                          ("box", "sphere"))
+    editor.page.keyboard.down("Control")
+    editor.page.mouse.move(min(x0, x1) - 60, min(y0, y1) - 70)
+    editor.page.mouse.down()
+    editor.page.mouse.move(max(x0, x1) + 60, max(y0, y1) + 70, steps=6)
+    assert editor.page.locator(".box-select").is_visible()
+    editor.page.mouse.up()
+    editor.page.keyboard.up("Control")
+    editor.until("[...editor.store.selection].sort().join() === 'box,sphere'", "both")
+
+
+def test_two_clicks_measure_a_distance_and_escape_ends_it(open_page):
+    editor = open_page.first
+    editor.page.keyboard.press("m")
+    for name in ("box", "sphere"):
+        editor.page.mouse.click(*editor.get(f"editor.view.pixelOf('{name}')"))
+    text = wait_for(lambda: editor.get("editor.view.measured")[:1], "the distance")[0]
+    assert float(text.split(" m")[0]) == approx(1.5, abs=0.3)
+    editor.page.keyboard.press("Escape")
+    assert editor.get("editor.view.measured") == []
+
+
+def test_a_link_opens_at_this_camera_and_selection(open_page):
+    editor = open_page.first
+    editor.get("editor.store.select(['box'])")
+    editor.get("editor.actions.viewFrom('top')")
+    wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
+    wait_for(lambda: editor.get("editor.view.fps") == 0, "the end of the flight")
+    link = editor.get("editor.actions.viewLink()")
+    other = open_page("#" + link.split("#")[1])
+    assert other.get("editor.store.selection") == ["box"]
+    there, here = other.get("editor.view.camera"), editor.get("editor.view.camera")
+    assert there["position"] == approx(here["position"], abs=1e-3)
+    assert there["pitch"] == approx(here["pitch"], abs=1e-3)
+
+
+def test_numbers_are_shown_while_dragging(open_page):
+    editor = open_page.first
+    editor.page.keyboard.press("t")
+    x, y = editor.get("editor.view.pixelOf('box')")
+    editor.page.mouse.move(x, y)
+    editor.page.mouse.down()
+    editor.page.mouse.move(x + 40, y, steps=5)
+    wait_for(lambda: "moved" in editor.page.locator(".readout").inner_text(), "the numbers")
+    editor.page.mouse.up()
+    editor.page.locator(".readout").wait_for(state="hidden")
+
+
+def test_a_face_of_the_cube_is_a_view_and_home_comes_back(open_page):
+    editor = open_page.first
+    home = editor.get("editor.view.camera")
+    editor.page.get_by_role("group", name="Orientation").get_by_text("Top").dispatch_event("click")
+    wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
+    editor.page.keyboard.press("Home")
+    wait_for(lambda: editor.get("editor.view.camera.position") == approx(home["position"]), "home")
+
+
+def test_collisions_of_infinite_planes_are_not_laid_over_everything(open_page):
+    editor = open_page.first
+    assert "ground_plane" in editor.names()
+    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
+    corner = {"x": 700, "y": 690, "width": 40, "height": 30}
+    before = editor.page.screenshot(clip=corner)
+    editor.get("editor.actions.toggleOverlay('collisions')")
+    wait_for(lambda: editor.get("editor.view.fps") > 0, "another picture")
+    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
+    assert editor.page.screenshot(clip=corner) == before
+
+
+def test_the_building_editor_has_the_window_and_shows_the_world_in_its_plan(open_page):
+    editor = open_page.first
+    editor.page.keyboard.press("Control+b")
+    editor.page.locator(".context [data-model=box]").wait_for()
+    assert editor.page.locator(".context text").all_text_contents() == ["box", "sphere"]
+    assert editor.page.locator("#menubar").is_hidden()
+    assert editor.page.locator("#left").is_hidden()
+    assert editor.page.locator("#building").bounding_box()["width"] == approx(1366)
+    editor.page.get_by_role("menuitem", name="File", exact=True).click()
+    editor.page.get_by_role("menuitem", name="Exit Building Editor").click()
+    editor.page.locator("#menubar").wait_for()

@@ -1,0 +1,66 @@
+"""Measures what each test costs: `pytest --processor-time 30` lists the thirty dearest."""
+from __future__ import annotations
+
+import os
+from typing import Dict, Iterator, List
+
+import pytest
+
+_TICKS = os.sysconf("SC_CLK_TCK")
+
+
+def processor_seconds() -> float:
+    """Processor time (user and system) that this process and its descendants have used, in seconds.
+
+    Counts descendants that run and those that were waited for. What an orphan used is lost.
+    """
+    children: Dict[int, List[int]] = {}
+    used: Dict[int, int] = {}
+    for name in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as stream:
+                fields = stream.read().rpartition(")")[2].split()
+        except OSError:     # it has ended
+            continue
+        children.setdefault(int(fields[1]), []).append(int(name))
+        used[int(name)] = sum(map(int, fields[11:15]))      # proc(5): utime, stime, cutime, cstime
+    total, waiting = 0, [os.getpid()]
+    while waiting:
+        process = waiting.pop()
+        total += used.get(process, 0)
+        waiting += children.get(process, [])
+    return total / _TICKS
+
+
+class ProcessorTimes:
+    """Adds up the processor time of each test, its fixtures included."""
+
+    def __init__(self, shown: int) -> None:
+        self.shown = shown
+        self.seconds: Dict[str, float] = {}
+        self._before = processor_seconds()
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
+        yield
+        now = processor_seconds()
+        # What was killed with its parent counts no more: the last test would get less than nothing.
+        self.seconds[item.nodeid] = max(0.0, now - self._before)
+        self._before = now
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        terminalreporter.section("processor seconds")
+        terminalreporter.write_line(f"{sum(self.seconds.values()):8.2f} all tests")
+        for name in sorted(self.seconds, key=lambda name: -self.seconds[name])[:self.shown]:
+            terminalreporter.write_line(f"{self.seconds[name]:8.2f} {name}")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--processor-time", type=int, default=0, metavar="N",
+                     help="list the N tests that used the most processor time, children included")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    shown = config.getoption("--processor-time")
+    if shown:
+        config.pluginmanager.register(ProcessorTimes(shown), "processor-times")

@@ -1,0 +1,149 @@
+"""Files that could use up memory and time are read by another process, under limits."""
+from __future__ import annotations
+
+import os
+import signal
+import struct
+import zlib
+
+import numpy as np
+import pytest
+from PIL import Image
+from reading import VALID
+
+from my_simulations.description.shapes import Heightmap, Mesh
+from my_simulations.errors import InputError
+from my_simulations.formats import reader_process
+from my_simulations.formats.image.levels import elevations, grey_levels, levels_of
+from my_simulations.formats.image.pixels import picture, pixels_of
+from my_simulations.formats.mesh import loading
+from my_simulations.formats.mesh.loading import load_mesh, load_solid
+
+WIDE = 2600
+"""Pixels along a side of images that are not read in this process."""
+
+
+@pytest.fixture(autouse=True)
+def kept():
+    """The process of this test, which ends with it."""
+    process = reader_process.kept()
+    process.close()
+    yield process
+    process.close()
+
+
+def blank_png(path, side):
+    """A black picture of a few kB."""
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data
+                + struct.pack(">I", zlib.crc32(kind + data)))
+
+    rows = zlib.compress(bytes(side * (side + 1)), 9)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(
+        b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 0, 0, 0, 0)) + chunk(b"IDAT", rows)
+        + chunk(b"IEND", b""))
+    return str(path)
+
+
+def doubling(path, levels):
+    """COLLADA of some kB with 2 ** `levels` instances of one triangle."""
+    with open(os.path.join(VALID, "inch_y_up.dae"), encoding="utf-8") as stream:
+        text = stream.read()
+    head, tail = text.split("<library_visual_scenes>")
+    nodes = '<node id="n0"><instance_geometry url="#g"/></node>' + "".join(
+        f'<node id="n{n}">' + f'<instance_node url="#n{n - 1}"/>' * 2 + "</node>"
+        for n in range(1, levels + 1))
+    geometry = text.split('<geometry id="')[1].split('"')[0]
+    scene = text.split('<visual_scene id="')[1].split('"')[0]
+    path.write_text(
+        f"{head}<library_nodes>{nodes.replace('#g', '#' + geometry)}</library_nodes>"
+        f'<library_visual_scenes><visual_scene id="{scene}"><node><instance_node '
+        f'url="#n{levels}"/></node></visual_scene></library_visual_scenes>'
+        f"{tail.split('</library_visual_scenes>')[1]}", encoding="utf-8")
+    return Mesh(path.name, str(path))
+
+
+def test_plain_files_are_read_without_another_process(kept, tmp_path):
+    for name in ("inch_y_up.dae", "cube.stl", "two_parts.obj"):
+        load_mesh(Mesh(name, os.path.join(VALID, name)))
+    load_solid(Heightmap(uri="m", path=blank_png(tmp_path / "small.png", 64)))
+    assert kept.pid == 0
+
+
+def test_another_process_reads_the_same(kept, tmp_path):
+    mesh = doubling(tmp_path / "many.dae", 14)
+    data = load_mesh(mesh)
+    pid = kept.pid
+    assert pid > 0
+    vertices, triangles = loading.triangles_of(mesh.path, "")
+    assert np.array_equal(data.vertices, vertices)
+    assert np.array_equal(data.triangles, triangles)
+    rows = np.arange(WIDE * WIDE, dtype=np.uint32).reshape(WIDE, WIDE)
+    for form, values in (("png", (rows % 251).astype(np.uint8)),
+                         ("png", (rows % 65521).astype(np.uint16))):
+        path = str(tmp_path / f"{values.dtype}.{form}")
+        Image.fromarray(values).save(path)
+        found, expected = grey_levels(path, 1025), levels_of(path, 1025, 1)
+        assert found.white == expected.white and np.array_equal(found.values, expected.values)
+    path = str(tmp_path / "heights.tif")
+    Image.fromarray(rows.astype(np.float32) / WIDE).save(path)
+    heights = elevations(path, 65)
+    assert heights is not None and heights.shape == (WIDE, WIDE) and heights.extent is None
+    assert heights.highest == pytest.approx(WIDE, rel=1e-3)
+    coloured = str(tmp_path / "coloured.png")
+    Image.fromarray(np.stack([rows % 256] * 3, axis=2).astype(np.uint8)).save(coloured)
+    assert np.array_equal(picture(coloured, 1024), pixels_of(coloured, 1024))
+    assert kept.pid == pid  # one process for all
+
+
+def test_memory_is_limited_and_the_next_file_is_read(kept, tmp_path, monkeypatch):
+    path = blank_png(tmp_path / "bomb.png", 7000)
+    monkeypatch.setattr(reader_process, "MEMORY", 2 << 20)
+    with pytest.raises(InputError, match="MB of memory|cannot be read") as refused:
+        grey_levels(path, 1025)
+    assert refused.value.first.code == "image-unreadable" and refused.value.first.file == path
+    monkeypatch.undo()
+    assert grey_levels(path, 1025).values.shape == (1000, 1000)
+
+
+def test_processor_time_is_limited(kept, tmp_path, monkeypatch):
+    mesh = doubling(tmp_path / "million.dae", 40)
+    monkeypatch.setattr(reader_process, "SECONDS", 0)
+    with pytest.raises(InputError, match="processor time") as refused:
+        load_mesh(mesh)
+    assert refused.value.first.code == "mesh-unreadable"
+    monkeypatch.undo()
+    assert len(load_mesh(doubling(tmp_path / "many.dae", 14)).triangles) == 1 << 14
+
+
+def test_a_process_that_was_killed_is_replaced(kept, tmp_path):
+    load_mesh(doubling(tmp_path / "others.dae", 15))
+    first = kept.pid
+    os.kill(first, signal.SIGKILL)
+    os.waitid(os.P_PID, first, os.WEXITED | os.WNOWAIT)
+    assert len(load_mesh(doubling(tmp_path / "many.dae", 14)).triangles) == 1 << 14
+    assert kept.pid != first
+
+
+def test_what_the_readers_raise_is_told_with_the_file(kept, tmp_path):
+    path = tmp_path / "broken.ply"
+    path.write_text("ply\nformat ascii 1.0\nelement vertex x\n", encoding="utf-8")
+    with pytest.raises(InputError) as refused:
+        load_mesh(Mesh("broken.ply", str(path)))
+    assert refused.value.first.code == "mesh-unreadable" and refused.value.first.file == str(path)
+    assert kept.pid > 0
+
+
+def test_no_other_program_is_started_for_a_picture(tmp_path, monkeypatch):
+    ran = tmp_path / "ran"
+    program = tmp_path / "gs"
+    program.write_text(f"#!/bin/sh\ntouch {ran}\n", encoding="utf-8")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    path = tmp_path / "terrain.png"
+    path.write_text("%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n%%EndComments\n",
+                    encoding="ascii")
+    with pytest.raises(InputError, match="no known format"):
+        load_solid(Heightmap(uri="m", path=str(path)))
+    assert picture(str(path), 64) is None and not ran.exists()
+

@@ -1,0 +1,267 @@
+"""Controllers of bases with steered wheels and mecanum wheels; motors of legs; sensors."""
+from __future__ import annotations
+
+import math
+
+import pytest
+from robot_control import Arm, Message
+
+from my_simulations.description.model import JointAxis
+from my_simulations.description.sensor import ForceTorque, Imu, Sensor
+from my_simulations.engine.commands import JointWrench
+from my_simulations.geometry import Pose, Twist
+from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.control.four_wheel_steering_controller import (
+    corners_of,
+    fitted_motion,
+    wheel_motions,
+)
+
+EFFORT = "hardware_interface/EffortJointInterface"
+VELOCITY = "hardware_interface/VelocityJointInterface"
+POSITION = "hardware_interface/PositionJointInterface"
+FREE = JointAxis((0.0, 1.0, 0.0))
+
+
+def pose_of(message):
+    pose = message.pose.pose
+    return (pose.position.x, pose.position.y,
+            2.0 * math.atan2(pose.orientation.z, pose.orientation.w))
+
+
+def go(robot, seconds, x=0.0, y=0.0, yaw=0.0):
+    for _ in range(round(seconds / 0.1)):
+        robot.hear("drive/cmd_vel", linear={"x": x, "y": y}, angular={"z": yaw})
+        robot.context.advance(0.1)
+
+
+def car(**settings):
+    robot = Arm(axis=FREE, names=("rear", "steer"), interfaces=(VELOCITY, POSITION),
+                places={"rear": (-0.4, 0.0, 0.1), "steer": (0.6, 0.0, 0.1)},
+                drive={"type": "ackermann_steering_controller/AckermannSteeringController",
+                       "rear_wheel": "rear", "front_steer": "steer", "wheel_radius": 0.1,
+                       **settings})
+    robot.run("drive")
+    return robot
+
+
+def test_a_steered_axle_makes_a_circle_of_its_wheel_base():
+    robot = car()
+    go(robot, 0.3, yaw=0.4)                 # steer first
+    go(robot, 2.0, x=0.5, yaw=0.4)
+    assert robot.context.joints["rear"].velocity == pytest.approx(5.0)
+    assert robot.at("steer") == pytest.approx(0.4, abs=1e-6)
+    x, y, yaw = pose_of(robot.published("drive/odom")[-1])
+    radius = 1.0 / math.tan(0.4)            # the joints are 1 m apart
+    assert yaw == pytest.approx(0.5 * 2.0 / radius, rel=0.02)
+    assert (x, y) == pytest.approx((radius * math.sin(yaw), radius * (1.0 - math.cos(yaw))),
+                                   abs=1e-6)
+    twist = robot.published("drive/odom")[-1].twist.twist
+    assert (twist.linear.x, twist.angular.z) == pytest.approx((0.5, 0.5 / radius), rel=1e-3)
+
+
+def test_without_feedback_the_odometry_is_that_of_the_commands():
+    robot = car(open_loop=True)
+    robot.context.joints["rear"].stuck = True
+    go(robot, 1.0, x=0.5)
+    assert pose_of(robot.published("drive/odom")[-1]) == pytest.approx((0.5, 0.0, 0.0), abs=0.02)
+
+
+WHEELS = ("front_left", "front_right", "rear_left", "rear_right")
+STEERS = tuple(f"{name}_steer" for name in WHEELS)
+PLACES = {name: (x, y, 0.1) for name, x, y in zip(WHEELS, (0.5, 0.5, -0.5, -0.5),
+                                                  (0.4, -0.4, 0.4, -0.4))}
+STEER_PLACES = {f"{name}_steer": (x, math.copysign(0.3, y), z)
+                for name, (x, y, z) in PLACES.items()}
+
+
+def four_wheels(**settings):
+    robot = Arm(axis=FREE, names=(*WHEELS, *STEERS), interfaces=[VELOCITY] * 4 + [POSITION] * 4,
+                places={**PLACES, **STEER_PLACES},
+                drive={"type": "four_wheel_steering_controller/FourWheelSteeringController",
+                       "front_wheel": list(WHEELS[:2]), "rear_wheel": list(WHEELS[2:]),
+                       "front_steering": list(STEERS[:2]), "rear_steering": list(STEERS[2:]),
+                       "wheel_radius": 0.1, **settings})
+    robot.run("drive")
+    return robot
+
+
+@pytest.mark.parametrize("motion", [(1.0, 0.0, 0.0), (0.8, 0.2, 0.5), (-0.5, 0.1, 0.4)])
+def test_wheels_that_roll_as_a_motion_says_tell_that_motion(motion):
+    corners = corners_of(0.8, 1.0, 0.1)
+    assert fitted_motion(corners, wheel_motions(corners, motion)) == pytest.approx(motion)
+
+
+def test_all_wheels_stand_across_the_lines_to_the_centre_of_the_turn():
+    robot = four_wheels()
+    go(robot, 0.5, x=1.0, yaw=0.5)          # a circle of 2 m about (0, 2)
+    for name in WHEELS:
+        x, y, _ = STEER_PLACES[f"{name}_steer"]
+        angle = robot.at(f"{name}_steer")
+        assert math.tan(angle) == pytest.approx(x / (2.0 - y), abs=1e-6)
+        ahead = PLACES[name][1] - y         # the wheel's place outside of its axis
+        way = math.hypot(x, 2.0 - y) - ahead
+        assert robot.context.joints[name].velocity == pytest.approx(0.5 * way / 0.1)
+
+
+def test_a_turn_on_four_steered_wheels_closes_in_the_odometry():
+    robot = four_wheels()
+    go(robot, 2.0, x=1.0, yaw=0.5)
+    first = pose_of(robot.published("drive/odom")[-1])
+    go(robot, 2.0, x=1.0, yaw=0.5)
+    x, y, yaw = pose_of(robot.published("drive/odom")[-1])
+    turn = yaw - first[2]
+    assert turn == pytest.approx(1.0, abs=1e-3)
+    assert math.hypot(x - first[0], y - first[1]) == pytest.approx(4.0 * math.sin(turn / 2.0),
+                                                                   abs=1e-3)
+    state = robot.published("drive/odom_steer")[-1].data
+    assert state.speed == pytest.approx(1.0, abs=1e-6)
+    assert math.tan(state.front_steering_angle) == pytest.approx(0.25, abs=1e-3)
+    assert state.rear_steering_angle == pytest.approx(-state.front_steering_angle, abs=1e-6)
+
+
+def test_a_command_by_angles_goes_sideways():
+    robot = four_wheels()
+    for _ in range(10):
+        robot.hear("drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
+                   rear_steering_angle=0.3)
+        robot.context.advance(0.1)
+    assert [robot.at(name) for name in STEERS] == pytest.approx([0.3] * 4, abs=1e-6)
+    twist = robot.published("drive/odom")[-1].twist.twist
+    assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(
+        (0.5, 0.5 * math.tan(0.3), 0.0), abs=1e-6)
+
+
+def test_an_axle_without_two_wheels_is_told():
+    with pytest.raises(AssertionError, match="a left and a right"):
+        four_wheels(front_wheel=["front_left"])
+
+
+MECANUM = {"front_left_wheel_joint": "front_left", "back_left_wheel_joint": "rear_left",
+           "back_right_wheel_joint": "rear_right", "front_right_wheel_joint": "front_right"}
+
+
+def mecanum(**settings):
+    robot = Arm(VELOCITY, axis=FREE, names=WHEELS, places=PLACES,
+                drive={"type": "mecanum_drive_controller/MecanumDriveController",
+                       "wheel_radius": 0.1, **MECANUM, **settings})
+    robot.run("drive")
+    return robot
+
+
+def rates(robot):
+    return tuple(robot.context.joints[name].velocity for name in WHEELS)
+
+
+def test_mecanum_wheels_turn_for_each_way_as_their_rollers_say():
+    robot = mecanum()
+    go(robot, 0.2, x=0.5)
+    assert rates(robot) == pytest.approx((5.0, 5.0, 5.0, 5.0))
+    go(robot, 0.2, y=0.5)
+    assert rates(robot) == pytest.approx((-5.0, 5.0, 5.0, -5.0))
+    go(robot, 0.2, yaw=1.0)
+    assert rates(robot) == pytest.approx((-9.0, 9.0, -9.0, 9.0))
+
+
+@pytest.mark.parametrize("offset", [{}, {"x": 0.2, "y": -0.1, "theta": 0.3}])
+def test_mecanum_odometry_is_the_way_that_was_commanded(offset):
+    robot = mecanum(base_frame_offset=offset)
+    go(robot, 0.3, x=0.2, y=0.1, yaw=0.4)
+    twist = robot.published("drive/odom")[-1].twist.twist
+    assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx((0.2, 0.1, 0.4))
+    assert len(robot.published("drive/odomTopic")) == len(robot.published("drive/odom"))
+
+
+def motor():
+    arm = Arm(EFFORT, go={"type": "unitree_legged_control/UnitreeJointController",
+                          "joint": "one"})
+    arm.run("go")
+
+    def send(mode=10, q=0.0, dq=0.0, tau=0.0, stiffness=0.0, damping=0.0):
+        arm.hear("go/command", mode=mode, q=q, dq=dq, tau=tau, Kp=stiffness, Kd=damping)
+    return arm, send
+
+
+@pytest.mark.parametrize("stiffness, damping", [(100.0, 20.0), (100.0, 0.0), (0.0, 20.0),
+                                                (0.0, 0.0)])
+def test_a_leg_motor_gives_its_effort_on_top_of_stiffness_and_damping(stiffness, damping):
+    arm, send = motor()
+    joint = arm.context.joints["one"]
+    joint.position, joint.velocity = 0.1, -0.2
+    send(q=0.5, dq=0.3, tau=7.0, stiffness=stiffness, damping=damping)
+    arm.context.advance(0.001)
+    if stiffness or damping:
+        assert joint.effort == pytest.approx(7.0 + stiffness * 0.4 + damping * 0.5)
+    else:
+        assert joint.servo.target == 7.0
+    state = arm.published("go/state")
+    arm.context.advance(0.009)
+    assert state[-1].mode == 10 and state[-1].q == pytest.approx(joint.position)
+
+
+def test_a_leg_motor_brakes_until_a_command_comes_and_when_told():
+    arm, send = motor()
+    joint = arm.context.joints["one"]
+    joint.velocity = 1.0
+    arm.context.advance(0.001)
+    assert joint.effort == pytest.approx(-20.0)
+    send(tau=3.0)
+    send(mode=0)
+    joint.velocity = 0.5
+    arm.context.advance(0.001)
+    assert joint.effort == pytest.approx(-10.0)
+
+
+def test_a_leg_motor_leaves_its_loops_out_for_the_values_that_say_so():
+    arm, send = motor()
+    send(q=2.146e9, dq=16000.0, tau=2.0, stiffness=50.0, damping=5.0)
+    assert arm.context.joints["one"].servo.target == 2.0
+
+
+def test_sensors_of_the_robot_are_published_by_their_names():
+    arm = Arm(imus={"type": "imu_sensor_controller/ImuSensorController", "publish_rate": 50},
+              wrists={"type": "force_torque_sensor_controller/ForceTorqueSensorController",
+                      "publish_rate": 50})
+    context = arm.context
+    context.model_sensors = [("base", Sensor("trunk_imu", "imu", imu=Imu()))]
+    context.description.joints[0].sensors.append(
+        Sensor("wrist", "force_torque", force_torque=ForceTorque()))
+    context.wrenches = {"one": JointWrench((0.0, 0.0, 9.0), (0.5, 0.0, 0.0),
+                                           (0.0, 0.0, 0.0, 1.0))}
+    arm.run("imus", "wrists")
+    link = context.link("base")
+    link.pose, link.twist = Pose(), Twist((0.0, 0.0, 0.0), (0.0, 0.0, 0.7))
+    context.advance(0.05)
+    imu = arm.published("trunk_imu")[-1]
+    assert imu.header.frame_id == "base"
+    assert imu.linear_acceleration.z == pytest.approx(9.8)
+    assert imu.angular_velocity.z == 0.7
+    wrench = arm.published("wrist")[-1]
+    assert wrench.header.frame_id == "one"
+    assert (wrench.wrench.force.z, wrench.wrench.torque.x) == (-9.0, -0.5)
+
+
+@pytest.mark.parametrize("kind", ["imu_sensor_controller/ImuSensorController",
+                                  "force_torque_sensor_controller/ForceTorqueSensorController"])
+def test_a_robot_without_such_sensors_is_told(kind):
+    arm = Arm(sense={"type": kind, "publish_rate": 50})
+    assert not arm.load("sense")
+    assert "<sensor type=" in arm.context.said[-1]
+
+
+def test_messages_that_are_not_installed_leave_the_rest_working():
+    robot = four_wheels()
+    publish = robot.context.publish
+
+    def missing(name, kind, *more):
+        if kind.startswith("four_wheel_steering_msgs"):
+            raise PluginError(f"{kind} is not there")
+        return publish(name, kind, *more)
+
+    robot.context.publish = missing
+    assert robot.switch((), ["drive"])
+    assert robot.ask("unload_controller", name="drive").ok
+    robot.run("drive")
+    assert "cmd_vel only" in robot.context.said[-1]
+    go(robot, 0.2, x=0.5)
+    assert isinstance(robot.published("drive/odom")[-1], Message)

@@ -1,0 +1,48 @@
+/** A rectangle drawn with the mouse: what has its middle in it is selected. */
+
+/** @typedef {{x: number, y: number, lastX: number, lastY: number}} Dragged */
+
+export class BoxSelect {
+  #store;
+  #element;
+  #pixelOf;
+
+  /**
+   * @param {HTMLElement} parent
+   * @param {import('../store.js').Store} store
+   * @param {(name: string) => number[]|null} pixelOf  the middle of a model in the page, px
+   */
+  constructor(parent, store, pixelOf) {
+    this.#store = store;
+    this.#pixelOf = pixelOf;
+    this.#element = document.createElement('div');
+    this.#element.className = 'box-select';
+    this.#element.hidden = true;
+    parent.append(this.#element);
+  }
+
+  /** Shows the rectangle. @param {Dragged} dragged */
+  show({x, y, lastX, lastY}) {
+    const box = this.#element.parentElement?.getBoundingClientRect();
+    Object.assign(this.#element.style, {
+      left: `${Math.min(x, lastX) - (box?.left ?? 0)}px`, width: `${Math.abs(lastX - x)}px`,
+      top: `${Math.min(y, lastY) - (box?.top ?? 0)}px`, height: `${Math.abs(lastY - y)}px`,
+    });
+    this.#element.hidden = false;
+  }
+
+  /** Selects what is in the rectangle, with what is selected. @param {Dragged} dragged */
+  end({x, y, lastX, lastY}) {
+    this.cancel();
+    const models = this.#store.document?.models ?? [];
+    this.#store.select(models.map(({name}) => name).filter((name) => {
+      const pixel = this.#pixelOf(name);
+      return pixel !== null && (pixel[0] - x) * (pixel[0] - lastX) < 0 &&
+        (pixel[1] - y) * (pixel[1] - lastY) < 0;
+    }), {add: true});
+  }
+
+  cancel() {
+    this.#element.hidden = true;
+  }
+}

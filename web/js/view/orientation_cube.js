@@ -1,0 +1,43 @@
+/** A small cube that turns with the camera; a click on a face looks at the world from there. */
+import {forward, right, up} from '../camera_math.js';
+import {h} from '../panels/dom.js';
+/** @import {Actions} from '../actions.js' */
+/** @import {View} from '../camera_math.js' */
+
+const HALF = 27;
+/**
+ * Side, and how its face is turned in CSS. The world's x is CSS's x, its z is CSS's -y (down is
+ * positive), its y is CSS's -z (towards the viewer is positive).
+ * @type {['top'|'bottom'|'front'|'back'|'left'|'right', string][]}
+ */
+const FACES = [
+  ['front', 'rotateY(90deg)'], ['back', 'rotateY(-90deg)'], ['left', 'rotateY(180deg)'],
+  ['right', ''], ['top', 'rotateX(90deg) rotateZ(90deg)'], ['bottom', 'rotateX(-90deg) rotateZ(-90deg)'],
+];
+
+export class OrientationCube {
+  #cube;
+
+  /** @param {HTMLElement} parent @param {Actions} actions */
+  constructor(parent, actions) {
+    this.#cube = h('div', {class: 'cube-body'}, ...FACES.map(([side, turn]) => h('button', {
+      type: 'button',
+      tabindex: -1,
+      text: side[0].toUpperCase() + side.slice(1),
+      title: `View from ${side}`,
+      style: `transform: ${turn} translateZ(${HALF}px)`,
+      onclick: () => { actions.viewFrom(side); },
+    })));
+    parent.append(h('div', {class: 'cube', role: 'group', 'aria-label': 'Orientation'}, this.#cube));
+  }
+
+  /** @param {View} view */
+  update(view) {
+    const [side, top, ahead] = [right(view), up(view), forward(view)];
+    // Columns: where the cube's own axes (x, -z, -y of the world) are on the screen (x right,
+    // y down, z to the viewer).
+    const axes = [[1, 0, 0], [0, 0, -1], [0, -1, 0]].map((axis) => [side, top, ahead].map((one, at) =>
+      (at ? -1 : 1) * axis.reduce((sum, part, index) => sum + part * one[index], 0)));
+    this.#cube.style.transform = `matrix3d(${axes.map((axis) => [...axis, 0].join()).join()},0,0,0,1)`;
+  }
+}
