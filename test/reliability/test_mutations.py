@@ -82,7 +82,7 @@ def test_damaged_files_are_read_or_refused(record, tmp_path):
             assert fault.issues
             outcomes["refused"] += 1
         except Exception as defect:  # keep what did it
-            kept = ROOT / "test" / "data" / f"found{suffix}"
+            kept = tmp_path / f"found{suffix}"
             kept.write_bytes(data)
             raise AssertionError(f"{defect!r} of damage to {files[at].name}, seed {seed}: see "
                                  f"{kept}") from defect
