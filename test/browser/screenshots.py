@@ -125,12 +125,12 @@ class Film:
         self.durations = []
         editor.page.evaluate(CURSOR)
 
-    def take(self, milliseconds=90):
+    def take(self, milliseconds=120):
         data = self.editor.page.screenshot()
         self.frames.append(Image.open(io.BytesIO(data)).convert("RGB"))
         self.durations.append(milliseconds)
 
-    def go(self, start, end, steps=6):
+    def go(self, start, end, steps):
         for step in range(1, steps + 1):
             self.editor.page.mouse.move(*(a + (b - a) * step / steps for a, b in zip(start, end)))
             self.take()
@@ -159,14 +159,14 @@ def film(editor, path):
     page, strip = editor.page, Film(editor)
     strip.take(700)
     at = (480.0, 300.0)
-    for tool, place in (("Box", (-0.2, 1.2, 0)), ("Cylinder", (1.2, 0.3, 0)),
-                        ("Sphere", (0.2, -1.4, 0))):
+    for tool, place in (("Box", (-0.6, -0.8, 0)), ("Cylinder", (0.9, 1.0, 0)),
+                        ("Sphere", (1.6, -1.2, 0))):
         box = editor.button(tool).bounding_box()
-        strip.go(at, (box["x"] + 15, box["y"] + 15), 4)
+        strip.go(at, (box["x"] + 15, box["y"] + 15), 3)
         page.mouse.down()
         page.mouse.up()
         at = editor.pixel(place)
-        strip.go((box["x"] + 15, box["y"] + 15), at, 7)
+        strip.go((box["x"] + 15, box["y"] + 15), at, 4)
         before = len(editor.names())
         page.mouse.down()
         page.mouse.up()
@@ -176,9 +176,9 @@ def film(editor, path):
     page.keyboard.press("Escape")
     page.keyboard.press("Escape")
     strip.take(300)
-    for _ in range(22):
-        editor.get("editor.actions.step(60)")
-        strip.take(70)
+    for _ in range(14):
+        editor.get("editor.actions.step(90)")
+        strip.take(90)
     strip.take(1200)
     strip.save(path)
 
@@ -187,23 +187,24 @@ def lift(editor, strip, at):
     """The box by its handles: up, then over the cylinder."""
     page = editor.page
     box = editor.get("editor.view.pixelOf('unit_box')")
-    strip.go(at, box, 4)
+    strip.go(at, box, 3)
     page.mouse.down()
     page.mouse.up()
     page.keyboard.press("t")
     strip.take(400)
     page.keyboard.down("z")
     page.mouse.down()
-    strip.go(box, (box[0], box[1] - 120), 8)
+    strip.go(box, (box[0], box[1] - 120), 5)
     page.mouse.up()
     page.keyboard.up("z")
     strip.take(150)
     editor.until("editor.store.worldPose('unit_box')[2] > 1", "the lifted box")
     here = editor.get("editor.view.pixelOf('unit_box')")
-    goal = editor.get("editor.view.pixelOf('unit_cylinder')")
-    strip.go((box[0], box[1] - 120), here, 2)
+    height = editor.model("unit_box")["pose"][2]
+    goal = editor.pixel((0.7, 0.9, height))
+    strip.go((box[0], box[1] - 120), here, 1)
     page.mouse.down()
-    strip.go(here, (goal[0] - 22, here[1] + 40), 8)
+    strip.go(here, goal, 5)
     page.mouse.up()
     strip.take(300)
 

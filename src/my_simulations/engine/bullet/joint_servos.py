@@ -6,11 +6,12 @@ from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 import pybullet
 
-from ...description.model import JointAxis, Model
+from ...description.model import Model
 from ..api import CommandRefusedError
 from ..commands import JointServo
 from ..servo_law import FOLLOW, ServoLaw
 from .bodies import Axis, Body
+from .joint_axes import specs_of
 
 _STRONG = 1e7   # N or N m, of a motor without a limit
 _FAST = 1e5     # rad/s or m/s, likewise
@@ -96,9 +97,7 @@ class JointServos:
 
     def set_up(self, body: Body, model: Model, dt: float) -> None:
         """The axes of a body got their limits and friction (anew): servos go on."""
-        specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
-        for axis in body.axes:
-            spec = specs[axis.name][axis.number] or JointAxis()
+        for axis, spec in specs_of(body, model):
             self._friction[axis.row] = (spec.motor_rate, max(0.0, spec.friction))
             law = self._laws.get(axis.row)
             if law is not None:
