@@ -209,9 +209,13 @@ def test_a_rebound_name_shows_nothing(case, asked, browser, monkeypatch):
     for route in sorted(set(ROUTES.values())):
         answer = page.goto(f"http://rebound.example:{port}/{route}")
         assert answer.status == 403, route
-    # From such a page all requests are of the same origin.
+    # The page was loaded before the name pointed here; now all requests are of its own origin.
+    base = f"http://rebound.example:{port}/"
+    page.route(base + "evil.html", lambda route: route.fulfill(
+        content_type="text/html", body="<!DOCTYPE html><title>evil</title><body></body>"))
+    page.goto(base + "evil.html")
     said = page.evaluate(f"([base, routes, secrets]) => ({ATTACK})(base, routes, secrets)",
-                         [f"http://rebound.example:{port}/", sorted(set(ROUTES.values())), [""]])
+                         [base, sorted(set(ROUTES.values())), [""]])
     assert said["found"] == []
     assert asked and all(problem for *_, problem in asked)
     chromium.close()

@@ -37,7 +37,7 @@ def lying(yaw: float) -> "Tuple[float, float, float, float]":
 
 
 def _floor(lab: Lab, kind: str) -> None:
-    """A level floor; the mesh ones are triangles 0.5 m wide."""
+    """A level floor; the mesh ones are triangles 0.5 m wide, 40 m across or 140 m long."""
     if kind == "plane":
         lab.load(ground(1.0))
     elif kind == "box":
@@ -45,12 +45,13 @@ def _floor(lab: Lab, kind: str) -> None:
     elif kind == "long box":
         lab.load(slab("floor", (140.0, 40.0, 0.2)), (50.0, 0, -0.1))
     else:
-        side = np.linspace(-20, 20, 81)
-        x, y = np.meshgrid(side, side)
+        along = 80 if kind == "mesh" else 280
+        x, y = np.meshgrid(-20 + 0.5 * np.arange(along + 1), -20 + 0.5 * np.arange(81))
         points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
-        at = (np.arange(80)[:, None] * 81 + np.arange(80)).ravel()
-        faces = np.concatenate([np.stack([at, at + 1, at + 81], 1),
-                                np.stack([at + 1, at + 82, at + 81], 1)]).astype(np.int32)
+        at = (np.arange(80)[:, None] * (along + 1) + np.arange(along)).ravel()
+        above = at + along + 1
+        faces = np.concatenate([np.stack([at, at + 1, above], 1),
+                                np.stack([at + 1, above + 1, above], 1)]).astype(np.int32)
         mesh = Mesh("terrain", "/terrain")
         lab.load(Model("floor", static=True, links=[Link("link", collisions=[
             Collision("c", mesh, surface=Surface(mu=1.0))])]),
@@ -148,7 +149,9 @@ def _roll_hinged(lab: Lab, kind: str, floor: str, speed: float, seconds: int) ->
         if kind == "one" and width < radius / 4:
             continue   # discs fall over
         model = _hinged(radius, width) if kind == "one" else _car(radius, width)
-        number = lab.load(model, (-18, 7 * n - 14, radius))
+        # On triangles wheels rest 1 mm high.
+        above = 1e-3 if "mesh" in floor else 0.0
+        number = lab.load(model, (-18, 7 * n - 14, radius + above))
         rolling.append((number, radius, len(model.joints)))
     lab.seconds(0.3)
     for number, radius, wheels in rolling:
@@ -171,13 +174,34 @@ def test_hinged_wheels_roll_on_at_their_speed(lab: Lab, laws: Laws, kind: str, f
                   measured, speed, rel=0.01)
 
 
-@pytest.mark.parametrize("speed", [0.5, 3.0])
-@pytest.mark.parametrize("kind, bar", [("one", 0.03), ("car", 0.02)])
+@pytest.mark.parametrize("seconds", [5, pytest.param(30, marks=pytest.mark.long)])
+@pytest.mark.parametrize("speed", [0.05, 0.5, 3.0])
+@pytest.mark.parametrize("kind", ["one", "car"])
 def test_hinged_wheels_roll_over_the_seams_of_a_height_map(lab: Lab, laws: Laws, kind: str,
-                                                           bar: float, speed: float):
-    for measured in _roll_hinged(lab, kind, "mesh", speed, 5):
-        laws.near(f"hinged wheels ({kind}) on a height map for 5 s, {speed} m/s: speed",
-                  measured, speed, rel=bar)
+                                                           speed: float, seconds: int):
+    for measured in _roll_hinged(lab, kind, "long mesh" if seconds > 5 else "mesh", speed,
+                                 seconds):
+        laws.near(f"hinged wheels ({kind}) on a height map for {seconds} s, {speed} m/s: speed",
+                  measured, speed, rel=0.01)
+
+
+def test_rolling_over_seams_does_not_depend_on_how_many_steps_are_made_at_once():
+    def run(burst: int) -> "List[float]":
+        lab = Lab()
+        try:
+            _floor(lab, "mesh")
+            car = lab.load(_car(0.1, 0.1), (-18.3, 0.2, 0.101))
+            lab.push(car, (1.0, 0, 0))
+            for _ in range(1024 // burst):
+                lab.backend.step(lab.step, burst)
+                lab.step += burst
+            lab.backend.read()
+            return lab.row(car)
+        finally:
+            lab.backend.close()
+
+    once = run(1)
+    assert once[0] > -18.0 and run(64) == once and run(1024) == once
 
 
 def test_a_cylinder_rolls_down_a_slope(lab: Lab, laws: Laws):

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Dict, List, Tuple
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from conftest import Lab, box, ground, inertial_of_box, slab
 from laws import Laws
 
+import my_simulations
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import (
     Box,
@@ -23,6 +25,8 @@ from my_simulations.description.shapes import (
     mesh_key,
 )
 from my_simulations.geometry import Pose, Quat, multiply, quat_from_rpy, rotate
+
+ROBOT = Path(__file__).resolve().parents[2] / "urdf/robo.urdf"
 
 
 def _turned(a: Quat, b: Quat) -> float:
@@ -101,6 +105,43 @@ def test_a_robot_with_braked_wheels_stays_on_a_slope(lab: Lab, laws: Laws, degre
               for n, turn in enumerate((0.0, 0.7))]
     _stay(lab, laws, f"a robot with braked wheels on a slope, {seconds} s",
           [(robot, "body") for robot in robots], seconds, bar)
+
+
+@pytest.mark.parametrize("seconds, bar", PARKED)
+def test_the_lab_robot_stays_where_it_is(laws: Laws, seconds: float, bar: float):
+    with my_simulations.open_world() as world:
+        world.spawn(ROBOT.read_text(encoding="utf-8"), "robot", [0, 0, 0, 0, 0, 0.4])
+        world.step(1000)
+        start = world.states().pose["robot"]
+        world.step(round(1000 * seconds))
+        now = world.states().pose["robot"]
+        law = f"the lab robot, parked, {seconds} s"
+        laws.at_most(f"{law}: way, mm", 1e3 * math.dist(now[:3], start[:3]), bar)
+        laws.at_most(f"{law}: turn, degrees", _turned(now[3:], start[3:]), bar)
+
+
+def _arm(base: str) -> Model:
+    """Three links, stretched out, on a base of 30 kg; 200 N m of friction in each hinge."""
+    links = [Link("body", Pose((0, 0, 0.1)), inertial_of_box(30.0, 0.4, 0.4, 0.2),
+                  [Collision("c", Box((0.4, 0.4, 0.2)))])]
+    joints = [Joint("foot", "fixed", "world", "body")] if base == "fixed" else []
+    for n in range(3):
+        links.append(Link(f"l{n}", Pose((0.3 * n, 0, 0.25)),
+                          inertial_of_box(2.0, 0.3, 0.05, 0.05, Pose((0.15, 0, 0))),
+                          [Collision("c", Box((0.28, 0.05, 0.05)), Pose((0.15, 0, 0)))]))
+        joints.append(Joint(f"j{n}", "revolute", links[-2].name, f"l{n}",
+                            axis=JointAxis((0, 1, 0), friction=200.0)))
+    return Model("arm", links=links, joints=joints)
+
+
+@pytest.mark.parametrize("seconds, bar", PARKED)
+@pytest.mark.parametrize("base", ["fixed", "standing"])
+def test_an_arm_with_brakes_stays_where_it_is(lab: Lab, laws: Laws, base: str, seconds: float,
+                                              bar: float):
+    lab.load(ground(1.0))
+    arm = lab.load(_arm(base))
+    _stay(lab, laws, f"an arm with brakes, {base}, {seconds} s", [(arm, "body"), (arm, "l2")],
+          seconds, bar)
 
 
 @pytest.mark.parametrize("sleeps", [True, False])

@@ -5,11 +5,11 @@ import math
 from dataclasses import replace
 
 import pytest
-from conftest import Lab, ball, box, ground, slab
+from conftest import Lab, ball, box, ground, inertial_of_box, slab
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.description.shapes import Box, Collision, Surface
+from my_simulations.description.shapes import Box, Collision, Sphere, Surface
 from my_simulations.engine.commands import ReadContacts
 from my_simulations.geometry import Pose, quat_from_rpy, rotate
 
@@ -52,6 +52,37 @@ def test_friction_has_two_coefficients_about_the_first_direction(lab: Lab, laws:
     for (body, expected), start in zip(bodies, starts):
         laws.near(f"mu along fdir1, mu2 across it, {kind}: way to a stop, m",
                   lab.pose(body).position[0] - start, 1.5 ** 2 / (2 * expected * G), rel=0.03)
+
+
+def _sled(front: float, back: float) -> Model:
+    """Four round feet 0.3 m ahead of and behind a centre of mass 0.1 m high, and a rider."""
+    feet = [Collision(f"foot{x}{y}", Sphere(0.02), Pose((0.3 * x, 0.2 * y, -0.08)),
+                      surface=Surface(mu=front if x > 0 else back)) for x in (1, -1)
+            for y in (1, -1)]
+    return Model("sled", links=[
+        Link("link", inertial=inertial_of_box(5.0, 0.6, 0.4, 0.1), collisions=feet),
+        Link("rider", inertial=inertial_of_box(1.0, 0.1, 0.1, 0.1))], joints=[
+            Joint("axle", "revolute", "link", "rider", axis=JointAxis())])
+
+
+@pytest.mark.parametrize("front, back", [(0.0, 0.8), (0.8, 0.0), (0.2, 0.6), (0.6, 0.2)])
+def test_each_collision_of_a_link_of_a_tree_has_its_own_friction(lab: Lab, laws: Laws,
+                                                                 front: float, back: float):
+    lab.load(ground(1.0))
+    sled = lab.load(_sled(front, back), (0, 0, 0.1))
+    lab.steps(300)
+    start = lab.pose(sled).position[0]
+    lab.push(sled, (1, 0, 0))
+    lab.seconds(2)
+    # Braking presses the front feet down: (N1 - N2) 0.3 = (front N1 + back N2) 0.1.
+    rear = (0.3 - 0.1 * front) / (0.6 + 0.1 * (back - front))
+    laws.near("feet of one link, each with its own mu: way to a stop, m",
+              lab.pose(sled).position[0] - start,
+              1.0 / (2 * G * (front * (1 - rear) + back * rear)), rel=0.02)
+    contacts = lab.apply(ReadContacts())
+    assert {max(each.row_a, each.row_b) for each in contacts} == {lab.rows[sled, "link"]}
+    laws.near("the same: sum of normal forces, N", sum(each.force for each in contacts), 6 * G,
+              rel=1e-3)
 
 
 def test_a_slippery_direction_lets_the_other_one_hold(lab: Lab, laws: Laws):

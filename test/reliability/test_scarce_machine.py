@@ -83,7 +83,8 @@ def test_an_editor_whose_home_cannot_be_written_says_so_and_keeps_edits_later(
                 push["type"] == "issue" and push["issue"]["code"] == "autosave"
                 for push in browser.pushes))
             await browser.edit("insert", shape="cylinder")
-            assert browser.model("unit_sphere") and browser.model("unit_cylinder")
+            await browser.until(
+                lambda: browser.model("unit_sphere") and browser.model("unit_cylinder"))
         await browser.edit("insert", shape="box")
         until = time.monotonic() + 20.0
         while not kept():

@@ -19,6 +19,9 @@ class Look:
         scale: size of one repetition of the texture in texture coordinates, u and v.
         transparency: 0 opaque to 1 invisible.
         lit: False ignores all lights.
+        alpha_test: what of the texture has less alpha, 0..1, is not drawn at all; 0 for no such
+            limit.
+        blended: the texture's alpha makes it transparent.
     """
 
     name: str = ""
@@ -31,3 +34,5 @@ class Look:
     scale: Tuple[float, float] = (1.0, 1.0)
     transparency: float = 0.0
     lit: bool = True
+    alpha_test: float = 0.0
+    blended: bool = False

@@ -28,6 +28,7 @@ class ScriptMaterial:
     emissive: Optional[Color] = None
     lighting: bool = True
     blend: bool = False
+    alpha_test: float = 0.0
     texture: str = ""
     scale: Tuple[float, float] = (1.0, 1.0)
     parent: str = field(default="", repr=False)
@@ -106,6 +107,11 @@ def _setting(line: List[str], material: ScriptMaterial) -> None:
         material.lighting = values[0] != "off"
     elif word == "scene_blend" and values:
         material.blend = values[0] == "alpha_blend"
+    elif word == "alpha_rejection" and values:
+        # Ogre keeps a pixel whose alpha, 0 to 255, is (for example) `greater` than the number.
+        numbers = _numbers(values[1:])
+        kept = values[0] in ("greater", "greater_equal")
+        material.alpha_test = min(numbers[0] / 255.0, 1.0) if kept and numbers else 0.0
     elif word == "texture" and values and not material.texture:
         material.texture = values[0]
     elif word == "scale" and len(_numbers(values)) >= 2:

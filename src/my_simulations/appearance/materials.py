@@ -79,7 +79,9 @@ class Materials:
             diffuse = _WHITE if diffuse is None else diffuse
         return Look(script.name, script.ambient, diffuse, script.specular, script.emissive,
                     texture, scale=script.scale if texture else (1.0, 1.0),
-                    transparency=transparency, lit=script.lighting)
+                    transparency=transparency, lit=script.lighting,
+                    alpha_test=script.alpha_test if texture else 0.0,
+                    blended=script.blend and bool(texture))
 
     def _load(self, uri: str) -> List[str]:
         """Read the scripts of a URI; returns the folders that may contain their images."""

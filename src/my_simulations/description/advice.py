@@ -32,10 +32,12 @@ def advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
             continue
         odd: List[Fault] = []
         shared: List[Fault] = []
+        jointed = _jointed(model)
         for name, link, _pose, static in links_of(model):
             for collision in link.collisions:
                 yield from _thin(collision, name)
-            shared += _shared_friction(link, name)
+            if name not in jointed:
+                shared += _shared_friction(link, name)
             if not static:
                 odd += _odd_inertia(link, name)
         for alike in (odd, shared):
@@ -58,6 +60,21 @@ def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
         yield name + link.name, link, compose(base, link.pose), still
     for inner in model.models:
         yield from links_of(inner, base, name, static)
+
+
+def _jointed(model: Model, scope: str = "", static: bool = False) -> Set[str]:
+    """Scoped names of the links of trees: each of their collisions keeps its own friction.
+
+    Not in static models, which have no trees, nor where links of a model collide with each other.
+    """
+    name, static = f"{scope}{model.name}::", static or model.static
+    found: Set[str] = set()
+    if not static and not model.self_collide:
+        found = {name + end for joint in model.joints for end in (joint.parent, joint.child)
+                 if joint.type != "gearbox"}
+    for inner in model.models:
+        found |= _jointed(inner, name, static)
+    return found
 
 
 def _held(model: Model) -> Set[str]:
@@ -114,8 +131,7 @@ def _shared_friction(link: Link, name: str) -> Iterator[Fault]:
     yield Fault("friction-shared", f"the collisions of {name!r} have unlike friction (mu {listed});"
                 f" mu {coefficient(counting.surface):g} of {counting.name!r}, which reaches lowest,"
                 " holds for all of them", counting, Severity.WARNING,
-                "give those with another friction a link of their own; in a URDF, keep it by"
-                " <preserveFixedJoint>true</preserveFixedJoint>")
+                "give those with another friction a link of their own, joined to this one")
 
 
 def _odd_inertia(link: Link, name: str) -> Iterator[Fault]:

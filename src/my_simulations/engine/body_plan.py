@@ -19,7 +19,7 @@ BASE = -1
 """The link index of a base: the root link, or the fixed one of a body joined to the world."""
 
 NO_LINK = -1
-"""`TreeLink.index` of the massless link between the two axes of a joint."""
+"""`TreeLink.index` of the massless link between the two axes of a joint, and of a piece."""
 
 TIE_TYPES = ("fixed", "revolute", "continuous", "ball", "universal", "revolute2", "prismatic")
 """Types of joints between models that can be modelled by constraints."""
@@ -42,6 +42,8 @@ class TreeLink:
         number: number of the joint's axis; None if it has no row.
         link_from_frame: the joint frame in the link's own frame (identity for the root).
         parent_from_frame: the joint frame in the parent's joint frame, at position 0.
+        carried: positions of the link's collisions that it carries; None for all.
+        of: for a piece (index NO_LINK), the position in `Model.links` of the link it belongs to.
     """
 
     index: int
@@ -52,6 +54,8 @@ class TreeLink:
     number: Optional[int] = None
     link_from_frame: Pose = IDENTITY
     parent_from_frame: Pose = IDENTITY
+    carried: Optional[Tuple[int, ...]] = None
+    of: Optional[int] = None
 
 
 @dataclass

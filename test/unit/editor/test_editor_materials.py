@@ -119,3 +119,14 @@ def test_some_of_gazebos_colours(shop):
     assert shown("Gazebo/RedGlow")["emissive"] == [1.0, 0.0, 0.0, 1.0]
     assert shown("Gazebo/BlueTransparent")["transparency"] == 0.5
     assert shown("Gazebo/Bricks")["texture"]["pattern"] == "bricks"
+
+
+def test_what_a_script_rejects_by_alpha_is_not_drawn():
+    text = """material Leaf { technique { pass {
+      alpha_rejection greater 128
+      cull_hardware none
+      texture_unit { texture leaf.png } } } }
+    material Bark { technique { pass { alpha_rejection always_pass 0 } } }"""
+    found = read_materials(text)
+    assert found["Leaf"].alpha_test == pytest.approx(128 / 255)
+    assert found["Bark"].alpha_test == 0.0

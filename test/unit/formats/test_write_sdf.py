@@ -242,6 +242,17 @@ def test_presets_of_physics_stay_beside_the_one_in_use():
     assert copy.physics.name == "fast"
 
 
+def test_a_namespace_whose_name_is_no_uri_stops_no_save():
+    text = ("<sdf version='1.6'><model name='m'><link name='l'/>"
+            "<x:a xmlns:x='http://www.ros.or3 0.39'>1</x:a>"
+            "<y:b xmlns:y='http://good'>2</y:b></model></sdf>")
+    model, _ = read_entity(text, Resolver())
+    written = write_entity(model)
+    again, _ = read_entity(written, Resolver())
+    assert b"0.39" in written and written.count(b"http://good") == 1
+    assert write_entity(again) == written
+
+
 def test_an_undeclared_prefix_is_declared_once():
     text = '<scene><ignition:name>a</ignition:name><ambient>1 1 1 1</ambient></scene>'
     world, _ = parse_world(sdf(f'<world name="w">{text}</world>', "1.7"), Resolver())

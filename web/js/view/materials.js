@@ -130,7 +130,8 @@ export class Materials {
     const seen = (1 - (material?.transparency ?? 1 - (diffuse[3] ?? 1))) * opacity;
     const common = {
       color: colorOf(diffuse).multiplyScalar(pushed ? GROUND : 1),
-      opacity: seen, transparent: seen < 1, depthWrite: seen >= 1, wireframe,
+      opacity: seen, transparent: seen < 1 || Boolean(material?.blended), depthWrite: seen >= 1,
+      wireframe, alphaTest: material?.alpha_test ?? 0,
       side: doubleSided ? DoubleSide : FrontSide, map: this.#map(material?.texture),
       polygonOffset: pushed, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
     };

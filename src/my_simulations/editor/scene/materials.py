@@ -25,7 +25,8 @@ class Materials:
         return {"ambient": _plain(look.ambient), "diffuse": _plain(look.diffuse),
                 "specular": _plain(look.specular), "emissive": _plain(look.emissive),
                 "name": look.name, "texture": self._texture(look),
-                "transparency": look.transparency, "lighting": look.lit}
+                "transparency": look.transparency, "lighting": look.lit,
+                "alpha_test": look.alpha_test, "blended": look.blended}
 
     def _texture(self, look: Look) -> Optional[Dict[str, Any]]:
         url = self._served.url(look.texture) if look.texture else None

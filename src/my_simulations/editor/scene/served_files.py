@@ -14,11 +14,12 @@ from typing import Dict, List, Optional
 from urllib.parse import quote
 
 from ...appearance.textures import existing, places_of_mesh, places_of_script
-from ...resources.resolver import Resolver
+from ...resources.resolver import Resolver, ResourceNotFoundError
 from .content_types import MESHES, PICTURES, extension
 
 SERVED = MESHES | PICTURES
 
+_URI = re.compile(r"(?:^|/)(model|package):/+(.+)\Z")
 _ID = re.compile(rb'"/resource/([0-9a-f]+)/')
 
 
@@ -78,6 +79,9 @@ class ServedFiles:
         kind = extension(inside)
         if root is None or "\0" in inside or kind not in SERVED:
             return None
+        named = _URI.search(inside)
+        if named is not None and kind in PICTURES:
+            return self._of_uri(f"{named.group(1)}://{named.group(2)}")
         wanted = os.path.normpath(os.path.join(root, inside))
         if not _is_below(wanted, root):
             return None
@@ -86,6 +90,13 @@ class ServedFiles:
             places = places_of_mesh(wanted, self._resolver.resource_folders())
             found = next((hit for hit in map(self._existing, places) if hit), None)
         return found
+
+    def _of_uri(self, uri: str) -> Optional[str]:
+        """A picture that a mesh names by URI; the page has put its own folder before that."""
+        try:
+            return self._existing(self._resolver.resolve(uri))
+        except ResourceNotFoundError:
+            return None
 
     def texture(self, name: str, folders: List[str]) -> Optional[str]:
         """The path of a picture that may be served, looked for in these folders first."""

@@ -131,7 +131,10 @@ class Pages(PageFiles):
         known = request.match_info["id"]
         if not _THUMB.match(known):
             raise web.HTTPNotFound
-        return _file(os.path.join(self._thumbs, known + ".png"))
+        path = os.path.join(self._thumbs, known + ".png")
+        # A picture that was not drawn yet is no fault: the page draws it then.
+        return _file(path) if os.path.isfile(path) else web.Response(
+            status=204, headers={hdrs.CACHE_CONTROL: "no-store"})
 
     async def _put_thumb(self, request: web.Request) -> web.StreamResponse:
         known = request.match_info["id"]

@@ -28,6 +28,7 @@ def note_contacts(found: Acting, body: Body) -> None:
         return
     # Asked for one body, PyBullet swaps points and normals of some contacts, but not the
     # directions of friction (measured, 3.2.7).
+    owners = body.owners
     for contact in pybullet.getContactPoints() if any(
             contact[10] or contact[12] for contact in mine) else mine:
         if contact[8] > 0.0 or body.uid not in contact[1:3]:   # apart: of an older step
@@ -35,9 +36,9 @@ def note_contacts(found: Acting, body: Body) -> None:
         force = _vector(contact[7][n] * contact[9] + contact[11][n] * contact[10]
                         + contact[13][n] * contact[12] for n in range(3))
         if contact[1] == body.uid:
-            note(found, contact[3], force, contact[5])
+            note(found, owners.get(contact[3], contact[3]), force, contact[5])
         if contact[2] == body.uid:
-            note(found, contact[4], scale(force, -1.0), contact[6])
+            note(found, owners.get(contact[4], contact[4]), scale(force, -1.0), contact[6])
 
 
 def note_constraints(found: Acting, body: Body, links: Mapping[int, State]) -> None:

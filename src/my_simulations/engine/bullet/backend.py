@@ -56,11 +56,13 @@ from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
 from .residual_friction import ResidualFriction
 from .rolling_contacts import RollingContacts
+from .seam_contacts import SeamContacts
 from .sliding import Sliding
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
 from .step_helper import StepLoop
+from .surface_stop import SurfaceStop
 from .velocity_decay import VelocityDecay
 from .wake_up import WakeUp
 
@@ -79,6 +81,7 @@ class BulletBackend:
         self._readout = StateReadout(self._on_diverged)
         self._residual = ResidualFriction()
         self._rolling = RollingContacts(lambda uid, step: self._landing.see_rolling(uid, step))
+        self._seams = SeamContacts(self._rolling)
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
         self._forces = Forces(self._waker.around,
@@ -90,6 +93,7 @@ class BulletBackend:
         self._decay = VelocityDecay()
         self._settling = ContactSettling(lambda: self._forces.loaded_bodies, self._on_held)
         self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
+        self._stop = SurfaceStop()
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
         self._motors = JointMotors(self._axes, self._waker.around)
@@ -98,7 +102,7 @@ class BulletBackend:
         # What acts around the steps, in the order in which it does.
         helpers = (self._friction, self._settling, self._forces, self._decay, self._planar,
                    self._rolling, self._spin, self._residual, self._sliding, self._holds,
-                   self._landing)
+                   self._stop, self._landing, self._seams)
         self._loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self._ties, self._motors, self._wrenches,
@@ -106,7 +110,7 @@ class BulletBackend:
         # Whom it concerns that a command, or a force that begins, reaches a body.
         self._hearers = (self._readout.touch, *(part.touched for part in (
             self._loop, self._friction, self._settling, self._residual, self._rolling,
-            self._sliding, self._landing)))
+            self._sliding, self._stop, self._landing, self._seams)))
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -247,11 +251,12 @@ class BulletBackend:
         for body in built:
             self._register(body)
             for part in body.parts:
-                link = model.links[part.row - first_row]
-                self._decay.add(body, part, link)
-                self._rolling.add(body, part, link)
-                if not slips(link):
-                    self._sliding.add(body, part, link)
+                self._decay.add(body, part, part.link)
+                self._rolling.add(body, part, part.link)
+                if not slips(part.link):
+                    self._sliding.add(body, part, part.link)
+            for part in body.colliders:
+                link = part.link
                 self._landing.add(body, part, link)
                 extra_surfaces.store(body, part, link, dt)
                 self._forces.slip.add(body, part, link)
@@ -316,6 +321,7 @@ class BulletBackend:
         self._spin.add(body)
         self._residual.add(body)
         self._settling.add(body)
+        self._stop.add(body)
         self._readout.add(body)
 
     def _remove(self, command: RemoveModel) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import pybullet
 
@@ -42,6 +42,7 @@ class Part:
         link_from_com: the centre of mass and the principal axes.
         moments: about those axes, kg m^2.
         mu, friction: the coefficient of the file, and what PyBullet was given to store.
+        link: its description, with the collisions that it carries (see `surface_pieces`).
     """
 
     row: int
@@ -52,6 +53,7 @@ class Part:
     mu: float
     friction: float
     gravity: bool
+    link: Link = field(default_factory=lambda: Link(""))
 
     def com_pose(self, link_pose: Pose) -> Pose:
         """World pose of the centre of mass from that of the link frame."""
@@ -106,12 +108,14 @@ class Body:
         moves: False for static and kinematic ones.
         rigid: joint-free, so it may sleep when `may_sleep`.
         is_ball: its only shape is one sphere.
+        swept: so small that Bullet sweeps it along its way.
         lead_row: of its first part.
         radius: of a sphere about the centre of mass that holds the body (rigid ones), m.
         seen_at: its centre of mass at the last read-out; parting an overlap moves it without
             velocity.
         ties: how many joints connect it with other models.
         shapes: its collision shapes, by PyBullet's numbers.
+        pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).
     """
 
     uid: int
@@ -123,12 +127,14 @@ class Body:
     moves: bool = True
     rigid: bool = True
     is_ball: bool = False
+    swept: bool = False
     may_sleep: bool = True
     radius: float = 0.0
     still: int = 0
     seen_at: Optional[Vec3] = None
     ties: int = 0
     shapes: Tuple[Tuple[Recipe, int], ...] = ()
+    pieces: Tuple[Part, ...] = ()
     lead_row: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -138,6 +144,17 @@ class Body:
     def uids(self) -> Tuple[int, ...]:
         """All PyBullet numbers it holds."""
         return (self.uid,) + self.more
+
+    @property
+    def colliders(self) -> Tuple[Part, ...]:
+        """Its links and their pieces: all that can touch something."""
+        return (*self.parts, *self.pieces)
+
+    @property
+    def owners(self) -> Dict[int, int]:
+        """Of each piece, by PyBullet's index, the index of the link it belongs to."""
+        indices = {part.row: part.index for part in self.parts}
+        return {piece.index: indices[piece.row] for piece in self.pieces}
 
     @property
     def base(self) -> Optional[Part]:
@@ -213,16 +230,18 @@ def launch(body: Body, link_pose: Pose, twist: Twist) -> None:
     pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
 
 
-def sweep(uid: int) -> None:
-    """Let a small rigid body stop at what it would fly through within one step.
+def sweep(uid: int) -> bool:
+    """Let a small rigid body stop at what it would fly through within one step; whether it is one.
 
     Bullet sweeps a sphere along the way of the centre, from 0.5 mm a step on. It must lie well
     within the body, or bounces come out wrong.
     """
     low, high = pybullet.getAABB(uid, BASE)
     half = min(b - a for a, b in zip(low, high)) / 2
-    if 0.0 < half < _SMALL:
-        pybullet.changeDynamics(uid, BASE, ccdSweptSphereRadius=_SWEPT * half)
+    if not 0.0 < half < _SMALL:
+        return False
+    pybullet.changeDynamics(uid, BASE, ccdSweptSphereRadius=_SWEPT * half)
+    return True
 
 
 def radius_of(uid: int) -> float:

@@ -13,6 +13,7 @@ from ..body_plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..commands import LoadModel
 from ..principal_inertia import principal
 from ..ring_rows import AXES, axis_rows, row_name
+from ..surface_pieces import carried_by, in_pieces
 from . import collision_groups, surface_coefficients
 from .bodies import (
     Axis,
@@ -92,7 +93,8 @@ class Builder:
         self.joint_rows = slice(command.first_joint_row,
                                 command.first_joint_row + len(self._axis_rows))
         self._eases: Dict[int, float] = {}
-        self.plans = plan_bodies(command.model)
+        self.plans = [plan if self._is_rigid(plan) else in_pieces(plan, command.model)
+                      for plan in plan_bodies(command.model)]
         self._prints = [self._rigid(plan, command.meshes) if self._is_rigid(plan)
                         else self._tree(plan, command.meshes) for plan in self.plans]
 
@@ -143,7 +145,7 @@ class Builder:
             (collision_groups.static(link, piece.role) if rigid.static
              else collision_groups.moving(link)).set(uid, BASE)
             _fit(uid, BASE, piece)
-        part = self._part(rigid.number, BASE, masses)
+        part = self._part(rigid.number, BASE, masses, link)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
                     is_ball=[type(c.geometry) for c in link.collisions] == [Sphere],
@@ -157,15 +159,15 @@ class Builder:
                 let_rest(uid)
         body.radius = radius_of(uids[0])
         if body.rigid and body.moves and rigid.pieces:
-            sweep(uids[0])
+            body.swept = sweep(uids[0])
         return body
 
-    def _part(self, number: int, index: int, masses: _Masses) -> Part:
-        link = self._model.links[number]
+    def _part(self, number: int, index: int, masses: _Masses, link: Link) -> Part:
         surface = surface_coefficients.of_link(link)
         return Part(self._first_row + number, index, masses.com, masses.mass, masses.moments,
                     surface_coefficients.coefficient(surface),
-                    surface_coefficients.friction(surface, masses.mass == 0.0), link.gravity)
+                    surface_coefficients.friction(surface, masses.mass == 0.0), link.gravity,
+                    link)
 
     def _may_sleep(self, link: Link) -> bool:
         return (self._model.allow_auto_disable and link.gravity
@@ -199,6 +201,11 @@ class Builder:
                       | pybullet.URDF_USE_SELF_COLLISION) if self._model.self_collide else 0})
 
     def _masses(self, plan: BodyPlan, n: int) -> _Masses:
+        of = plan.links[n].of
+        if of is not None:
+            inertial = self._model.links[of].inertial
+            com, (x, y, z) = principal(inertial)
+            return _Masses(_LIGHT * inertial.mass, com, (_LIGHT * x, _LIGHT * y, _LIGHT * z))
         if plan.links[n].index == NO_LINK:
             beyond = next(link for link in plan.links[n:] if link.index != NO_LINK)
             mass = _LIGHT * self._model.links[beyond.index].inertial.mass
@@ -207,9 +214,7 @@ class Builder:
         return _Masses(inertial.mass, *principal(inertial))
 
     def _tree_shape(self, node: TreeLink, meshes: MeshTable) -> Optional[Recipe]:
-        if node.index == NO_LINK:
-            return None
-        link = self._model.links[node.index]
+        link = carried_by(node, self._model)
         found = self._shapes.recipes(with_rims(node, link.collisions, MAX_SHAPES), meshes,
                                      inverse(node.link_from_frame), False)
         return found[0] if found else None
@@ -231,18 +236,21 @@ class Builder:
 
     def _finish_tree(self, uid: int, tree: _Tree) -> Body:
         parts: List[Part] = []
+        pieces: List[Part] = []
         axes: List[Axis] = []
         balls: List[Ball] = []
         for n, (node, masses) in enumerate(zip(tree.plan.links, tree.masses)):
             index = n if tree.plan.fixed_base else n - 1
-            link = Link("") if node.index == NO_LINK else self._model.links[node.index]
+            link = carried_by(node, self._model)
             set_dynamics(uid, index, link, masses.mass, masses.moments, False)
             shape = tree.shapes[n]
             if shape is not None:
                 collision_groups.moving(link).set(uid, index)
                 _fit(uid, index, shape)
             if node.index != NO_LINK:
-                parts.append(self._part(node.index, index, masses))
+                parts.append(self._part(node.index, index, masses, link))
+            elif node.of is not None:
+                pieces.append(self._part(node.of, index, masses, link))
             if node.joint is not None and node.number is not None:
                 row = self._axis_rows[row_name(node.joint.name, node.number)]
                 axes.append(Axis(row, index, node.joint.name, node.number))
@@ -252,7 +260,7 @@ class Builder:
             pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
         self._ease(uid, axes)
         return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
-                    balls=tuple(balls))
+                    balls=tuple(balls), pieces=tuple(pieces))
 
     def _ease(self, uid: int, axes: Sequence[Axis]) -> None:
         """Work out once how easily the axes of a tree move."""
@@ -287,8 +295,9 @@ class Builder:
             return
         for n, one in enumerate(built):
             for other in built[n + 1:]:
-                for a in [BASE] + [part.index for part in one.parts if part.index != BASE]:
-                    for b in [BASE] + [part.index for part in other.parts if part.index != BASE]:
+                for a in [BASE] + [part.index for part in one.colliders if part.index != BASE]:
+                    for b in [BASE] + [part.index for part in other.colliders
+                                       if part.index != BASE]:
                         collision_groups.ignore(one.uid, other.uid, a, b, ignored)
 
 

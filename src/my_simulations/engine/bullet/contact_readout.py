@@ -23,7 +23,7 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
         for uid, index in ((contact[1], contact[3]), (contact[2], contact[4])):
             body = bodies.get(uid)
             rows += [] if body is None else [
-                part.row for part in body.parts
+                part.row for part in body.colliders
                 if part.index == index or (body.rigid and part.index == BASE)][:1]
         if len(rows) == 2:
             # Bullet does not solve points that are apart: what they tell is of an older step.

@@ -126,7 +126,7 @@ class ForceDependentSlip:
         """A body is gone."""
         for axis in body.axes:
             self._axes.pop(axis.row, None)
-        for part in body.parts:
+        for part in body.colliders:
             self._wheels.pop(part.row, None)
             for key in self._rows.pop(part.row, []):
                 self._links.pop(key, None)

@@ -2,27 +2,40 @@
 from __future__ import annotations
 
 import math
-from typing import List, Tuple
+from typing import List, Optional, Protocol, Tuple
 
 import pybullet
 
 from ...description.model import INFINITE, JointAxis, Model
 from .bodies import Axis, Body
-from .forces import Forces
 from .implicit_axes import ImplicitAxes
 
 _LIMIT_FORCE = 1e6         # N or N m a kilogram: holds 1000 kg at its stop (100 a kg falls through)
 _EXPLICIT_DAMPING = 0.01   # d dt / I up to which PyBullet's explicit damping is exact enough
 
 
-def set_up(body: Body, model: Model, forces: Forces, dt: float) -> None:
-    """Give every axis of a body the limits, friction, damping and spring of the description."""
+class AxisEfforts(Protocol):
+    """What is told the limits of axes, and which of them are integrated implicitly."""
+
+    def set_limits(self, row: int, effort: float, rate: float) -> None:
+        """The most effort, N or N m, and rate, m/s or rad/s, of an axis; below 0 for none."""
+
+    def set_implicit(self, body: Body, axes: Optional[ImplicitAxes]) -> None:
+        """The springs and dampers of a body; None without any."""
+
+
+def specs_of(body: Body, model: Model) -> List[Tuple[Axis, JointAxis]]:
+    """The axes of a body of `model`, each with its description."""
     specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
+    return [(axis, specs[axis.name][axis.number] or JointAxis()) for axis in body.axes]
+
+
+def set_up(body: Body, model: Model, forces: AxisEfforts, dt: float) -> None:
+    """Give every axis of a body the limits, friction, damping and spring of the description."""
     mass = sum(part.mass for part in body.parts)
     _free(body)
     implicit: List[Tuple[Axis, JointAxis]] = []
-    for axis in body.axes:
-        spec = specs[axis.name][axis.number] or JointAxis()
+    for axis, spec in specs_of(body, model):
         # createMultiBody leaves a velocity motor on every axis; as a brake it is the friction.
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
                                        targetVelocity=spec.motor_rate,

@@ -9,6 +9,7 @@ from ...description.model import JointAxis, Model
 from ..api import CommandRefusedError
 from ..commands import JointMotor
 from .bodies import Axis, Body
+from .joint_axes import specs_of
 
 
 class JointMotors:
@@ -50,9 +51,8 @@ class JointMotors:
 
     def set_up(self, body: Body, model: Model) -> None:
         """The axes of a body of `model` got their limits and friction (anew): motors go on."""
-        specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
-        for axis in body.axes:
-            self._specs[axis.row] = specs[axis.name][axis.number] or JointAxis()
+        for axis, spec in specs_of(body, model):
+            self._specs[axis.row] = spec
             motor = self._motors.get(axis.row)
             if motor is not None:
                 self._drive(body, axis, motor)

@@ -6,11 +6,12 @@ from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 import pybullet
 
-from ...description.model import JointAxis, Model
+from ...description.model import Model
 from ..api import CommandRefusedError
 from ..commands import JointServo
 from ..servo_law import FOLLOW, ServoLaw
 from .bodies import Axis, Body
+from .joint_axes import specs_of
 
 _STRONG = 1e7   # N or N m, of a motor without a limit
 _FAST = 1e5     # rad/s or m/s, likewise
@@ -67,6 +68,17 @@ class JointServos:
             self._drive(body, axis)
         self._sort()
 
+    def drives(self, body: Body) -> bool:
+        """Whether a servo of a body must be computed in each step."""
+        return body.uid in self._busy
+
+    @property
+    def moving(self) -> Set[int]:
+        """PyBullet's numbers of bodies that are on their way along a spline."""
+        return {uid for uid, loops in self._busy.items()
+                if any(law.moving for _, _, law in loops.efforts)
+                or any(law.moving for _, law in loops.motors)}
+
     def set(self, servos: Iterable[JointServo], dt: float) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
         self._dt = dt
@@ -96,9 +108,7 @@ class JointServos:
 
     def set_up(self, body: Body, model: Model, dt: float) -> None:
         """The axes of a body got their limits and friction (anew): servos go on."""
-        specs = {joint.name: (joint.axis, joint.axis2) for joint in model.joints}
-        for axis in body.axes:
-            spec = specs[axis.name][axis.number] or JointAxis()
+        for axis, spec in specs_of(body, model):
             self._friction[axis.row] = (spec.motor_rate, max(0.0, spec.friction))
             law = self._laws.get(axis.row)
             if law is not None:

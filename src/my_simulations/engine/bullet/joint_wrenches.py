@@ -168,8 +168,9 @@ class JointWrenches:
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
             seen.after = look(seen.body)
+            owners = seen.body.owners
             for index, force, at in self._forces.slip.forces_on(seen.body.uid):
-                note(seen.outside, index, force, at)
+                note(seen.outside, owners.get(index, index), force, at)
             for part in seen.body.parts if self._forces.wrenched_links else ():
                 force, torque = self._forces.acting_on(part.row)
                 at = states(seen.body, seen.before)[part.index].position

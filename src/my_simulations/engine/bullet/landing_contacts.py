@@ -25,6 +25,7 @@ from ...description.model import Link
 from ...description.shapes import Box, Empty, Plane, Sphere
 from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, scale, subtract
 from . import collision_groups
+from .approach import approach, extent, speed_of
 from .bodies import Body, Part
 from .step_helper import FAR, looks_until_turn, turn_of
 
@@ -35,7 +36,7 @@ _ROUNDS = 2        # looks until every body was asked
 _RESTS = 0.03      # m/s: what flies is faster 3 ms after it left the ground
 _BOUNCE = 8        # steps until one that has landed is looked at again
 _BOUNCES = 4       # such looks until it is one of those that are asked now and then
-_PATIENCE = 7      # turns that one that sleeps is left out
+_PATIENCE = 7      # turns that one that sleeps is left out; one that rests: 1
 _SOFT = 2e-3       # m/s: what comes slower tilts nothing
 _SETTLES = 2.5     # steps of falling: what was put down at rest falls no longer
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
@@ -211,15 +212,15 @@ class LandingContacts:
             self._solve_impact(False)
 
     def _ask(self, uids: List[int]) -> None:
-        """Find out which bodies may fly; what sleeps is asked less often."""
+        """Find out which bodies may fly; what rests is asked less often."""
         for uid in uids:
             if self._asleep.get(uid):
                 self._asleep[uid] -= 1
                 continue
             linear = pybullet.getBaseVelocity(uid)[0]
-            if linear == _NONE:
-                self._asleep[uid] = _PATIENCE
-            elif uid not in self._flights and norm(linear) > _RESTS:
+            if norm(linear) <= _RESTS:
+                self._asleep[uid] = _PATIENCE if linear == _NONE else 1
+            elif uid not in self._flights:
                 self._flights[uid] = _Flight(self._bodies[uid], on_ground=_BOUNCES)
 
     def _watched(self) -> List[int]:
@@ -254,7 +255,7 @@ class LandingContacts:
             return []
         flight.on_ground = 0
         linear, angular = pybullet.getBaseVelocity(uid)
-        low, high = _extent(flight.body)
+        low, high = extent(flight.body)
         fall = norm(gravity) * dt
         speed = norm(linear) + norm(angular) * norm(subtract(high, low)) + _AHEAD * fall
         reach = speed * dt * (_AHEAD + 2)
@@ -262,7 +263,7 @@ class LandingContacts:
         touches: List[_Touch] = []
         for other in self._within(flight, low, high, reach):
             moves = other in self._moving
-            towards = speed + (_speed(other) if moves else 0.0)
+            towards = speed + (speed_of(other) if moves else 0.0)
             points = pybullet.getClosestPoints(uid, other, towards * dt * (_AHEAD + 2))
             if not points:
                 continue
@@ -272,7 +273,7 @@ class LandingContacts:
             if gap > 0.0:
                 continue
             normal: Vec3 = nearest[7]
-            speed_in = _approach(uid, other if moves else None, nearest[5], normal)
+            speed_in = approach(uid, other if moves else None, nearest[5], normal)
             if speed_in > max(_SOFT, _SETTLES * fall) and not self._lies_in(flight, other):
                 at, turn = pybullet.getBasePositionAndOrientation(uid)
                 width, breadth = _across(low, high, normal)
@@ -397,31 +398,3 @@ def _across(low: Vec3, high: Vec3, normal: Vec3) -> Tuple[float, float]:
     """The least and largest extent across a direction, m."""
     extents = [b - a for a, b, along in zip(low, high, normal) if abs(along) < _ACROSS]
     return min(extents), max(extents)
-
-
-def _extent(body: Body) -> Tuple[Vec3, Vec3]:
-    """The lowest and highest corner of a box along the world's axes about a body."""
-    boxes = [pybullet.getAABB(body.uid, part.index) for part in body.parts]
-    low = (min(box[0][0] for box in boxes), min(box[0][1] for box in boxes),
-           min(box[0][2] for box in boxes))
-    high = (max(box[1][0] for box in boxes), max(box[1][1] for box in boxes),
-            max(box[1][2] for box in boxes))
-    return low, high
-
-
-def _approach(uid: int, other: Optional[int], place: Vec3, normal: Vec3) -> float:
-    """How fast a body comes nearer to another at a place, m/s; None: what does not move."""
-    speed = -dot(_velocity_at(uid, place), normal)
-    return speed if other is None else speed + dot(_velocity_at(other, place), normal)
-
-
-def _velocity_at(uid: int, place: Vec3) -> Vec3:
-    """Of a point of a body, as if joints stood still."""
-    linear, angular = pybullet.getBaseVelocity(uid)
-    lever = subtract(place, pybullet.getBasePositionAndOrientation(uid)[0])
-    return add(linear, cross(angular, lever))
-
-
-def _speed(uid: int) -> float:
-    linear: Vec3 = pybullet.getBaseVelocity(uid)[0]
-    return norm(linear)

@@ -66,7 +66,7 @@ class FrictionBalance:
         """Know a new body."""
         if body.rigid:
             self._rigid.add(body.uid)
-        for part in body.parts:
+        for part in body.colliders:
             for uid in body.uids:
                 node = (uid, part.index)
                 self._mu[node] = max(part.mu, _SMALLEST)
@@ -79,7 +79,7 @@ class FrictionBalance:
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._rigid.discard(body.uid)
-        for part in body.parts:
+        for part in body.colliders:
             for uid in body.uids:
                 node = uid, part.index
                 for pair in list(self._touching.get(node, ())):
@@ -101,7 +101,7 @@ class FrictionBalance:
 
     def touched(self, body: Body) -> None:
         """A body was put somewhere or woken: it is asked soon."""
-        for part in body.parts:
+        for part in body.colliders:
             if (body.uid, part.index) in self._free:
                 self._soon[body.uid, part.index] = None
 

@@ -53,6 +53,9 @@ _HARD = 1e12        # N/m: so stiff that only the share counts
 _CHANGE = 0.1       # smaller changes of the share are not worth a call
 
 
+Key = Tuple[int, int]  # body uid, link index
+
+
 @dataclass
 class _Roller:
     """A round link: its axis in the frame of its principal axes; looks without velocity.
@@ -60,6 +63,7 @@ class _Roller:
     Attributes:
         hard: its contacts are no springs, so how they part is ours to say.
         wait: looks at which it need not be looked at.
+        seamed: it touches triangles.
     """
 
     body: Body
@@ -69,6 +73,7 @@ class _Roller:
     hard: bool
     still: int = 0
     wait: int = 0
+    seamed: bool = False
     share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
 
 
@@ -77,12 +82,16 @@ class RollingContacts:
 
     Args:
         dropping: is told, before that, whose points are dropped in which step.
+
+    Attributes:
+        on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
     """
 
     def __init__(self, dropping: Callable[[int, int], None]) -> None:
         self._dropping = dropping
-        self._rollers: Dict[Tuple[int, int], _Roller] = {}
-        self._rolling: Dict[Tuple[int, int], collision_groups.Filter] = {}
+        self.on_seams: Dict[Key, Vec3] = {}
+        self._rollers: Dict[Key, _Roller] = {}
+        self._rolling: Dict[Key, collision_groups.Filter] = {}
         self._standing: Dict[int, Pose] = {}
         self._moving: Set[int] = set()
         self._seams: Set[int] = set()   # floors of triangles
@@ -106,11 +115,12 @@ class RollingContacts:
         self._moving.discard(body.uid)
         self._seams.difference_update(body.uids)
         for part in body.parts:
-            for table in (self._rollers, self._rolling):
+            for table in (self._rollers, self._rolling, self.on_seams):
                 table.pop((body.uid, part.index), None)
 
     def clear(self) -> None:
         """All bodies are gone."""
+        self.on_seams.clear()
         self._rollers.clear()
         self._rolling.clear()
         self._standing.clear()
@@ -133,6 +143,15 @@ class RollingContacts:
             if abs(dot(normal, rotate(turn, roller.axis))) > _UPRIGHT:
                 del self._rolling[uid, BASE]
 
+    @property
+    def knows_seams(self) -> bool:
+        """Whether something may roll on triangles."""
+        return bool(self._seams and self._rollers)
+
+    def is_seamed(self, uid: int) -> bool:
+        """Whether a body is a floor of triangles."""
+        return uid in self._seams
+
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find out now and then who rolls, and let it roll in the next step."""
         if step % EVERY == 0:
@@ -143,6 +162,9 @@ class RollingContacts:
                     self._rolling[key] = roller.meets
                 else:
                     self._rolling.pop(key, None)
+            if self._seams:
+                self.on_seams = {key: self._rollers[key].axis for key in self._rolling
+                                 if self._rollers[key].seamed}
         for uid in self._standing:
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
@@ -183,6 +205,7 @@ class RollingContacts:
             self._part(roller, contacts, dt, norm(gravity))
         if not contacts:
             return (uid, index) in self._rolling
+        roller.seamed = any(contact[2] in self._seams for contact in contacts)
         if any(abs(dot(contact[7], axis)) > _LYING for contact in contacts):
             roller.wait = _PATIENCE if all(
                 abs(dot(contact[7], axis)) > _UPRIGHT for contact in contacts) else 0

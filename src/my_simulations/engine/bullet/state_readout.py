@@ -234,7 +234,7 @@ class StateReadout:
         """What trees may have touched, and a few resting bodies whatever the neighbours say."""
         woken: List[Body] = []
         for uid, tree in self._trees.items():
-            for index in [BASE] + [part.index for part in tree.parts if part.index != BASE]:
+            for index in [BASE] + [part.index for part in tree.colliders if part.index != BASE]:
                 low, high = pybullet.getAABB(uid, index)
                 if high[0] - low[0] < _WORLD_SIZE:
                     woken += self._wake_moving(self._near(

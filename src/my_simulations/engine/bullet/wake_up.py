@@ -53,7 +53,7 @@ class WakeUp:
     def _overlapping(body: Body) -> Set[int]:
         found: Set[int] = set()
         for uid in body.uids:
-            for index in sorted({BASE, *(part.index for part in body.parts)}):
+            for index in sorted({BASE, *(part.index for part in body.colliders)}):
                 low, high = pybullet.getAABB(uid, index)
                 if high[0] < low[0]:
                     continue

@@ -67,7 +67,12 @@ class _Points(RayPlugin):
 
 
 class BlockLaser(_Points):
-    """sensor_msgs/PointCloud: all rays; too near is -inf, too far +inf (gazebo_plugins)."""
+    """sensor_msgs/PointCloud of all rays, between the sensor's ranges.
+
+    A ray that meets nothing ends at the maximum range, without noise; one that meets something too
+    near ends at the minimum range. So it is in Gazebo, whose rays begin and end there: the infinite
+    values that gazebo_plugins provides for never come.
+    """
 
     message_type = "sensor_msgs/PointCloud"
 
@@ -75,11 +80,10 @@ class BlockLaser(_Points):
         import numpy as np
 
         assert self._directions is not None
-        far, near = ranges >= self._fan.far, ranges <= self._fan.near
-        with np.errstate(invalid="ignore"):
-            places = np.where(far | near, 0.0, ranges)[:, None] * self._directions
-        places = self._noise.apply(places, ns, 0.0)
-        places[far], places[near] = np.inf, -np.inf
+        clipped = np.clip(ranges, self._fan.near, self._fan.far)
+        ends = clipped[:, None] * self._directions
+        places = np.where((ranges >= self._fan.far)[:, None], ends,
+                          self._noise.apply(ends, ns, 0.0))
         context = self.context
         message, channel = (context.message("sensor_msgs/PointCloud"),
                             context.message("sensor_msgs/ChannelFloat32"))

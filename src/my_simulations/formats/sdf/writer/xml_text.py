@@ -134,13 +134,23 @@ def parsed_fragment(xml: str) -> Any:
     return fragment
 
 
+def _is_uri(text: str) -> bool:
+    """Whether lxml declares a namespace of this name; what is none stays where the file has it."""
+    try:
+        etree.Element("all", nsmap={"prefix": text})
+    except ValueError:
+        return False
+    return True
+
+
 def document(version: str, write: Callable[[Any], None]) -> bytes:
     """The bytes of an SDF document; `write` fills its root."""
     root = etree.Element("sdf", version=version)
     write(root)
     prefixes: Dict[str, str] = {}
     for element in root.iter():
-        prefixes.update({prefix: uri for prefix, uri in element.nsmap.items() if prefix})
+        prefixes.update({prefix: uri for prefix, uri in element.nsmap.items()
+                         if prefix and prefixes.get(prefix) != uri and _is_uri(uri)})
     if prefixes:
         etree.cleanup_namespaces(root, top_nsmap=dict(sorted(prefixes.items())))
     etree.indent(root, space="  ")

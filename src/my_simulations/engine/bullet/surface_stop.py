@@ -1,0 +1,136 @@
+"""Lets what falls fast reach a surface, not go deep into it.
+
+A body of 10 m/s moves 1 cm in a step, and Bullet solves an impact only once bodies overlap: a box
+that fell 5 m was 6 mm deep in the floor for a step. So in the step in which a body would go deeper
+than 1.8 mm, it is put back by as much of its way beforehand; its velocity stays. It arrives a part
+of a step later.
+
+Bodies are asked for their speed no sooner than gravity can have made them fast, and those that are
+fast, what is ahead, no sooner than they can be there. Small balls are swept along their way (CCD).
+"""
+from __future__ import annotations
+
+from heapq import heappop, heappush
+from typing import Dict, List, Set, Tuple
+
+import pybullet
+
+from ...description.shapes import Plane
+from ...geometry import Vec3, add, dot, norm, scale, subtract
+from .approach import approach, extent, speed_of
+from .bodies import Body
+from .step_helper import FAR
+
+_DEEP = 1.8e-3   # m: so deep a body may go in one step
+_AHEAD = 16      # steps for which a fast body looks ahead
+_SELDOM = 256    # steps between two looks at a slow one, at most
+
+
+class SurfaceStop:
+    """Takes back a part of the last step of what lands on something."""
+
+    def __init__(self) -> None:
+        self._bodies: Dict[int, Body] = {}
+        self._moving: Set[int] = set()
+        self._floors: Set[int] = set()            # the boxes below planes
+        self._next: Dict[int, int] = {}           # the step of the next look, by body
+        self._looks: List[Tuple[int, int]] = []   # a heap of them; those that are not next are old
+
+    def add(self, body: Body) -> None:
+        """Know a new body."""
+        if not body.moves:
+            planes = [one for part in body.parts for one in part.link.collisions
+                      if isinstance(one.geometry, Plane)]
+            self._floors.update(body.uids[1:2 * len(planes):2])
+            return
+        self._moving.add(body.uid)
+        if body.base is not None and not (body.swept and body.is_ball):
+            self._bodies[body.uid] = body
+            self._plan(body.uid, 0)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        self._bodies.pop(body.uid, None)
+        self._next.pop(body.uid, None)
+        self._moving.discard(body.uid)
+        self._floors.difference_update(body.uids)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        for table in (self._bodies, self._next):
+            table.clear()
+        for group in (self._moving, self._floors):
+            group.clear()
+        self._looks.clear()
+
+    def touched(self, body: Body) -> None:
+        """A command reached a body: it may be fast from now on."""
+        if body.uid in self._bodies:
+            self._plan(body.uid, 0)
+
+    def due(self, step: int) -> int:
+        """The next look."""
+        while self._looks and self._is_old(*self._looks[0]):
+            heappop(self._looks)
+        return max(step, self._looks[0][0]) if self._looks else FAR
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Look at those whose turn it is, and put back what would go deep in this step."""
+        now: List[int] = []
+        while self._looks and self._looks[0][0] <= step:
+            look = heappop(self._looks)
+            if not self._is_old(*look):
+                now.append(look[1])
+                del self._next[look[1]]
+        for uid in sorted(now):
+            self._plan(uid, step + self._look(self._bodies[uid], dt, gravity))
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def _plan(self, uid: int, step: int) -> None:
+        if self._next.get(uid) != step:
+            self._next[uid] = step
+            heappush(self._looks, (step, uid))
+
+    def _is_old(self, step: int, uid: int) -> bool:
+        return self._next.get(uid) != step
+
+    def _look(self, body: Body, dt: float, gravity: Vec3) -> int:
+        """Put a body back if need be. Returns how many steps later to look again."""
+        linear, angular = pybullet.getBaseVelocity(body.uid)
+        speed, fall, fast = norm(linear), norm(gravity) * dt, _DEEP / dt
+        if speed + fall < fast:
+            return min(_SELDOM, max(_AHEAD, int((fast - speed) / max(fall, 1e-9))))
+        ahead, late = self._way(body, speed + _AHEAD * fall, dt, gravity)
+        if late > 0.0:
+            at, turn = pybullet.getBasePositionAndOrientation(body.uid)
+            way = scale(add(linear, scale(gravity, dt)), late * dt)
+            pybullet.resetBasePositionAndOrientation(body.uid, subtract(at, way), turn)
+            pybullet.resetBaseVelocity(body.uid, linear, angular)  # placing a body stops it
+        return ahead
+
+    def _way(self, body: Body, speed: float, dt: float, gravity: Vec3) -> Tuple[int, float]:
+        """Steps for which nothing is reached, and the share of this step to take back.
+
+        `speed`: the most that the body has while it looks ahead, m/s.
+        """
+        uid, ahead, late = body.uid, _AHEAD, 0.0
+        low, high = extent(body)
+        reach = (speed * dt * (_AHEAD + 2),) * 3
+        near = pybullet.getOverlappingObjects(subtract(low, reach), add(high, reach)) or ()
+        for other in sorted({pair[0] for pair in near} - {uid} - self._floors):
+            moves = other in self._moving
+            towards = speed + (speed_of(other) if moves else 0.0)
+            points = pybullet.getClosestPoints(uid, other, towards * dt * (_AHEAD + 2))
+            if not points:
+                continue
+            nearest = min(points, key=lambda point: point[8])
+            gap, normal = nearest[8], nearest[7]
+            inward = approach(uid, other if moves else None, nearest[5], normal)
+            if not moves or other not in self._bodies:
+                inward -= dot(gravity, normal) * dt
+            if gap > 0.0 and inward * dt > _DEEP:
+                ahead = min(ahead, max(1, int(gap / (towards * dt))))
+                late = max(late, 1.0 - (gap + _DEEP) / (inward * dt))
+        return ahead, late

@@ -1,0 +1,97 @@
+"""Files of the project, damaged byte by byte: fast, so that millions of inputs are read."""
+from __future__ import annotations
+
+import os
+import random
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Dict, List
+
+from proofs import scaled
+from test_fuzzing import LONGEST_S, memory, read
+
+from my_simulations.errors import InputError
+from my_simulations.formats.mesh.loading import triangles_of
+from my_simulations.objects.object_list import parse_objects
+from my_simulations.objects.yaml_source import read_yaml
+
+INPUTS = int(os.environ.get("MY_SIMULATIONS_MUTATIONS") or scaled(600, 10_000_000))
+ROOT = Path(__file__).resolve().parents[2]
+SMALL = 6000
+"""Bytes of a file that is damaged; small ones are read fast, and have most elements too."""
+
+DOCUMENTS, MESHES, LISTS = (".sdf", ".world", ".urdf"), (".dae", ".stl", ".obj"), (".yaml",)
+PIECES = (b"", b"\0", b"nan", b"1e999", b"-1", b"99999999999", b"<a>", b"</", b"&#0;", b"\xff\xfe",
+          b"\xed\xa0\x80", b"]]>", b"- ", b"*a", b"&a ", b"../", b"2147483648", b" ", b"'")
+
+
+def corpus() -> List[Path]:
+    """Small files of all kinds that are read."""
+    found = [path for folder in ("test/data", "models", "world", "config", "examples", "objects")
+             for path in sorted((ROOT / folder).rglob("*"))
+             if path.suffix in DOCUMENTS + MESHES + LISTS and path.stat().st_size <= SMALL]
+    assert {path.suffix for path in found} >= {".sdf", ".world", ".urdf", ".dae", ".yaml"}
+    return found
+
+
+def damaged(data: bytes, others: List[bytes], chance: random.Random) -> bytes:
+    """The bytes with up to four slices replaced, by others of the file or of another one."""
+    for _ in range(chance.randint(1, 4)):
+        start = chance.randint(0, len(data))
+        end = min(len(data), start + int(chance.expovariate(0.1)))
+        kind = chance.randrange(4)
+        if kind == 0:
+            put = chance.choice(PIECES)
+        elif kind == 1:
+            put = data[start:end] * chance.choice((0, 2, 2, 3))
+        elif kind == 2:
+            other = chance.choice(others)
+            at = chance.randint(0, len(other))
+            put = other[at:at + int(chance.expovariate(0.02))]
+        else:
+            put = bytes(chance.randrange(256) for _ in range(end - start))
+        data = data[:start] + put + data[end:]
+    return data
+
+
+def test_damaged_files_are_read_or_refused(record, tmp_path):
+    seed = scaled(2026, int(time.time()))
+    chance, outcomes, slowest = random.Random(seed), Counter(), 0.0
+    files = corpus()
+    contents = [path.read_bytes() for path in files]
+    paths: Dict[str, Path] = {suffix: tmp_path / f"damaged{suffix}" for suffix in MESHES + LISTS}
+    before = 0
+    for n in range(INPUTS):
+        at = chance.randrange(len(files))
+        suffix, data = files[at].suffix, damaged(contents[at], contents, chance)
+        path = paths.get(suffix)
+        if path is not None:
+            path.write_bytes(data)
+        began = time.process_time()
+        try:
+            if suffix in MESHES:
+                triangles_of(str(path), "")
+            elif suffix in LISTS:
+                tree, source, _ = read_yaml(str(path), "/objects")
+                parse_objects(tree, source)
+            else:
+                read(data)
+            outcomes["read"] += 1
+        except InputError as fault:
+            assert fault.issues
+            outcomes["refused"] += 1
+        except Exception as defect:  # keep what did it
+            kept = tmp_path / f"found{suffix}"
+            kept.write_bytes(data)
+            raise AssertionError(f"{defect!r} of damage to {files[at].name}, seed {seed}: see "
+                                 f"{kept}") from defect
+        took = time.process_time() - began
+        slowest = max(slowest, took)
+        assert took < LONGEST_S, (files[at].name, seed, data)
+        if n == INPUTS // 4:
+            before = memory()
+    grown = memory() / before - 1.0
+    assert grown < scaled(20, 5) / 100.0
+    record("damaged files", inputs=INPUTS, files=len(files), slowest_ms=round(1000 * slowest),
+           growth_percent=round(100 * grown, 1), **outcomes)
