@@ -22,24 +22,24 @@ const FRAGMENT = `
 uniform vec3 focus;
 uniform float reach;
 varying vec2 at;
-float lines(vec2 p, float width) {
-  vec2 pixel = max(fwidth(p), vec2(1e-6));
+float lines(vec2 p, vec2 pixel, float width) {
   vec2 drawn = clamp(vec2(width), pixel, vec2(0.5));
   vec2 away = 1.0 - abs(fract(p) * 2.0 - 1.0);
   vec2 line = smoothstep(drawn + pixel, drawn - pixel, away) * clamp(width / drawn, 0.0, 1.0);
   line *= 1.0 - smoothstep(0.3, 0.9, pixel);
   return max(line.x, line.y);
 }
-float axis(float across) {
-  float pixel = fwidth(across);
+float axis(float across, float pixel) {
   float half_width = max(0.012, 1.1 * pixel);
   return 1.0 - smoothstep(half_width - 0.6 * pixel, half_width + 0.6 * pixel, abs(across));
 }
 void main() {
+  vec2 pixel = max(fwidth(at), vec2(1e-6));
   float away = length(at - focus.xy) / reach;
-  float strength = max(0.22 * lines(at, 0.024), 0.34 * lines(at / 5.0, 0.008));
+  if (away > 1.0) discard;
+  float strength = max(0.22 * lines(at, pixel, 0.024), 0.34 * lines(at / 5.0, pixel / 5.0, 0.008));
   vec4 color = vec4(0.07, 0.09, 0.12, strength);
-  float x_axis = axis(at.y), y_axis = axis(at.x);
+  float x_axis = axis(at.y, pixel.y), y_axis = axis(at.x, pixel.x);
   color = mix(color, vec4(0.74, 0.06, 0.06, 0.85), x_axis);
   color = mix(color, vec4(0.06, 0.42, 0.08, 0.85), y_axis * (1.0 - x_axis));
   float fade = 1.0 - smoothstep(0.25, 1.0, away);
