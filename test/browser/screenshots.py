@@ -154,7 +154,7 @@ CURSOR = """(() => {
 
 
 def film(editor, path):
-    """Three shapes are put down, one is lifted over another, physics runs."""
+    """Three shapes are put down, one is lifted, physics runs."""
     without_hints(editor)
     page, strip = editor.page, Film(editor)
     strip.take(700)
@@ -184,7 +184,7 @@ def film(editor, path):
 
 
 def lift(editor, strip, at):
-    """The box by its handles: up, then over the cylinder."""
+    """The box by its handles: up, then aside."""
     page = editor.page
     box = editor.get("editor.view.pixelOf('unit_box')")
     strip.go(at, box, 3)

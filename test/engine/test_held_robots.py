@@ -11,12 +11,16 @@ from test_settling import _on, _robot, _slope
 from my_simulations.engine.commands import (
     AddTimedForces,
     JointMotor,
+    JointServo,
+    PidGains,
     RemoveModel,
     SetModelState,
     SetMotors,
+    SetServos,
     TimedEffort,
     TimedWrench,
 )
+from my_simulations.engine.spline import Spline, segment_between
 from my_simulations.geometry import Pose, Twist
 
 
@@ -95,6 +99,25 @@ def test_a_robot_that_was_held_moves_as_far_as_one_that_was_not(lab: Lab):
             for robot, start in zip((held, free), starts)]
     assert ways[0] == pytest.approx(ways[1], rel=0.01)
     assert ways[0] > 0.05
+
+
+@pytest.mark.parametrize("drive", ["effort", "position"])
+def test_a_robot_that_was_held_drives_along_a_spline_as_one_that_was_not(lab: Lab, drive: str):
+    # Its axles have dampers. The spline begins while the first one is held.
+    lab.load(ground(1.0))
+    held, free = lab.load(_robot(), (0, 0, 0)), lab.load(_robot(), (0, 2, 0))
+    spline = Spline((segment_between(4.0, (0.0, 0.0, 0.0), 6.0, (4.0, 0.0, 0.0)),), lab.step)
+    gains = PidGains(5.0, 0.0, 0.2) if drive == "effort" else None
+    lab.apply(SetServos(tuple(JointServo(row, drive, spline=spline, gains=gains, by_rates=True)
+                              for robot in (held, free) for row in _wheels(lab, robot))))
+    for _ in range(19):
+        lab.seconds(0.2)
+        lab.backend._settling.touched(lab.backend._rows[lab.rows[free, "body"]][0])
+    assert _holds(lab)
+    lab.seconds(3.2)
+    one, other = (lab.pose(robot, "body").position[0] for robot in (held, free))
+    assert one == pytest.approx(other, rel=0.01)
+    assert one == pytest.approx(0.2, rel=0.05)
 
 
 def test_a_robot_that_was_held_falls_when_its_floor_goes(lab: Lab):

@@ -101,7 +101,7 @@ def test_what_is_dropped_upright_lands_upright(lab: Lab, laws: Laws, name: str, 
             laws.at_most("what is dropped upright from up to 5 m: tilt, degrees",
                          _tilt(lab, number), 0.1)
             laws.at_most("the same: depth while it lands, m",
-                         top + HALF - lab.pose(number).position[2], 2.5e-3)
+                         top + HALF - lab.pose(number).position[2], 2e-3)
             if landed + 500 <= step < landed + 505:
                 twist = lab.twist(number)
                 speeds = map(abs, (*twist.linear, *(RADIUS * rate for rate in twist.angular)))

@@ -377,7 +377,7 @@ build_workspace() {
     rm -f -- "$stamped"
     logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again. \
 'Could not find a package configuration file' names a package that Debian may have: apt-cache search." \
-      catkin_make -C "$WORKSPACE" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
+      catkin_make -C "$WORKSPACE" -j"$(nproc)" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
     printf '%s' "$stamp" >"$stamped"
     finish
   fi

@@ -187,7 +187,7 @@ const FIRST_PITCH = -0.42;
 /** Things smaller than this, m, are not looked at from nearer. */
 const SMALLEST = 0.9;
 /** Of the sphere round all there is, which is larger than what one sees of it. */
-const FILL = 0.82;
+const FILL = 0.9;
 
 /**
  * The first view of a world that has no camera: all of a box from Gazebo's side, a little from above.

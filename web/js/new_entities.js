@@ -18,7 +18,7 @@ const GEOMETRIES = {
 
 /** Gazebo/Grey. @type {Material} */
 const GREY = {name: 'Gazebo/Grey', ambient: [0.3, 0.3, 0.3, 1], diffuse: [0.7, 0.7, 0.7, 1],
-  specular: [0.01, 0.01, 0.01, 1], emissive: [0, 0, 0, 1], transparency: 0, lighting: true, alpha_test: 0, blended: false};
+  specular: [0.01, 0.01, 0.01, 1], emissive: [0, 0, 0, 1], transparency: 0, lighting: true};
 
 const origin = () => [0, 0, 0, 0, 0, 0, 1];
 

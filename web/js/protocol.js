@@ -62,7 +62,7 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {{
  *  ambient?: color|null, diffuse?: color|null, specular?: color|null, emissive?: color|null,
  *  name: string, texture?: Texture|null, transparency: number, lighting: boolean,
- *  alpha_test: number, blended: boolean
+ *  alpha_test?: number|null, blended?: boolean|null
  *}} Material */
 
 /** @typedef {'box'|'sphere'|'cylinder'|'capsule'|'cone'|'ellipsoid'} SolidShape */

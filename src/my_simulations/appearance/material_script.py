@@ -111,7 +111,7 @@ def _setting(line: List[str], material: ScriptMaterial) -> None:
         # Ogre keeps a pixel whose alpha, 0 to 255, is (for example) `greater` than the number.
         numbers = _numbers(values[1:])
         kept = values[0] in ("greater", "greater_equal")
-        material.alpha_test = min(max(numbers[0] / 255.0, 1 / 255), 1.0) if kept and numbers else 0.0
+        material.alpha_test = min(numbers[0] / 255.0, 1.0) if kept and numbers else 0.0
     elif word == "texture" and values and not material.texture:
         material.texture = values[0]
     elif word == "scale" and len(_numbers(values)) >= 2:

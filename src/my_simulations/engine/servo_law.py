@@ -89,6 +89,11 @@ class ServoLaw:
                        and (servo.drive != "effort" or servo.target == 0.0)
                        and servo.soft is None)
 
+    @property
+    def moving(self) -> bool:
+        """Whether the position that was wanted last is on its way."""
+        return self.servo.spline is not None and self._seen[1] != 0.0
+
     def disturbed(self) -> None:
         """The joint was put somewhere."""
         self._before = None

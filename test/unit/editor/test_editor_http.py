@@ -207,7 +207,8 @@ def test_meshes_and_textures_come_from_below_known_folders_only(case, tmp_path):
     # A mesh may name its picture by URI; the page puts its own folder before that.
     assert request(f"{base}{folder}/model://m%201/materials/textures/Wood.PNG")[2] == PNG
     for inside in ("model://m%201/meshes/notes.txt", "model:///etc/passwd.png",
-                   "model://nix/a.png", "model://../secret/a.png", "notes.txt", "link.dae", "%2e%2e/%2e%2e/%2e%2e/secret/b.dae", "none.png"):
+                   "model://nix/a.png", "model://../secret/a.png", "notes.txt", "link.dae",
+                   "%2e%2e/%2e%2e/%2e%2e/secret/b.dae", "none.png"):
         assert request(f"{base}{folder}/{inside}")[0] == 404
 
 

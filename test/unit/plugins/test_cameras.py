@@ -47,6 +47,27 @@ def test_a_picture_and_its_lens_have_one_stamp_and_the_sensors_rate():
     assert first.data == context.pictures[0].rgb.tobytes()
 
 
+def test_a_first_picture_that_the_renderers_start_has_made_old_is_left_out():
+    context = camera()
+    photograph = context.photograph
+
+    def late(views, call, stream=""):
+        return photograph(views, lambda pictures, ns: call(pictures, ns - 2 * 10 ** 9), stream)
+
+    context.photograph = late
+    context.advance(0.1)
+    assert context.published[RAW] == []
+    context.advance(0.1)
+    assert len(context.published[RAW]) == 1   # later ones are as late as the machine is slow
+
+
+def test_a_triggered_camera_has_the_renderer_ready_and_publishes_nothing():
+    context = camera(cls=TriggeredCamera)
+    context.advance(0.35)
+    assert len(context.views) == 1
+    assert context.published[RAW] == []
+
+
 def test_the_view_is_that_of_the_sensor_on_its_link():
     context = camera(block=CameraBlock(pose=Pose((0.0, 0.5, 0.0)), width=8, height=6, near=0.2,
                                        far=9.0, horizontal_fov=1.5))

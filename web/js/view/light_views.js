@@ -19,7 +19,7 @@ import {lightColorOf, place} from './three_convert.js';
 /** three's lamps are physical: what falls on a white wall is divided by pi there. */
 const STRENGTH = Math.PI;
 /** Daylight is bluish from above, warm from the ground; what a world sets is left as it is. */
-const FROM_ABOVE = new Color(1.02, 1.1, 1.22);
+const FROM_ABOVE = new Color(1.04, 1.09, 1.16);
 const FROM_BELOW = new Color(1.0, 0.95, 0.88);
 const SHADOW_SIZE = 2048;
 /** More shadow maps than this, and simple machines stutter. */

@@ -3,8 +3,8 @@
  * is drawn coarser, and once more in full when they rest.
  */
 import {
-  Color, NeutralToneMapping, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, SRGBColorSpace, WebGLRenderer,
-  WebGLRenderTarget,
+  Color, CustomToneMapping, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, ShaderChunk,
+  SRGBColorSpace, WebGLRenderer, WebGLRenderTarget,
 } from 'three';
 /** @import {Camera} from 'three' */
 
@@ -14,8 +14,6 @@ const FAST = 15;
 const COARSEST = 0.5;
 /** Milliseconds between new shadows while pictures are slow. */
 const SLOW_SHADOWS = 300;
-/** Makes up for what the tone mapping takes from middle greys. */
-const EXPOSURE = 1.08;
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
 /**
  * A processor that draws in place of a graphics card pays for smooth edges with every picture:
@@ -36,6 +34,23 @@ function driver() {
   const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
   gl.getExtension('WEBGL_lose_context')?.loseContext();
   return name;
+}
+
+const NO_TONE_MAPPING = 'vec3 CustomToneMapping( vec3 color ) { return color; }';
+/**
+ * Bright lights are pressed together above three quarters, as in Khronos' neutral tone mapping; what is
+ * darker keeps the colour that its file says.
+ */
+const HIGHLIGHTS = `vec3 CustomToneMapping( vec3 color ) {
+  float peak = max( color.r, max( color.g, color.b ) );
+  if ( peak < 0.76 ) return color;
+  float pressed = 1.0 - 0.0576 / ( peak - 0.52 );
+  return mix( color * pressed / peak, vec3( pressed ), 1.0 - 1.0 / ( 0.15 * ( peak - pressed ) + 1.0 ) );
+}`;
+
+function keepHighlights() {
+  ShaderChunk.tonemapping_pars_fragment =
+    ShaderChunk.tonemapping_pars_fragment.replace(NO_TONE_MAPPING, HIGHLIGHTS);
 }
 
 /** Thrown where the browser offers no WebGL. */
@@ -106,8 +121,8 @@ export class Stage {
     } catch (error) {
       throw new NoWebGL(error instanceof Error ? error.message : String(error));
     }
-    this.renderer.toneMapping = NeutralToneMapping;
-    this.renderer.toneMappingExposure = EXPOSURE;
+    keepHighlights();
+    this.renderer.toneMapping = CustomToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;

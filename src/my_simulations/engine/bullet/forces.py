@@ -70,7 +70,12 @@ class Forces:
             self._implicit[body.uid] = axes
 
     def rest(self, body: Body, held: bool) -> None:
-        """A body is held at rest from now on, or not any more: dampers have nothing to damp."""
+        """A body is held at rest from now on, or not any more: dampers have nothing to damp.
+
+        Unless a servo may move it at any time.
+        """
+        if held and self.servos.drives(body):
+            return
         now, then = (self._implicit, self._resting) if held else (self._resting, self._implicit)
         axes = now.get(body.uid)
         if axes is not None and not axes.has_springs:
@@ -155,8 +160,8 @@ class Forces:
 
     @property
     def loaded_bodies(self) -> Set[int]:
-        """PyBullet's numbers of the bodies that timed forces act on in this step."""
-        return {self._target(force).uid for force in self._acting.values()}
+        """PyBullet's numbers of the bodies that timed forces or splines move in this step."""
+        return {self._target(force).uid for force in self._acting.values()} | self.servos.moving
 
     def due(self, step: int) -> int:
         """Each step while something acts anew in it, or was put somewhere before it."""

@@ -68,6 +68,17 @@ class JointServos:
             self._drive(body, axis)
         self._sort()
 
+    def drives(self, body: Body) -> bool:
+        """Whether a servo of a body must be computed in each step."""
+        return body.uid in self._busy
+
+    @property
+    def moving(self) -> Set[int]:
+        """PyBullet's numbers of bodies that are on their way along a spline."""
+        return {uid for uid, loops in self._busy.items()
+                if any(law.moving for _, _, law in loops.efforts)
+                or any(law.moving for _, law in loops.motors)}
+
     def set(self, servos: Iterable[JointServo], dt: float) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
         self._dt = dt

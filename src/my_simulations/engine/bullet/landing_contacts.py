@@ -36,7 +36,7 @@ _ROUNDS = 2        # looks until every body was asked
 _RESTS = 0.03      # m/s: what flies is faster 3 ms after it left the ground
 _BOUNCE = 8        # steps until one that has landed is looked at again
 _BOUNCES = 4       # such looks until it is one of those that are asked now and then
-_PATIENCE = 7      # turns that one that sleeps is left out
+_PATIENCE = 7      # turns that one that sleeps is left out; one that rests: 1
 _SOFT = 2e-3       # m/s: what comes slower tilts nothing
 _SETTLES = 2.5     # steps of falling: what was put down at rest falls no longer
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
@@ -212,15 +212,15 @@ class LandingContacts:
             self._solve_impact(False)
 
     def _ask(self, uids: List[int]) -> None:
-        """Find out which bodies may fly; what sleeps is asked less often."""
+        """Find out which bodies may fly; what rests is asked less often."""
         for uid in uids:
             if self._asleep.get(uid):
                 self._asleep[uid] -= 1
                 continue
             linear = pybullet.getBaseVelocity(uid)[0]
-            if linear == _NONE:
-                self._asleep[uid] = _PATIENCE
-            elif uid not in self._flights and norm(linear) > _RESTS:
+            if norm(linear) <= _RESTS:
+                self._asleep[uid] = _PATIENCE if linear == _NONE else 1
+            elif uid not in self._flights:
                 self._flights[uid] = _Flight(self._bodies[uid], on_ground=_BOUNCES)
 
     def _watched(self) -> List[int]:

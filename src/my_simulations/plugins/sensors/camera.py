@@ -41,7 +41,8 @@ class Camera(Plugin):
         return self.context.photograph([self._stream.view()], self._seen)
 
     def _seen(self, pictures: List[Any], ns: int) -> None:
-        self._stream.publish(pictures[0].rgb, ns)
+        if self._rate.is_fresh(ns):
+            self._stream.publish(pictures[0].rgb, ns)
 
 
 class TriggeredCamera(Camera):
@@ -52,8 +53,12 @@ class TriggeredCamera(Camera):
         super().load()
         topic = self.context.parameters.text("triggerTopicName") or "image_trigger"
         self._triggers = 0
+        self._warm = False
         self.context.subscribe(self._stream.topics.named(topic), "std_msgs/Empty", self._trigger,
                                _TRIGGERS)
+
+    def _seen(self, pictures: List[Any], ns: int) -> None:
+        self._stream.publish(pictures[0].rgb, ns)   # what was asked for is given, however late
 
     def _trigger(self, message: Any) -> None:
         self._triggers += 1
@@ -63,8 +68,10 @@ class TriggeredCamera(Camera):
         self._triggers = 0
 
     def update(self) -> None:
-        """Take a picture, if one is due."""
-        if self._triggers and (not self._stream.wanted or self.take()):
+        """Take a picture, if one is due; have the renderer ready once somebody listens."""
+        if not (self._warm or self._triggers) and self._stream.wanted:
+            self._warm = self.context.photograph([self._stream.view()], lambda pictures, ns: None)
+        elif self._triggers and (not self._stream.wanted or self.take()):
             self._triggers -= 1
 
 

@@ -60,6 +60,7 @@ def rate_of(context: Context) -> float:
     return min((rate for rate in said if rate > 0.0), default=USUAL_RATE)
 
 
+_OLD_S = 0.5   # of sim time
 _RATE = Option("imager_rate", 2.0, 1.0, 50.0, "pictures a second of sim time (Hz)")
 
 
@@ -76,8 +77,18 @@ class ImagerRate:
         self._context, self._call = context, call
         rate = rate_of(context)
         self._timer = context.every(rate, call)
+        self._most_ns = round(max(_OLD_S, 2.0 / rate) * 1e9)
+        self._looked = False
         self._offers = [Reconfigure(context, name, (_RATE,), {_RATE.name: rate}, self._change)
                         for name in names if name]
+
+    def is_fresh(self, ns: int) -> bool:
+        """Whether a picture of a sim time is to be published.
+
+        While the renderer starts for the first one, the world goes on: that one may be too old.
+        """
+        first, self._looked = not self._looked, True
+        return not first or self._context.now_ns - ns <= self._most_ns
 
     def _change(self, values: Mapping[str, Value]) -> None:
         self._timer.end()

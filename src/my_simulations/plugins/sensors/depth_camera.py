@@ -120,7 +120,8 @@ class DepthCamera(Plugin):
             self._tell(None, None, self.context.now_ns)
 
     def _taken(self, pictures: List[Any], ns: int) -> None:
-        self._tell(pictures[0].rgb, pictures[0].depth, ns)
+        if self._rate.is_fresh(ns):
+            self._tell(pictures[0].rgb, pictures[0].depth, ns)
 
     def _tell(self, rgb: Optional[Any], depth: Optional[Any], ns: int) -> None:
         self._colors.publish(rgb, ns)

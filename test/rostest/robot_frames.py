@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""robot_state_publisher has the lab robot's links where the physics has them."""
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import rospy
+import tf2_ros
+from geometry_msgs.msg import Twist, Vector3
+from support import Gazebo, run, wait_for
+
+WHEELS = ("left_wheel", "right_wheel")
+SENSORS = ("laser_link", "camera_optical_frame", "imu_link")
+
+
+class RobotFrames(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gazebo = Gazebo()
+        cls.buffer = tf2_ros.Buffer()
+        cls.listener = tf2_ros.TransformListener(cls.buffer)
+        wait_for(lambda: "robo" in cls.gazebo.names(), "the robot")
+
+    def transform(self, frame):
+        wait_for(lambda: self.buffer.can_transform("base_footprint", frame, rospy.Time(0)), frame)
+        return self.buffer.lookup_transform("base_footprint", frame, rospy.Time(0)).transform
+
+    def test_links_are_where_the_physics_has_them(self):
+        command = rospy.Publisher("/cmd_vel", Twist, queue_size=1, latch=True)
+        command.publish(Twist(Vector3(0.2, 0, 0), Vector3(0, 0, 0.3)))
+        wait_for(lambda: abs(self.transform("left_wheel").rotation.y) > 0.2, "a wheel that turns")
+        self.gazebo.pause_physics()
+        for frame in WHEELS:
+            reply = self.gazebo.get_link_state(f"robo::{frame}", "robo::base_footprint")
+            self.assertTrue(reply.success, reply.status_message)
+            seen, truth = self.transform(frame), reply.link_state.pose
+            for axis in "xyz":
+                self.assertAlmostEqual(getattr(seen.translation, axis),
+                                       getattr(truth.position, axis), delta=2e-3, msg=frame)
+            # They have turned by up to a period of joint_states since they were told.
+            self.assertAlmostEqual(abs(sum(
+                getattr(seen.rotation, axis) * getattr(truth.orientation, axis)
+                for axis in "xyzw")), 1.0, delta=0.02, msg=frame)
+
+    def test_what_sensors_publish_is_in_the_frame_of_odometry(self):
+        self.gazebo.unpause_physics()
+        for frame in SENSORS:
+            wait_for(lambda frame=frame: self.buffer.can_transform("odom", frame, rospy.Time(0)),
+                     f"a way from odom to {frame}")
+        turn = self.transform("camera_optical_frame").rotation
+        # Optical frames look along z, with y down: REP 103.
+        for value, wanted in zip((turn.x, turn.y, turn.z, turn.w), (-0.5, 0.5, -0.5, 0.5)):
+            self.assertAlmostEqual(abs(value), abs(wanted), delta=0.2)
+
+
+if __name__ == "__main__":
+    run("robot_frames")
