@@ -91,7 +91,7 @@ def test_fingers_select_orbit_pan_zoom_and_open_the_menu(open_page):
     before = view()
     touch("touchStart", (x, y))
     for step in range(1, 9):
-        touch("touchMove", (x + 12 * step, y))
+        touch("touchMove", (x + 25 * step, y))
     touch("touchEnd")
     turned = view()
     assert abs(turned["yaw"] - before["yaw"]) > 0.2

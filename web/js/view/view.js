@@ -214,7 +214,9 @@ class View {
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
       placer: new Placer(shared), faceSnap: new FaceSnap(shared), forces: this.#forces,
       selector, measure: this.#measure, pivotMark: new PivotMark(shared),
-      boxSelect: new BoxSelect(element, store, (name) => this.pixelOf(name))});
+      boxSelect: new BoxSelect(element, store, (name) =>
+        // The ground is nobody's choice.
+        (this.footprint(name) ? this.pixelOf(name) : null))});
     this.#connect();
     actions.attachView(this);
     const kept = savedConfiguration();
