@@ -95,6 +95,12 @@ def test_fingers_select_orbit_pan_zoom_and_open_the_menu(open_page):
     touch("touchEnd")
     turned = view()
     assert abs(turned["yaw"] - before["yaw"]) > 0.2
+    x, y = editor.get("editor.view.pixelOf('box')")
+    touch("touchStart", (x, y))
+    editor.page.get_by_role("menuitem", name="Move To").wait_for()
+    touch("touchEnd")
+    editor.page.keyboard.press("Escape")
+    turned = view()
     touch("touchStart", (150, 400), (250, 400))
     for step in range(1, 9):
         touch("touchMove", (150 - 6 * step, 400), (250 + 6 * step, 400))
@@ -102,10 +108,6 @@ def test_fingers_select_orbit_pan_zoom_and_open_the_menu(open_page):
     near = view()
     assert near["yaw"] == approx(turned["yaw"])
     assert near["position"] != turned["position"]
-    x, y = editor.get("editor.view.pixelOf('box')")
-    touch("touchStart", (x, y))
-    editor.page.get_by_role("menuitem", name="Move To").wait_for()
-    touch("touchEnd")
 
 
 def test_a_rectangle_selects_what_is_in_it(open_page):
