@@ -57,7 +57,7 @@ class Case:
 
     @property
     def sensing(self):
-        return self.host._scene_sensing._process
+        return self.host._scene._process
 
     def close(self):
         self.host.stop()
