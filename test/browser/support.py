@@ -172,9 +172,9 @@ class Editor:
     # -- hands -------------------------------------------------------------------------------------
 
     def pixel(self, point):
-        """Where a point of the world is on the page, seen from the first view (5, -5, 2)."""
+        """Where a point of the world is on the page, as the camera looks now."""
         box = self.page.locator("#view").bounding_box()
-        x, y = projected(point, box["width"], box["height"])
+        x, y = projected(point, self.get("editor.view.camera"), box["width"], box["height"])
         return box["x"] + x, box["y"] + y
 
     def click(self, point, **options):
@@ -208,16 +208,20 @@ class Editor:
             self.page.keyboard.up(key)
 
 
-EYE = (5.0, -5.0, 2.0)
 ACROSS = math.radians(60.0)
 
 
-def projected(point, width, height):
-    """A point's pixel in a view that looks from `EYE` at the origin, 60 degrees wide, x right."""
-    forward = _unit([-part for part in EYE])
+def projected(point, camera, width, height):
+    """A point's pixel in a view that is 60 degrees wide, x right, y down.
+
+    `camera` has `position` in m, and `yaw` and `pitch` (up) in rad.
+    """
+    level = math.cos(camera["pitch"])
+    forward = (level * math.cos(camera["yaw"]), level * math.sin(camera["yaw"]),
+               math.sin(camera["pitch"]))
     right = _unit(_cross(forward, (0.0, 0.0, 1.0)))
     up = _cross(right, forward)
-    ray = [part - eye for part, eye in zip(point, EYE)]
+    ray = [part - eye for part, eye in zip(point, camera["position"])]
     depth = _dot(ray, forward)
     assert depth > 0.1, f"{point} lies behind the camera"
     scale = width / 2.0 / math.tan(ACROSS / 2.0) / depth

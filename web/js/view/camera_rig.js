@@ -282,12 +282,16 @@ export class CameraRig {
     });
   }
 
-  /** A world without a camera is seen as a whole, save grounds; an empty one as in Gazebo. */
+  /**
+   * A world without a camera is seen as a whole, save grounds; an empty one, and one whose actors
+   * walk about, as in Gazebo.
+   */
   #beginWithAll() {
     const isGround = (/** @type {import('../protocol.js').Model} */ model) =>
       model.links.every((link) => link.visuals.every(({geometry}) => geometry.type === 'plane'));
-    this.#toFrame = (this.#store.document?.models ?? []).filter((model) => !isGround(model))
-      .map((model) => model.name);
+    const {models = [], actors = []} = this.#store.document ?? {};
+    this.#toFrame = actors.length ? []
+      : models.filter((model) => !isGround(model)).map((model) => model.name);
     this.#home = views.HOME;
     this.set(this.#home);
     this.#framed = this.view;
