@@ -130,7 +130,9 @@ class StateSchedule:
             key = standing()
             found = key is not None and key != self._shown
         if found:
-            self._published_ns = sim_ns
+            # What is published late does not delay what follows: the rate is kept on average.
+            regular = self._period_ns and self._published_ns >= 0 and waited >= self._period_ns
+            self._published_ns = sim_ns - (waited % self._period_ns if regular else 0)
         return found
 
     def sent(self, shown: Tuple[int, int]) -> None:
