@@ -35,6 +35,7 @@ def test_a_heavy_world_has_a_page_first_which_tells_the_progress(launch, browser
     editor = browser.open(node.url, wait=False)
     note = editor.page.locator(".connection-note")
     note.get_by_text(re.compile(r"mesh \d of 2")).wait_for()
+    editor.page.wait_for_function("typeof editor !== 'undefined'")
     assert editor.get("editor.store.document") is None
     assert "world editor is at" in node.said()
     wait_for(lambda: editor.get("Boolean(editor.store.document)"), "the divided meshes", 300.0)
