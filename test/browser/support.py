@@ -17,6 +17,8 @@ from my_simulations.editor.transport import address_file
 
 SECONDS = 60.0
 """Until something must have happened; a machine under load draws a picture in seconds."""
+FIRST_VIEW = "#view=5,-5,2,2.3561945,-0.2756999"
+"""A link to the view of an empty world: from (5, -5, 2) to the origin."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -128,7 +130,8 @@ class Editor:
         self.said = []
         self.page.on("pageerror", lambda fault: self.faults.append(str(fault)))
         self.page.on("console", lambda message: self.said.append(message.text))
-        self.page.goto(url)
+        # The first view frames what is there; hands need one that they know.
+        self.page.goto(url if "#" in url else url + FIRST_VIEW)
         if wait:
             self.wait_for_world()
 
