@@ -162,7 +162,7 @@ def test_numbers_are_shown_while_dragging(open_page):
 
 
 def test_a_face_of_the_cube_is_a_view_and_home_comes_back(open_page):
-    editor = open_page.first
+    editor = open_page("#select=box")  # no view: the page begins at its home
     home = editor.get("editor.view.camera")
     editor.page.get_by_role("group", name="Orientation").get_by_text("Top").dispatch_event("click")
     wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
