@@ -86,6 +86,8 @@ class Control(unittest.TestCase):
     def ended(self):
         wait_for(lambda: self.client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE),
                  "the end of the goal")
+        # Status and result come by topics of their own.
+        wait_for(lambda: self.client.get_result() is not None, "the goal's result")
         return self.client.get_state(), self.client.get_result()
 
     def test_controllers_were_started_while_the_world_was_paused(self):
