@@ -14,7 +14,8 @@ class WorldChoice:
     """Which world to open; see `open_world`.
 
     Attributes:
-        models: name, path of a URDF or SDF file, and pose of each model to spawn besides.
+        models: name, URDF or SDF document (path or text), and pose of each model to spawn
+            besides.
         alter: changes the description of the world before it is loaded; it must leave its argument
             as it is.
         alter_model: the same for each object and model; `Model.pose` is its place.

@@ -3,28 +3,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import List, Optional, Union
+from typing import List, Optional, Tuple
 
 from ...description.model import Inertial
 from ...description.shapes import (
-    Box,
     Capsule,
     Collision,
     Cone,
-    Cylinder,
     Ellipsoid,
     Geometry,
     Mesh,
+    MeshData,
     Polyline,
-    Sphere,
 )
 from ...errors import CommandError
 from ...formats.combined_inertia import combined_inertia
+from ...formats.default_inertia import solid_moments
 from ...formats.mesh.loading import load_mesh, load_solid
 from ...geometry import Pose
-
-WATER = 1000.0
-"""kg/m^3."""
 
 
 def inertial_of(collisions: List[Collision], *, density: Optional[float] = None,
@@ -51,12 +47,13 @@ def inertial_of(collisions: List[Collision], *, density: Optional[float] = None,
     total: Optional[Inertial] = None
     for solid, pose in solids:
         if solid is not None:
-            total = combined_inertia(total, _times(solid, density), pose)
+            total = combined_inertia(total, of_density(solid, density), pose)
     assert total is not None
     return total
 
 
-def _times(i: Inertial, factor: float) -> Inertial:
+def of_density(i: Inertial, factor: float) -> Inertial:
+    """The inertial of the same solid at another density, of 1 kg/m^3 before."""
     return replace(i, mass=i.mass * factor, ixx=i.ixx * factor, iyy=i.iyy * factor,
                    izz=i.izz * factor, ixy=i.ixy * factor, ixz=i.ixz * factor,
                    iyz=i.iyz * factor)
@@ -64,24 +61,21 @@ def _times(i: Inertial, factor: float) -> Inertial:
 
 def _solid(geometry: Geometry) -> Optional[Inertial]:
     """Of density 1 kg/m^3, in the frame of the shape; None for what has no volume."""
-    if isinstance(geometry, Box):
-        x, y, z = geometry.size
-        return _diagonal(x * y * z, (y * y + z * z) / 12, (x * x + z * z) / 12,
-                         (x * x + y * y) / 12)
-    if isinstance(geometry, (Sphere, Ellipsoid)):
-        a, b, c = ((geometry.radius,) * 3 if isinstance(geometry, Sphere) else geometry.radii)
+    known = solid_moments(geometry)
+    if known is not None:
+        return _diagonal(known[0], *known[1])
+    if isinstance(geometry, Ellipsoid):
+        a, b, c = geometry.radii
         return _diagonal(4 / 3 * math.pi * a * b * c, (b * b + c * c) / 5, (a * a + c * c) / 5,
                          (a * a + b * b) / 5)
-    if isinstance(geometry, Cylinder):
-        r, h = geometry.radius, geometry.length
-        side = (3 * r * r + h * h) / 12
-        return _diagonal(math.pi * r * r * h, side, side, r * r / 2)
     if isinstance(geometry, Capsule):
         return _capsule(geometry.radius, geometry.length)
     if isinstance(geometry, Cone):
         return _cone(geometry.radius, geometry.length)
-    if isinstance(geometry, (Mesh, Polyline)):
-        return _mesh(geometry)
+    if isinstance(geometry, Mesh):
+        return mesh_solid(load_mesh(geometry))[0]
+    if isinstance(geometry, Polyline):
+        return mesh_solid(load_solid(geometry))[0]
     return None
 
 
@@ -111,16 +105,22 @@ def _cone(r: float, h: float) -> Inertial:
                     izz=volume * 3 / 10 * r * r)
 
 
-def _mesh(geometry: Union[Mesh, Polyline]) -> Inertial:
-    """Of the solid; of its convex hull where the surface is not closed."""
+def mesh_solid(data: MeshData) -> Tuple[Optional[Inertial], bool]:
+    """The inertial of a mesh as a solid of density 1 kg/m^3, and whether its surface is closed.
+
+    An open one counts as its convex hull; None for one without a volume.
+    """
     import trimesh
 
-    data = load_mesh(geometry) if isinstance(geometry, Mesh) else load_solid(geometry)
     solid = trimesh.Trimesh(data.vertices, data.triangles, process=True)
-    if not solid.is_watertight or solid.volume <= 0.0:
+    closed = bool(solid.is_watertight and solid.volume > 0.0)
+    if not closed:
         solid = solid.convex_hull
+    if not solid.volume > 0.0:
+        return None, closed
     x, y, z = (float(part) for part in solid.center_mass)
     moments = solid.moment_inertia
     return Inertial(float(solid.volume), Pose((x, y, z)),
                     ixx=float(moments[0][0]), iyy=float(moments[1][1]), izz=float(moments[2][2]),
-                    ixy=float(moments[0][1]), ixz=float(moments[0][2]), iyz=float(moments[1][2]))
+                    ixy=float(moments[0][1]), ixz=float(moments[0][2]),
+                    iyz=float(moments[1][2])), closed

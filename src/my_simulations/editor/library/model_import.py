@@ -19,6 +19,7 @@ from ...formats.sdf.writer.entities import write_entity
 from ...geometry import Pose
 from ...resources.resolver import Resolver
 from ..editing.inserts import checked, entity_of_uri
+from ..editing.part_inertia import mesh_solid, of_density
 from ..transport.error_messages import EditRefusedError
 
 MESHES = (".dae", ".stl", ".obj", ".glb")
@@ -154,24 +155,13 @@ def _name_meshes(folder: str, name: str) -> None:
 
 def _inertial(path: str, uri: str, density: float) -> Tuple[Inertial, List[Issue]]:
     """Mass properties of the solid; of its convex hull where the surface is not closed."""
-    import trimesh
-
-    data = load_mesh(Mesh(uri=uri, path=path))
-    solid = trimesh.Trimesh(data.vertices, data.triangles, process=True)
-    issues = []
-    if not solid.is_watertight or solid.volume <= 0.0:
-        issues.append(warning("mesh-open", "the mesh is not closed: mass and inertia are those of"
-                              " its convex hull", file=path))
-        solid = solid.convex_hull
-    solid.density = density
-    if not solid.volume > 0.0:
+    solid, closed = mesh_solid(load_mesh(Mesh(uri=uri, path=path)))
+    if solid is None:
         raise InputError([error("mesh-empty", "the mesh has no volume", file=path)])
-    x, y, z = (float(part) for part in solid.center_mass)
-    moments = solid.moment_inertia
-    return Inertial(float(solid.mass), Pose((x, y, z)), ixx=float(moments[0][0]),
-                    iyy=float(moments[1][1]), izz=float(moments[2][2]),
-                    ixy=float(moments[0][1]), ixz=float(moments[0][2]),
-                    iyz=float(moments[1][2])), issues
+    issues = [] if closed else [
+        warning("mesh-open", "the mesh is not closed: mass and inertia are those of its convex"
+                " hull", file=path)]
+    return of_density(solid, density), issues
 
 
 def config_text(name: str, described: str,
