@@ -182,27 +182,52 @@ export function framing(view, {min, max}, fov, aspect) {
   return {...view, position: subtract(centre, scale(forward(view), distance))};
 }
 
-/** How steeply the first view of a world looks down, rad. */
-const FIRST_PITCH = -0.42;
+/**
+ * Length of the axes at the origin, m: they shall not hide what stands there.
+ * @param {number} distance  of the eye, m
+ */
+export const originScale = (distance) => Math.min(Math.max(distance * 0.12, 0.02), 1);
+
+/** How steeply the first view of a world looks down, rad; steeper where walls would hide what is in it. */
+export const FIRST_PITCHES = [-0.42, -0.6, -0.78, -0.96];
 /** Things smaller than this, m, are not looked at from nearer. */
-const SMALLEST = 0.9;
-/** Of the sphere round all there is, which is larger than what one sees of it. */
-const FILL = 0.9;
+const SMALLEST = 0.75;
+/** Of the picture's width and height that all there is takes. */
+const FILL = 0.78;
 
 /**
- * The first view of a world that has no camera: all of a box from Gazebo's side, a little from above.
+ * The first view of a world that has no camera: all of a box from Gazebo's side, from above, as large as
+ * it goes into the picture.
  * @param {{min: Vec3, max: Vec3}} box
  * @param {number} fov
  * @param {number} aspect
+ * @param {number} [pitch]
  * @returns {View}
  */
-export function first({min, max}, fov, aspect) {
-  const centre = scale(add(min, max), 0.5);
+export function first({min, max}, fov, aspect, pitch = FIRST_PITCHES[0]) {
+  let centre = scale(add(min, max), 0.5);
   const half = scale(subtract(max, min), 0.5);
-  const grown = scale(half, Math.max(SMALLEST / 2 / Math.max(length(half), 1e-9), FILL));
-  const direction = {position: subtract(centre, forward({yaw: HOME.yaw, pitch: FIRST_PITCH})),
-    yaw: HOME.yaw, pitch: FIRST_PITCH};
-  return framing(direction, {min: subtract(centre, grown), max: add(centre, grown)}, fov, aspect);
+  const grown = scale(half, Math.max(SMALLEST / 2 / Math.max(length(half), 1e-9), 1));
+  const corners = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) =>
+    add(centre, [x * grown[0], y * grown[1], z * grown[2]]))));
+  const way = {yaw: HOME.yaw, pitch};
+  const [ahead, side] = [forward(way), right(way)];
+  const top = cross(side, ahead);
+  const high = Math.tan(fov / 2) * FILL;
+  const wide = high * aspect;
+  let distance = 0;
+  // What is near looks larger: the middle of the box is not the middle of its picture.
+  for (let round = 0; round < 4; round++) {
+    const seen = corners.map((corner) => subtract(corner, centre))
+      .map((lever) => [dot(lever, side), dot(lever, top), dot(lever, ahead)]);
+    distance = Math.max(...seen.map(([x, y, z]) => Math.max(Math.abs(x) / wide, Math.abs(y) / high) - z));
+    const [across, upwards] = [0, 1].map((axis) => {
+      const slopes = seen.map((lever) => lever[axis] / (distance + lever[2]));
+      return (Math.min(...slopes) + Math.max(...slopes)) / 2 * distance;
+    });
+    centre = add(centre, add(scale(side, across), scale(top, upwards)));
+  }
+  return {...way, position: subtract(centre, scale(ahead, distance))};
 }
 
 /**

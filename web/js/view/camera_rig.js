@@ -29,6 +29,11 @@ export class CameraRig {
   zoomLevel = views.ORTHOGRAPHIC_ZOOM;
   /** Called after each move. */
   onMoved = () => {};
+  /**
+   * How many of the things that move are hidden by others from a place.
+   * @type {(eye: Vec3) => number}
+   */
+  hiddenFrom = () => 0;
 
   #stage;
   #store;
@@ -308,10 +313,26 @@ export class CameraRig {
     }
     if (whole.isEmpty() || whole.equals(this.#whole)) return;
     this.#whole.copy(whole);
-    this.#home = views.first({min: whole.min.toArray(), max: whole.max.toArray()}, this.fov,
-      this.#stage.aspect);
+    this.#home = this.#firstLook({min: whole.min.toArray(), max: whole.max.toArray()});
     this.set(this.#home);
     this.#framed = this.view;
+  }
+
+  /**
+   * A look at a box: from the flattest of some directions that hides the least of what moves.
+   * @param {{min: Vec3, max: Vec3}} box
+   */
+  #firstLook(box) {
+    const looks = views.FIRST_PITCHES.map((pitch) =>
+      views.first(box, this.fov, this.#stage.aspect, pitch));
+    let [best] = looks;
+    let fewest = Infinity;
+    for (const look of looks) {
+      const hidden = this.hiddenFrom(look.position);
+      if (hidden < fewest) [best, fewest] = [look, hidden];
+      if (!hidden) break;
+    }
+    return best;
   }
 
   #applyChoices() {

@@ -77,6 +77,8 @@ export class ContactShadows {
     this.#camera.layers.set(CASTERS);
     const sheet = new Mesh(new PlaneGeometry(1, 1), this.#blur);
     sheet.frustumCulled = false;
+    // The camera that draws it sees what stands on the ground and nothing else.
+    sheet.layers.set(CASTERS);
     this.#sheet.add(sheet);
   }
 

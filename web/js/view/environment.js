@@ -3,6 +3,7 @@
  * say, and the view's own gradient and haze where the world says nothing.
  */
 import {BufferAttribute, BufferGeometry, Fog, FogExp2, Mesh} from 'three';
+import {originScale} from '../camera_math.js';
 import {ContactShadows} from './contact_shadows.js';
 import {GroundGrid, makeOrigin} from './ground_grid.js';
 import {groundHeight} from './ground.js';
@@ -99,6 +100,8 @@ export class Surroundings {
   cover(centre, distance) {
     this.#grid.cover(centre, distance);
     this.#contact.cover(centre, distance);
+    this.#origin.scale.setScalar(originScale(distance));
+    this.#origin.updateMatrixWorld();
     if (!this.#haze) return;
     this.#haze.near = Math.max(distance * HAZE.from, HAZE.nearest);
     this.#haze.far = this.#haze.near * HAZE.to / HAZE.from;

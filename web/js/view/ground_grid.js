@@ -4,7 +4,6 @@ import {
   Vector3,
 } from 'three';
 
-/** Metres: width of thin and thick lines, and how far apart they are. */
 const VERTEX = `
 uniform vec3 focus;
 uniform float reach;
@@ -15,29 +14,32 @@ void main() {
 }`;
 
 /**
- * Lines as wide as the world says, but one pixel at least, and then fainter instead of thinner: so
- * they neither flicker nor pile up to a grey sheet far away.
+ * Lines of one to two pixels from wherever they are seen, far away fainter instead of thinner: so they
+ * neither flicker nor pile up to a grey sheet, and are no beams under a small robot.
  */
 const FRAGMENT = `
 uniform vec3 focus;
 uniform float reach;
 varying vec2 at;
 float lines(vec2 p, vec2 pixel, float width) {
-  vec2 drawn = clamp(vec2(width), pixel, vec2(0.5));
+  vec2 drawn = clamp(vec2(width), pixel, 1.7 * pixel);
   vec2 away = 1.0 - abs(fract(p) * 2.0 - 1.0);
   vec2 line = smoothstep(drawn + pixel, drawn - pixel, away) * clamp(width / drawn, 0.0, 1.0);
   line *= 1.0 - smoothstep(0.3, 0.9, pixel);
   return max(line.x, line.y);
 }
 float axis(float across, float pixel) {
-  float half_width = max(0.012, 1.1 * pixel);
+  float half_width = 1.4 * pixel;
   return 1.0 - smoothstep(half_width - 0.6 * pixel, half_width + 0.6 * pixel, abs(across));
 }
 void main() {
   vec2 pixel = max(fwidth(at), vec2(1e-6));
   float away = length(at - focus.xy) / reach;
   if (away > 1.0) discard;
-  float strength = max(0.22 * lines(at, pixel, 0.024), 0.34 * lines(at / 5.0, pixel / 5.0, 0.008));
+  float strength = max(0.24 * lines(at, pixel, 0.024), 0.36 * lines(at / 5.0, pixel / 5.0, 0.008));
+  // From near, tenths of a metre tell how large things are.
+  float near = 1.0 - smoothstep(0.02, 0.06, 10.0 * max(pixel.x, pixel.y));
+  strength = max(strength, 0.13 * near * lines(10.0 * at, 10.0 * pixel, 0.1));
   vec4 color = vec4(0.07, 0.09, 0.12, strength);
   float x_axis = axis(at.y, pixel.y), y_axis = axis(at.x, pixel.x);
   color = mix(color, vec4(0.74, 0.06, 0.06, 0.85), x_axis);
@@ -48,7 +50,7 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/** Lines every metre, stronger ones every five, and the x and y axes in their colours. */
+/** Lines every metre, stronger ones every five, finer ones from near, and the x and y axes in their colours. */
 export class GroundGrid {
   mesh = new Mesh(new PlaneGeometry(1, 1), new ShaderMaterial({
     vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: true, depthWrite: false,
@@ -77,7 +79,7 @@ const AXES = [
   {color: 0x3e7bfa, turn: [Math.PI / 2, 0, 0]},
 ];
 
-/** The axes at the world's origin: 1 m long arrows. */
+/** The axes at the world's origin: arrows 1 m long, from near shorter (`originScale`). */
 export function makeOrigin() {
   const group = new Group();
   const shaft = new CylinderGeometry(0.012, 0.012, 0.9, 12).translate(0, 0.45, 0);

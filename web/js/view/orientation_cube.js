@@ -12,22 +12,37 @@ const HALF = 27;
  */
 const FACES = [
   ['front', 'rotateY(90deg)'], ['back', 'rotateY(-90deg)'], ['left', 'rotateY(180deg)'],
-  ['right', ''], ['top', 'rotateX(90deg) rotateZ(90deg)'], ['bottom', 'rotateX(-90deg) rotateZ(-90deg)'],
+  ['right', ''], ['top', 'rotateX(90deg)'], ['bottom', 'rotateX(-90deg)'],
 ];
+
+/**
+ * How the names on top and bottom are turned, in degrees, so that they stand upright as far as quarter
+ * turns go.
+ * @param {number} yaw  of the camera, rad
+ */
+export function nameTurns(yaw) {
+  const quarters = Math.round((yaw - 1e-6) / (Math.PI / 2));
+  return {top: 90 - 90 * quarters, bottom: 90 * quarters - 90};
+}
 
 export class OrientationCube {
   #cube;
+  /** @type {Map<string, HTMLElement>} */
+  #faces = new Map();
 
   /** @param {HTMLElement} parent @param {Actions} actions */
   constructor(parent, actions) {
-    this.#cube = h('div', {class: 'cube-body'}, ...FACES.map(([side, turn]) => h('button', {
-      type: 'button',
-      tabindex: -1,
-      text: side[0].toUpperCase() + side.slice(1),
-      title: `View from ${side}`,
-      style: `transform: ${turn} translateZ(${HALF}px)`,
-      onclick: () => { actions.viewFrom(side); },
-    })));
+    this.#cube = h('div', {class: 'cube-body'}, ...FACES.map(([side, turn]) => {
+      const name = h('span', {text: side[0].toUpperCase() + side.slice(1)});
+      this.#faces.set(side, name);
+      return h('button', {
+        type: 'button',
+        tabindex: -1,
+        title: `View from ${side}`,
+        style: `transform: ${turn} translateZ(${HALF}px)`,
+        onclick: () => { actions.viewFrom(side); },
+      }, name);
+    }));
     parent.append(h('div', {class: 'cube', role: 'group', 'aria-label': 'Orientation'}, this.#cube));
   }
 
@@ -38,6 +53,10 @@ export class OrientationCube {
     // y down, z to the viewer).
     const axes = [[1, 0, 0], [0, 0, -1], [0, -1, 0]].map((axis) => [side, top, ahead].map((one, at) =>
       (at ? -1 : 1) * axis.reduce((sum, part, index) => sum + part * one[index], 0)));
+    for (const [side, turn] of Object.entries(nameTurns(view.yaw))) {
+      const name = this.#faces.get(side);
+      if (name) name.style.transform = `rotate(${turn}deg)`;
+    }
     this.#cube.style.transform = `matrix3d(${axes.map((axis) => [...axis, 0].join()).join()},0,0,0,1)`;
   }
 }

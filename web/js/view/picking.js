@@ -69,6 +69,28 @@ export class Picker {
   }
 
   /**
+   * Whether something lies between two points.
+   * @param {Iterable<Item>} items
+   * @param {number[]} from  world, m
+   * @param {number[]} to    world, m
+   * @param {(item: Item) => boolean} accept
+   */
+  isBetween(items, from, to, accept) {
+    const {ray} = this.#caster;
+    const end = new Vector3().fromArray(to);
+    ray.origin.fromArray(from);
+    ray.direction.copy(end).sub(ray.origin).normalize();
+    const length = end.distanceTo(ray.origin);
+    for (const item of items) {
+      const entry = accept(item) ? this.#entry(item) : null;
+      if (entry === null || entry > length) continue;
+      const hit = this.#hit(item, null);
+      if (hit && hit.distance < length) return true;
+    }
+    return false;
+  }
+
+  /**
    * Hits of three objects, e.g. handles, nearest first.
    * @param {Object3D[]} list
    * @param {number} clientX

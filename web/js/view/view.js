@@ -9,6 +9,7 @@ import {BoxSelect} from './box_select.js';
 import {CameraRig, savedConfiguration} from './camera_rig.js';
 import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
+import {hiddenFrom} from './first_look.js';
 import {Forces} from './force_arrows.js';
 import {Lights} from './light_views.js';
 import {Manipulator} from './manipulator.js';
@@ -194,6 +195,7 @@ class View {
     const picker = new Picker(stage);
     const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
       picker};
+    rig.hiddenFrom = (eye) => hiddenFrom(eye, shared);
     this.#stock = stock;
     this.#models = models;
     this.#lights = lights;
