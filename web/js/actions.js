@@ -5,16 +5,16 @@
  * refused is also put into the store's issues, unless a dialog that shows it itself asks for `quiet`.
  */
 import {alignMoves} from './align.js';
+import {cameraActions} from './camera_actions.js';
 import {RequestError} from './connection.js';
+import {fileActions} from './file_actions.js';
+import {insertActions} from './insert_actions.js';
 import {linkMoves, linkRemovals} from './model_editor/model_edits.js';
-import {remembered} from './panels/dom.js';
-import {linkOf} from './view_link.js';
-import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
+import {NOTHING} from './nothing.js';
 /** @import {AlignChoice} from './align.js' */
-/** @import {CameraChoices, CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js' */
+/** @import {CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js' */
 /** @import {Issue, RequestFunction} from './connection.js' */
 /** @import {Dropped} from './dropped_files.js' */
-/** @import {LightType, ShapeName} from './new_entities.js' */
 /** @import {Operation, Requests} from './protocol.js' */
 /** @import {Pose7, Vec3} from './pose.js' */
 /** @import {SceneView} from './view/view.js' */
@@ -40,9 +40,23 @@ import {shapeModel, newLight, SHAPES, LIGHTS} from './new_entities.js';
 
 /** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
 
-/** @typedef {{name: string, view: import('./camera_math.js').View}} Bookmark  a camera to come back to */
-
 /** @typedef {ReturnType<typeof createActions>} Actions */
+
+/**
+ * What the parts of the actions share; `view` is null until the view is there.
+ * @typedef {object} ActionParts
+ * @property {Store} store
+ * @property {Ask} ask
+ * @property {(op: Operation, options?: AskOptions) => Promise<Outcome<Requests['edit']['reply']>>} edit
+ * @property {(name: DialogName, fields?: Omit<DialogRequest, 'name'>) => void} dialog
+ * @property {(message: string) => void} note
+ * @property {() => SceneView|null} view
+ */
+
+/**
+ * @typedef {<T extends keyof Requests>(type: T, fields?: Requests[T]['fields'], options?: AskOptions) =>
+ *   Promise<Outcome<Requests[T]['reply']>>} Ask
+ */
 
 /** @param {{store: Store, connection: {request: RequestFunction}}} parts */
 export function createActions({store, connection}) {
@@ -71,9 +85,15 @@ export function createActions({store, connection}) {
    */
   const edit = (op, options) => ask('edit', {op}, options);
   /** @param {DialogName} name @param {Omit<DialogRequest, 'name'>} [fields] */
-  const dialog = (name, fields = {}) => store.emit('dialog', {name, ...fields});
+  const dialog = (name, fields = {}) => { store.emit('dialog', {name, ...fields}); };
   /** @param {string} message */
   const note = (message) => store.addIssue({severity: 'note', code: 'editor', message});
+
+  /** @type {ActionParts} */
+  const parts = {store, ask, edit, dialog, note, view: () => view};
+  const files = fileActions(parts);
+  const camera = cameraActions(parts);
+  const inserts = insertActions(parts);
 
   const actions = {
     /** @param {SceneView} theView */
@@ -81,59 +101,7 @@ export function createActions({store, connection}) {
     ask,
     edit,
 
-    // ---- files
-    /**
-     * An empty world; asks first when there are unsaved changes and `discard` is not given.
-     * @param {{discard?: boolean}} [options]
-     */
-    newWorld: (options) =>
-      options || !store.history.dirty ? ask('new', options ?? {}) : dialog('newWorld'),
-    /**
-     * Opens a world; without a path asks which (a dialog).
-     * @param {string} [path]
-     * @param {{discard?: boolean}} [options]
-     */
-    open: (path, options = {}) =>
-      path ? ask('open', {path, ...options}, {quiet: true}) : dialog('open'),
-    /**
-     * Saves to the file of the world; asks for a name the first time.
-     * @returns {Promise<Outcome|void>}
-     */
-    async save() {
-      if (store.modelEditing) return dialog('saveModel');
-      if (!store.history.file) return actions.saveAs();
-      const outcome = await ask('save', {}, {quiet: true});
-      // A world that was launched from a file is not written over without a word.
-      if (outcome.issues.some(({code}) => code === 'path-needed')) return actions.saveAs();
-      outcome.issues.forEach((issue) => store.addIssue(issue));
-      if (outcome.ok) note(`Saved ${outcome.value.path}${without(outcome.value.left_out)}`);
-      return outcome;
-    },
-    /** @param {string} [path] @param {{overwrite?: boolean}} [options] */
-    saveAs: (path, options = {}) =>
-      path ? ask('save', {path, ...options}, {quiet: true}) : dialog('saveAs'),
-    /** A copy of the world as it is now, for another simulator. */
-    cloneWorld: () => dialog('cloneWorld'),
-    /** Remembers the camera and what is shown, for this browser's next visits. */
-    saveConfiguration() {
-      view?.saveConfiguration();
-      note('Saved the camera and the View menu\'s choices for this browser.');
-    },
-    /** Forgets them. */
-    resetConfiguration() {
-      view?.resetConfiguration();
-      note('The next world opens with the default camera and View menu.');
-    },
-    /** @param {string} [path] */
-    folders: (path) => ask('folders', path ? {path} : {}),
-    /** @param {'restore'|'discard'} action */
-    autosave: (action) => ask('autosave', {action}),
-
-    /** What can be recovered. */
-    recoverable: () => ask('autosave', {action: 'list'}, {quiet: true}),
-    /** @param {string} name  of what can be recovered */
-    recoverEntry: (name) => ask('autosave', {action: 'restore', name}, {quiet: true}),
-    recover: () => dialog('recover'),
+    ...files,
 
     // ---- editing
     /** @param {number} [to]  steps more than one */
@@ -201,72 +169,7 @@ export function createActions({store, connection}) {
         op: (pose) => ({kind: 'paste', text, pose})});
     },
 
-    // ---- adding
-    /** @param {ShapeName} shape */
-    insertShape(shape) {
-      if (!SHAPES.includes(shape)) throw new RangeError(`no shape ${shape}`);
-      store.setPlacing({
-        kind: 'model', document: shapeModel(shape), shape,
-        op: (pose) => store.modelEditing ? {kind: 'add_link', model: store.modelEditing.name, shape, pose}
-          : {kind: 'insert', shape, pose},
-      });
-    },
-    /** @param {LightType} type */
-    insertLight(type) {
-      if (!LIGHTS.includes(type)) throw new RangeError(`no light ${type}`);
-      const light = newLight(type, store.document?.lights.map((one) => one.name) ?? []);
-      store.setPlacing({
-        kind: 'light', document: light,
-        op: (pose) => ({kind: 'insert_light', light: {...light, pose}}),
-      });
-    },
-    /**
-     * Fetches a model of the library, from afar when need be; it then follows the mouse.
-     * @param {string} uri
-     */
-    async insertModel(uri) {
-      const outcome = await ask('library_get', {uri});
-      if (!outcome.ok) return outcome;
-      const {model, light} = outcome.value;
-      /** @type {(pose: Pose7) => Operation} */
-      const op = (pose) => store.modelEditing?.name
-        ? {kind: 'add_model', model: store.modelEditing.name, uri, pose} : {kind: 'insert', uri, pose};
-      if (model) store.setPlacing({kind: 'model', document: model, uri, op});
-      else if (light) store.setPlacing({kind: 'light', document: light, uri, op});
-      return outcome;
-    },
-    /**
-     * Puts down what follows the mouse.
-     * @param {Pose7} pose  in the world
-     * @returns {Promise<Outcome>}
-     */
-    async place(pose) {
-      const {placing} = store;
-      if (!placing) return NOTHING;
-      store.setPlacing(null);
-      const outcome = await edit(placing.op(pose));
-      const {name, names} = outcome.value ?? {};
-      if (names) store.select(names);
-      else if (name) actions.placed(name);
-      return outcome;
-    },
-    /** What has come is selected; the model editor's first link begins its model. @param {string} name */
-    placed(name) {
-      const owner = name.split('::')[0];
-      if (store.modelEditing && !store.modelEditing.name && owner !== name) store.setModelEditing({name: owner});
-      store.select([name]);
-    },
-    /**
-     * Files or folders of the desktop that were dropped on the ground; a dialog asks.
-     * @param {Dropped[]} entries
-     * @param {Vec3} place
-     */
-    dropFiles: (entries, place) => dialog('importFiles', {entries, place}),
-    /** @param {Requests['import_model']['fields']} fields */
-    importModel: (fields) => ask('import_model', fields, {quiet: true}),
-    library: () => ask('library'),
-    /** @param {string} path */
-    libraryAdd: (path) => ask('library_add', {path}),
+    ...inserts,
 
     // ---- modes
     /**
@@ -276,7 +179,7 @@ export function createActions({store, connection}) {
     escape() {
       if (view?.cancelDrag()) return;
       if (store.placing) store.setPlacing(null);
-      else if (store.camera.following) actions.follow(null);
+      else if (store.camera.following) camera.follow(null);
       else if (store.mode !== 'select') store.setMode('select');
       else store.select([]);
     },
@@ -304,62 +207,7 @@ export function createActions({store, connection}) {
       return view.carry(poses, edit({kind: 'move', poses, label: 'align'}));
     },
 
-    // ---- camera
-    /** @param {'top'|'bottom'|'front'|'back'|'left'|'right'|'home'} side */
-    viewFrom: (side) => view?.viewFrom(side),
-    resetView: () => view?.viewFrom('home'),
-    moveTo: (name = store.selection.at(-1)) => name && view?.moveTo(name),
-    /** The address that opens this page with this camera and selection, to the clipboard. */
-    async copyLink() {
-      const link = actions.viewLink();
-      if (!link) return;
-      try {
-        await navigator.clipboard.writeText(link);
-        note('Copied the link to this view.');
-      } catch {
-        // Without permission it stands in the address bar.
-        history.replaceState(null, '', link);
-        note('The link to this view is in the address bar.');
-      }
-    },
-    viewLink: () => view && `${location.href.split('#')[0]}${linkOf(view.camera, store.selection)}`,
-    /** Cameras that the user keeps, of this world. @returns {Bookmark[]} */
-    bookmarks: () => remembered.get(bookmarksKey(), []),
-    addBookmark() {
-      if (!view) return;
-      const kept = actions.bookmarks();
-      const numbers = kept.map(({name}) => Number(/^View (\d+)$/.exec(name)?.[1] ?? 0));
-      const name = `View ${Math.max(0, ...numbers) + 1}`;
-      remembered.set(bookmarksKey(), [...kept, {name, view: view.camera}]);
-      note(`Kept this camera as ${name}: Camera menu.`);
-    },
-    /** @param {number} at */
-    goToBookmark(at) {
-      const bookmark = actions.bookmarks()[at];
-      if (bookmark) view?.flyTo(bookmark.view);
-    },
-    clearBookmarks: () => remembered.set(bookmarksKey(), []),
-    /**
-     * What the models of the world cover of the ground, but for planes and one of them.
-     * @param {string} [without]
-     */
-    footprints: (without) => (store.document?.models ?? []).flatMap(({name}) => {
-      const outline = name === without ? null : view?.footprint(name);
-      return outline ? [{name, outline}] : [];
-    }),
-    /** @param {string|null} name  null ends it @returns {void} */
-    follow(name = store.selection.at(-1) ?? null) {
-      if (name) store.setMode('select');
-      store.setCamera({following: name});
-    },
-    /** @param {CameraChoices['projection']} projection */
-    setProjection: (projection) => store.setCamera({projection}),
-    /** @param {CameraChoices['controller']} controller */
-    setController: (controller) => store.setCamera({controller}),
-    perspective: () => store.setCamera({projection: 'perspective'}),
-    orthographic: () => store.setCamera({projection: 'orthographic'}),
-    orbitControl: () => store.setCamera({controller: 'orbit'}),
-    fpsControl: () => store.setCamera({controller: 'fps'}),
+    ...camera,
 
     // ---- what is shown
     /**
@@ -485,8 +333,6 @@ export function createActions({store, connection}) {
     return outcome;
   }
 
-  const bookmarksKey = () => `bookmarks.${store.history.file || store.document?.name || ''}`;
-
   /** @param {Mode} mode */
   function manipulate(mode) {
     if (store.camera.following) note('Not available while following a model; press Esc to stop following.');
@@ -504,20 +350,6 @@ export function createActions({store, connection}) {
   }
 
   return actions;
-}
-
-/**
- * What an action answers that had nothing to do.
- * @type {Outcome<{name?: string, names?: string[]}>}
- */
-const NOTHING = Object.freeze({ok: true, value: {}, issues: []});
-
-/**
- * What is said about models that a saved world does not hold.
- * @param {string[]} [names]
- */
-function without(names = []) {
-  return names.length ? ` without ${names.join(', ')}, which the launch file spawns` : '';
 }
 
 /**

@@ -1,13 +1,10 @@
 /** What the page knows: the world as the simulator last told it, and what the user looks at. */
-import {Emitter} from './emitter.js';
-import {decodeFrame, LIVE} from './pose_frames.js';
-import {compose, inverse} from './pose.js';
-import {splitScoped} from './scoped_names.js';
+import {WorldStore} from './world_store.js';
 /** @import {
- *   AutosavePush, ChangePush, DownloadPush, HistoryPush, LibraryPush, Light, Link, LoadingPush,
- *   LogPush, Model, Notices, Operation, Person, Push, ShutdownPush, WatchPush, World, WorldPush
+ *   AutosavePush, DownloadPush, LibraryPush, Light, Link, LoadingPush, LogPush, Model, Operation,
+ *   ShutdownPush, WatchPush, World
  * } from './protocol.js' */
-/** @import {Connection, Issue} from './connection.js' */
+/** @import {Issue} from './connection.js' */
 /** @import {DialogRequest} from './actions.js' */
 /** @import {Pose7} from './pose.js' */
 /** @import {ShapeName} from './new_entities.js' */
@@ -99,19 +96,8 @@ function initialOverlays() {
   };
 }
 
-/**
- * The world as the simulator last told it, and what the user looks at; tells of every change.
- * @extends {Emitter<StoreEvents>}
- */
-export class Store extends Emitter {
-  /** The world's document, null until the simulator has sent one. @type {World|null} */
-  document = null;
-  revision = 0;
-  /**
-   * World pose of each link's frame by link id, as the simulator last told.
-   * @type {Map<number, Float64Array>}
-   */
-  poses = new Map();
+/** The world, and what this page's user looks at; tells of every change. */
+export class Store extends WorldStore {
   /** Names in the order they were chosen: models, lights, "model::link". @type {string[]} */
   selection = [];
   /** @type {Mode} */
@@ -119,24 +105,8 @@ export class Store extends Emitter {
   /** @type {Placing|null} */
   placing = null;
   overlays = initialOverlays();
-  stats = {sim_ns: 0, real_ns: 0, factor: 0, iterations: 0, paused: true};
-  /** @type {Omit<HistoryPush, 'type'>} */
-  history = {undo: [], redo: [], undo_by: [], redo_by: [], dirty: false, file: ''};
-  /** Everybody who has this world open, this page too. @type {Person[]} */
-  people = [];
-  /** This page's number among them. */
-  me = 0;
   /** @type {Clipboard|null} */
   clipboard = null;
-  /** @type {Issue[]} */
-  issues = [];
-  connected = false;
-  /** @type {AutosavePush|null} */
-  autosave = null;
-  /** @type {LogPush|null} */
-  log = null;
-  /** Whether the poses are those of a log. */
-  replaying = false;
   /** @type {CameraChoices} */
   camera = {projection: 'perspective', controller: 'orbit', following: null};
   /** A model document shown beside the world, e.g. a building being drawn. @type {Model|null} */
@@ -147,219 +117,11 @@ export class Store extends Emitter {
    */
   modelEditing = null;
 
-  /** From a link's id to the document of its model. @type {Map<number, Model>} */
-  #owners = new Map();
-  /** @type {Connection|undefined} */
-  #connection;
-
-  /** @param {Connection} [connection] */
-  constructor(connection) {
-    super();
-    if (!connection) return;
-    this.#connection = connection;
-    connection.listen('open', ({detail}) => {
-      this.me = detail.number;
-      this.#setConnected(true);
-      this.emit('people');
-    });
-    connection.listen('close', () => this.#setConnected(false));
-    connection.listen('message', (event) => this.receive(event.detail));
-    connection.listen('frame', (event) => this.receiveFrame(event.detail));
-  }
-
-  // ---- what comes from the simulator
-
-  /** Takes a pushed message. @param {Push|{type: 'issue', issue: Issue}} message */
-  receive(message) {
-    switch (message.type) {
-      case 'world': this.#replaceWorld(message); break;
-      case 'change': this.#change(message); break;
-      case 'stats': {
-        const {type: _, ...stats} = message;
-        this.stats = stats;
-        this.emit('stats');
-        break;
-      }
-      case 'history': {
-        const {type: _, ...history} = message;
-        this.history = history;
-        this.emit('history');
-        break;
-      }
-      case 'issue': this.addIssue(message.issue); break;
-      case 'autosave': this.autosave = message; this.emit('autosave', message); break;
-      case 'log': this.log = message; this.emit('log', message); break;
-      case 'people': this.people = message.people; this.emit('people'); break;
-      case 'loading': this.emit('loading', message); break;
-      case 'watch': this.emit('watch', message); break;
-      case 'library': this.emit('library', message); break;
-      case 'download': this.emit('download', message); break;
-      case 'shutdown': this.emit('shutdown', message); break;
-      default: break;  // of a newer simulator
-    }
-  }
-
-  /** Takes a binary pose frame. @param {ArrayBuffer} buffer */
-  receiveFrame(buffer) {
-    const frame = decodeFrame(buffer);
-    if (!frame) return;
-    /** @type {Set<number>} */
-    const moved = new Set();
-    for (let index = 0; index < frame.count; index++) {
-      const id = frame.id(index);
-      let pose = this.poses.get(id);
-      if (!pose) this.poses.set(id, pose = new Float64Array(7));
-      frame.read(index, pose);
-      moved.add(id);
-    }
-    this.replaying = frame.kind !== LIVE;
-    if (moved.size) this.emit('poses', moved);
-  }
-
-  /** @param {WorldPush} worldPush */
-  #replaceWorld({revision, document}) {
-    this.revision = revision;
-    this.document = document;
-    this.poses.clear();
-    this.#owners.clear();
-    for (const model of document.models) this.#index(model);
-    this.emit('document');
-    this.#dropGone();
-  }
-
-  /** @param {ChangePush} changePush */
-  #change({revision, models, lights, world, order}) {
-    if (!this.document) return;
-    this.revision = revision;
-    /** @type {EntityChange[]} */
-    const changed = [];
-    for (const [name, value] of Object.entries(models ?? {})) {
-      replaceByName(this.document.models, name, value);
-      this.#reindex(name, value);
-      changed.push({name, kind: 'model', value});
-    }
-    for (const [name, value] of Object.entries(lights ?? {})) {
-      replaceByName(this.document.lights, name, value);
-      changed.push({name, kind: 'light', value});
-    }
-    Object.assign(this.document, world);
-    if (world && Object.keys(world).length) changed.push({name: '', kind: 'world', value: world});
-    if (order) this.#sort(order);
-    for (const detail of changed) this.emit('entity', detail);
-    if (order) this.emit('order');
-    this.#dropGone();
-  }
-
-  /** @param {string[]} order */
-  #sort(order) {
-    const places = new Map(order.map((name, index) => [name, index]));
-    const place = (/** @type {{name: string}} */ {name}) => places.get(name) ?? order.length;
-    this.document?.models.sort((a, b) => place(a) - place(b));
-    this.document?.lights.sort((a, b) => place(a) - place(b));
-  }
-
-  /** @param {string} name @param {Model|null} model */
-  #reindex(name, model) {
-    const before = [...this.#owners].filter(([, owner]) => owner.name === name);
-    for (const [id] of before) this.#owners.delete(id);
-    if (model) this.#index(model);
-    for (const [id] of before) if (!this.#owners.has(id)) this.poses.delete(id);
-  }
-
-  /** @param {Model} model */
-  #index(model) {
-    for (const link of model.links) {
-      this.#owners.set(link.id, model);
-      if (!this.poses.has(link.id)) {
-        this.poses.set(link.id, Float64Array.from(compose(model.pose, link.pose)));
-      }
-    }
-  }
-
-  #dropGone() {
+  /** What has gone is no longer selected. */
+  dropGone() {
     const left = this.selection.filter((name) => this.entity(name));
     if (left.length !== this.selection.length) this.#setSelection(left);
   }
-
-  /** @param {boolean} connected */
-  #setConnected(connected) {
-    this.connected = connected;
-    this.emit('connection');
-  }
-
-  // ---- looking things up
-
-  /** The model's document, or undefined. @param {string} name */
-  model(name) {
-    return this.document?.models.find((model) => model.name === name);
-  }
-
-  /** The light's document, or undefined. @param {string} name */
-  light(name) {
-    return this.document?.lights.find((light) => light.name === name);
-  }
-
-  /**
-   * What a name means.
-   * @param {string} name  "model", "model::link" or "light"
-   * @returns {EntityRef|null}
-   */
-  entity(name) {
-    const model = this.model(name);
-    if (model) return {kind: 'model', model};
-    const light = this.light(name);
-    if (light) return {kind: 'light', light};
-    const [owner, rest] = this.split(name);
-    const link = owner?.links.find((one) => one.name === rest);
-    return owner && link ? {kind: 'link', model: owner, link} : null;
-  }
-
-  /**
-   * The model that a scoped name begins with, and the rest of the name within it.
-   * @param {string} name  `model`, `model::link`, `model::link::visual`, …
-   * @returns {[Model|undefined, string]}
-   */
-  split(name) {
-    const [model, rest] = splitScoped(name, (one) => this.model(one) !== undefined);
-    return [this.model(model), rest];
-  }
-
-  /**
-   * Where an entity is now, in the world: of a model, where its first link carries its frame.
-   * @param {string} name
-   * @returns {number[]|null} pose7
-   */
-  worldPose(name) {
-    const entity = this.entity(name);
-    if (!entity) return null;
-    if (entity.kind === 'light') return [...entity.light.pose];
-    const link = entity.kind === 'link' ? entity.link : canonicalLink(entity.model);
-    const pose = link && this.poses.get(link.id);
-    if (!link || !pose) return [...entity.model.pose];
-    return entity.kind === 'link' ? [...pose] : compose(pose, inverse(link.pose));
-  }
-
-  /** The others who have this world open. */
-  get others() {
-    return this.people.filter(({number}) => number !== this.me);
-  }
-
-  /**
-   * The other who did a step of the history, '' for this page's user and for nobody.
-   * @param {'undo'|'redo'} which
-   * @param {number} [at]
-   */
-  authorOf(which, at = 0) {
-    const by = this.history[`${which}_by`]?.[at] ?? '';
-    return by === this.people.find(({number}) => number === this.me)?.name ? '' : by;
-  }
-
-  /** Tells the others what is selected, or a name. @param {Notices['presence']} fields */
-  tellPresence(fields) {
-    this.#connection?.send('presence', fields);
-  }
-
-  // ---- what the user looks at
 
   /**
    * @param {string[]} names
@@ -476,33 +238,4 @@ export class Store extends Emitter {
     this.modelEditing = editing;
     this.emit('modelEditing');
   }
-
-  /** @param {Issue} issue */
-  addIssue(issue) {
-    this.issues.push(issue);
-    this.emit('issue', issue);
-  }
-}
-
-/**
- * The link that carries a model's frame: the one it names, else the first; undefined without links.
- * @param {Model} model
- * @returns {Link|undefined}
- */
-export function canonicalLink(model) {
-  return model.links.find((link) => link.name === model.canonical_link) ?? model.links[0];
-}
-
-/**
- * @template {{name: string}} T
- * @param {T[]} list
- * @param {string} name
- * @param {T|null} value
- */
-function replaceByName(list, name, value) {
-  const index = list.findIndex((one) => one.name === name);
-  if (value === null) {
-    if (index >= 0) list.splice(index, 1);
-  } else if (index >= 0) list[index] = value;
-  else list.push(value);
 }

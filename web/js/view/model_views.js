@@ -1,12 +1,14 @@
 /** The world's models in the scene: built from the document, moved by pose frames. */
-import {Box3, Matrix4, Vector3} from 'three';
-import {canonicalLink} from '../store.js';
+import {Box3, Matrix4} from 'three';
+import {canonicalLink} from '../world_store.js';
 import {compose, displacement, inverse} from '../pose.js';
+import {ModelView, radiusOf} from './link_views.js';
 import {matrixOf} from './three_convert.js';
 import {boxOf, visualParts} from './shape_meshes.js';
 import {tinted} from './tints.js';
-/** @import {Batches, Item} from './batches.js' */
-/** @import {Link, Model, Visual} from '../protocol.js' */
+/** @import {Batches} from './batches.js' */
+/** @import {LinkView} from './link_views.js' */
+/** @import {Model, Visual} from '../protocol.js' */
 /** @import {Part, Stock} from './shape_meshes.js' */
 /** @import {Pose7, Vec3} from '../pose.js' */
 /** @import {Stage} from './stage.js' */
@@ -17,33 +19,6 @@ import {tinted} from './tints.js';
 /** Pixels: less is no movement, and up to the second number it is creeping. */
 const STILL = 0.7;
 const CREEPING = 2.5;
-
-class LinkView {
-  /** @type {Item[]} */
-  items = [];
-  matrix = new Matrix4();
-  /** The pose that is shown. */
-  shown = new Float64Array(7);
-  /** Of the visuals about the link's origin, m; 0: not known yet. */
-  radius = 0;
-
-  /** @param {Link} link */
-  constructor(link) {
-    this.link = link;
-  }
-}
-
-class ModelView {
-  /** @type {Map<number, LinkView>} */
-  links = new Map();
-  gone = false;
-
-  /** @param {Model} document */
-  constructor(document) {
-    this.document = document;
-    for (const link of document.links) this.links.set(link.id, new LinkView(link));
-  }
-}
 
 export class Models {
   #store;
@@ -395,18 +370,4 @@ export class Models {
     this.#stage.shadowsChanged();
     this.onMoved(ids);
   }
-}
-
-/** @param {LinkView} linkView @returns {number} of its visuals about its origin, m */
-function radiusOf({items}) {
-  const corner = new Vector3();
-  let farthest = 0.05;
-  for (const {geometry, local} of items) {
-    const box = boxOf(geometry);
-    if (local) box.applyMatrix4(local);
-    corner.set(Math.max(-box.min.x, box.max.x), Math.max(-box.min.y, box.max.y),
-      Math.max(-box.min.z, box.max.z));
-    if (Number.isFinite(corner.length())) farthest = Math.max(farthest, corner.length());
-  }
-  return farthest;
 }

@@ -3,7 +3,10 @@ import {
   Box3, Color, DirectionalLight, HemisphereLight, Matrix4, PerspectiveCamera, Scene, Vector3,
 } from 'three';
 import {forward, framing, lookAt, right, up} from '../camera_math.js';
+import {Materials} from './materials.js';
+import {Meshes} from './mesh_files.js';
 import {standaloneModel} from './standalone_model.js';
+/** @import {Connection} from '../connection.js' */
 /** @import {Model} from '../protocol.js' */
 /** @import {Stage} from './stage.js' */
 /** @import {Stock} from './shape_meshes.js' */
@@ -17,7 +20,7 @@ const FOV = 0.6;
  * @param {Stock} stock
  * @returns {Promise<Blob|null>} PNG; null when nothing of it can be seen
  */
-export async function thumbnail(stage, model, stock) {
+async function thumbnail(stage, model, stock) {
   const {group, ready} = standaloneModel(model, stock);
   await ready;
   await stock.meshes.idle();
@@ -44,4 +47,44 @@ export async function thumbnail(stage, model, stock) {
 function shifted(box) {
   const half = box.getSize(new Vector3()).multiplyScalar(0.5);
   return {min: half.clone().negate().toArray(), max: half.toArray()};
+}
+
+/** Pictures of the library's models: drawn once, and given to the simulator to keep. */
+export class Gallery {
+  #stage;
+  #connection;
+  /** @type {Stock} */
+  #stock;
+  /** By model URI. @type {Map<string, Promise<string|null>>} */
+  #known = new Map();
+
+  /** @param {Stage} stage @param {Connection} connection */
+  constructor(stage, connection) {
+    this.#stage = stage;
+    this.#connection = connection;
+    // Pictures of models that nobody has asked for say nothing of what they lack.
+    const unseen = new Meshes(() => {});
+    this.#stock = {meshes: unseen, materials: new Materials(unseen.manager)};
+  }
+
+  /**
+   * @param {string} uri  of the model
+   * @param {string} [address]  where the picture is kept
+   * @returns {Promise<string|null>} an address for an <img>
+   */
+  thumbnail(uri, address) {
+    const known = this.#known.get(uri) ?? this.#draw(uri, address);
+    this.#known.set(uri, known);
+    return known;
+  }
+
+  /** @param {string} uri @param {string} [address] */
+  async #draw(uri, address) {
+    const found = await this.#connection.request('library_get', {uri}).catch(() => null);
+    const model = found?.model;
+    const blob = model && await thumbnail(this.#stage, model, this.#stock);
+    if (!blob) return null;
+    if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);
+    return URL.createObjectURL(blob);
+  }
 }

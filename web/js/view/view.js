@@ -1,5 +1,5 @@
 /** The 3D view: puts its parts together and answers what the rest of the page asks of it. */
-import {Box3, Vector3} from 'three';
+import {Vector3} from 'three';
 import {hullOf} from '../building/plane_geometry.js';
 import {remembered} from '../panels/dom.js';
 import {subtract, transform} from '../pose.js';
@@ -7,7 +7,6 @@ import {Actors} from './actors.js';
 import {Batches} from './batches.js';
 import {BoxSelect} from './box_select.js';
 import {CameraRig, savedConfiguration} from './camera_rig.js';
-import {place} from './three_convert.js';
 import {FaceSnap} from './face_snap.js';
 import {hiddenFrom} from './first_look.js';
 import {Forces} from './force_arrows.js';
@@ -24,12 +23,13 @@ import {Picker} from './picking.js';
 import {Placer} from './insert_ghost.js';
 import {PivotMark} from './markers.js';
 import {Pointer} from './pointer.js';
+import {Preview} from './preview_model.js';
+import {counted, readout} from './readouts.js';
 import {SelectionBoxes} from './selection_boxes.js';
 import {Selector} from './selector.js';
-import {standaloneModel} from './standalone_model.js';
 import {NoWebGL, Stage} from './stage.js';
 import {Surroundings} from './environment.js';
-import {thumbnail} from './thumbnails.js';
+import {Gallery} from './thumbnails.js';
 import {TopicMarks} from './topic_marks.js';
 /** @import {Actions, Outcome, ShownWrench} from '../actions.js' */
 /** @import {Connection} from '../connection.js' */
@@ -65,9 +65,6 @@ const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs 
   acceleration in the browser's settings, update the graphics driver, or allow software rendering
   (Chromium: --enable-unsafe-swiftshader).`;
 
-/** Milliseconds after which it is told that meshes and textures are on their way. */
-const SLOW_FILES = 500;
-
 /** What stands in for the view where there is no WebGL. @param {HTMLElement} element */
 function withoutWebGL(element) {
   const text = document.createElement('p');
@@ -78,48 +75,6 @@ function withoutWebGL(element) {
   return {
     fps: 0, available: false, thumbnail: async () => null, redraw: () => {},
     dispose: () => text.remove(),
-  };
-}
-
-/**
- * Numbers over the view while something is dragged; '' hides them.
- * @param {HTMLElement} parent
- */
-function readout(parent) {
-  const element = document.createElement('output');
-  element.className = 'readout';
-  element.hidden = true;
-  parent.append(element);
-  return (/** @type {string} */ text) => {
-    element.hidden = !text;
-    element.textContent = text;
-  };
-}
-
-/**
- * Tells of a number that grows, once it has taken so long that somebody waits, and of its end.
- * @param {(done: number, of: number) => void} tell
- */
-function counted(tell) {
-  /** @type {ReturnType<typeof setTimeout>|undefined} */
-  let timer;
-  /** @type {[number, number]} */
-  let news = [0, 0];
-  let shown = false;
-  return (/** @type {number} */ done, /** @type {number} */ of) => {
-    news = [done, of];
-    if (done < of) {
-      timer ??= setTimeout(() => {
-        timer = undefined;
-        shown = news[0] < news[1];
-        if (shown) tell(...news);
-      }, shown ? 100 : SLOW_FILES);
-      return;
-    }
-    clearTimeout(timer);
-    timer = undefined;
-    if (shown) tell(done, of);
-    shown = false;
   };
 }
 
@@ -142,12 +97,10 @@ class View {
   #store;
   #stage;
   #stock;
-  /** For pictures of the library. @type {Stock} */
   #gallery;
   #models;
   #lights;
   #rig;
-  #picker;
   #manipulator;
   #forces;
   #boxes;
@@ -160,21 +113,14 @@ class View {
   #measure;
   #cube;
   #readout;
-  /** @type {ReturnType<typeof standaloneModel>|null} */
-  #preview = null;
-  /** What of it the camera was last turned to. @type {Box3|null} */
-  #framed = null;
-  /** By model URI. @type {Map<string, Promise<string|null>>} */
-  #thumbnails = new Map();
+  #preview;
   /** Names of the models that are shown elsewhere. @type {string[]} */
   #shifted = [];
   #pictured = false;
-  #connection;
 
   /** @param {HTMLElement} element @param {ViewOptions} viewOptions */
   constructor(element, {store, actions, connection, watches, topics}) {
     this.#store = store;
-    this.#connection = connection;
     const stage = new Stage(element);
     this.#stage = stage;
     const meshes = new Meshes((message) =>
@@ -184,9 +130,7 @@ class View {
       type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
-    // Pictures of models that nobody has asked for say nothing of what they lack.
-    const unseen = new Meshes(() => {});
-    this.#gallery = {meshes: unseen, materials: new Materials(unseen.manager)};
+    this.#gallery = new Gallery(stage, connection);
     const batches = new Batches(stage.scene);
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
@@ -200,7 +144,6 @@ class View {
     this.#models = models;
     this.#lights = lights;
     this.#rig = rig;
-    this.#picker = picker;
     this.#surroundings = new Surroundings({stage, store, materials});
     this.#actors = new Actors(shared);
     this.#overlays = new Overlays(shared);
@@ -213,6 +156,7 @@ class View {
     this.#measure = new Measure({...shared, selector});
     this.#cube = new OrientationCube(element, actions);
     this.#readout = readout(element);
+    this.#preview = new Preview(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
       placer: new Placer(shared), faceSnap: new FaceSnap(shared), forces: this.#forces,
       selector, measure: this.#measure, pivotMark: new PivotMark(shared),
@@ -272,7 +216,6 @@ class View {
       this.#coverWithShadow();
       return moving;
     };
-    this.#store.listen('preview', () => this.#showPreview());
   }
 
   /** For the benchmark: when the world could be seen, since the page was asked for. */
@@ -417,39 +360,6 @@ class View {
     return this.#stage.picture();
   }
 
-  // ---- a model beside the world
-
-  #showPreview() {
-    const {preview} = this.#store;
-    if (this.#preview) {
-      this.#stage.scene.remove(this.#preview.group);
-      this.#preview.dispose();
-    }
-    this.#preview = preview ? standaloneModel(preview, this.#stock) : null;
-    if (preview && this.#preview) {
-      const {group, ready} = this.#preview;
-      place(group, preview.pose);
-      // It can be picked before it is drawn for the first time.
-      group.updateMatrixWorld(true);
-      this.#stage.scene.add(group);
-      ready.then(() => {
-        this.#frame(new Box3().setFromObject(group));
-        this.#stage.shadowsChanged();
-      });
-    } else this.#framed = null;
-    this.#stage.shadowsChanged();
-  }
-
-  /**
-   * What is drawn beside the world is in sight when it begins, and when it has outgrown that.
-   * @param {Box3} box
-   */
-  #frame(box) {
-    if (box.isEmpty() || this.#framed?.containsBox(box)) return;
-    this.#framed = box.clone().expandByScalar(box.getSize(new Vector3()).length() * 0.15);
-    this.#rig.flyTo(this.#framed);
-  }
-
   /**
    * The link of the preview under a point of the page.
    * @param {number} clientX
@@ -457,9 +367,7 @@ class View {
    * @returns {{link: string}|null}
    */
   previewPick(clientX, clientY) {
-    if (!this.#preview) return null;
-    const [hit] = this.#picker.objects([this.#preview.group], clientX, clientY);
-    return hit ? {link: hit.object.parent?.name ?? ''} : null;
+    return this.#preview.pick(clientX, clientY);
   }
 
   /** Draws the next frame although nothing has changed. */
@@ -468,24 +376,11 @@ class View {
   }
 
   /**
-   * A small picture of a library model: drawn once, and given to the simulator to keep.
+   * A small picture of a library model.
    * @param {string} uri  of the model
    * @param {string} [address]  where the picture is kept
-   * @returns {Promise<string|null>} an address for an <img>
    */
   thumbnail(uri, address) {
-    const known = this.#thumbnails.get(uri) ?? this.#drawThumbnail(uri, address);
-    this.#thumbnails.set(uri, known);
-    return known;
-  }
-
-  /** @param {string} uri @param {string} [address] */
-  async #drawThumbnail(uri, address) {
-    const found = await this.#connection.request('library_get', {uri}).catch(() => null);
-    const model = found?.model;
-    const blob = model && await thumbnail(this.#stage, model, this.#gallery);
-    if (!blob) return null;
-    if (address) await fetch(address, {method: 'PUT', body: blob}).catch(() => null);
-    return URL.createObjectURL(blob);
+    return this.#gallery.thumbnail(uri, address);
   }
 }
