@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import * as plans from '../../web/js/building/plan.js';
+import * as clipboard from '../../web/js/building/plan_clipboard.js';
 import {faultsOf, meeting, openingFault} from '../../web/js/building/plan_check.js';
 import {History} from '../../web/js/building/plan_history.js';
 
@@ -113,8 +114,8 @@ test('the height of a level takes the walls along that were as high as it', () =
 
 test('copies of walls bring copies of their openings', () => {
   const {plan} = add(room(), 0, 'doors', {wall: 0, along: 2});
-  const clips = plans.clipboardOf(plan, 0, [wall(0)]);
-  const {plan: made, refs} = plans.pasted(plan, 0, clips, [1, 1]);
+  const clips = clipboard.clipboardOf(plan, 0, [wall(0)]);
+  const {plan: made, refs} = clipboard.pasted(plan, 0, clips, [1, 1]);
   assert.deepEqual(refs, [wall(4), {kind: 'doors', id: 1}]);
   assert.deepEqual(made.levels[0].walls[4].start, [1, 1]);
   assert.equal(made.levels[0].doors[1].wall, 4);
@@ -122,7 +123,7 @@ test('copies of walls bring copies of their openings', () => {
 
 test('a copied opening whose wall stays behind stands free where it was', () => {
   const {plan, ref} = add(room(), 0, 'windows', {wall: 1, along: 2});
-  const {plan: made} = plans.pasted(plan, 0, plans.clipboardOf(plan, 0, [ref]), [1, 0]);
+  const {plan: made} = clipboard.pasted(plan, 0, clipboard.clipboardOf(plan, 0, [ref]), [1, 0]);
   const [, free] = made.levels[0].windows;
   assert.equal(free.wall, null);
   assert.deepEqual(free.position, [5, 2]);

@@ -3,8 +3,10 @@ import {Emitter} from '../emitter.js';
 import {faultsOf} from './plan_check.js';
 import {History} from './plan_history.js';
 import {Tool} from './tool.js';
-import {clipboardOf, emptyPlan, itemOf, KINDS, pasted, remove} from './plan.js';
-/** @import {Clip, Kind, OpeningKind, Ref} from './plan.js' */
+import {emptyPlan, itemOf, KINDS, remove} from './plan.js';
+import {clipboardOf, pasted} from './plan_clipboard.js';
+/** @import {Kind, OpeningKind, Ref} from './plan.js' */
+/** @import {Clip} from './plan_clipboard.js' */
 /** @import {Opening, Plan, Stairs} from '../protocol.js' */
 /** @import {Point} from './plane_geometry.js' */
 

@@ -16,12 +16,13 @@
  * @property {Requests['hello']['reply']} [about]  what the server said of itself
  */
 import {HOTKEYS} from '../hotkeys.js';
-import {ask, closeDialogs} from './dialog.js';
+import {closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
 import {cloneDialog, newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
+import {offerRestore} from './dialogs/restore_offer.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
 import {byId, elementsOf, fill, h, remembered, roving} from './dom.js';
 import {mountHints} from './hint_line.js';
@@ -42,7 +43,7 @@ import {TopicsPanel} from './topics_panel.js';
 import {TopicWindows} from './topic_windows.js';
 import {WorldTab} from './world_tab.js';
 /** @import {Actions, DialogName, DialogRequest} from '../actions.js' */
-/** @import {AutosavePush, LoadingPush, Requests} from '../protocol.js' */
+/** @import {LoadingPush, Requests} from '../protocol.js' */
 /** @import {Connection, RequestFunction} from '../connection.js' */
 /** @import {SceneView} from '../view/view.js' */
 /** @import {Store} from '../store.js' */
@@ -360,38 +361,6 @@ class Windows {
       },
       {once: true},
     );
-  }
-}
-
-/**
- * Changes that no file has, from before a crash or an end without saving.
- * @param {Page} page
- * @param {AutosavePush} autosavePush
- */
-async function offerRestore(page, {found, file, time, others}) {
-  if (!found) {
-    if (others) {
-      page.notices.say(`Unsaved changes to ${others === 1 ? 'another world' :
-        `${others} other worlds`} can be restored: File, Recover.`);
-    }
-    return;
-  }
-  const when = time ? ` of ${new Date(time * 1000).toLocaleString()}` : '';
-  const choice = await ask(
-    'Restore unsaved changes?',
-    `Unsaved changes to ${file || 'a world without a file'}${when} were found. They replace the ` +
-      'world as it is now. Discarded changes can be recovered for a week: File, Recover.',
-    [
-      {title: 'Discard', value: 'discard', danger: true},
-      {title: 'Later'},
-      {title: 'Restore', value: 'restore', primary: true},
-    ],
-  );
-  if (choice !== 'discard' && choice !== 'restore') return;
-  try {
-    await page.request('autosave', {action: choice});
-  } catch (fault) {
-    page.notices.fault(fault);
   }
 }
 
