@@ -1,10 +1,16 @@
 """Small windows, fingers, and what is found in other editors: box selection, measuring, links."""
 from __future__ import annotations
 
+import io
+import os
+import pathlib
+
 import pytest
+from PIL import Image
 from pytest import approx
 from support import Node, wait_for
 
+LAB_COURSE = str(pathlib.Path(__file__).resolve().parents[2] / "world" / "lab_course.world")
 OVERLAPS = """(() => {
   const texts = [...document.querySelectorAll('#bars *, #timebar *')].filter((one) =>
     one.childElementCount === 0 && one.textContent.trim() && one.offsetParent !== null &&
@@ -193,3 +199,110 @@ def test_the_building_editor_has_the_window_and_shows_the_world_in_its_plan(open
     editor.page.get_by_role("menuitem", name="File", exact=True).click()
     editor.page.get_by_role("menuitem", name="Exit Building Editor").click()
     editor.page.locator("#menubar").wait_for()
+
+
+def choose(editor, menu, item):
+    editor.page.get_by_role("menuitem", name=menu, exact=True).click()
+    editor.page.get_by_role("menu").get_by_role("menuitem", name=item).click()
+
+
+def rest(editor):
+    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
+
+
+def from_top(editor):
+    editor.get("editor.actions.viewFrom('top')")
+    wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
+    rest(editor)
+    return editor.get("editor.view.camera.position")
+
+
+def test_a_bookmark_brings_the_camera_back(open_page):
+    editor = open_page.first
+    above = from_top(editor)
+    editor.page.keyboard.press("Alt+b")
+    editor.page.keyboard.press("Home")
+    wait_for(lambda: editor.get("editor.view.camera.pitch") > -1, "home")
+    choose(editor, "Camera", "View 1")
+    wait_for(lambda: editor.get("editor.view.camera.position") == approx(above), "the bookmark")
+    choose(editor, "Camera", "Clear Bookmarks")
+    assert editor.get("editor.actions.bookmarks()") == []
+
+
+def test_a_saved_configuration_is_how_the_next_visit_begins(open_page):
+    editor = open_page("#")
+    home = editor.get("editor.view.camera.position")
+    editor.get("editor.store.setOverlay('grid', false)")
+    above = from_top(editor)
+    for item, position, grid in (("Save Configuration", above, False),
+                                 ("Reset Configuration", home, True)):
+        choose(editor, "File", item)
+        editor.page.reload()
+        editor.wait_for_world()
+        wait_for(lambda where=position: editor.get("editor.view.camera.position") == approx(where),
+                 f"the camera after {item}")
+        assert editor.get("editor.store.overlays.scene.grid") is grid
+
+
+def test_a_clone_is_another_file_and_the_world_keeps_its_own(node, open_page):
+    editor = open_page.first
+    own = editor.get("editor.store.history.file")
+    choose(editor, "File", "Clone World")
+    editor.field("File name").fill("second.world")
+    editor.page.keyboard.press("Enter")
+    dialog = editor.page.get_by_role("dialog", name="World Cloned")
+    command = dialog.get_by_label("Command").input_value()
+    dialog.get_by_role("button", name="Close").last.click()
+    clone = os.path.join(node.worlds, "second.world")
+    assert command.endswith(f"gazebo {clone}")
+    assert editor.get("editor.store.history.file") == own
+    outcome = editor.get(f"editor.actions.open({clone!r}, {{discard: true}})")
+    assert outcome["ok"], outcome
+    wait_for(lambda: {"box", "sphere"} <= set(editor.names()), "the clone's models")
+
+
+def test_what_moves_is_seen_in_the_first_view_of_a_walled_room(open_page):
+    outcome = open_page.first.get(f"editor.actions.open({LAB_COURSE!r}, {{discard: true}})")
+    assert outcome["ok"], outcome
+    editor = open_page("#")
+    for name in ("box", "sphere", "cylinder"):
+        editor.page.mouse.click(*editor.get(f"editor.view.pixelOf('{name}')"))
+        editor.until(f"editor.store.selection.join() === '{name}'", f"{name} under the mouse")
+
+
+def test_the_ground_is_darker_where_something_stands_on_it(open_page):
+    editor = open_page.first
+    editor.get("editor.store.setOverlay('grid', false)")
+    rest(editor)
+
+    def brightness(point):
+        x, y = editor.pixel(point)
+        clip = {"x": x - 2, "y": y - 2, "width": 5, "height": 5}
+        picture = Image.open(io.BytesIO(editor.page.screenshot(clip=clip))).convert("L")
+        return sum(picture.getdata()) / 25
+
+    # On the side of the sun, where the box throws no other shadow.
+    assert brightness((0.54, -0.1, 0.0)) < 0.93 * brightness((0.9, -0.1, 0.0))
+
+
+BROKEN = """<?xml version="1.0"?><sdf version="1.6"><model name="broken"><link name="link">
+  <visual name="v"><geometry><mesh><uri>model://broken/missing.dae</uri></mesh></geometry></visual>
+  <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
+  </link></model></sdf>"""
+
+
+def test_a_picture_of_the_library_says_nothing_of_what_its_model_lacks(node, open_page):
+    folder = os.path.join(node.home, ".gazebo", "models", "broken")
+    os.makedirs(folder)
+    for name, text in (("model.sdf", BROKEN), ("model.config", """<?xml version="1.0"?><model>
+        <name>broken</name><version>1.0</version><sdf version="1.6">model.sdf</sdf></model>""")):
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as out:
+            out.write(text)
+    editor = open_page.first
+    before = editor.get("editor.store.issues.length")
+    editor.get("editor.view.thumbnail('model://broken')")
+    assert editor.get("editor.store.issues.length") == before
+    editor.get("editor.actions.insertModel('model://broken')")
+    editor.get("editor.actions.place([0, 3, 0.5, 0, 0, 0, 1])")
+    wait_for(lambda: "missing.dae" in editor.get(
+        "editor.store.issues.map(({message}) => message).join()"), "what the placed model lacks")

@@ -257,15 +257,24 @@ export async function cloneDialog({store, request}) {
   });
   if (!path) return;
   const command = `ROS_MASTER_URI=http://localhost:11399 gazebo ${/^[\w./-]+$/.test(path) ? path : `'${path.replaceAll("'", "'\\''")}'`}`;
-  const line = h('input', {type: 'text', value: command, readonly: true, 'aria-label': 'Command'});
-  await new Dialog({
+  const line = h('textarea', {rows: 2, readonly: true, spellcheck: 'false', 'aria-label': 'Command'});
+  line.value = command;
+  const dialog = new Dialog({
     title: 'World Cloned',
     content: [h('p', {text: `Saved ${path}. To run the clone beside this world, without ROS, type in another terminal:`}), line],
     buttons: [{title: 'Copy Command', run: async () => {
-      await navigator.clipboard.writeText(command);
+      try {
+        await navigator.clipboard.writeText(command);
+        dialog.say('Copied.');
+      } catch {
+        // A browser gives its clipboard only where it trusts the address.
+        line.select();
+        dialog.say('The browser does not allow copying here: press Ctrl+C.');
+      }
       return false;
     }}, {title: 'Close', primary: true}],
-  }).open();
+  });
+  await dialog.open();
 }
 
 /** What a saved world holds besides its models: what the launch file spawned, and its state. */
