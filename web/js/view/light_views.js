@@ -167,7 +167,7 @@ export class Lights {
     const {centre: now, reach: width} = this.#focus;
     // Often is expensive, and shadows would swim: only when the old place no longer does.
     if (now.distanceTo(wanted) < width * 0.25 && reach < width * 1.2 && reach > width * 0.5) return;
-    this.#focus = {centre: wanted, reach: Math.min(Math.max(reach, 4), 80)};
+    this.#focus = {centre: wanted, reach: Math.min(Math.max(reach, 2), 80)};
     for (const entry of this.#entries.values()) this.#aim(entry, entry.light);
     this.#stage.shadowsChanged();
   }

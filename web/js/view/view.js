@@ -234,7 +234,7 @@ class View {
     const distance = this.#rig.orthographic ? 10
       : Math.min(down > 0.05 && height > 0 ? height / down : 15, 40);
     const centre = position.map((part, index) => part + ahead[index] * distance);
-    this.#lights.cover(centre, Math.max(distance * 1.3, 4));
+    this.#lights.cover(centre, Math.max(distance * 1.3, 2));
     this.#surroundings.cover(centre, this.#rig.orthographic
       ? Math.max(distance, this.#stage.width / this.#rig.zoomLevel) : distance);
   }
