@@ -1,7 +1,8 @@
 /** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
 import {faultText} from '../panels/dialog.js';
+import {twinned} from './twin_faces.js';
 import {
-  Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
+  Camera, DoubleSide, FrontSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
 } from 'three';
 /** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
 /** @import {Geometry} from '../protocol.js' */
@@ -113,15 +114,51 @@ function meshesOf(root) {
     for (const material of materials) {
       material.side = DoubleSide;
       if (material.map) material.map.anisotropy = 4;
+      showUnseen(material);
     }
     found.push(object);
   });
   return found;
 }
 
-/** @param {Object3D} root */
-const partsOf = (root) => meshesOf(root).map((object) => ({geometry: object.geometry,
-  material: object.material, matrix: object.matrixWorld.clone(), names: namesOf(object)}));
+/**
+ * Old exporters write an opaque material as one of transparency 0, which would be nothing at all;
+ * Gazebo heeds transparency only where the file says how it is meant (ColladaLoader, `opaque`).
+ * @param {Material} material
+ */
+function showUnseen(material) {
+  if (material.opacity > 0) return;
+  material.opacity = 1;
+  material.transparent = false;
+}
+
+/**
+ * A mesh's material seen from its front alone, each made once.
+ * @param {Map<Material, Material>} made
+ * @param {Material} material
+ */
+function fromFront(made, material) {
+  const front = made.get(material) ?? material.clone();
+  front.side = FrontSide;
+  made.set(material, front);
+  return front;
+}
+
+/** @param {Object3D} root @returns {MeshPart[]} */
+function partsOf(root) {
+  const objects = meshesOf(root);
+  const twins = twinned(objects.map(({geometry, matrixWorld}) => ({
+    positions: geometry.getAttribute('position').array, index: geometry.index?.array ?? null,
+    matrix: matrixWorld.elements})));
+  /** @type {Map<Material, Material>} */
+  const fronts = new Map();
+  return objects.map((object, at) => {
+    const material = !twins[at] ? object.material : Array.isArray(object.material)
+      ? object.material.map((one) => fromFront(fronts, one)) : fromFront(fronts, object.material);
+    return {geometry: object.geometry, material, matrix: object.matrixWorld.clone(),
+      names: namesOf(object)};
+  });
+}
 
 /** A file's scene without its lights and cameras. @param {Object3D} root */
 function figureOf(root) {

@@ -33,7 +33,9 @@ async function thumbnail(stage, model, stock) {
   sun.position.set(2, -3, 4);
   scene.add(group, sun, new HemisphereLight(0xffffff, 0x9a948c, 2));
   const view = framing(lookAt([3, -4, 2.6], [0, 0, 0]), shifted(box), FOV, 1);
-  const camera = new PerspectiveCamera(FOV * 180 / Math.PI, 1, 0.01, 2000);
+  // A terrain is as far away as it is wide, a screw is not.
+  const distance = Math.hypot(...view.position);
+  const camera = new PerspectiveCamera(FOV * 180 / Math.PI, 1, distance / 100, distance * 10);
   camera.position.fromArray(view.position).add(box.getCenter(new Vector3()));
   camera.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(new Vector3().fromArray(right(view)),
     new Vector3().fromArray(up(view)), new Vector3().fromArray(forward(view)).negate()));
