@@ -542,7 +542,7 @@ export const FRAME_RECORD_BYTES = 32;
  *      model: string, name: string, overwrite?: boolean|null, about?: BuildingAbout|null
  *    },
  *    reply: {uri: string, path: string}},
- *  library_get: {fields: {uri: string},
+ *  library_get: {fields: {uri: string, quiet?: boolean|null},
  *    reply: {model?: Model|null, light?: Light|null}},
  *  preview: {fields: {sdf: string},
  *    reply: {model?: Model|null, light?: Light|null}},

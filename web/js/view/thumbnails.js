@@ -82,7 +82,7 @@ export class Gallery {
 
   /** @param {string} uri @param {string} [address] */
   async #draw(uri, address) {
-    const found = await this.#connection.request('library_get', {uri}).catch(() => null);
+    const found = await this.#connection.request('library_get', {uri, quiet: true}).catch(() => null);
     const model = found?.model;
     const blob = model && await thumbnail(this.#stage, model, this.#stock);
     if (!blob) return null;

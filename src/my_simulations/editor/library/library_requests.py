@@ -93,7 +93,8 @@ class LibraryRequests:
             raise CommandError(f"{uri!r} is not a model URI")
         self._library.provide(uri)
         entity, issues = entity_of_uri(uri, self._resolver)
-        for issue in issues:
+        # Nobody has asked for the models of the gallery's pictures.
+        for issue in () if message.get("quiet") else issues:
             self._tell(issue)
         return shown(entity, self._hub.documents)
 
