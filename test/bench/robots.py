@@ -24,6 +24,7 @@ Row = Tuple[str, str, str, bool]
 WORLD = scenes.world("boxes", 0, True, 1000.0)
 ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf.xacro"
 SECONDS = 15.0
+SETTLE = 3.0   # s, of what a start leaves to do
 
 
 class Shares:
@@ -104,6 +105,7 @@ def drive() -> List[Row]:
                 heard = listen(1, laser=False)
                 wait(lambda heard=heard, plugins=plugins: len(heard) == len(plugins), 30,
                      "odometry")
+            time.sleep(SETTLE)
             shares = Shares(server)
             time.sleep(SECONDS)
             found.append(shares.end()[0])
