@@ -16,3 +16,15 @@ test('a face alone, one beside it and one drawn twice the same way round are no 
   assert.deepEqual(twinned([front, {...back, matrix: SHIFTED}]), [false, false]);
   assert.deepEqual(twinned([front, front]), [false, false]);
 });
+
+test('the two sides need not be divided into the same triangles', () => {
+  const positions = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0];
+  const side = (index) => ({positions, index, matrix: STANDS});
+  assert.deepEqual(twinned([side([0, 1, 2, 0, 2, 3]), side([0, 3, 1, 1, 3, 2])]), [true, true]);
+});
+
+test('a cube is seen from outside alone already and keeps both sides', () => {
+  const positions = [0, 1].flatMap((x) => [0, 1].flatMap((y) => [0, 1].map((z) => [x, y, z]))).flat();
+  const index = [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3];
+  assert.deepEqual(twinned([{positions, index, matrix: STANDS}]), [false]);
+});

@@ -5,8 +5,10 @@
 
 /** Larger files are not searched: it would be felt. */
 const MOST_TRIANGLES = 100000;
-/** Middles nearer than this, in sizes of the whole, are one place. */
+/** Corners nearer than this, in sizes of the whole, are one place. */
 const FINE = 1e-5;
+/** Cosine between normals that look opposite ways. */
+const OPPOSITE = -0.999;
 
 /**
  * A mesh: coordinates, three indices a triangle or null, and the column-major matrix that places it.
@@ -25,10 +27,12 @@ function corners({positions, index, matrix}, triangle) {
   });
 }
 
-/** @param {number[][]} corners  @returns {number[]} */
+/** @param {number[][]} corners  @returns {number[]} of length 1 */
 function normalOf([a, b, c]) {
   const [u, v] = [b, c].map((corner) => corner.map((part, axis) => part - a[axis]));
-  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  const length = Math.hypot(...normal) || 1;
+  return normal.map((part) => part / length);
 }
 
 /**
@@ -46,22 +50,25 @@ export function twinned(parts) {
     }
   }
   const grid = largest * FINE || 1;
-  /** @param {number[][]} triangle */
-  const keyOf = (triangle) => [0, 1, 2].map((axis) =>
-    Math.round((triangle[0][axis] + triangle[1][axis] + triangle[2][axis]) / 3 / grid)).join();
+  /** @param {number[]} corner */
+  const keyOf = (corner) => corner.map((part) => Math.round(part / grid)).join();
+  // By corners: the two sides need not be divided into the same triangles.
   /** @type {Map<string, number[][]>} */
   const normals = new Map();
-  for (const list of placed) {
-    for (const triangle of list) {
-      const key = keyOf(triangle);
-      normals.set(key, [...normals.get(key) ?? [], normalOf(triangle)]);
+  for (const triangle of placed.flat()) {
+    const normal = normalOf(triangle);
+    for (const corner of triangle) {
+      const key = keyOf(corner);
+      const known = normals.get(key);
+      if (known) known.push(normal);
+      else normals.set(key, [normal]);
     }
   }
   return placed.map((list) => {
     const twins = list.filter((triangle) => {
       const normal = normalOf(triangle);
-      return normals.get(keyOf(triangle))?.some((other) =>
-        other.reduce((sum, part, axis) => sum + part * normal[axis], 0) < 0);
+      return triangle.every((corner) => normals.get(keyOf(corner))?.some((other) =>
+        other.reduce((sum, part, axis) => sum + part * normal[axis], 0) < OPPOSITE));
     });
     return twins.length > list.length / 2;
   });
