@@ -1,8 +1,7 @@
 /** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
 import {faultText} from '../panels/dialog.js';
-import {twinned} from './twin_faces.js';
 import {
-  Camera, DoubleSide, FrontSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
+  Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
 } from 'three';
 /** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
 /** @import {Geometry} from '../protocol.js' */
@@ -132,33 +131,9 @@ function showUnseen(material) {
   material.transparent = false;
 }
 
-/**
- * A mesh's material seen from its front alone, each made once.
- * @param {Map<Material, Material>} made
- * @param {Material} material
- */
-function fromFront(made, material) {
-  const front = made.get(material) ?? material.clone();
-  front.side = FrontSide;
-  made.set(material, front);
-  return front;
-}
-
-/** @param {Object3D} root @returns {MeshPart[]} */
-function partsOf(root) {
-  const objects = meshesOf(root);
-  const twins = twinned(objects.map(({geometry, matrixWorld}) => ({
-    positions: geometry.getAttribute('position').array, index: geometry.index?.array ?? null,
-    matrix: matrixWorld.elements})));
-  /** @type {Map<Material, Material>} */
-  const fronts = new Map();
-  return objects.map((object, at) => {
-    const material = !twins[at] ? object.material : Array.isArray(object.material)
-      ? object.material.map((one) => fromFront(fronts, one)) : fromFront(fronts, object.material);
-    return {geometry: object.geometry, material, matrix: object.matrixWorld.clone(),
-      names: namesOf(object)};
-  });
-}
+/** @param {Object3D} root */
+const partsOf = (root) => meshesOf(root).map((object) => ({geometry: object.geometry,
+  material: object.material, matrix: object.matrixWorld.clone(), names: namesOf(object)}));
 
 /** A file's scene without its lights and cameras. @param {Object3D} root */
 function figureOf(root) {
