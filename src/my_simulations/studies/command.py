@@ -5,25 +5,30 @@ import argparse
 import json
 import os
 import re
+import shlex
 import signal
 import sys
 from types import FrameType
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Set
 
 from ..errors import CommandError, InputError, SimulationError
-from .folder import REPORT, StudyFolder
+from . import slurm
+from .cluster_address import SLURM, TlsFiles, scheduler_address
+from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, counts, finished_cases, header_of
 from .plan import WHOLE, CasePlan, Shard
+from .recorder import Recorder
 from .report import write_report
 from .row import OK
+from .scenario_slot import launch_words, require_ros
 from .show import can_launch, launch_command, write_world
 from .slot import Hook
 from .study_file import read_study
 from .study_progress import Progress
-from .study_runner import Rate, StudyRunner
-from .trajectories import Recorder
+from .study_runner import Rate, StudyRunner, Told
 
 NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130
+_SHARDS = 100
 
 
 def parser() -> argparse.ArgumentParser:
@@ -54,11 +59,29 @@ def parser() -> argparse.ArgumentParser:
         each.add_argument("dir", metavar="DIR", nargs="?", default=".",
                           help="folder of the results; default: the working directory")
     for each in (run, resume):
-        each.add_argument("--slots", type=int, metavar="N", default=os.cpu_count() or 1,
-                          help="cases that run at a time; default: number of processors")
+        _add_places(each)
     for each in (run, resume, *parsers.values()):
         each.add_argument("--json", action="store_true", help="print JSON")
     return made
+
+
+def _add_places(each: argparse.ArgumentParser) -> None:
+    """Options that say where cases run."""
+    each.add_argument("--slots", type=int, metavar="N",
+                      help="cases that run at a time, on each machine; default: number of processors"
+                      ", on Dask that of a worker's threads, on Slurm 1")
+    each.add_argument("--on", type=str, default="", metavar="WHERE",
+                      help="slurm: write, and submit if sbatch is here, an array of jobs;"
+                      " dask://HOST:PORT or dask:FILE: run on the workers of a Dask scheduler, named"
+                      " by its address or scheduler file")
+    each.add_argument("--shards", type=int, metavar="N",
+                      help=f"tasks of the Slurm array; default: {_SHARDS}")
+    each.add_argument("--sbatch", action="append", default=[], metavar="OPTION",
+                      help="option of sbatch, such as time=01:00:00; may be repeated")
+    for name, what in (("ca", "authority that signed the cluster's certificates"),
+                       ("cert", "certificate of this side"), ("key", "its private key")):
+        each.add_argument(f"--tls-{name}", default="", metavar="PEM",
+                          help=f"for Dask: {what}; default: Dask's configuration")
 
 
 def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None) -> int:
@@ -97,7 +120,11 @@ def _run(options: argparse.Namespace, hook: Optional[Hook]) -> int:
     stem = os.path.splitext(os.path.basename(options.file))[0]
     folder = StudyFolder(options.out or stem)
     plan = _plan(options.file)
+    if options.on != SLURM:
+        folder.check_shards(options.shard.of)
     folder.create(options.file)
+    if options.on == SLURM:
+        return _on_slurm(options, folder, plan)
     return _work(options, folder, plan, options.shard, hook)
 
 
@@ -105,12 +132,34 @@ def _resume(options: argparse.Namespace, hook: Optional[Hook]) -> int:
     folder = StudyFolder(options.dir)
     header = folder.header()
     plan = _plan(header["file"])
-    codes = []
-    for path in folder.journals():
-        found = re.search(r"-(\d+)-of-(\d+)\.jsonl$", path)
-        shard = Shard(int(found[1]), int(found[2])) if found else WHOLE
-        codes.append(_work(options, folder, plan, shard, hook))
-    return max(codes)
+    if options.on == SLURM:
+        return _on_slurm(options, folder, plan)
+    of = shard_of(folder.journals()[0]).of
+    return max(_work(options, folder, plan, Shard(number, of), hook)
+               for number in range(1, of + 1))
+
+
+def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) -> int:
+    shards = min(_SHARDS if options.shards is None else options.shards, len(plan))
+    if shards < 1:
+        raise CommandError(f"--shards must be at least 1, is {options.shards}")
+    folder.check_shards(shards)
+    path = slurm.write_script(folder.path, slurm.job_script(
+        plan.study.name, plan.study.file, folder.path, shards, _slots(options, 1),
+        options.sbatch))
+    told = slurm.submit(path) if slurm.can_submit() else ""
+    if options.json:
+        _say(json.dumps({"script": path, "shards": shards, "submitted": bool(told)}))
+    else:
+        _say(path)
+        _tell(told or f"sbatch is not on this machine: submit it where it is, sbatch {path}")
+    return 0
+
+
+def _slots(options: argparse.Namespace, default: int) -> int:
+    if options.slots is not None and options.slots < 1:
+        raise CommandError(f"--slots must be at least 1, is {options.slots}")
+    return options.slots or default
 
 
 def _plan(file: str) -> CasePlan:
@@ -122,8 +171,10 @@ def _plan(file: str) -> CasePlan:
 
 def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shard: Shard,
           hook: Optional[Hook]) -> int:
-    if options.slots < 1:
-        raise CommandError(f"--slots must be at least 1, is {options.slots}")
+    _slots(options, 1)
+    address = scheduler_address(options.on)
+    if plan.study.scenarios and not address:
+        require_ros()
     total = len(range(shard.index - 1, len(plan), shard.of))
     journal = Journal(folder.journal_of(shard), {
         "study": plan.study.name, "file": plan.study.file, "cases": total,
@@ -133,18 +184,34 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
         rate = Rate(total - len(finished))
         progress = Progress(rate, sys.stderr, options.json)
-        runner = StudyRunner(plan, recorder, finished, options.slots, progress.tell, hook)
         before = signal.signal(signal.SIGTERM, _interrupt)
         try:
-            runner.run(shard)
+            if address:
+                _run_on_dask(options, plan, recorder, finished, address, progress.tell, shard)
+            else:
+                StudyRunner(plan, recorder, finished, _slots(options, os.cpu_count() or 1),
+                            progress.tell, hook).run(shard)
         finally:
             signal.signal(signal.SIGTERM, before)
             progress.close()
     finally:
         journal.close()
-    files = folder.write_tables(plan)
-    files.append(_report(folder, plan))
-    return _tell_status(folder, options.json, files)
+    files = []
+    if folder.is_complete():  # of many shards, the last one writes the table
+        files = [*folder.write_tables(plan), _report(folder, plan)]
+    return _tell_status(folder, [journal.path], options.json, files)
+
+
+def _run_on_dask(options: argparse.Namespace, plan: CasePlan, recorder: Recorder,
+                 finished: Set[int], address: str, told: Told, shard: Shard) -> None:
+    try:
+        from .dask_runner import DaskRunner
+    except ImportError as fault:
+        raise CommandError(f"--on dask needs Dask: pip install my_simulations[dask] ({fault})"
+                           ) from None
+    tls = TlsFiles(options.tls_ca, options.tls_cert, options.tls_key)
+    DaskRunner(plan, recorder, finished, _slots(options, 0), address, tls, told,
+               lambda text: _tell(f"study: {text}")).run(shard)
 
 
 def _interrupt(_: int, __: Optional[FrameType]) -> None:
@@ -152,14 +219,16 @@ def _interrupt(_: int, __: Optional[FrameType]) -> None:
 
 
 def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    return _tell_status(StudyFolder(options.dir), options.json, [])
+    folder = StudyFolder(options.dir)
+    return _tell_status(folder, folder.journals(), options.json, [])
 
 
-def _tell_status(folder: StudyFolder, as_json: bool, files: List[str]) -> int:
+def _tell_status(folder: StudyFolder, journals: Sequence[str], as_json: bool, files: List[str]
+                 ) -> int:
     total: Dict[str, int] = {}
     cases = 0
     header: Dict[str, Any] = {}
-    for path in folder.journals():
+    for path in journals:
         header = header_of(path)
         cases += header["cases"]
         for status, count in counts(path).items():
@@ -200,14 +269,21 @@ def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
         _tell(f"study: no case has an id that begins with {options.case}; ids change with the study"
               " file and the files it names")
         return INVALID
+    if plan.study.scenarios:
+        return _show_command(["roslaunch", *launch_words(plan, case)], bool(options.write))
     path = options.write or os.path.join(folder.path, f"case-{case.id}.world")
     path = write_world(plan, case, path)
-    command = launch_command(path)
     if options.write or not can_launch():
         _say(path)
-        _tell("to open it: " + " ".join(command))
+    return _show_command(launch_command(path), bool(options.write))
+
+
+def _show_command(command: List[str], only_tell: bool) -> int:
+    text = " ".join(map(shlex.quote, command))
+    if only_tell or not can_launch():
+        _tell("to open it: " + text)
         return 0
-    _tell(" ".join(command))
+    _tell(text)
     os.execvp(command[0], command)
 
 

@@ -18,11 +18,11 @@ from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld, WorldChoice
 from ..simulator.watchdog import process_time
 from .changes import CaseChanges
+from .kept import CaseTrajectory
 from .plan import Case, CasePlan
 from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, TOO_LARGE, Row
 from .sampling import SignalReader
 from .study import Study
-from .trajectories import CaseTrajectory
 
 _FARTHEST = 1e9  # m: Bullet stops bodies whose bounds it cannot compute, without a word
 _SLICE = 1000  # steps between two looks at `stop`
