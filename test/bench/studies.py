@@ -16,8 +16,8 @@ import tempfile
 import time
 from typing import Dict, List
 
-from my_simulations.python_api import OpenWorld, WorldChoice
-from my_simulations.studies.changes import CaseChanges
+from my_simulations.python_api import OpenWorld
+from my_simulations.studies.case_world import choice_of
 from my_simulations.studies.plan import CasePlan
 from my_simulations.studies.slot import final_hash
 from my_simulations.studies.study_file import read_study
@@ -58,11 +58,7 @@ def bare(path: str, part: int) -> None:
     plan = CasePlan(read_study(path)[0])
     world = None
     for case in list(plan.cases())[part::2]:
-        changes = CaseChanges(plan.study.parameters, case.settings)
-        choice = WorldChoice(
-            plan.study.world, case.seed, "", (), "",
-            tuple((model.name, model.file, model.pose) for model in plan.study.models),
-            changes.world, changes.model)
+        choice, _ = choice_of(plan, case)
         if world is None:
             world = OpenWorld(choice)
         else:

@@ -2,100 +2,67 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
-import re
 import shlex
 import signal
 import sys
 from types import FrameType
-from typing import Any, Dict, List, Optional, Sequence, Set
+from typing import Any, Callable, Dict, List, Mapping, Optional, Protocol, Sequence, Set
 
 from ..errors import CommandError, InputError, SimulationError
+from ..python_api import OpenWorld
 from . import slurm
+from .case_world import opened, play
 from .cluster_address import SLURM, TlsFiles, scheduler_address
+from .command_line import parser
 from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, counts, finished_cases, header_of
-from .plan import WHOLE, CasePlan, Shard
+from .plan import Case, CasePlan, Shard
 from .recorder import Recorder
 from .report import write_report
 from .row import OK
 from .scenario_slot import launch_words, require_ros
 from .show import can_launch, launch_command, write_world
-from .slot import Hook
+from .slot import Hook, final_hash
 from .study_file import read_study
 from .study_progress import Progress
 from .study_runner import Rate, StudyRunner, Told
+from .table import rows_in_order
 
 NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130
-_SHARDS = 100
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command line."""
-    made = argparse.ArgumentParser(
-        prog="study", description="Run worlds many times with varied parameters, and measure them."
-        " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are"
-        " missing, 2 for a faulty study or command line, 130 if interrupted.")
-    actions = made.add_subparsers(dest="action", metavar="ACTION", required=True)
-    run = actions.add_parser("run", help="run a study, or the cases of it that have no result yet")
-    run.add_argument("file", metavar="FILE", help="study file (doc/studies.md)")
-    run.add_argument("--out", metavar="DIR", help="folder of the results; default: the name of the"
-                     " file, in the working directory")
-    run.add_argument("--shard", type=_shard, default=WHOLE, metavar="I/N",
-                     help="run every Nth case only, beginning with number I")
-    resume = actions.add_parser("resume", help="go on with a study that was interrupted")
-    others = {
-        "status": "print how many cases have run, and what became of them",
-        "report": "write the table, and the report as one HTML file",
-        "export": "write the table as CSV, and as parquet if pyarrow is installed"}
-    parsers = {name: actions.add_parser(name, help=text) for name, text in others.items()}
-    show = actions.add_parser("show", help="open the world of a case in the world editor")
-    show.add_argument("case", metavar="CASE", help="id of the case, or its beginning")
-    show.add_argument("--write", metavar="FILE", help="only write the world to this file")
-    show.add_argument("--in", dest="dir", metavar="DIR", default=".",
-                      help="folder of the results; default: the working directory")
-    for each in (resume, *parsers.values()):
-        each.add_argument("dir", metavar="DIR", nargs="?", default=".",
-                          help="folder of the results; default: the working directory")
-    for each in (run, resume):
-        _add_places(each)
-    for each in (run, resume, *parsers.values()):
-        each.add_argument("--json", action="store_true", help="print JSON")
-    return made
+class Record(Protocol):
+    """A file that records what happens in a world."""
+
+    def look(self, world: OpenWorld) -> None:
+        """Add the present state."""
+
+    def close(self) -> None:
+        """Finish the file."""
 
 
-def _add_places(each: argparse.ArgumentParser) -> None:
-    """Options that say where cases run."""
-    each.add_argument("--slots", type=int, metavar="N",
-                      help="cases that run at a time, on each machine; default: number of processors"
-                      ", on Dask that of a worker's threads, on Slurm 1")
-    each.add_argument("--on", type=str, default="", metavar="WHERE",
-                      help="slurm: write, and submit if sbatch is here, an array of jobs;"
-                      " dask://HOST:PORT or dask:FILE: run on the workers of a Dask scheduler, named"
-                      " by its address or scheduler file")
-    each.add_argument("--shards", type=int, metavar="N",
-                      help=f"tasks of the Slurm array; default: {_SHARDS}")
-    each.add_argument("--sbatch", action="append", default=[], metavar="OPTION",
-                      help="option of sbatch, such as time=01:00:00; may be repeated")
-    for name, what in (("ca", "authority that signed the cluster's certificates"),
-                       ("cert", "certificate of this side"), ("key", "its private key")):
-        each.add_argument(f"--tls-{name}", default="", metavar="PEM",
-                          help=f"for Dask: {what}; default: Dask's configuration")
+Records = Mapping[str, Callable[[str], Record]]
 
 
-def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None) -> int:
+def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
+         records: Optional[Records] = None) -> int:
     """Run the command.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
         hook: see `Slot`.
+        records: what makes the file of `export --bag` and of `export --log`, by "bag" and "log".
 
     Returns:
-        The exit code, see `parser`.
+        The exit code, see `command_line.parser`.
     """
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
     try:
+        if options.action == "export" and (options.bag or options.log):
+            return _record(options, records or {})
         return _ACTIONS[options.action](options, hook)
     except InputError as fault:
         for issue in fault.issues:
@@ -107,13 +74,6 @@ def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None) -> i
     except KeyboardInterrupt:
         _tell("study: interrupted; `study resume` goes on")
         return INTERRUPTED
-
-
-def _shard(text: str) -> Shard:
-    found = re.fullmatch(r"(\d+)/(\d+)", text)
-    if not found or not 1 <= int(found[1]) <= int(found[2]):
-        raise argparse.ArgumentTypeError(f"{text!r} is not I/N with I from 1 to N")
-    return Shard(int(found[1]), int(found[2]))
 
 
 def _run(options: argparse.Namespace, hook: Optional[Hook]) -> int:
@@ -140,7 +100,7 @@ def _resume(options: argparse.Namespace, hook: Optional[Hook]) -> int:
 
 
 def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) -> int:
-    shards = min(_SHARDS if options.shards is None else options.shards, len(plan))
+    shards = min(options.shards, len(plan))
     if shards < 1:
         raise CommandError(f"--shards must be at least 1, is {options.shards}")
     folder.check_shards(shards)
@@ -198,7 +158,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         journal.close()
     files = []
     if folder.is_complete():  # of many shards, the last one writes the table
-        files = [*folder.write_tables(plan), _report(folder, plan)]
+        files = [*folder.write_tables(plan, _tell), _report(folder, plan)]
     return _tell_status(folder, [journal.path], options.json, files)
 
 
@@ -254,7 +214,7 @@ def _report(folder: StudyFolder, plan: CasePlan) -> str:
 def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
     folder = StudyFolder(options.dir)
     plan = _plan(folder.header()["file"])
-    files = folder.write_tables(plan)
+    files = folder.write_tables(plan, _tell)
     if options.action == "report":
         files.append(_report(folder, plan))
     _say(json.dumps({"files": files}) if options.json else "\n".join(files))
@@ -264,10 +224,8 @@ def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
 def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
     folder = StudyFolder(options.dir)
     plan = _plan(folder.header()["file"])
-    case = plan.find(options.case)
+    case = _case(plan, options.case)
     if case is None:
-        _tell(f"study: no case has an id that begins with {options.case}; ids change with the study"
-              " file and the files it names")
         return INVALID
     if plan.study.scenarios:
         return _show_command(["roslaunch", *launch_words(plan, case)], bool(options.write))
@@ -285,6 +243,46 @@ def _show_command(command: List[str], only_tell: bool) -> int:
         return 0
     _tell(text)
     os.execvp(command[0], command)
+
+
+def _record(options: argparse.Namespace, records: Records) -> int:
+    """Run a case again and record it."""
+    if not options.every > 0.0:
+        raise CommandError(f"--every must be above 0, is {options.every:g}")
+    folder = StudyFolder(options.folder)
+    plan = _plan(folder.header()["file"])
+    case = _case(plan, options.dir)
+    if case is None:
+        return INVALID
+    if plan.study.scenarios:
+        raise CommandError("a scenario cannot be recorded from here: add a <node pkg=\"rosbag\""
+                           " type=\"record\"> to it")
+    wanted = {kind: path for kind, path in (("bag", options.bag), ("log", options.log)) if path}
+    missing = [kind for kind in wanted if kind not in records]
+    if missing:
+        raise CommandError(f"--{missing[0]} is of the command `study`, not of"
+                           " `python3 -m my_simulations.studies`")
+    with contextlib.ExitStack() as stack:
+        files = [stack.enter_context(contextlib.closing(records[kind](path)))
+                 for kind, path in wanted.items()]
+        world = stack.enter_context(opened(plan, case))
+        play(world, plan.study.duration, options.every, [file.look for file in files])
+        found = final_hash(world)
+    known = next((row for row in rows_in_order(folder.journals()) if row.case == case.id), None)
+    if known is not None and known.hash and known.hash != found:
+        _tell(f"study: the final state differs from that of the study, which ran on"
+              f" {known.processor}")
+    paths = [os.path.abspath(path) for path in wanted.values()]
+    _say(json.dumps({"files": paths}) if options.json else "\n".join(paths))
+    return 0
+
+
+def _case(plan: CasePlan, start_of_id: str) -> Optional[Case]:
+    case = plan.find(start_of_id)
+    if case is None:
+        _tell(f"study: no case has an id that begins with {start_of_id}; ids change with the study"
+              " file and the files it names")
+    return case
 
 
 _ACTIONS = {"run": _run, "resume": _resume, "status": _status, "report": _write,

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
 
-from distributed import Client, Future, WorkerPlugin, get_worker
+from distributed import Client, Future, TimeoutError, WorkerPlugin, get_worker
 from distributed.comm.core import CommClosedError
 from distributed.scheduler import KilledWorker
 from distributed.security import Security
@@ -34,6 +34,7 @@ _SHARD_S = 10.0    # that a shard should take
 _MOST_CASES = 5000  # of a shard
 _LOOK_S = 1.0      # between two looks at which workers there are
 _CONNECT_S = 30.0
+_GATHER_S = 10.0   # for the rows of a shard to arrive
 
 Result = Tuple[Row, Optional[Kept]]
 
@@ -101,8 +102,8 @@ class StudyWorker(WorkerPlugin):
         for index, case_id in wanted:
             case = plan.case(index)
             if case.id != case_id:
-                differ = [f"{name} {version} here, {self._versions[name]} where the study was"
-                          " started" for name, version in plan.versions.items()
+                differ = [f"{name} {version} here, {self._versions.get(name)} where the study"
+                          " was started" for name, version in plan.versions.items()
                           if version != self._versions.get(name)]
                 raise CommandError(f"case {index} has another id on a worker: "
                                    + ("; ".join(differ) or "a file of the study is not there, or is"
@@ -286,7 +287,7 @@ class DaskRunner:
         """Take what has come back; wait so long for the first."""
         try:
             future = self._ended.get(timeout=seconds) if seconds else self._ended.get_nowait()
-            while True:
+            for _ in range(self._ended.qsize() + 1):
                 flight = self._flights.get(future.key)
                 if flight is not None:
                     self._take(flight)
@@ -296,7 +297,10 @@ class DaskRunner:
 
     def _take(self, flight: _Flight) -> None:
         try:
-            results: List[Result] = flight.future.result()
+            results: List[Result] = flight.future.result(timeout=_GATHER_S)
+        except TimeoutError:  # its worker ended between the last case and now, or the net is slow
+            self._ended.put(flight.future)
+            return
         except (KilledWorker, CancelledError):
             self._lose(flight)
             return

@@ -5,13 +5,13 @@ import glob
 import os
 import re
 import shutil
-from typing import Any, Dict, List
+from typing import Any, Callable, Dict, List
 
 from ..errors import CommandError
 from .journal import counts, header_of
 from .plan import WHOLE, CasePlan, Shard
 from .replacing import replaced
-from .table import has_parquet, write_csv, write_parquet
+from .table import parquet_fault, write_csv, write_parquet
 
 COPY = "study.yaml"
 REPORT = "report.html"
@@ -59,8 +59,8 @@ class StudyFolder:
             found = shard_of(path).of
             if found != of:
                 raise CommandError(
-                    f"{self.path} holds a run in {found} shards, not in {of}: go on with that number"
-                    " or name another folder with --out")
+                    f"{self.path} holds a run in {found} shards, not in {of}: go on with that"
+                    " number or name another folder with --out")
 
     def is_complete(self) -> bool:
         """Whether there is a journal of each shard, and it has a row for each of its cases."""
@@ -81,12 +81,15 @@ class StudyFolder:
         except OSError as fault:
             raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
 
-    def write_tables(self, plan: CasePlan) -> List[str]:
-        """Write the table in all formats; returns the files."""
+    def write_tables(self, plan: CasePlan, say: Callable[[str], None]) -> List[str]:
+        """Write the table in all formats; returns the files. Says why one is left out."""
         paths = self.journals()
         files = [os.path.join(self.path, "results.csv")]
         write_csv(files[0], plan.study, paths)
-        if has_parquet():
+        fault = parquet_fault()
+        if fault is None:
             files.append(os.path.join(self.path, "results.parquet"))
             write_parquet(files[1], plan.study, paths)
+        elif fault:
+            say(fault)
         return files

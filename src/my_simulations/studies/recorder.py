@@ -26,8 +26,8 @@ class Recorder:
     """Writes rows to the journal, and before them what is kept of their cases.
 
     Trajectories go into .npz files of several cases each, files of a scenario into a folder of its
-    own, `scenarios/ID`. A row with a trajectory is written once the file with it is complete, so that no row names a
-    file that a killed process has left unfinished; those that waited run again.
+    own, `scenarios/ID`. A row with a trajectory is written once the file with it is complete, so
+    that no row names a file that a killed process has left unfinished; those that waited run again.
 
     Args:
         journal: gets the rows.

@@ -76,7 +76,8 @@ def _summary(study: Study, found: _Collected) -> str:
     rows = "".join(f"<tr><td>{status}</td><td>{count}</td></tr>"
                    for status, count in found.counts.items() if count)
     each = "" if study.scenarios else f", {study.duration:g} s of sim time each"
-    return (f"<h2>Cases</h2><p>{found.total} of {study.count} have run{each}; {found.flaky} are flaky (crashed once, ran the second time).</p>"
+    return (f"<h2>Cases</h2><p>{found.total} of {study.count} have run{each}; {found.flaky} are"
+            f" flaky (crashed once, ran the second time).</p>"
             f"<table><tr><th>status</th><th>cases</th></tr>{rows}</table>")
 
 

@@ -27,7 +27,7 @@ _LEFT_S = 3.0   # for those whose parent has gone
 
 
 class _EndedError(Exception):
-    """This process was told to end."""
+    """A signal told this process to end."""
 
 
 def main(words: List[str]) -> int:

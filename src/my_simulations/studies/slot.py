@@ -15,9 +15,9 @@ from ..engine.api import Engine
 from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, InputError, Severity, SimulationError
-from ..python_api import OpenWorld, WorldChoice
+from ..python_api import OpenWorld
 from ..simulator.watchdog import process_time
-from .changes import CaseChanges
+from .case_world import choice_of
 from .kept import CaseTrajectory
 from .plan import Case, CasePlan
 from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, TOO_LARGE, Row
@@ -222,13 +222,7 @@ class Slot:
         return CaseTrajectory(np.array(run.times), run.names, np.array(run.frames))
 
     def _opened(self, case: Case) -> OpenWorld:
-        study = self._study
-        changes = CaseChanges(study.parameters, case.settings)
-        world_name, objects = self._plan.world_and_objects(case.settings)
-        choice = WorldChoice(
-            world_name, case.seed, study.profile, objects, study.object_list,
-            tuple((model.name, model.file, model.pose) for model in study.models),
-            changes.world, changes.model)
+        choice, changes = choice_of(self._plan, case)
         if self._world is None:
             self._world = OpenWorld(choice, engine=self._new_engine)
         else:

@@ -81,7 +81,7 @@ def can_submit() -> bool:
 def submit(path: str) -> str:
     """Submit a script; returns what sbatch says. Raises CommandError if it refuses."""
     done = subprocess.run(["sbatch", path], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          universal_newlines=True, check=False)
+                          text=True, check=False)
     if done.returncode:
         raise CommandError(f"sbatch refused {path}: {done.stdout.strip()}")
     return done.stdout.strip()

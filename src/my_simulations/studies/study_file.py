@@ -64,7 +64,8 @@ class StudyReader(ValueReader):
         parameters = self._parameters(vary, plan, FORMS)
         self._check_names(measure + require, vary)
         study = Study(
-            self._name(top, file), file, self.world(top.get("world", "worlds/empty.world"), ("world",)),
+            self._name(top, file), file,
+            self.world(top.get("world", "worlds/empty.world"), ("world",)),
             self.text(top["profile"], ("profile",)) if "profile" in top else "",
             self.names(top.get("objects"), ("objects",)),
             self._file(top["object_list"], ("object_list",)) if "object_list" in top else "",

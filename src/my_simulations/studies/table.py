@@ -4,9 +4,8 @@ from __future__ import annotations
 import csv
 import importlib
 import importlib.util
-from typing import Any, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
-from ..errors import CommandError
 from .journal import lines
 from .replacing import replaced
 from .row import Row, row_of
@@ -70,18 +69,22 @@ def write_csv(path: str, study: Study, paths: Sequence[str]) -> int:
     return count
 
 
-def has_parquet() -> bool:
-    """Whether pyarrow is installed."""
-    return importlib.util.find_spec("pyarrow") is not None
+def parquet_fault() -> Optional[str]:
+    """Why parquet cannot be written; "" without pyarrow, None if it can."""
+    if importlib.util.find_spec("pyarrow") is None:
+        return ""
+    try:
+        importlib.import_module("pyarrow.parquet")
+    except Exception as fault:  # such as that of one that was built for another NumPy
+        return f"results.parquet is left out, pyarrow cannot be imported: {fault}"
+    return None
 
 
 def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
     """Write the table as parquet; returns the number of rows.
 
-    Raises CommandError without pyarrow.
+    Only where `parquet_fault` is None.
     """
-    if not has_parquet():
-        raise CommandError("parquet needs pyarrow: pip install pyarrow")
     arrow = importlib.import_module("pyarrow")
     parquet = importlib.import_module("pyarrow.parquet")
     schema = arrow.schema(_types(arrow, study))
