@@ -1,4 +1,4 @@
-"""A study that runs the tests of a package, each a row of the table."""
+"""What studies do with ROS: the tests of a package as cases, rosbags of cases."""
 from __future__ import annotations
 
 import csv
@@ -177,3 +177,34 @@ def test_without_ros_it_says_what_is_missing(package):
     done = study(package, "scenarios: test/falls.test\n", env=bare)
     assert done.returncode == 2
     assert "source the setup.bash of your workspace" in done.stderr
+
+
+def test_a_case_of_a_world_is_recorded_as_a_rosbag(tmp_path):
+    import rosbag
+    from gazebo_msgs.msg import ModelStates
+
+    ball = REPOSITORY / "objects" / "ball.urdf"
+    (tmp_path / "s.yaml").write_text(
+        f"models:\n  ball: {{file: {ball}, pose: [0, 0, 1]}}\nduration: 0.2\n"
+        "measure:\n  z: final(pose.ball.z)\n")
+
+    def command(*words):
+        return subprocess.run([*STUDY, *words], cwd=tmp_path, check=True, text=True,
+                              capture_output=True, timeout=SECONDS)
+
+    command("run", "s.yaml")
+    with open(tmp_path / "s" / "results.csv", newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    command("export", row["case"], "--in", "s", "--bag", "case.bag", "--every", "0.05")
+    info = subprocess.run(["rosbag", "info", "case.bag"], cwd=tmp_path, check=True, text=True,
+                          capture_output=True).stdout
+    for topic in ("/clock", "/gazebo/model_states", "/gazebo/link_states"):
+        assert topic in info
+    with rosbag.Bag(str(tmp_path / "case.bag")) as bag:
+        clock = [message.clock.to_nsec() for _, message, _ in bag.read_messages("/clock")]
+        states = [(message, stamp.to_sec()) for _, message, stamp
+                  in bag.read_messages("/gazebo/model_states")]
+    assert clock == [0, 50_000_000, 100_000_000, 150_000_000, 200_000_000]
+    last, stamp = states[-1]
+    assert stamp == pytest.approx(0.2) and last._md5sum == ModelStates._md5sum
+    assert last.pose[last.name.index("ball")].position.z == float(row["z"])
