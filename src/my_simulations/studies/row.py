@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any, Dict, Union
 
 OK, FAILED, REFUSED, DIVERGED, CRASHED, TIMED_OUT, TOO_LARGE, NODE_LOST = (
@@ -53,7 +53,7 @@ class Row:
 
     def line(self) -> str:
         """One line of the journal; the status stands first. NaN and infinity are texts."""
-        plain = asdict(self)
+        plain = dict(vars(self))  # asdict copies all, which took more time than all else here
         plain["values"] = {name: value if math.isfinite(value) else str(value)
                            for name, value in self.values.items()}
         return json.dumps(plain, separators=(",", ":"), allow_nan=False) + "\n"

@@ -16,6 +16,7 @@ from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld
+from ..python_api.world_files import WorldFiles
 from ..simulator.watchdog import process_time
 from .case_world import choice_of
 from .kept import CaseTrajectory
@@ -93,15 +94,17 @@ class Slot:
         plan: of the study.
         processor: model of the processor, for rows.
         stop: ends the case that runs with StoppedError once it is set.
+        files: reads worlds and models, for all slots.
         hook: for tests.
     """
 
-    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event,
+    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event, files: WorldFiles,
                  hook: Optional[Hook] = None) -> None:
         self._plan = plan
         self._study: Study = plan.study
         self._processor = processor
         self._stop = stop
+        self._files = files
         self._hook = hook
         self._world: Optional[OpenWorld] = None
         self._engine: Optional[OneLifeEngine] = None
@@ -224,7 +227,7 @@ class Slot:
     def _opened(self, case: Case) -> OpenWorld:
         choice, changes = choice_of(self._plan, case)
         if self._world is None:
-            self._world = OpenWorld(choice, engine=self._new_engine)
+            self._world = OpenWorld(choice, engine=self._new_engine, files=self._files)
         else:
             self._world.open(choice)
         world = self._world

@@ -5,8 +5,10 @@ import threading
 import time
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from queue import SimpleQueue
-from typing import Callable, Iterator, Optional, Protocol, Tuple
+from typing import Callable, Iterator, List, Optional, Protocol, Tuple
 
+from ..python_api.world_files import WorldFiles
+from ..resources.resolver import Resolver
 from .kept import Kept
 from .plan import Case, CasePlan
 from .provenance import processor_type
@@ -15,6 +17,7 @@ from .scenario_slot import ScenarioSlot
 from .slot import Hook, Slot, StoppedError
 
 _LOOK_S = 0.25
+_KEPT_FILES = 16  # worlds, models and lists of objects
 _IDLE_S = 60.0  # after which engines that nobody uses are ended
 
 Take = Callable[[Row, Optional[Kept]], None]
@@ -47,8 +50,7 @@ class SlotPool:
 
     def __init__(self, plan: CasePlan, slots: int, hook: Optional[Hook] = None) -> None:
         self.stop = threading.Event()
-        processor = processor_type()
-        self._slots = [_made(plan, processor, self.stop, hook) for _ in range(slots)]
+        self._slots = _made(plan, slots, self.stop, hook)
         self._free: "SimpleQueue[CaseSlot]" = SimpleQueue()
         for slot in self._slots:
             self._free.put(slot)
@@ -128,7 +130,10 @@ class SlotPool:
                         slot.close()
 
 
-def _made(plan: CasePlan, processor: str, stop: threading.Event, hook: Optional[Hook]) -> CaseSlot:
+def _made(plan: CasePlan, count: int, stop: threading.Event, hook: Optional[Hook]
+          ) -> List[CaseSlot]:
+    processor = processor_type()
     if plan.study.scenarios:
-        return ScenarioSlot(plan, processor, stop)
-    return Slot(plan, processor, stop, hook)
+        return [ScenarioSlot(plan, processor, stop) for _ in range(count)]
+    files = WorldFiles(Resolver.from_environment(), _KEPT_FILES)
+    return [Slot(plan, processor, stop, files, hook) for _ in range(count)]
