@@ -294,7 +294,7 @@ echo "Submitted batch job 7"
     assert "Submitted batch job 7" in told.err
     script = (folder / "a b" / "study.sbatch").read_text()
     assert told.out.strip() == str(folder / "a b" / "study.sbatch")
-    for line in ("#!/bin/bash", "#SBATCH --job-name=s", "#SBATCH --array=1-3",
+    for line in ("#!/bin/bash", "#SBATCH --job-name=drop", "#SBATCH --array=1-3",
                  "#SBATCH --cpus-per-task=2", "#SBATCH --requeue", "#SBATCH --time=01:00:00",
                  f'#SBATCH --output="{folder}/a b/slurm/%A_%a.txt"'):
         assert line in script.splitlines(), script
