@@ -157,7 +157,8 @@ def dask() -> None:
     print(f"2500 more short worlds, equal tables: two slots {more['here']:.1f} s, Dask"
           f" {more['dask']:.1f} s of processor time:"
           f" {(more['dask'] / more['here'] - 1) * 100:+.1f} % (bar: +5 %); what starts once:"
-          f" {spent['here'][0] - more['here'] / 5:.1f} and {spent['dask'][0] - more['dask'] / 5:.1f} s")
+          f" {spent['here'][0] - more['here'] / 5:.1f} and"
+          f" {spent['dask'][0] - more['dask'] / 5:.1f} s")
 
 
 @contextlib.contextmanager

@@ -18,6 +18,7 @@ from ..sensing.api import CameraSpec
 from ..simulator.saving import save_world
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
+from .kept_files import KeptFiles
 from .object_placement import Alter
 from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
 from .readings import (
@@ -31,7 +32,6 @@ from .readings import (
     model_readings,
 )
 from .world_choice import WorldChoice
-from .world_files import WorldFiles
 from .world_pictures import Photographer, Picture, camera_pose
 
 Log = Callable[[Issue], None]
@@ -84,14 +84,14 @@ class OpenWorld:
 
     def __init__(self, choice: WorldChoice, *, resolver: Optional[Resolver] = None,
                  log: Optional[Log] = None, engine: Callable[[], Engine] = ProcessEngine,
-                 files: Optional[WorldFiles] = None) -> None:
+                 files: Optional[KeptFiles] = None) -> None:
         """See `open_world`; `files` reads the files instead of a reader of its own."""
         self.issues: List[Issue] = []
         self._listener = log
         self._lost: Optional[str] = None  # how the engine was lost
         self._furnished = 0  # the revision of the models when the world was opened
         self._choice = choice
-        self._files = files or WorldFiles(resolver or Resolver.from_environment())
+        self._files = files or KeptFiles(resolver or Resolver.from_environment())
         loaded = self._load()
         self.simulator = Simulator(loaded.world, engine_factory=engine, paused=True, log=self._log,
                                    meshes=loaded.meshes)

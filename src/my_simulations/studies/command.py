@@ -20,9 +20,9 @@ from .command_line import parser
 from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, counts, finished_cases, header_of
 from .plan import Case, CasePlan, Shard
-from .recorder import Recorder
 from .report import write_report
 from .row import OK
+from .row_recorder import Recorder
 from .scenario_slot import launch_words, require_ros
 from .show import can_launch, launch_command, write_world
 from .slot import Hook, final_hash

@@ -23,8 +23,8 @@ from ..errors import CommandError
 from .cluster_address import TlsFiles
 from .kept import Kept
 from .plan import WHOLE, Case, CasePlan, Shard
-from .recorder import Recorder
 from .row import NODE_LOST, Row
+from .row_recorder import Recorder
 from .slot_pool import SlotPool
 from .study import Study
 from .study_runner import Told, waiting_cases

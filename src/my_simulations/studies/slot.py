@@ -16,7 +16,7 @@ from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld
-from ..python_api.world_files import WorldFiles
+from ..python_api.kept_files import KeptFiles
 from ..simulator.watchdog import process_time
 from .case_world import choice_of
 from .kept import CaseTrajectory
@@ -98,7 +98,7 @@ class Slot:
         hook: for tests.
     """
 
-    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event, files: WorldFiles,
+    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event, files: KeptFiles,
                  hook: Optional[Hook] = None) -> None:
         self._plan = plan
         self._study: Study = plan.study

@@ -7,8 +7,8 @@ from typing import Callable, Dict, Iterator, List, Optional, Set
 
 from .kept import Kept
 from .plan import WHOLE, Case, CasePlan, Shard
-from .recorder import Recorder
 from .row import Row
+from .row_recorder import Recorder
 from .slot import Hook
 from .slot_pool import SlotPool
 

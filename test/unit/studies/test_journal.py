@@ -17,8 +17,8 @@ from my_simulations.studies.journal import (
     rows,
 )
 from my_simulations.studies.kept import CaseTrajectory
-from my_simulations.studies.recorder import Recorder
 from my_simulations.studies.row import CRASHED, OK, Row
+from my_simulations.studies.row_recorder import Recorder
 
 HEADER = {"study": "s", "cases": 3}
 

@@ -23,7 +23,7 @@ ReadModel = Tuple[Model, MeshTable, List[Issue]]
 """A model as its document says, its collision meshes, and all faults and advice."""
 
 
-class WorldFiles:
+class KeptFiles:
     """Reads files, or gives what it has read of them before.
 
     What is given is a copy, which may be changed, except meshes and issues. Files that change
