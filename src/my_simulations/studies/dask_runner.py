@@ -285,15 +285,17 @@ class DaskRunner:
 
     def _collect(self, seconds: float) -> None:
         """Take what has come back; wait so long for the first."""
+        ended: List[Future] = []
         try:
-            future = self._ended.get(timeout=seconds) if seconds else self._ended.get_nowait()
-            for _ in range(self._ended.qsize() + 1):
-                flight = self._flights.get(future.key)
-                if flight is not None:
-                    self._take(flight)
-                future = self._ended.get_nowait()
+            ended.append(self._ended.get(timeout=seconds) if seconds else self._ended.get_nowait())
+            while True:
+                ended.append(self._ended.get_nowait())
         except Empty:
-            return
+            pass
+        for future in ended:
+            flight = self._flights.get(future.key)
+            if flight is not None:
+                self._take(flight)
 
     def _take(self, flight: _Flight) -> None:
         try:
