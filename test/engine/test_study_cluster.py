@@ -183,6 +183,18 @@ def test_a_killed_driver_goes_on_to_the_same_table(folder, cluster, certificates
     assert sorted(row.index for row in journal) == list(range(100))
 
 
+def test_a_lost_scheduler_ends_the_run_which_goes_on_elsewhere(folder, cluster, certificates):
+    cluster.worker()
+    driver = started(folder, cluster, certificates, DROP.replace("count: 30", "count: 200"), "s")
+    wait_for_rows(folder / "s" / "journal.jsonl", 5, driver)
+    cluster.processes[0].kill()
+    assert driver.wait(120) == 2
+    assert "`study resume` goes on" in (folder / "s.err").read_text()
+    assert main(["study", "resume", "s", "--slots", "2"]) == 0
+    journal = list(rows(str(folder / "s" / "journal.jsonl")))
+    assert sorted(row.index for row in journal) == list(range(200))
+
+
 ROSTEST = """import os, signal, sys, time
 if sys.argv[-1].endswith("poison.test"):
     with open(f"/proc/{os.getppid()}/stat") as stat:
@@ -202,8 +214,8 @@ def test_a_case_that_ends_its_node_is_told_from_its_neighbours(folder, cluster, 
     rostest = folder / "bin" / "rostest"
     rostest.write_text(f"#!{sys.executable}\n{ROSTEST}")
     rostest.chmod(0o755)
-    ENVIRONMENT_WITH_ROS = {**ENVIRONMENT, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}",
-                            "ROS_PACKAGE_PATH": "/nowhere"}
+    with_ros = {**ENVIRONMENT, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}",
+                "ROS_PACKAGE_PATH": "/nowhere"}
     for name in ("a", "b", "poison", "z"):
         (folder / f"{name}.test").write_text("<launch/>")
     (folder / "s.yaml").write_text("scenarios: '*.test'\n")
@@ -214,7 +226,7 @@ while [ ! -e {folder}/over ]; do
     --no-dashboard --host 127.0.0.1 {' '.join(tls(certificates))} >> {folder}/workers.txt 2>&1
 done
 """)
-    loop = subprocess.Popen(["bash", str(respawn)], env=ENVIRONMENT_WITH_ROS, cwd=folder)
+    loop = subprocess.Popen(["bash", str(respawn)], env=with_ros, cwd=folder)
     try:
         assert main(["study", "run", "s.yaml", "--on", f"dask://{cluster.address}",
                      *study_tls(certificates)]) == 1
