@@ -18,6 +18,7 @@ from my_simulations.python_api import OpenWorld, WorldChoice
 from my_simulations.studies.command import main
 from my_simulations.studies.plan import CasePlan
 from my_simulations.studies.slot import final_hash
+from my_simulations.studies.slot_pool import SlotPool
 from my_simulations.studies.study_file import read_study
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
@@ -305,8 +306,25 @@ echo "Submitted batch job 7"
         False, False, True]
     assert main(["study", "run", "s.yaml", "--out", "a b", "--shard", "1/2"]) == 2
     assert "in 3 shards, not in 2" in capsys.readouterr().err
-    assert main(["study", "run", "s.yaml", "--on", "slurm", "--sbatch", "array=1-2"]) == 2
-    assert "is set by --shards" in capsys.readouterr().err
+
+
+def test_engines_that_nobody_uses_end_and_start_again(folder, monkeypatch):
+    (folder / "s.yaml").write_text(DROP)
+    plan = CasePlan(read_study(str(folder / "s.yaml"))[0])
+    pids, found = [], []
+    pool = SlotPool(plan, 1, lambda case, attempt, world: pids.append(world.simulator.engine_pid))
+    try:
+        pool.run(iter([plan.case(0)]), lambda row, kept: found.append(row))
+        monkeypatch.setattr("my_simulations.studies.slot_pool._IDLE_S", 0.0)
+        deadline = time.monotonic() + 60.0
+        while os.path.exists(f"/proc/{pids[0]}"):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        pool.run(iter([plan.case(0)]), lambda row, kept: found.append(row))
+    finally:
+        pool.close()
+    assert pids[0] != pids[1] and found[0].hash == found[1].hash
+    assert not os.path.exists(f"/proc/{pids[1]}")
 
 
 def test_parquet_holds_the_table(folder):

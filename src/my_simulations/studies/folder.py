@@ -59,8 +59,8 @@ class StudyFolder:
             found = shard_of(path).of
             if found != of:
                 raise CommandError(
-                    f"{self.path} holds a run in {found} shards, not in {of}: go on with that"
-                    " number or name another folder with --out")
+                    f"{self.path} holds a run in {found} shard{'s' * (found > 1)}, not in {of}:"
+                    " go on with that number or name another folder with --out")
 
     def is_complete(self) -> bool:
         """Whether there is a journal of each shard, and it has a row for each of its cases."""
