@@ -94,9 +94,7 @@ def _resume(options: argparse.Namespace, hook: Optional[Hook]) -> int:
     plan = _plan(header["file"])
     if options.on == SLURM:
         return _on_slurm(options, folder, plan)
-    of = shard_of(folder.journals()[0]).of
-    return max(_work(options, folder, plan, Shard(number, of), hook)
-               for number in range(1, of + 1))
+    return max([_work(options, folder, plan, shard_of(path), hook) for path in folder.journals()])
 
 
 def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) -> int:
@@ -157,7 +155,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     finally:
         journal.close()
     files = []
-    if folder.is_complete():  # of many shards, the last one writes the table
+    if shard.of == 1 or folder.is_complete():  # of many, the last one writes the table
         files = [*folder.write_tables(plan, _tell), _report(folder, plan)]
     return _tell_status(folder, [journal.path], options.json, files)
 
