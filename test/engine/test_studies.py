@@ -125,10 +125,13 @@ def test_a_driver_killed_at_any_moment_goes_on_to_the_same_table(folder):
     assert main(["study", "status", "cut"]) == 0
 
 
-def test_shards_make_the_table_of_the_whole(folder):
+def test_shards_make_the_table_of_the_whole(folder, capsys):
     assert run(folder, DROP, "--slots", "1", name="whole") == 0
     for number in (1, 2, 3):
-        run(folder, DROP, "--slots", "1", "--shard", f"{number}/3", name="parts")
+        assert run(folder, DROP, "--slots", "1", "--shard", f"{number}/3", name="parts") == 0
+        assert main(["study", "status", "parts", "--json"]) == int(number < 3)
+        told = json.loads(capsys.readouterr().out.splitlines()[-1])
+        assert (told["cases"], told["done"]) == (60, 20 * number)
     assert table(folder, "parts") == table(folder, "whole")
     assert len(list((folder / "parts").glob("journal-*-of-3.jsonl"))) == 3
 

@@ -136,7 +136,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     total = len(range(shard.index - 1, len(plan), shard.of))
     journal = Journal(folder.journal_of(shard), {
         "study": plan.study.name, "file": plan.study.file, "cases": total,
-        "shard": [shard.index, shard.of], "versions": plan.versions})
+        "all_cases": len(plan), "shard": [shard.index, shard.of], "versions": plan.versions})
     try:
         finished = finished_cases(journal.path)
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
@@ -157,7 +157,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     files = []
     if shard.of == 1 or folder.is_complete():  # of many, the last one writes the table
         files = [*folder.write_tables(plan, _tell), _report(folder, plan)]
-    return _tell_status(folder, [journal.path], options.json, files)
+    return _tell_status(folder, journal.path, options.json, files)
 
 
 def _run_on_dask(options: argparse.Namespace, plan: CasePlan, recorder: Recorder,
@@ -177,20 +177,22 @@ def _interrupt(_: int, __: Optional[FrameType]) -> None:
 
 
 def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    folder = StudyFolder(options.dir)
-    return _tell_status(folder, folder.journals(), options.json, [])
+    return _tell_status(StudyFolder(options.dir), None, options.json, [])
 
 
-def _tell_status(folder: StudyFolder, journals: Sequence[str], as_json: bool, files: List[str]
+def _tell_status(folder: StudyFolder, shard: Optional[str], as_json: bool, files: List[str]
                  ) -> int:
+    """Tell what became of the cases of one journal, or of all; returns the exit code."""
     total: Dict[str, int] = {}
     cases = 0
     header: Dict[str, Any] = {}
-    for path in journals:
+    for path in folder.journals() if shard is None else [shard]:
         header = header_of(path)
         cases += header["cases"]
         for status, count in counts(path).items():
             total[status] = total.get(status, 0) + count
+    if shard is None:  # shards that have not begun count, too
+        cases = max(cases, header.get("all_cases", 0))
     done = sum(total.values())
     if as_json:
         _say(json.dumps({"study": header["study"], "folder": folder.path, "cases": cases,
