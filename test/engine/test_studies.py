@@ -331,7 +331,8 @@ def test_engines_that_nobody_uses_end_and_start_again(folder, monkeypatch):
 
 
 def test_parquet_holds_the_table(folder):
-    parquet = pytest.importorskip("pyarrow.parquet")
+    from pyarrow import parquet
+
     assert run(folder, DROP.replace("count: 20", "count: 2")) == 0
     found = parquet.read_table(str(folder / "s" / "results.parquet"))
     assert [str(found.schema.field(name).type) for name in ("index", "height", "touched", "case")

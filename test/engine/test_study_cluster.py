@@ -19,8 +19,6 @@ from my_simulations.studies.journal import rows
 from my_simulations.studies.plan import CasePlan
 from my_simulations.studies.study_file import read_study
 
-pytest.importorskip("distributed")
-
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(
     [str(SOURCE), os.environ.get("PYTHONPATH", "")]), "DASK_LOGGING__DISTRIBUTED": "error"}
@@ -272,7 +270,7 @@ def test_a_worker_with_other_files_is_told(folder, cluster, certificates, capsys
 
 def test_dask_jobqueue_hands_the_certificates_to_its_workers(folder, certificates):
     """The script of doc/scale.md for Slurm through Dask."""
-    jobqueue = pytest.importorskip("dask_jobqueue")
+    import dask_jobqueue
     from distributed.security import Security
     security = Security(require_encryption=True, tls_ca_file=str(certificates / "ca.pem"),
                         tls_scheduler_cert=str(certificates / "study.pem"),
@@ -281,7 +279,7 @@ def test_dask_jobqueue_hands_the_certificates_to_its_workers(folder, certificate
                         tls_worker_key=str(certificates / "study.key"),
                         tls_client_cert=str(certificates / "study.pem"),
                         tls_client_key=str(certificates / "study.key"))
-    cluster = jobqueue.SLURMCluster(
+    cluster = dask_jobqueue.SLURMCluster(
         cores=8, processes=1, memory="16GB", walltime="01:00:00", protocol="tls://",
         interface="lo", security=security, shared_temp_directory=str(folder),
         scheduler_options={"dashboard": False})
