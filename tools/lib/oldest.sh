@@ -66,16 +66,10 @@ tell_oldest_python() {
 }
 
 # tests_without_ros: the unit tests that need none of ROS's Python packages, which are those of
-# another Python. Tests of shell scripts, documents and the like are the same for each.
+# another Python. Those of the repository and its tools are the same for each.
 tests_without_ros() {
-  local file
   grep -rLE '^(from|import) (rospy|[a-z_]+_msgs|my_simulations\.ros)\b' test/unit \
-    --include='test_*.py' | sort | while IFS= read -r file; do
-    case $file in
-      test/unit/project/*) grep -lE '^(from|import) my_simulations\b' "$file" || true ;;
-      *) printf '%s\n' "$file" ;;
-    esac
-  done
+    --include='test_*.py' --exclude-dir=project | sort
 }
 
 # oldest_files FILE...: their tests with the oldest Python.
