@@ -107,9 +107,9 @@ def told(editor, word):
 
 def test_pages_that_end_amid_their_edits_lose_nothing_that_was_accepted(node, browser):
     edits_done = 0
+    editor = browser.open(node.url)
     for seed in range(SEEDS):
         chance = random.Random(seed)
-        editor = browser.open(node.url)
         for request, fields in (("pause", {}), ("new", {"discard": True})):
             editor.page.evaluate("([type, fields]) => editor.request(type, fields)",
                                  [request, fields])
@@ -141,8 +141,9 @@ def test_pages_that_end_amid_their_edits_lose_nothing_that_was_accepted(node, br
         for name, (x, y) in real.items():
             assert following.model(name)["pose"][:2] == pytest.approx([x, y], abs=1e-3), where
         assert following.faults == [], where
-        following.close()
+        editor = following
         edits_done += len(accepted)
+    editor.close()
     assert edits_done > SEEDS  # they were amid their edits
 
 
