@@ -20,12 +20,13 @@ from typing import Callable, List
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "engine")]
+import bare_world
 import numpy as np
 import pairs
 import pybullet
 import structures
 
-DT, G = 0.001, 9.8
+DT, G = 0.001, bare_world.GRAVITY
 STANDING = ("a stack of 10", "200 boxes in stacks", "a wall of 200 bricks", "20 cards of 2 g",
             "an arch of 11")
 ARMS = "ten arms of 6"
@@ -78,12 +79,7 @@ def _ours(scene: str) -> Callable[[int], None]:
 
 
 def _bare(scene: str) -> Callable[[int], None]:
-    pybullet.connect(pybullet.DIRECT)
-    pybullet.setGravity(0, 0, -G)
-    pybullet.setPhysicsEngineParameter(fixedTimeStep=DT)
-    plane = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE),
-                                     useMaximalCoordinates=1)
-    pybullet.changeDynamics(plane, -1, lateralFriction=1.0)
+    bare_world.begin(DT)
     if scene == ARMS:
         for n in range(10):
             _arm_bare(float(n))
@@ -95,11 +91,7 @@ def _bare(scene: str) -> Callable[[int], None]:
             body = pybullet.createMultiBody(piece.mass, shape, -1, piece.position,
                                             useMaximalCoordinates=1)
             pybullet.changeDynamics(body, -1, lateralFriction=piece.mu)
-
-    def steps(count: int) -> None:
-        for _ in range(count):
-            pybullet.stepSimulation()
-    return steps
+    return bare_world.steps
 
 
 def _moving() -> List[int]:

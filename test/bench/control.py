@@ -19,6 +19,7 @@ sys.path.insert(0, __file__.rsplit("/", 2)[0] + "/unit/plugins")
 sys.path.insert(0, __file__.rsplit("/", 2)[0] + "/unit/support")
 from plugin_graph import Graph
 from robot_control import transmission
+from row_table import Row, Rows, shown
 from server import processor
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
@@ -40,7 +41,6 @@ from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message
 from my_simulations.simulator.simulator import Simulator
 
-Row = Tuple[str, str, str, bool]
 AXES, STEPS, ROUNDS = 6, 1500, 5
 ROBOTS, SECONDS = 10, 10.0
 PLUGIN = PluginSpec("control", "libgazebo_ros_control.so", "<plugin/>")
@@ -170,15 +170,8 @@ def _shares(sim: Simulator, pids: List[int]) -> Tuple[List[float], float]:
             (sim.clock.sim_ns - sim_ns) * 1e-9 / span)
 
 
-ROWS: Dict[str, Callable[[], List[Row]]] = {"axis": axis, "robots": robots}
-
-
-def main() -> None:
-    print(f"cores: {len(os.sched_getaffinity(0))}")
-    for name in sys.argv[1:] or list(ROWS):
-        for title, value, bar, met in ROWS[name]():
-            print(f"{title:66} {value:>14}   bar {bar:6} {'' if met else 'MISSED'}", flush=True)
+ROWS: Rows = {"axis": axis, "robots": robots}
 
 
 if __name__ == "__main__":
-    main()
+    shown(ROWS)

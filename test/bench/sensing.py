@@ -9,15 +9,15 @@ machine.
 from __future__ import annotations
 
 import math
-import os
 import statistics
 import sys
 import time
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, List, Tuple
 
 import numpy as np
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
+from row_table import Row, Rows, shown
 from server import processor, resident
 
 from my_simulations.appearance.looks import Look
@@ -46,7 +46,6 @@ from my_simulations.sensing.api import (
 )
 from my_simulations.sensing.process import SensingProcess
 
-Row = Tuple[str, str, str, bool]
 BODIES = 100
 PATTERNS = ("bricks", "wood", "wood_floor", "painted_wall")
 EYE = Mount(pose=Pose((0.0, 0.0, 0.3)))
@@ -185,17 +184,10 @@ def memory() -> List[Row]:
              whole <= 191)]
 
 
-ROWS: Dict[str, Callable[[], List[Row]]] = {
+ROWS: Rows = {
     "rays": rays, "scan": scan, "lidar": lidar, "camera": camera, "small": small,
     "memory": memory}
 
 
-def main() -> None:
-    print(f"cores: {len(os.sched_getaffinity(0))}")
-    for name in sys.argv[1:] or list(ROWS):
-        for title, value, bar, met in ROWS[name]():
-            print(f"{title:56} {value:>18}   bar {bar:8} {'' if met else 'MISSED'}", flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    shown(ROWS)

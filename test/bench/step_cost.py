@@ -19,11 +19,12 @@ from typing import Callable, Dict, List, Tuple
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "engine")]
+import bare_world
 import pairs
 import pybullet
 from structures import Piece, model_of
 
-DT, G, PARTS = 0.001, 9.8, 10
+DT, PARTS = 0.001, 10
 Steps = Callable[[int], None]
 
 STEPS: Dict[str, Tuple[int, int]] = {  # before the measurement, and of it
@@ -129,12 +130,7 @@ def _ours(scene: str) -> Steps:
 
 
 def _bare(scene: str) -> Steps:
-    pybullet.connect(pybullet.DIRECT)
-    pybullet.setGravity(0, 0, -G)
-    pybullet.setPhysicsEngineParameter(fixedTimeStep=DT)
-    plane = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE),
-                                     useMaximalCoordinates=1)
-    pybullet.changeDynamics(plane, -1, lateralFriction=1.0)
+    bare_world.begin(DT)
     if "base" in scene or "arm" in scene:
         with tempfile.TemporaryDirectory() as folder:
             robot = pybullet.loadURDF(_robot_file(scene, folder), (0, 0, 0.12) if "base" in scene
@@ -159,11 +155,7 @@ def _bare(scene: str) -> Steps:
                     sleepThreshold=0.01)
             if "flying" in scene:
                 pybullet.resetBaseVelocity(body, (1, 0, 5), (1, 2, 0))
-
-    def steps(count: int) -> None:
-        for _ in range(count):
-            pybullet.stepSimulation()
-    return steps
+    return bare_world.steps
 
 
 def child(kind: str, scene: str) -> None:

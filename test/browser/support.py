@@ -25,13 +25,17 @@ WIDTH, HEIGHT = 1366, 768
 
 def wait_for(condition, what, seconds=SECONDS):
     """The first true value of `condition()`; an AssertionError that says `what` is missing."""
-    until = time.monotonic() + seconds
+    until, pause = time.monotonic() + seconds, 0.02
     while True:
+        began = time.monotonic()
         found = condition()
         if found:
             return found
-        assert time.monotonic() < until, f"{what} did not happen within {seconds} s"
-        time.sleep(0.02)
+        now = time.monotonic()
+        assert now < until, f"{what} did not happen within {seconds} s"
+        # To ask the page takes time from what is waited for, a picture of it the most.
+        time.sleep(max(pause, min(now - began, 0.5)))
+        pause = min(1.5 * pause, 0.1)
 
 
 def free_port():

@@ -170,6 +170,53 @@ class Saver(threading.Thread):
         assert not self.is_alive()
 
 
+class Crew:
+    """Clients and a saver at work on a world of their own, until `finish`.
+
+    Attributes:
+        simulator: their world.
+        models: how many there were at the end.
+    """
+
+    def __init__(self, clients: int, most: int) -> None:
+        self.simulator = floating()
+        self.models = 0
+        self._clients = [Client(self.simulator, number, most) for number in range(clients)]
+        self._saver = Saver(self.simulator)
+
+    def __enter__(self) -> "Crew":
+        for worker in (*self._clients, self._saver):
+            worker.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.simulator.close()
+
+    @property
+    def done(self) -> int:
+        """Operations that were carried out so far."""
+        return sum(client.done for client in self._clients)
+
+    @property
+    def removed(self) -> int:
+        """Models that were deleted so far."""
+        return sum(client.removed for client in self._clients)
+
+    def finish(self) -> None:
+        """Have all stop; ledgers, model list and engine agree, and no answer was wrong."""
+        workers = (*self._clients, self._saver)
+        for worker in workers:
+            worker.stop()
+        self.models = agree(self.simulator, self._clients)
+        assert [wrong for worker in workers for wrong in worker.wrong] == []
+
+    def figures(self) -> Dict[str, int]:
+        """For the record."""
+        return {"clients": len(self._clients), "models": self.models, "operations": self.done,
+                "refused": sum(client.refused for client in self._clients),
+                "saves": self._saver.saves, "lost": 0, "wrong": 0}
+
+
 def agree(simulator: Simulator, clients: List[Client]) -> int:
     """Compare ledgers, model list and what the engine shows; the number of models."""
     for client in clients:

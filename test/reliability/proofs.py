@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from typing import Callable
 
 IS_LONG = os.environ.get("MY_SIMULATIONS_LONG") == "1"
 
@@ -9,3 +10,19 @@ IS_LONG = os.environ.get("MY_SIMULATIONS_LONG") == "1"
 def scaled(short: int, long: int) -> int:
     """What this run does."""
     return long if IS_LONG else short
+
+
+ALLOWED = "MY_SIMULATIONS_PROOF_SECONDS"
+"""Environment variable: processor time after which a proof takes no more inputs, in seconds."""
+
+
+def allowance() -> Callable[[], float]:
+    """How much of what this proof may use is used up, 0 to 1 and more; 0 if it may use any."""
+    most = float(os.environ.get(ALLOWED) or "inf")
+    began = _spent()
+    return lambda: (_spent() - began) / most
+
+
+def _spent() -> float:
+    """Processor time of this process and of the children that it has waited for, in seconds."""
+    return sum(os.times()[:4])

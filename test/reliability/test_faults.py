@@ -6,7 +6,7 @@ import random
 import signal
 import time
 
-from ledger import Client, Saver, agree, floating, until
+from ledger import Crew, until
 from proofs import scaled
 
 from my_simulations.simulator import supervisor
@@ -15,14 +15,10 @@ from my_simulations.simulator import supervisor
 def test_nothing_is_lost_when_engines_die(record, monkeypatch):
     monkeypatch.setattr(supervisor, "_RAPID_S", 0.0)  # the world is not to blame for these deaths
     kills, most = scaled(8, 100), scaled(12, 25)
-    simulator = floating()
-    clients = [Client(simulator, number, most) for number in range(scaled(3, 8))]
-    saver = Saver(simulator)
     chance = random.Random(16)
     slowest = 0.0
-    try:
-        for worker in (*clients, saver):
-            worker.start()
+    with Crew(scaled(3, 8), most) as crew:
+        simulator = crew.simulator
         for _ in range(kills):
             time.sleep(chance.uniform(0.0, 0.6))  # the moment is the point
             pid = simulator.engine_pid
@@ -33,17 +29,9 @@ def test_nothing_is_lost_when_engines_die(record, monkeypatch):
             began = time.monotonic()
             os.kill(pid, signal.SIGKILL)
             until(lambda gone=pid: simulator.engine_pid not in (gone, 0), "a new engine")
-            done = sum(client.done for client in clients)
-            until(lambda before=done: sum(client.done for client in clients) > before,
-                  "an answer of the new engine")
+            done = crew.done
+            until(lambda before=done: crew.done > before, "an answer of the new engine")
             slowest = max(slowest, time.monotonic() - began)
-        for worker in (*clients, saver):
-            worker.stop()
-        models = agree(simulator, clients)
-    finally:
-        simulator.close()
-    assert [wrong for worker in (*clients, saver) for wrong in worker.wrong] == []
-    record("engine killed and stopped", kills=kills, clients=len(clients), models=models,
-           operations=sum(client.done for client in clients),
-           refused=sum(client.refused for client in clients), saves=saver.saves, lost=0, wrong=0,
+        crew.finish()
+    record("engine killed and stopped", kills=kills, **crew.figures(),
            slowest_recovery_s=round(slowest, 1))

@@ -8,7 +8,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Dict, List
 
-from proofs import scaled
+from proofs import allowance, scaled
 from test_fuzzing import LONGEST_S, memory, read
 
 from my_simulations.errors import InputError
@@ -61,8 +61,9 @@ def test_damaged_files_are_read_or_refused(record, tmp_path):
     files = corpus()
     contents = [path.read_bytes() for path in files]
     paths: Dict[str, Path] = {suffix: tmp_path / f"damaged{suffix}" for suffix in MESHES + LISTS}
-    before = 0
-    for n in range(INPUTS):
+    before, used, count = 0, allowance(), 0
+    while count < INPUTS and used() < 1.0:
+        count += 1
         at = chance.randrange(len(files))
         suffix, data = files[at].suffix, damaged(contents[at], contents, chance)
         path = paths.get(suffix)
@@ -89,9 +90,9 @@ def test_damaged_files_are_read_or_refused(record, tmp_path):
         took = time.process_time() - began
         slowest = max(slowest, took)
         assert took < LONGEST_S, (files[at].name, seed, data)
-        if n == INPUTS // 4:
+        if not before and max(used(), count / INPUTS) > 0.25:
             before = memory()
     grown = memory() / before - 1.0
     assert grown < scaled(20, 5) / 100.0
-    record("damaged files", inputs=INPUTS, files=len(files), slowest_ms=round(1000 * slowest),
+    record("damaged files", inputs=count, files=len(files), slowest_ms=round(1000 * slowest),
            growth_percent=round(100 * grown, 1), **outcomes)

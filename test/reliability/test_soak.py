@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import time
 
-from ledger import Client, Saver, agree, descriptors, floating, memory, threads
+from ledger import Crew, descriptors, memory, threads
 from proofs import scaled
 
 SECONDS = scaled(20, 7200)
@@ -21,32 +21,21 @@ MOST_MODELS = 15
 
 
 def test_nothing_grows_and_the_books_agree(record):
-    simulator = floating()
-    clients = [Client(simulator, number, MOST_MODELS) for number in range(4)]
-    saver = Saver(simulator)
-    try:
-        for worker in (*clients, saver):
-            worker.start()
+    with Crew(4, MOST_MODELS) as crew:
         time.sleep(SETTLED * SECONDS)  # the time itself is what is tested
-        pids = (os.getpid(), simulator.engine_pid)
-        removed = -sum(client.removed for client in clients)
+        pids = (os.getpid(), crew.simulator.engine_pid)
+        removed = -crew.removed
         before = [(memory(pid), descriptors(pid), threads(pid)) for pid in pids]
         time.sleep((1.0 - SETTLED) * SECONDS)
         after = [(memory(pid), descriptors(pid), threads(pid)) for pid in pids]
-        removed += sum(client.removed for client in clients)
-        assert simulator.engine_pid == pids[1]
-        for worker in (*clients, saver):
-            worker.stop()
-        models = agree(simulator, clients)
-    finally:
-        simulator.close()
-    assert [wrong for worker in (*clients, saver) for wrong in worker.wrong] == []
+        removed += crew.removed
+        assert crew.simulator.engine_pid == pids[1]
+        crew.finish()
     known = (0.0, KEPT_KB * removed / 1024)
     for (memory0, files0, threads0), (memory1, files1, threads1), kept in zip(
             before, after, known):
         assert memory1 < GROWTH * memory0 + kept + SLACK_MB
         assert files1 <= files0 + 1 and threads1 <= threads0  # one for a file that is just read
     growth = [round(100 * (new[0] / old[0] - 1), 1) for old, new in zip(before, after)]
-    record("soak", of_seconds=SECONDS, operations=sum(client.done for client in clients),
-           saves=saver.saves, models=models, removed=removed, node_growth_percent=growth[0],
-           engine_growth_percent=growth[1])
+    record("soak", of_seconds=SECONDS, **crew.figures(), removed=removed,
+           node_growth_percent=growth[0], engine_growth_percent=growth[1])

@@ -22,6 +22,7 @@ LAUNCH = """<launch>
 </launch>
 """
 
+ENGINE = "/gazebo/my_simulations/engine_pid"
 STARTED = "all offered"
 """Last phase of a start, as the profile names it."""
 
@@ -44,8 +45,10 @@ class Abandoned(unittest.TestCase):
         with Launched(folder.name, folder.name, file) as launched:
             launched.names()
             node = master_api.running_node(launched.uri, "/gazebo")[1]
-            engine = rosgraph.Master("/abandoned", launched.uri).getParam(
-                "/gazebo/my_simulations/engine_pid")
+            master = rosgraph.Master("/abandoned", launched.uri)
+            # Services are offered before the node tells of its engine.
+            wait_for(lambda: master.hasParam(ENGINE), "the engine's process id")
+            engine = master.getParam(ENGINE)
             core = master_api.call(launched.uri, "getPid", "/abandoned")
             launched.program.process.kill()
             try:

@@ -5,6 +5,7 @@ public Gazebo models.
 """
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional, Sequence, Tuple
@@ -12,8 +13,11 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from ..description.shapes import Color
 
 _TOKEN = re.compile(r'"[^"]*"|[{}]|\n|[^\s{}"]+')
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-_LARGEST = 1 << 20
+# An open comment ends with the text; to look for the end of each would take hours.
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+LARGEST = 1 << 20
+"""Characters of a script that are read: they take a second at most."""
+
 _DEEPEST = 20
 
 
@@ -37,7 +41,7 @@ class ScriptMaterial:
 def read_materials(text: str) -> Dict[str, ScriptMaterial]:
     """The materials of a script by name; unknown statements are skipped."""
     words = [word.strip('"') if word.startswith('"') else word
-             for word in _TOKEN.findall(_COMMENT.sub("", text[:_LARGEST]))]
+             for word in _TOKEN.findall(_COMMENT.sub("", text[:LARGEST]))]
     found: Dict[str, ScriptMaterial] = {}
     at = 0
     while at < len(words):
@@ -113,17 +117,21 @@ def _setting(line: List[str], material: ScriptMaterial) -> None:
         kept = values[0] in ("greater", "greater_equal")
         material.alpha_test = min(numbers[0] / 255.0, 1.0) if kept and numbers else 0.0
     elif word == "texture" and values and not material.texture:
-        material.texture = values[0]
+        material.texture = "" if "\0" in values[0] else values[0]
     elif word == "scale" and len(_numbers(values)) >= 2:
         u, v = _numbers(values)[:2]
         material.scale = (u or 1.0, v or 1.0)
 
 
 def _numbers(values: Sequence[str]) -> List[float]:
+    """The finite numbers that the line begins with."""
     found: List[float] = []
     for value in values:
         try:
-            found.append(float(value))
+            number = float(value)
         except ValueError:
             break
+        if not math.isfinite(number):
+            break
+        found.append(number)
     return found

@@ -11,10 +11,12 @@ from ..description.shapes import Color, Material
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from .gazebo_materials import BUILT_IN, Paint, Rgb
 from .looks import Look
-from .material_script import ScriptMaterial, read_materials
+from .material_script import LARGEST, ScriptMaterial, read_materials
 
 _COLORS = ("ambient", "diffuse", "specular", "emissive")
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
+_MOST_OF_A_FOLDER = 8 * LARGEST
+"""Bytes of scripts that are read of one folder."""
 
 
 class Textures(Protocol):
@@ -60,7 +62,7 @@ class Materials:
         folders: List[str] = []
         for uri in material.script_uris:
             if uri != BUILT_IN_SCRIPT:
-                folders += self._load(uri)
+                folders += self._load(uri, name)
         script = self._seen.get(name)
         if name in BUILT_IN and (script is None or not folders):
             return _of_paint(name, BUILT_IN[name])
@@ -83,40 +85,63 @@ class Materials:
                     alpha_test=script.alpha_test if texture else 0.0,
                     blended=script.blend and bool(texture))
 
-    def _load(self, uri: str) -> List[str]:
+    def _load(self, uri: str, wanted: str) -> List[str]:
         """Read the scripts of a URI; returns the folders that may contain their images."""
         try:
             path = self._resolver.resolve(uri)
         except ResourceNotFoundError:
             return []
         if os.path.isdir(path):
-            scripts = [os.path.join(path, name) for name in sorted(os.listdir(path))
-                       if name.endswith(".material")]
-            folders = [path]
+            scripts, folders = _scripts_in(path), [path]
         else:
             scripts = [path] if path.endswith(".material") else []
             folders = [os.path.dirname(path)]
         for script in scripts:
-            for name, material in self._read(script).items():
-                self._seen[name] = material
-                self._folders[name] = [os.path.dirname(script)]
+            self._read(script, wanted)
         return folders
 
-    def _read(self, path: str) -> Dict[str, ScriptMaterial]:
+    def _read(self, path: str, wanted: str) -> None:
+        """Note the materials of a script: all when it is read, then the wanted one.
+
+        Many visuals may name a folder of many materials.
+        """
         try:
             key = (path, os.stat(path).st_mtime_ns)
-            if key not in self._scripts:
+            found = self._scripts.get(key)
+            if found is not None:
+                names = [wanted] if wanted in found else []
+            elif os.path.isfile(path):  # nobody may ever write to a named pipe
                 with open(path, encoding="utf-8", errors="replace") as stream:
-                    self._scripts[key] = read_materials(stream.read(1 << 20))
+                    found = self._scripts[key] = read_materials(stream.read(LARGEST))
+                names = list(found)
+            else:
+                return
         except OSError:
-            return {}
-        return self._scripts[key]
+            return
+        for name in names:
+            self._seen[name] = found[name]
+            self._folders[name] = [os.path.dirname(path)]
 
     def _path(self, uri: str) -> str:
         try:
             return self._resolver.resolve(uri)
         except ResourceNotFoundError:
             return ""
+
+
+def _scripts_in(folder: str) -> List[str]:
+    """The scripts of a folder, as many as may be read."""
+    try:
+        names = [name for name in sorted(os.listdir(folder)) if name.endswith(".material")]
+    except OSError:
+        return []
+    found, size = [], 0
+    for path in (os.path.join(folder, name) for name in names):
+        size += min(os.path.getsize(path), LARGEST) if os.path.isfile(path) else 0
+        if size > _MOST_OF_A_FOLDER:
+            break
+        found.append(path)
+    return found
 
 
 def _of_paint(name: str, paint: Paint) -> Look:

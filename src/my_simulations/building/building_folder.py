@@ -4,7 +4,6 @@ from __future__ import annotations
 import base64
 import binascii
 import errno
-import io
 import os
 import re
 import tempfile
@@ -13,7 +12,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from ..description.model import Model
 from ..errors import CommandError, InputError, Issue, Severity, error
-from ..formats.image.pixels import opened
+from ..formats.image.pixels import checked_format
 from ..formats.reading import read_file
 from ..formats.sdf.writer.entities import write_entity
 from ..resources.model_config import description_in
@@ -183,7 +182,7 @@ def _load_image(level: Level, folder: str, issues: List[Issue]) -> None:
 
 
 def image_kind(content: bytes, name: str) -> str:
-    """`PNG` or `JPEG`; decodes the whole image as a check.
+    """`PNG` or `JPEG`; decodes the whole image as a check, a large one in another process.
 
     Raises:
         InputError: not an image, truncated, or too large.
@@ -195,11 +194,12 @@ def image_kind(content: bytes, name: str) -> str:
         why = f"it is larger than {LARGEST_IMAGE >> 20} MB"
     else:
         try:
-            with opened(io.BytesIO(content)) as image:
-                if image.format in _ENDINGS:
-                    image.load()
-                    return str(image.format)
-                why = f"it is {image.format}, not PNG or JPEG"
+            kind = checked_format(content)
+            if kind in _ENDINGS:
+                return kind
+            why = f"it is {kind}, not PNG or JPEG"
+        except InputError as fault:
+            why = str(fault.summary())
         except UnidentifiedImageError:
             why = "it is not an image"
         except (OSError, ValueError, SyntaxError, EOFError) as fault:

@@ -53,9 +53,16 @@ def read_picture(path: str, largest: int) -> Tuple[Any, List[Any]]:
     return found is not None, [] if found is None else [found]
 
 
+def read_format(path: str) -> Tuple[Any, List[Any]]:
+    """The format of a picture that can be decoded."""
+    from .image.pixels import format_of
+
+    return format_of(path), []
+
+
 TASKS: Dict[str, Callable[..., Tuple[Any, List[Any]]]] = {
     "mesh": read_mesh, "levels": read_levels, "elevations": read_elevations,
-    "picture": read_picture}
+    "picture": read_picture, "format": read_format}
 
 
 def _limit(what: int, most: int) -> None:

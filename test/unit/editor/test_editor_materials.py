@@ -1,15 +1,21 @@
 """What materials look like: Gazebo's names, scripts of models, colours of files."""
 from __future__ import annotations
 
+import os
+import time
+
 import pytest
 
 from my_simulations.appearance.gazebo_materials import BUILT_IN as TABLE
-from my_simulations.appearance.material_script import read_materials
+from my_simulations.appearance.material_script import ScriptMaterial, read_materials
 from my_simulations.description.compare import BUILT_IN
 from my_simulations.description.shapes import Material
 from my_simulations.editor.scene.materials import Materials
 from my_simulations.editor.scene.served_files import ServedFiles
 from my_simulations.resources.resolver import Resolver
+
+LONGEST_S = 2.0
+"""Processor time of one script, in seconds: what is no hang."""
 
 SCRIPT = """
 // a comment { with braces }
@@ -58,6 +64,24 @@ def test_broken_scripts_end_no_program(text):
     assert isinstance(read_materials(text), dict)
 
 
+@pytest.mark.parametrize("text", ["/* " * 300_000, "/*" * 300_000, "material X { /* "])
+def test_an_open_comment_ends_with_the_script(text):
+    began = time.process_time()
+    read_materials(text)
+    assert time.process_time() - began < LONGEST_S
+
+
+def test_numbers_that_are_not_finite_and_names_that_no_file_has_are_left_out():
+    found = read_materials("""material X { technique { pass {
+      ambient nan 1 1
+      diffuse 1e999 0 0
+      specular 1 1 1 nan
+      alpha_rejection greater inf
+      texture_unit { texture "a\0b.png"
+        scale nan 2 } } } }""")["X"]
+    assert found == ScriptMaterial("X", specular=(1.0, 1.0, 1.0, 1.0))
+
+
 @pytest.fixture
 def shop(tmp_path):
     """Materials with the script in a model's folder."""
@@ -79,6 +103,26 @@ def test_a_script_is_found_with_its_texture(shop):
     assert found["texture"]["url"].endswith("/shop/materials/textures/wood.png")
     assert found["texture"]["scale"] == [0.5, 0.25]
     assert found["diffuse"] == [0.4, 0.5, 0.6, 1.0] and found["transparency"] == 0.0
+
+
+def test_a_named_pipe_is_no_script_and_nobody_waits_for_it(shop, tmp_path):
+    os.mkfifo(tmp_path / "shop" / "materials" / "scripts" / "a.material")
+    found = shop.document(Material(script_uris=URIS, script_name="Shop/Base"))
+    assert found["texture"]["scale"] == [0.5, 0.25]
+
+
+def test_only_so_much_is_read_of_a_folder(shop, tmp_path):
+    scripts = tmp_path / "shop" / "materials" / "scripts"
+    for number in range(12):
+        with open(scripts / f"z{number:02}.material", "w", encoding="utf-8") as stream:
+            stream.write(f"material Z{number} {{ technique {{ pass {{ diffuse 1 0 0 }} }} }}\n")
+            stream.truncate(1 << 30)  # a hole, which takes no room
+    began = time.process_time()
+    found = [shop.document(Material(script_uris=URIS, script_name=f"Z{number}"))["diffuse"]
+             for number in range(12)]
+    assert found == [[1.0, 0.0, 0.0, 1.0]] * 7 + [[1.0] * 4] * 5
+    assert time.process_time() - began < 8 * LONGEST_S
+    assert shop.document(Material(script_uris=URIS, script_name="Shop/Base"))["texture"]
 
 
 def test_a_blended_script_is_seen_through(shop):

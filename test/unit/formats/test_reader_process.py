@@ -1,9 +1,11 @@
 """Files that could use up memory and time are read by another process, under limits."""
 from __future__ import annotations
 
+import io
 import os
 import signal
 import struct
+import time
 import zlib
 
 import numpy as np
@@ -11,11 +13,12 @@ import pytest
 from PIL import Image
 from reading import VALID
 
+from my_simulations.building.building_folder import image_kind
 from my_simulations.description.shapes import Heightmap, Mesh
 from my_simulations.errors import InputError
 from my_simulations.formats import reader_process
 from my_simulations.formats.image.levels import elevations, grey_levels, levels_of
-from my_simulations.formats.image.pixels import picture, pixels_of
+from my_simulations.formats.image.pixels import checked_format, picture, pixels_of
 from my_simulations.formats.mesh import loading
 from my_simulations.formats.mesh.loading import load_mesh, load_solid
 
@@ -147,3 +150,42 @@ def test_no_other_program_is_started_for_a_picture(tmp_path, monkeypatch):
         load_solid(Heightmap(uri="m", path=str(path)))
     assert picture(str(path), 64) is None and not ran.exists()
 
+
+
+def many_scans(side, scans):
+    """A progressive JPEG whose last scan stands there again and again."""
+    written = io.BytesIO()
+    Image.new("L", (side, side), 128).save(written, "JPEG", progressive=True)
+    data = written.getvalue()
+    last = data.rindex(b"\xff\xda")
+    header = data.rindex(b"\xff\xc4", 0, last) if b"\xff\xc4" in data[:last] else last
+    scan = data[header:-2]
+    return data[:-2] + scan * scans + data[-2:]
+
+
+def test_a_picture_of_many_scans_or_pixels_is_checked_by_another_process(kept, tmp_path):
+    assert checked_format(many_scans(64, 10)) == "JPEG" and kept.pid == 0
+    assert checked_format(many_scans(64, 2000)) == "JPEG"
+    pid = kept.pid
+    assert pid > 0
+    with open(blank_png(tmp_path / "wide.png", WIDE), "rb") as stream:
+        content = stream.read()
+    assert checked_format(content) == "PNG" and kept.pid == pid
+    with pytest.raises(InputError, match="truncated") as refused:
+        checked_format(content[:-40])
+    assert refused.value.first.code == "image-unreadable"
+
+
+def test_a_floor_plan_that_takes_too_long_to_decode_is_refused(kept, monkeypatch):
+    monkeypatch.setattr(reader_process, "SECONDS", 0)
+    began = time.process_time()
+    with pytest.raises(InputError, match="'plan.jpg' cannot be used: .* processor time") as refused:
+        image_kind(many_scans(1900, 20_000), "plan.jpg")
+    assert refused.value.first.code == "image-unreadable"
+    assert time.process_time() - began < 2.0  # it decoded nothing here
+
+
+def test_a_texture_of_many_scans_is_read_by_another_process(kept, tmp_path):
+    path = tmp_path / "texture.jpg"
+    path.write_bytes(many_scans(64, 2000))
+    assert picture(str(path), 64).shape == (64, 64, 4) and kept.pid > 0

@@ -119,3 +119,43 @@ def test_the_oldest_python_gets_the_unit_tests_that_import_nothing_of_ros():
     assert "test/unit/ros/test_ros_texts.py" not in chosen
     for name in chosen:
         assert "\nimport rospy" not in (REPOSITORY / name).read_text(encoding="utf-8"), name
+    assert not [name for name in chosen if name.startswith("test/unit/project/")]
+
+
+def oldest(tmp_path, all_tests, has_pyenv=False, on_path=False, system=False, named=None):
+    """(the Python that was chosen, what is said where there is none)"""
+    pyenv = tmp_path / "pyenv" / "versions" / "3.8.18" / "bin"
+    for path, fits in ((pyenv / "python3.8", has_pyenv),
+                       (tmp_path / "bin" / "python3.8", on_path),
+                       (tmp_path / "bin" / "python3", system)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"#!/bin/sh\nexit {0 if fits else 1}\n", encoding="utf-8")
+        path.chmod(0o755)
+    environment = {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "HOME": str(tmp_path),
+                   "PYENV_ROOT": str(tmp_path / "pyenv")}
+    if named is not None:
+        environment["MY_SIMULATIONS_OLDEST_PYTHON"] = named
+    done = subprocess.run(
+        ["bash", "-eu", "-c", ". tools/lib/progress.sh; STEPS=1; . tools/lib/oldest.sh\n"
+         f"choose_oldest_python {int(all_tests)}\n"
+         "echo \"chosen: $OLDEST_PYTHON\"; [ -n \"$OLDEST_PYTHON\" ] || tell_oldest_python"],
+        cwd=REPOSITORY, text=True, capture_output=True, check=True, env=environment)
+    chosen, _, said = done.stdout.partition("\n")
+    return chosen[len("chosen: "):].replace(str(tmp_path), ""), said
+
+
+def test_all_tests_look_for_the_oldest_python_and_say_if_there_is_none(tmp_path):
+    pyenv = "/pyenv/versions/3.8.18/bin/python3.8"
+    assert oldest(tmp_path, True, has_pyenv=True, on_path=True)[0] == "python3.8"
+    assert oldest(tmp_path, True, has_pyenv=True)[0] == pyenv
+    assert oldest(tmp_path, False, has_pyenv=True, on_path=True)[0] == ""
+    chosen, said = oldest(tmp_path, True)
+    assert chosen == "" and "no Python 3.8 found" in said
+
+
+def test_the_oldest_python_may_be_named_be_unwanted_or_be_the_system_s_own(tmp_path):
+    assert oldest(tmp_path, False, named="/opt/python3.8")[0] == "/opt/python3.8"
+    chosen, said = oldest(tmp_path, True, on_path=True, named="none")
+    assert chosen == "" and "not wanted" in said
+    chosen, said = oldest(tmp_path, True, on_path=True, system=True)
+    assert chosen == "" and "all tests run on it" in said

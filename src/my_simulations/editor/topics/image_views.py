@@ -4,6 +4,8 @@ from __future__ import annotations
 import io
 from typing import Any, Dict, Optional, Tuple
 
+from ...formats.image.pixels import of_formats
+
 _WIDEST = 640
 _QUALITY = 80
 
@@ -41,7 +43,7 @@ def compressed_image(message: Any) -> View:
 
     data = bytes(message.data)
     try:
-        with Image.open(io.BytesIO(data), formats=("JPEG", "PNG", "WEBP")) as opened:
+        with of_formats(io.BytesIO(data), ("JPEG", "PNG", "WEBP")) as opened:
             kind, (width, height) = str(opened.format).lower(), opened.size
     except (OSError, SyntaxError, EOFError, Image.DecompressionBombError) as fault:
         raise ValueError(f"images of format {message.format!r} cannot be shown") from fault

@@ -1,8 +1,11 @@
 """Opens pictures in the formats that worlds use, and makes textures of them."""
 from __future__ import annotations
 
+import io
 import os
-from typing import IO, Any, Optional, Union
+import struct
+import tempfile
+from typing import IO, Any, Optional, Sequence, Union
 
 from ..reader_process import read_elsewhere
 
@@ -12,7 +15,42 @@ MOST_PIXELS = 64 << 20
 FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "PPM", "TGA", "WEBP", "DDS")
 """Pillow knows more, among them some that it has other programs read (EPS)."""
 
-_PLAIN_PIXELS, _PLAIN_BYTES = 4 << 20, 8 << 20
+_PLAIN_PIXELS, _PLAIN_BYTES, _PLAIN_SCANS = 4 << 20, 8 << 20, 100
+_SCAN = b"\xff\xda"
+"""Begins a scan of a JPEG: a progressive one may go through its pixels again for every 20 bytes."""
+
+
+def of_formats(source: Union[str, IO[bytes]], formats: Sequence[str]) -> Any:
+    """A PIL image of one of these formats, whose header has been read.
+
+    Raises as PIL's `open`.
+    """
+    import PIL
+    from PIL import Image
+
+    if int(PIL.__version__.partition(".")[0]) >= 8:
+        return Image.open(source, formats=formats)
+    # Pillow 7, of Ubuntu 20.04, can only try all formats.
+    Image.init()
+    head = _head(source)
+    for factory, accept in (Image.OPEN[name] for name in formats if name in Image.OPEN):
+        try:
+            if accept is None or accept(head) is True:
+                return factory(source, None)
+        except (SyntaxError, IndexError, TypeError, struct.error):  # as Pillow itself does
+            pass
+        if not isinstance(source, str):
+            source.seek(0)
+    raise PIL.UnidentifiedImageError("it is of no known format")
+
+
+def _head(source: Union[str, IO[bytes]]) -> bytes:
+    if isinstance(source, str):
+        with open(source, "rb") as stream:
+            return stream.read(16)
+    head = source.read(16)
+    source.seek(0)
+    return head
 
 
 def opened(source: Union[str, IO[bytes]]) -> Any:
@@ -25,7 +63,7 @@ def opened(source: Union[str, IO[bytes]]) -> Any:
     from PIL import Image
 
     try:
-        image = Image.open(source, formats=FORMATS)
+        image = of_formats(source, FORMATS)
     except Image.DecompressionBombError:
         raise ValueError(f"it has more than {MOST_PIXELS} pixels") from None
     if image.width * image.height > MOST_PIXELS:
@@ -36,14 +74,45 @@ def opened(source: Union[str, IO[bytes]]) -> Any:
 
 
 def is_costly(path: str) -> bool:
-    """Whether a picture that can be opened is so large that another process reads it.
+    """Whether a picture that can be opened may take so much that another process reads it.
 
     Raises as `opened`.
     """
     if os.path.getsize(path) > _PLAIN_BYTES:
         return True
-    with opened(path) as image:
-        return bool(image.width * image.height > _PLAIN_PIXELS)
+    with open(path, "rb") as stream:
+        return _takes_much(stream.read(_PLAIN_BYTES))
+
+
+def _takes_much(content: bytes) -> bool:
+    if len(content) > _PLAIN_BYTES:
+        return True
+    with opened(io.BytesIO(content)) as image:
+        if image.width * image.height > _PLAIN_PIXELS:
+            return True
+        return image.format == "JPEG" and content.count(_SCAN) > _PLAIN_SCANS
+
+
+def checked_format(content: bytes) -> str:
+    """The format of an image, one of `FORMATS`, of which every pixel has been decoded.
+
+    Raises:
+        OSError, ValueError, SyntaxError, EOFError: as `opened`.
+        InputError: another process gave it up.
+    """
+    if not _takes_much(content):
+        return format_of(io.BytesIO(content))
+    with tempfile.NamedTemporaryFile(prefix="my_simulations_") as file:
+        file.write(content)
+        file.flush()
+        return str(read_elsewhere("format", file.name, "image-unreadable")[0])
+
+
+def format_of(source: Union[str, IO[bytes]]) -> str:
+    """As `checked_format`, in this process."""
+    with opened(source) as image:
+        image.load()
+        return str(image.format)
 
 
 def picture(path: str, largest: int) -> Optional[Any]:
