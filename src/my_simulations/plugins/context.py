@@ -139,6 +139,10 @@ class Context(Protocol):
         """Of the simulation, s."""
 
     @property
+    def by_hand(self) -> bool:
+        """Whether the world is stepped manually, and waits for pictures."""
+
+    @property
     def step(self) -> int:
         """The step count: how many steps were made before this moment."""
 

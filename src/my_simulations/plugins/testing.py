@@ -167,6 +167,7 @@ class FakeContext:
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
         pictures: what each view sees; `views`: the views of each moment. `late`: nothing is ready.
+        by_hand: the world is stepped manually.
         unwanted: topics that nobody listens to.
         model_sensors, labels: what `sensors` and `link_names` give.
         touching: the contacts.
@@ -216,7 +217,7 @@ class FakeContext:
         self.fans: List[Any] = []
         self.pictures: List[Any] = []
         self.views: List[Any] = []
-        self.late = False
+        self.late = self.by_hand = False
         self.unwanted: Set[str] = set()
         self.model_sensors: List[Tuple[str, Sensor]] = []
         self.labels: Dict[int, str] = {}
