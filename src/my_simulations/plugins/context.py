@@ -25,6 +25,10 @@ class PluginError(SimulationError):
     """A plugin cannot work as its element says; the message is one sentence for the user."""
 
 
+class RequestError(PluginError):
+    """A request of a service that makes no sense; its caller is told, and the plugin goes on."""
+
+
 @dataclass(frozen=True)
 class View:
     """What a camera at `pose` in the frame of a link is to give: `outputs` of `sensing.api`."""

@@ -15,7 +15,7 @@ from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import Severity
 from my_simulations.plugins.base import Plugin
 from my_simulations.plugins.call_watch import PATIENCE, Patience
-from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.context import PluginError, RequestError
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry, exports, library_name
 from my_simulations.plugins.testing import Message
@@ -311,6 +311,28 @@ def test_who_asks_a_service_hears_why_it_failed(case):
                extra={"libgrumble.so": f"{__name__}:Grumbling"})
     with pytest.raises(PluginError, match="no"):
         one.graph.heard["ask"](Message(), Message())
+
+
+class Refusing(Plugin):
+    calls = []
+
+    def load(self):
+        self.context.serve("ask", "std_srvs/Empty", self.asked)
+        self.context.every(100.0, lambda: self.calls.append(self.context.now_ns))
+
+    def asked(self, request, response):
+        raise RequestError("there is no such value")
+
+
+def test_a_request_that_makes_no_sense_is_refused_and_the_plugin_goes_on(case, monkeypatch):
+    monkeypatch.setattr(Refusing, "calls", [])
+    one = case(robot("choosy", "<plugin/>", "librefuse.so"),
+               extra={"librefuse.so": f"{__name__}:Refusing"})
+    with pytest.raises(RequestError, match="no such value"):
+        one.graph.heard["ask"](Message(), Message())
+    one.sim.clock.advance(20)
+    until(lambda: len(Refusing.calls) == 2)
+    assert not one.failed()
 
 
 class OfTheWorld(Plugin):
