@@ -5,10 +5,11 @@ import math
 
 import pytest
 from closed_forms import oscillator
-from conftest import Lab, arm
+from conftest import Lab, arm, inertial_of_box, link_of
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.shapes import Box
 from my_simulations.engine.commands import FOREVER, AddTimedForces, SetJoints, TimedEffort
 from my_simulations.geometry import Pose
 
@@ -95,6 +96,26 @@ def test_a_damper_slows_down_as_its_closed_form(lab: Lab, laws: Laws, mass: floa
         lab.steps(1)
         laws.near("dampers to 10 m/dt: rate, share of that at the start", lab.joint(model)[1],
                   math.exp(-share * n), abs=0.02)
+
+
+@pytest.mark.parametrize("share", [0.005, 0.02, 0.04, 0.2])
+def test_wheels_of_a_free_base_slow_down_as_their_closed_form(lab: Lab, laws: Laws, share: float):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    rim = 5e-4
+    base = link_of(Box((0.3, 0.2, 0.1)), inertial_of_box(3.0, 0.3, 0.2, 0.1), name="base")
+    wheels = [Link(name, pose=Pose((0.0, y, 0.0)), inertial=Inertial(
+        0.2, Pose(), 0.6 * rim, 0.0, 0.0, rim, 0.0, 0.6 * rim))
+        for name, y in (("left", 0.12), ("right", -0.12))]
+    joints = [Joint(wheel.name, "revolute", "base", wheel.name,
+                    axis=JointAxis((0, 1, 0), damping=share * rim / DT)) for wheel in wheels]
+    model = lab.load(Model("robot", links=[base, *wheels], joints=joints), (0, 0, 1))
+    lab.apply(SetJoints(tuple((lab.joint_rows[model, joint.name], 0.0, 1.0) for joint in joints)))
+    # Both wheels turn the base back: 1 / rim for each, and 2 / its own moment.
+    ease = 1.0 / rim + 2.0 / (3.0 / 12.0 * (0.3 ** 2 + 0.1 ** 2))
+    for n in range(1, 101):
+        lab.steps(1)
+        laws.near("dampers of wheels to 0.2 m/dt: rate, share of that at the start",
+                  lab.joint(model, "left")[1], math.exp(-share * rim * ease * n), abs=0.002)
 
 
 @MASSES

@@ -27,6 +27,7 @@ from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import ModelPlugins, Running
 from .schedule import Appointment, Schedule
 from .simulated_context import Shared, SimulatedContext
+from .step_readings import StepReadings
 
 _LOOK_S = 0.5      # between two looks while nothing rings
 _SETTLE_S = 30.0   # how long a caller waits for plugins to be loaded
@@ -48,7 +49,8 @@ class PluginHost:
                  log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._scene, self._schedule = SceneSensing(simulator, log), Schedule()
-        self._shared = Shared(simulator, graph, log, self._scene, self._schedule)
+        self._shared = Shared(simulator, graph, log, self._scene, self._schedule,
+                              StepReadings(simulator, self._schedule))
         self._messages = MessageMaker()
         self._models = ModelPlugins(simulator, self._rebind)
         self._running: Dict[SimulatedContext, Running] = {}

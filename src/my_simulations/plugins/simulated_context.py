@@ -25,6 +25,7 @@ from .schedule import Appointment, Schedule
 from .sensing_requests import SensingRequests
 from .simulated_graph import Offer, OpenEnd, PluginGraph
 from .simulated_handles import Orders, SimulatedJoint, SimulatedLink
+from .step_readings import StepReadings
 
 
 class Shared(NamedTuple):
@@ -35,6 +36,7 @@ class Shared(NamedTuple):
     report: Callable[[Issue], None]
     scene: SceneSensing
     schedule: Schedule
+    readings: StepReadings
 
 
 class SimulatedContext:
@@ -49,8 +51,8 @@ class SimulatedContext:
 
     def __init__(self, shared: Shared, entity: Entity, found: Found,
                  wake: Callable[[], None]) -> None:
-        self.simulator, self._report, self._schedule = (
-            shared.simulator, shared.report, shared.schedule)
+        self.simulator, self._report, self._schedule, self._readings = (
+            shared.simulator, shared.report, shared.schedule, shared.readings)
         self.model = entity.model.name
         self.sensor, self.sensor_link, self.sensor_joint = found.sensor, found.link, found.joint
         self.spec, self._scope = found.spec, found.scope
@@ -294,7 +296,7 @@ class SimulatedContext:
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
         """What was spent on joints in the last step."""
-        return self.simulator.drives.efforts([self.joint(name).row for name in joints])
+        return self._readings.efforts([self.joint(name).row for name in joints])
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Move joints at once."""
@@ -333,7 +335,7 @@ class SimulatedContext:
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""
-        return self.simulator.states.contacts()
+        return self._readings.contacts()
 
     # -- topics, services, parameters --------------------------------------------------------------
 

@@ -235,6 +235,18 @@ def test_forces_move_a_base_as_it_is_told():
     assert context.pushes["base_footprint"][0] == pytest.approx((0.0, -1000.0, 0.0))
 
 
+def test_a_base_moved_by_forces_stops_after_the_time_that_ridgeback_names():
+    context = FakeContext("<plugin><cmdVelTimeOut>0.2</cmdVelTimeOut></plugin>",
+                          links=("base_footprint",))
+    context.description.links.append(Link("base_footprint"))
+    ForceBasedMove(context).load()
+    context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
+    context.advance(0.1)
+    assert context.pushes["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
+    context.advance(0.15)
+    assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
+
+
 def test_a_tricycle_whose_wheels_have_the_names_of_the_other_side_counts_a_left_turn_as_one():
     context = FakeContext("<plugin><odometrySource>encoder</odometrySource></plugin>",
                           joints=TRICYCLE)

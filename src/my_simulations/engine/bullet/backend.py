@@ -36,7 +36,7 @@ from ..commands import (
     SetWheelSlips,
 )
 from ..ring import JOINTS, LINKS
-from . import bodies, collision_groups, extra_surfaces, joint_axes
+from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_builder import Builder
 from .collision_shapes import ShapeError, ShapeFactory
@@ -58,6 +58,7 @@ from .residual_friction import ResidualFriction
 from .rolling_contacts import RollingContacts
 from .seam_contacts import SeamContacts
 from .sliding import Sliding
+from .solver_settings import configure_solver
 from .state_readout import StateReadout
 from .state_restore import Entry, inherited, restore
 from .state_setter import StateSetter
@@ -80,7 +81,7 @@ class BulletBackend:
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
         self._readout = StateReadout(self._on_diverged)
         self._residual = ResidualFriction()
-        self._rolling = RollingContacts(lambda uid, step: self._landing.see_rolling(uid, step))
+        self._rolling = RollingContacts(lambda uids, step: self._landing.see_rolling(uids, step))
         self._seams = SeamContacts(self._rolling)
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
@@ -202,21 +203,7 @@ class BulletBackend:
 
     def _configure_bullet(self) -> None:
         settings = self._settings
-        pybullet.setGravity(*settings.gravity)
-        pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=settings.step_size, numSolverIterations=settings.iterations,
-            numSubSteps=0, deterministicOverlappingPairs=1, enableFileCaching=0,
-            collisionFilterMode=collision_groups.BOTH,
-            # Overlaps are pushed out at 5 / s whatever the step: Bullet's default throws a body
-            # that starts 0.2 m deep to 3 m, and makes bounces erratic (measured).
-            contactERP=min(0.2, 5.0 * settings.step_size),
-            # Each step begins with what the contacts carried in the last one. PyBullet begins with
-            # a tenth of it: a stack of ten then takes four times as long and leans ten times as
-            # far; with all of it (1) a heavy body on light ones collapses (measured).
-            warmStartingFactor=0.99,
-            enableConeFriction=int(settings.cone),
-            allowedCcdPenetration=0.0,   # what flies fast stops at a wall, not in it
-        )
+        configure_solver(settings)
         self._settling.configure(settings.iterations, settings.step_size)
         self._sliding.configure(settings.cone)
 
@@ -286,10 +273,8 @@ class BulletBackend:
         try:
             for entry, pose in starts:
                 self._enter(entry.builder, entry.model, pose)
-        except (
-            CommandRefusedError,
-            pybullet.error,
-        ) as fault:  # what could be built before: files have gone
+        except (CommandRefusedError, pybullet.error) as fault:
+            # What could be built before: files have gone.
             raise EngineBrokenError(f"the world could not be built again: {fault}") from fault
 
     def _inherited(self, command: LoadModel) -> ModelState:
@@ -306,8 +291,7 @@ class BulletBackend:
         if (command.first_link_row + len(command.model.links) > LINKS
                 or command.first_joint_row + len(command.model.joints) > JOINTS):
             raise CommandRefusedError(
-                f"the world is full: {LINKS} links and {JOINTS} joints are its limit"
-            )
+                f"the world is full: {LINKS} links and {JOINTS} joints are its limit")
 
     def _register(self, body: Body) -> None:
         for uid in body.uids:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import atan2, cos, hypot, pi, sin
-from typing import Callable, Dict, List, NamedTuple, Optional, Set, Tuple
+from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
@@ -175,14 +175,13 @@ class LandingContacts:
         turn = EVERY * (look + looks_until_turn(len(watched), look, _ROUNDS))
         return max(step, min(turn, self._next))
 
-    def see_rolling(self, uid: int, step: int) -> None:
-        """The contact points of a body that rolls are about to be dropped for this step.
-
-        Without them it would be taken for one that flies, and be looked at in every step.
-        """
-        flight = self._flights.get(uid)
-        if flight is not None and flight.look <= step:
-            self._is_on_ground(flight, step)
+    def see_rolling(self, uids: AbstractSet[int], step: int) -> None:
+        """Contact points of bodies that roll are dropped for this step: they do not fly."""
+        if self._next > step:
+            return
+        for flight in list(self._flights.values()):
+            if flight.look <= step and flight.body.uid in uids:
+                self._is_on_ground(flight, step)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Look for flights now and then, and find the points of those that end in this step."""

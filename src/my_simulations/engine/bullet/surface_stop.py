@@ -11,19 +11,49 @@ fast, what is ahead, no sooner than they can be there. Small balls are swept alo
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from typing import Dict, List, Set, Tuple
+from math import dist
+from typing import Dict, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
 from ...description.shapes import Plane
 from ...geometry import Vec3, add, dot, norm, scale, subtract
-from .approach import approach, extent, speed_of
+from .approach import approach, extent
 from .bodies import Body
 from .step_helper import FAR
 
 _DEEP = 1.8e-3   # m: so deep a body may go in one step
 _AHEAD = 16      # steps for which a fast body looks ahead
 _SELDOM = 256    # steps between two looks at a slow one, at most
+
+
+class _Motion(NamedTuple):
+    """Of a body: its centre of mass, velocity (m/s) and angular velocity (rad/s)."""
+
+    centre: Vec3
+    linear: Vec3
+    angular: Vec3
+
+    @classmethod
+    def of(cls, uid: int) -> "_Motion":
+        return cls(pybullet.getBasePositionAndOrientation(uid)[0], *pybullet.getBaseVelocity(uid))
+
+    def radius(self, low: Vec3, high: Vec3) -> float:
+        """The most that a point between two corners is away from the centre, m."""
+        x, y, z = self.centre
+        return norm((max(high[0] - x, x - low[0]), max(high[1] - y, y - low[1]),
+                     max(high[2] - z, z - low[2])))
+
+    def nearing(self, other: "Optional[_Motion]", radius: float) -> float:
+        """The most by which points of both can near each other, m/s, within `radius` of this one.
+
+        None is what does not move.
+        """
+        spin = norm(self.angular) * radius
+        if other is None:
+            return norm(self.linear) + spin
+        return norm(subtract(self.linear, other.linear)) + spin + norm(other.angular) * (
+            dist(self.centre, other.centre) + radius)
 
 
 class SurfaceStop:
@@ -119,9 +149,15 @@ class SurfaceStop:
         low, high = extent(body)
         reach = (speed * dt * (_AHEAD + 2),) * 3
         near = pybullet.getOverlappingObjects(subtract(low, reach), add(high, reach)) or ()
+        here = _Motion.of(uid)
+        radius = here.radius(low, high)
         for other in sorted({pair[0] for pair in near} - {uid} - self._floors):
             moves = other in self._moving
-            towards = speed + (speed_of(other) if moves else 0.0)
+            there = _Motion.of(other) if moves else None
+            # What falls or slides together is no danger, and finding its nearest points is dear.
+            if (here.nearing(there, radius) + norm(gravity) * dt) * dt <= _DEEP:
+                continue
+            towards = speed + (norm(there.linear) if there is not None else 0.0)
             points = pybullet.getClosestPoints(uid, other, towards * dt * (_AHEAD + 2))
             if not points:
                 continue

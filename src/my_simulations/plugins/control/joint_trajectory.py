@@ -6,7 +6,7 @@ looked at 100 times a second of sim time, or as often as `controlPeriod` says.
 from __future__ import annotations
 
 from functools import partial
-from typing import Any, List, Optional, Set, Tuple
+from typing import Any, List, NamedTuple, Optional, Set, Tuple
 
 from ...engine.commands import PidGains
 from ...engine.servo_law import shortest
@@ -62,6 +62,8 @@ class JointTrajectory(Controller):
         self._goal: Optional[_Following] = None
         self._watch: Optional[Ending] = None
         self._begun = 0.0
+        self._seen: List[_Tracked] = []
+        self._seen_at, self._seen_of = -1, self._splines
         self.subscribe("command", "trajectory_msgs/JointTrajectory", self._hear)
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
         self._action = ActionServer(self.context, f"{self.name}/follow_joint_trajectory", _ACTION,
@@ -177,7 +179,7 @@ class JointTrajectory(Controller):
         """Check tolerances; when all is done, let the engine stop computing."""
         following = self._goal
         if following is not None:
-            self._judge(following)
+            self._judge(following, self._tracked())
             self._send_feedback(following)
         if not self._moves():
             self._unwatch()
@@ -190,20 +192,19 @@ class JointTrajectory(Controller):
             self._watch.end()
             self._watch = None
 
-    def _judge(self, following: "_Following") -> None:
-        for n, (joint, spline) in enumerate(zip(self._joints, self._splines)):
-            now, end = self._time(spline), spline.segments[-1].end
-            position, rate = self._errors(joint, spline)
-            if now < end:
-                if not following.path[n].holds(position, rate):
+    def _judge(self, following: "_Following", axes: "List[_Tracked]") -> None:
+        for n, (axis, spline) in enumerate(zip(axes, self._splines)):
+            end = spline.segments[-1].end
+            if axis.now < end:
+                if not following.path[n].holds(axis.error, axis.rate_error):
                     self._fail(following, PATH_TOLERANCE_VIOLATED,
-                               f"{joint.name} path error {position:.6f}")
+                               f"{self._names[n]} path error {axis.error:.6f}")
                     return
-            elif following.end[n].holds(position, rate):
+            elif following.end[n].holds(axis.error, axis.rate_error):
                 following.arrived.add(n)
-            elif now >= end + following.late and n not in following.arrived:
+            elif axis.now >= end + following.late and n not in following.arrived:
                 self._fail(following, GOAL_TOLERANCE_VIOLATED,
-                           f"{joint.name} goal error {position:.6f}")
+                           f"{self._names[n]} goal error {axis.error:.6f}")
                 return
         if len(following.arrived) == len(self._joints):
             self._goal = None
@@ -217,10 +218,15 @@ class JointTrajectory(Controller):
         result.error_code, result.error_string = code, text
         following.goal.abort(result, text)
 
-    def _errors(self, joint: HardwareJoint, spline: Spline) -> Tuple[float, float]:
-        wanted, rate, _ = spline.at(self._time(spline))
-        error = wanted - joint.position
-        return shortest(error) if joint.limits.wraps else error, rate - joint.velocity
+    def _tracked(self) -> "List[_Tracked]":
+        """What each joint should do in this step, and does; looked at once for all who ask."""
+        step, splines = self.context.step, self._splines
+        if self._seen_at != step or self._seen_of is not splines:
+            self._seen_at, self._seen_of = step, splines
+            dt = self.context.step_size
+            self._seen = [_tracked(joint, spline, (step - spline.origin) * dt)
+                          for joint, spline in zip(self._joints, splines)]
+        return self._seen
 
     # -- what is told ------------------------------------------------------------------------------
 
@@ -239,16 +245,14 @@ class JointTrajectory(Controller):
     def _filled(self, message: Any) -> Any:
         message.header.stamp = self.context.stamp()
         message.joint_names = list(self._names)
-        wanted = [spline.at(self._time(spline)) for spline in self._splines]
-        errors = [self._errors(joint, spline)
-                  for joint, spline in zip(self._joints, self._splines)]
-        message.desired.positions = [state[0] for state in wanted]
-        message.desired.velocities = [state[1] for state in wanted]
-        message.desired.accelerations = [state[2] for state in wanted]
-        message.actual.positions = [joint.position for joint in self._joints]
-        message.actual.velocities = [joint.velocity for joint in self._joints]
-        message.error.positions = [position for position, _ in errors]
-        message.error.velocities = [rate for _, rate in errors]
+        axes = self._tracked()
+        message.desired.positions = [axis.wanted[0] for axis in axes]
+        message.desired.velocities = [axis.wanted[1] for axis in axes]
+        message.desired.accelerations = [axis.wanted[2] for axis in axes]
+        message.actual.positions = [axis.position for axis in axes]
+        message.actual.velocities = [axis.velocity for axis in axes]
+        message.error.positions = [axis.error for axis in axes]
+        message.error.velocities = [axis.rate_error for axis in axes]
         since = max(0, round((self._now - self._begun) * 1e9))
         for point in (message.desired, message.actual):
             point.time_from_start.secs, point.time_from_start.nsecs = divmod(since, 10 ** 9)
@@ -263,6 +267,30 @@ class JointTrajectory(Controller):
         response.position = [state[0] for state in found]
         response.velocity = [state[1] for state in found]
         response.acceleration = [state[2] for state in found]
+
+
+class _Tracked(NamedTuple):
+    """A joint on its spline at the spline's time `now`, s; rad and rad/s, or m and m/s.
+
+    Attributes:
+        wanted: position, rate and acceleration of the spline.
+        error: of the position, the shortest way round for a joint that wraps.
+    """
+
+    now: float
+    wanted: Tuple[float, float, float]
+    position: float
+    velocity: float
+    error: float
+    rate_error: float
+
+
+def _tracked(joint: HardwareJoint, spline: Spline, now: float) -> _Tracked:
+    wanted = spline.at(now)
+    position, velocity = joint.position, joint.velocity
+    error = wanted[0] - position
+    return _Tracked(now, wanted, position, velocity,
+                    shortest(error) if joint.limits.wraps else error, wanted[1] - velocity)
 
 
 class _Following:

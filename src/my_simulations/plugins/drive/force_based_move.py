@@ -1,8 +1,9 @@
 """libgazebo_ros_force_based_move.so (hector): forces on the base make it move as it is told.
 
 Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
-(librobotnik_force_based_move.so): in every step a force along x and y of the base, and a torque
-about its vertical, in proportion to what its velocity lacks.
+(librobotnik_force_based_move.so, and libridgeback_ros_force_based_move.so, which names its
+watchdog `<cmdVelTimeOut>`): in every step a force along x and y of the base, and a torque about its
+vertical, in proportion to what its velocity lacks.
 """
 from __future__ import annotations
 
@@ -34,7 +35,8 @@ class ForceBasedMove(Plugin):
                                   (1e-3, 1e-3, 1e12, 1e12, 1e12, 1e-3))
         self._broadcasts = p.flag("publishOdometryTf", True)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        p.number("commandWatchdog", 0.5))
+                                        p.number("commandWatchdog",
+                                                 p.number("cmdVelTimeOut", 0.5)))
         self._begin()
         context.every(0.0, self.push)
         hertz = p.number("odometryRate", 20.0)
