@@ -43,6 +43,9 @@ def requirements() -> Tuple[List[str], Dict[str, List[str]]]:
 
     extras = {extra: named(names) for extra, names in EXTRAS.items()}
     extras["gym"] = ["gymnasium>=1.1.1"]  # what the ROS package needs not
+    # Scheduler, workers and driver must be of one version, so these are exact.
+    extras["dask"] = [line for line in text_of("requirements-test.txt").splitlines()
+                      if name_of(line) == "distributed"]
     others = {name for names in EXTRAS.values() for name in names}
     return SYSTEM + [line for line in lines if name_of(line) not in others], extras
 
@@ -65,7 +68,7 @@ def for_pip() -> Dict[str, Any]:
         "install_requires": required,
         "extras_require": extras,
         "data_files": data_files(),
-        "entry_points": {"console_scripts": ["study = my_simulations.studies.command:main"]},
+        "entry_points": {"console_scripts": ["study = my_simulations.cli.study_command:main"]},
     }
 
 

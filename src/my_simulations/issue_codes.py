@@ -55,6 +55,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "of a column.", "Use the keys of doc/studies.md."),
         ("study-value", ERROR, "A value of a study file has the wrong type or is out of range.",
          "Write a value of the expected type."),
+        ("study-scenario", ERROR, "A scenario of a study is no roslaunch file.",
+         "Name a file whose first element is <launch>."),
         ("study-expression", ERROR, "A measurement of a study file is not understood.",
          "Use the signals and functions of doc/studies.md."),
     )),

@@ -18,6 +18,7 @@ from my_simulations.python_api import OpenWorld, WorldChoice
 from my_simulations.studies.command import main
 from my_simulations.studies.plan import CasePlan
 from my_simulations.studies.slot import final_hash
+from my_simulations.studies.slot_pool import SlotPool
 from my_simulations.studies.study_file import read_study
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
@@ -124,10 +125,13 @@ def test_a_driver_killed_at_any_moment_goes_on_to_the_same_table(folder):
     assert main(["study", "status", "cut"]) == 0
 
 
-def test_shards_make_the_table_of_the_whole(folder):
+def test_shards_make_the_table_of_the_whole(folder, capsys):
     assert run(folder, DROP, "--slots", "1", name="whole") == 0
     for number in (1, 2, 3):
-        run(folder, DROP, "--slots", "1", "--shard", f"{number}/3", name="parts")
+        assert run(folder, DROP, "--slots", "1", "--shard", f"{number}/3", name="parts") == 0
+        assert main(["study", "status", "parts", "--json"]) == int(number < 3)
+        told = json.loads(capsys.readouterr().out.splitlines()[-1])
+        assert (told["cases"], told["done"]) == (60, 20 * number)
     assert table(folder, "parts") == table(folder, "whole")
     assert len(list((folder / "parts").glob("journal-*-of-3.jsonl"))) == 3
 
@@ -251,3 +255,101 @@ def test_faults_of_a_study_are_told(folder, capsys):
     assert "s.yaml:1: error: 'duration' must be a number" in capsys.readouterr().err
     assert main(["study", "status", str(folder)]) == 2
     assert "there is no study" in capsys.readouterr().err
+
+
+def test_a_case_is_recorded_as_a_state_log(folder):
+    from my_simulations.cli.study_command import main as study
+    from my_simulations.editor.logs.state_log import LogReader
+
+    assert run(folder, DROP.replace("count: 20", "count: 2")) == 0
+    row = table(folder)[4]
+    assert study(["study", "export", row["case"][:8], "--in", "s", "--log", "logs/state.log",
+                  "--every", "0.1"]) == 0
+    reader = LogReader("logs/state.log")
+    assert (reader.begin, reader.end) == (0.0, pytest.approx(0.4))
+    number, first = reader.seek(0.0)
+    _, last = reader.seek(0.4)
+    document = json.loads(reader.text(number))
+    assert [model["name"] for model in document["models"]] == ["ground_plane", "box"]
+    assert first.values[-1][2] == pytest.approx(float(row["height"]))
+    assert last.values[-1][2] == pytest.approx(float(row["rest"]), abs=1e-6)
+    # The same again replaces the file; without its front end the command says so.
+    assert study(["study", "export", row["case"], "--in", "s", "--log", "logs/state.log"]) == 0
+    assert main(["study", "export", row["case"], "--in", "s", "--log", "x"]) == 2
+
+
+def test_a_slurm_array_runs_every_case_once(folder, capsys, monkeypatch):
+    (folder / "s.yaml").write_text(DROP.replace("count: 20", "count: 2"))
+    (folder / "bin").mkdir()
+    # Stands for Slurm: runs the tasks of the array one after the other, the last one first.
+    (folder / "bin" / "sbatch").write_text("""#!/bin/bash
+for i in $(sed -n 's/#SBATCH --array=1-//p' "$1" | xargs seq | tac); do
+  SLURM_ARRAY_TASK_ID=$i bash "$1" > "slurm-$i.txt" 2>&1 || exit 1
+done
+echo "Submitted batch job 7"
+""")
+    (folder / "bin" / "sbatch").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder / 'bin'}:{os.environ['PATH']}")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(SOURCE), os.environ["PYTHONPATH"]])
+                       if "PYTHONPATH" in os.environ else str(SOURCE))
+    assert main(["study", "run", "s.yaml", "--on", "slurm", "--shards", "3", "--sbatch",
+                 "time=01:00:00", "--slots", "2", "--out", "a b"]) == 0
+    told = capsys.readouterr()
+    assert "Submitted batch job 7" in told.err
+    script = (folder / "a b" / "study.sbatch").read_text()
+    assert told.out.strip() == str(folder / "a b" / "study.sbatch")
+    for line in ("#!/bin/bash", "#SBATCH --job-name=drop", "#SBATCH --array=1-3",
+                 "#SBATCH --cpus-per-task=2", "#SBATCH --requeue", "#SBATCH --time=01:00:00",
+                 f'#SBATCH --output="{folder}/a b/slurm/%A_%a.txt"'):
+        assert line in script.splitlines(), script
+    assert run(folder, (folder / "s.yaml").read_text(), "--slots", "1") == 0
+    assert table(folder, "a b") == table(folder)
+    # The table is the work of the last task alone.
+    assert ["results.csv" in (folder / f"slurm-{n}.txt").read_text() for n in (3, 2, 1)] == [
+        False, False, True]
+    assert main(["study", "run", "s.yaml", "--out", "a b", "--shard", "1/2"]) == 2
+    assert "in 3 shards, not in 2" in capsys.readouterr().err
+
+
+def test_engines_that_nobody_uses_end_and_start_again(folder, monkeypatch):
+    (folder / "s.yaml").write_text(DROP)
+    plan = CasePlan(read_study(str(folder / "s.yaml"))[0])
+    pids, found = [], []
+    pool = SlotPool(plan, 1, lambda case, attempt, world: pids.append(world.simulator.engine_pid))
+    try:
+        pool.run(iter([plan.case(0)]), lambda row, kept: found.append(row))
+        monkeypatch.setattr("my_simulations.studies.slot_pool._IDLE_S", 0.0)
+        deadline = time.monotonic() + 60.0
+        while os.path.exists(f"/proc/{pids[0]}"):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        pool.run(iter([plan.case(0)]), lambda row, kept: found.append(row))
+    finally:
+        pool.close()
+    assert pids[0] != pids[1] and found[0].hash == found[1].hash
+    assert not os.path.exists(f"/proc/{pids[1]}")
+
+
+def test_parquet_holds_the_table(folder):
+    from pyarrow import parquet
+
+    assert run(folder, DROP.replace("count: 20", "count: 2")) == 0
+    found = parquet.read_table(str(folder / "s" / "results.parquet"))
+    assert [str(found.schema.field(name).type) for name in ("index", "height", "touched", "case")
+            ] == ["int64", "double", "bool", "string"]
+    rows = table(folder)
+    assert found["case"].to_pylist() == [row["case"] for row in rows]
+    assert found["rest"].to_pylist() == [float(row["rest"]) for row in rows]
+    assert found["touched"].to_pylist() == [row["touched"] == "True" for row in rows]
+
+
+def test_a_pyarrow_that_cannot_be_imported_costs_only_its_file(folder, capsys, monkeypatch):
+    broken = folder / "broken" / "pyarrow"
+    broken.mkdir(parents=True)
+    (broken / "__init__.py").write_text("raise ImportError('built for another NumPy')\n")
+    monkeypatch.syspath_prepend(str(folder / "broken"))
+    for name in [name for name in sys.modules if name.partition(".")[0] == "pyarrow"]:
+        monkeypatch.delitem(sys.modules, name)
+    assert run(folder, "duration: 0.01\n") == 0
+    assert "built for another NumPy" in capsys.readouterr().err
+    assert len(table(folder)) == 1 and not (folder / "s" / "results.parquet").exists()

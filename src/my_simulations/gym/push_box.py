@@ -54,7 +54,8 @@ class PushBox:
                                           ("mark", _MARK, Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = within([_FAR, _FAR, 1.0, 1.0, _FAST, _FAST, *4 * [_FAR], _FAR])
-        self._apart: Tuple[float, float] = (0.0, 0.0)
+        self._before: Optional[Tuple[float, float]] = None
+        self._apart = (0.0, 0.0)  # m from the box to the mark, from the robot to the box
 
     def begin(self, world: OpenWorld, random: np.random.Generator,
               options: Dict[str, Any]) -> None:
@@ -63,7 +64,7 @@ class PushBox:
         mark = box + random.uniform((0.5, -0.3), (1.0, 0.3))
         world.set_pose("box", [*box, 0.1])
         world.set_pose("mark", [*mark, 0.0])
-        self._apart = self._distances(world)
+        self._before = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
         """Set the rates of both wheels."""
@@ -79,25 +80,20 @@ class PushBox:
         vx, vy, _, _, _, turn = states.twist["robo"]
         yaw = rpy_from_quat(tuple(robot[3:]))[2]
         forward = vx * math.cos(yaw) + vy * math.sin(yaw)
+        self._apart = math.dist(box[:2], mark[:2]), math.dist(box[:2], robot[:2])
+        self._before = self._before or self._apart
         return seen(self.observation_space, [
             robot[0], robot[1], math.cos(yaw), math.sin(yaw), forward, turn,
-            box[0], box[1], mark[0], mark[1], math.dist(box[:2], mark[:2])])
+            box[0], box[1], mark[0], mark[1], self._apart[0]])
 
     def judge(self, world: OpenWorld, action: Any) -> Judgement:
         """See the class."""
-        before, self._apart = self._apart, self._distances(world)
         to_mark, to_box = self._apart
+        before, self._before = self._before or self._apart, self._apart
         reward = before[0] - to_mark + 0.1 * (before[1] - to_box)
         arrived = to_mark < NEAR
         lost = max(to_mark, to_box) > _FARTHEST
         return Judgement(reward + arrived, arrived or lost, {"is_success": arrived})
-
-    @staticmethod
-    def _distances(world: OpenWorld) -> Tuple[float, float]:
-        """From the box to the mark, from the robot to the box; m."""
-        pose = world.states().pose
-        box = pose["box"][:2]
-        return math.dist(box, pose["mark"][:2]), math.dist(box, pose["robo"][:2])
 
 
 def make(render_mode: Optional[str] = None) -> WorldEnv:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import dataclass
 from typing import Any, Dict, Optional
 
 import gymnasium
@@ -33,6 +34,35 @@ _BOX = """<sdf version="1.6"><model name="{name}"><link name="link">
 </link></model></sdf>"""
 
 
+@dataclass(frozen=True)
+class _Scene:
+    """Where all is, read once a step; positions in m, twist in m/s and rad/s, world frame."""
+
+    middle: np.ndarray  # between the fingers
+    red: np.ndarray
+    blue: np.ndarray
+    red_twist: np.ndarray
+
+    def distance(self) -> float:
+        """From between the fingers to the red box, and from there to its place; m."""
+        goal = self.blue + np.array([0.0, 0.0, SIZE])
+        return math.dist(self.middle, self.red) + math.dist(self.red, goal)
+
+    def rests(self) -> bool:
+        """Whether red lies on blue, at rest."""
+        apart = self.red - self.blue
+        level = abs(apart[2] - SIZE) < _LEVEL and float(np.abs(apart[:2]).max()) < _CENTRED
+        return level and float(np.abs(self.red_twist).max()) <= 0.01
+
+
+def _scene_of(world: OpenWorld) -> _Scene:
+    links = world.links()  # boxes have their link at the origin of the model
+    pose = links.pose
+    left, right = (pose[f"gripper::{finger}"][:3] for finger in FINGERS)
+    return _Scene((left + right) / 2, pose["red::link"][:3], pose["blue::link"][:3],
+                  links.twist["red::link"])
+
+
 class StackBoxes:
     """Task: put the red box on the blue one and let go.
 
@@ -55,7 +85,8 @@ class StackBoxes:
             ("blue", _BOX.format(name="blue", colour="0.1 0.2 0.8 1"), Pose((0.2, 0.0, 0.025)))))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
         self.observation_space = within(14 * [_FAR])
-        self._left = 0.0
+        self._left: Optional[float] = None
+        self._scene: Optional[_Scene] = None
 
     def begin(self, world: OpenWorld, random: np.random.Generator,
               options: Dict[str, Any]) -> None:
@@ -63,7 +94,7 @@ class StackBoxes:
         world.set_pose("red", [*random.uniform((-0.25, -0.2), (-0.05, 0.2)), SIZE / 2])
         world.set_pose("blue", [*random.uniform((0.05, -0.2), (0.25, 0.2)), SIZE / 2])
         self.act(world, np.array([0.0, 0.0, 0.0, -1.0]))
-        self._left = self._distance(world)
+        self._left = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
         """Set the motors of axes and fingers."""
@@ -75,37 +106,29 @@ class StackBoxes:
 
     def observe(self, world: OpenWorld) -> np.ndarray:
         """See the class."""
-        position, pose = world.joints().position, world.states().pose
-        red, blue = pose["red"][:3], pose["blue"][:3]
+        scene = self._scene = _scene_of(world)
+        if self._left is None:
+            self._left = scene.distance()
+        position = world.joints().position
         axes = [float(position[f"gripper::{joint}"]) for joint in (*AXES, *FINGERS)]
-        return seen(self.observation_space, [*axes, *red, *blue, *(red - blue)])
+        return seen(self.observation_space,
+                    [*axes, *scene.red, *scene.blue, *(scene.red - scene.blue)])
 
     def judge(self, world: OpenWorld, action: Any) -> Judgement:
         """See the class."""
-        before, self._left = self._left, self._distance(world)
-        stands = self._stands(world)
-        return Judgement(before - self._left + stands, stands, {"is_success": stands})
+        scene = self._scene or _scene_of(world)
+        left = scene.distance()
+        nearer = 0.0 if self._left is None else self._left - left
+        self._left = left
+        stands = scene.rests() and not self._held(world)
+        return Judgement(nearer + stands, stands, {"is_success": stands})
 
     @staticmethod
-    def _distance(world: OpenWorld) -> float:
-        """From between the fingers to the red box, and from there to its place; m."""
-        links, pose = world.links().pose, world.states().pose
-        middle = (links["gripper::left_finger"][:3] + links["gripper::right_finger"][:3]) / 2
-        red = pose["red"][:3]
-        goal = pose["blue"][:3] + np.array([0.0, 0.0, SIZE])
-        return math.dist(middle, red) + math.dist(red, goal)
-
-    @staticmethod
-    def _stands(world: OpenWorld) -> bool:
-        """Whether red rests on blue, at rest, and is not held."""
-        states = world.states()
-        apart = states.pose["red"][:3] - states.pose["blue"][:3]
-        level = abs(apart[2] - SIZE) < _LEVEL and float(np.abs(apart[:2]).max()) < _CENTRED
-        if not level or float(np.abs(states.twist["red"]).max()) > 0.01:
-            return False
-        return not any("red::link" in contact.links and contact.force > 0.0
-                       and any(link.startswith("gripper::") for link in contact.links)
-                       for contact in world.contacts())
+    def _held(world: OpenWorld) -> bool:
+        """Whether the gripper touches the red box."""
+        return any("red::link" in contact.links and contact.force > 0.0
+                   and any(link.startswith("gripper::") for link in contact.links)
+                   for contact in world.contacts())
 
 
 def make(render_mode: Optional[str] = None) -> WorldEnv:

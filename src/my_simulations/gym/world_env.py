@@ -61,10 +61,10 @@ class Task(Protocol):
         """Apply an action; the world makes its steps afterwards."""
 
     def observe(self, world: OpenWorld) -> Any:
-        """The observation, a member of the space."""
+        """The observation, a member of the space; asked for once after `begin` and each step."""
 
     def judge(self, world: OpenWorld, action: Any) -> Judgement:
-        """What the step was worth."""
+        """What the step was worth; asked for after `observe`, which may keep what it has read."""
 
 
 class WorldEnv(gymnasium.Env[Any, Any]):

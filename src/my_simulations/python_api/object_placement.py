@@ -1,11 +1,12 @@
-"""Objects of a list, put into an open world."""
+"""Objects of a list, read for an open world."""
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Callable, Dict, List, Sequence, Tuple
 
 from ..description.model import Model
+from ..description.shapes import MeshTable
 from ..errors import InputError, Issue, error
 from ..formats.mesh.loading import collision_meshes
 from ..formats.reading import read_entity
@@ -17,7 +18,6 @@ from ..objects.selection import Selection, parse_groups, select
 from ..objects.yaml_source import read_yaml
 from ..resources.package_files import PACKAGE, package_directories
 from ..resources.resolver import Resolver
-from ..simulator.simulator import Simulator
 
 Alter = Callable[[Model], Model]
 """Makes another model of one that is about to be spawned; `Model.pose` is its place."""
@@ -25,39 +25,44 @@ Alter = Callable[[Model], Model]
 _XACRO_SECONDS = 60.0
 
 
-def place_objects(simulator: Simulator, resolver: Resolver, names: Sequence[str], file: str,
-                  world: str, alter: Alter) -> List[Issue]:
-    """Spawn objects of a list at their places.
+@dataclass(frozen=True)
+class PlacedModel:
+    """A model of an object list; `model.pose` is its place in the world."""
+
+    model: Model
+    meshes: MeshTable
+
+
+def read_objects(resolver: Resolver, names: Sequence[str], file: str, world: str
+                 ) -> Tuple[List[PlacedModel], List[Issue]]:
+    """Read objects of a list, through xacro where needed.
 
     Args:
-        simulator: the world.
         resolver: finds what their documents name.
         names: objects and groups of the list.
         file: the list; "" for that of the world in this package.
         world: name or file of the world.
-        alter: is given each model with its place in the world.
 
     Returns:
-        Faults and advice; an object with an error among them is not there.
+        The objects, and faults and advice; an object with an error among them is not there.
 
     Raises:
         InputError: there is no such list, or it cannot be read.
     """
-    if not names:
-        return []
     selection, issues = selected_objects(names, file, world)
+    found: List[PlacedModel] = []
     with Documents(selection.objects, package_finder(), _XACRO_SECONDS) as documents:
         for placed in selection.objects:
             try:
-                issues += _place(simulator, resolver, placed, documents, alter)
+                issues += _read(resolver, placed, documents, found)
             except InputError as fault:
                 issues += fault.issues
-    return issues
+    return found, issues
 
 
 def selected_objects(names: Sequence[str], file: str, world: str
                      ) -> Tuple[Selection, List[Issue]]:
-    """The objects of a list that are named, and all faults; see `place_objects`."""
+    """The objects of a list that are named, and all faults; see `read_objects`."""
     file = file or _list_of(world)
     tree, source, issues = read_yaml(file, "/objects")
     listing = parse_objects(tree, source, PACKAGE)
@@ -66,8 +71,8 @@ def selected_objects(names: Sequence[str], file: str, world: str
     return selection, [*issues, *more, *selection.issues]
 
 
-def _place(simulator: Simulator, resolver: Resolver, placed: PlacedObject,
-           documents: Documents, alter: Alter) -> List[Issue]:
+def _read(resolver: Resolver, placed: PlacedObject, documents: Documents,
+          found: List[PlacedModel]) -> List[Issue]:
     document = documents.of(placed)
     entity, issues = read_entity(document.xml, resolver, document.origin)
     if not isinstance(entity, Model):
@@ -75,8 +80,7 @@ def _place(simulator: Simulator, resolver: Resolver, placed: PlacedObject,
                                file=document.path)]
     meshes, faults = collision_meshes(entity)
     pose = compose(Pose(placed.position, quat_from_rpy(*placed.rpy)), entity.pose)
-    model = alter(replace(entity, name=placed.name, pose=pose))
-    simulator.models.spawn(model, model.pose, meshes=meshes)
+    found.append(PlacedModel(replace(entity, name=placed.name, pose=pose), meshes))
     return [*issues, *faults]
 
 

@@ -5,22 +5,21 @@ import math
 import os
 from dataclasses import replace
 from types import TracebackType
-from typing import Callable, List, Optional, Sequence, Tuple, Type
+from typing import Callable, List, Optional, Sequence, Type
 
 from ..description.model import Model
 from ..engine.api import Engine
 from ..engine.process_engine import ProcessEngine
-from ..errors import CommandError, EngineLostError, InputError, Issue, error, errors_of
-from ..formats.mesh.loading import collision_meshes
-from ..formats.reading import Entity, LoadedWorld, Text, read_entity, read_file
+from ..errors import CommandError, EngineLostError, InputError, Issue, errors_of
+from ..formats.reading import LoadedWorld, Text
 from ..geometry import ZERO3, Pose, Twist, compose
 from ..resources.resolver import Resolver
 from ..sensing.api import CameraSpec
 from ..simulator.saving import save_world
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
-from ..simulator.world_loading import load_world
-from .object_placement import Alter, place_objects
+from .kept_files import KeptFiles
+from .object_placement import Alter
 from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
 from .readings import (
     ContactReading,
@@ -84,14 +83,15 @@ class OpenWorld:
     """
 
     def __init__(self, choice: WorldChoice, *, resolver: Optional[Resolver] = None,
-                 log: Optional[Log] = None, engine: Callable[[], Engine] = ProcessEngine) -> None:
-        """See `open_world`."""
+                 log: Optional[Log] = None, engine: Callable[[], Engine] = ProcessEngine,
+                 files: Optional[KeptFiles] = None) -> None:
+        """See `open_world`; `files` reads the files instead of a reader of its own."""
         self.issues: List[Issue] = []
         self._listener = log
         self._lost: Optional[str] = None  # how the engine was lost
         self._furnished = 0  # the revision of the models when the world was opened
         self._choice = choice
-        self._resolver = resolver or Resolver.from_environment()
+        self._files = files or KeptFiles(resolver or Resolver.from_environment())
         loaded = self._load()
         self.simulator = Simulator(loaded.world, engine_factory=engine, paused=True, log=self._log,
                                    meshes=loaded.meshes)
@@ -347,40 +347,33 @@ class OpenWorld:
         """
         target = os.path.abspath(os.path.expanduser(path))
         return save_world(self.simulator, target, roots=[os.path.dirname(target)],
-                          resolver=self._resolver, overwrite=overwrite, state=state)
+                          resolver=self._files.resolver, overwrite=overwrite, state=state)
 
     # -- helpers -----------------------------------------------------------------------------------
 
     def _load(self) -> LoadedWorld:
         choice = self._choice
-        loaded = load_world(choice.world, self._resolver, self._log, seed=choice.seed,
-                            profile=choice.profile)
+        loaded = self._files.world(choice, self._log)
         return replace(loaded, world=choice.alter(loaded.world))
 
     def _furnish(self) -> None:
         choice = self._choice
-        self._judge(place_objects(self.simulator, self._resolver, choice.objects,
-                                  choice.object_list, choice.world, choice.alter_model))
+        placed, issues = self._files.objects(choice.objects, choice.object_list, choice.world)
+        for found in placed:
+            model = choice.alter_model(found.model)
+            self.simulator.models.spawn(model, model.pose, meshes=found.meshes)
+        self._judge(issues)
         for name, file, pose in choice.models:
             self._spawn(file, name, pose, choice.alter_model)
         self._furnished = self.simulator.models.revision
 
     def _spawn(self, document: Text, name: Optional[str], pose: Pose, alter: Alter) -> str:
-        entity, issues = self._read(document)
-        if not isinstance(entity, Model):
-            raise InputError([error("object-not-a-model",
-                                    f"{entity.name} is a light, not a model")])
-        model = alter(replace(entity, name=entity.name if name is None else name,
-                              pose=compose(pose, entity.pose)))
-        meshes, faults = collision_meshes(model)
-        self._judge([*issues, *faults])
+        found, meshes, issues = self._files.model(document)
+        model = alter(replace(found, name=found.name if name is None else name,
+                              pose=compose(pose, found.pose)))
+        self._judge(issues)
         self.simulator.models.spawn(model, model.pose, meshes=meshes)
         return model.name
-
-    def _read(self, document: Text) -> Tuple[Entity, List[Issue]]:
-        if isinstance(document, str) and "<" not in document:
-            return read_file(os.path.expanduser(document), self._resolver)
-        return read_entity(document, self._resolver)
 
     def _judge(self, issues: Sequence[Issue]) -> None:
         for issue in issues:

@@ -2,77 +2,67 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
-import re
+import shlex
 import signal
 import sys
 from types import FrameType
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, Optional, Protocol, Sequence, Set
 
 from ..errors import CommandError, InputError, SimulationError
-from .folder import REPORT, StudyFolder
+from ..python_api import OpenWorld
+from . import slurm
+from .case_world import opened, play
+from .cluster_address import SLURM, TlsFiles, scheduler_address
+from .command_line import parser
+from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, counts, finished_cases, header_of
-from .plan import WHOLE, CasePlan, Shard
+from .plan import Case, CasePlan, Shard
 from .report import write_report
 from .row import OK
+from .row_recorder import Recorder
+from .scenario_slot import launch_words, require_ros
 from .show import can_launch, launch_command, write_world
-from .slot import Hook
+from .slot import Hook, final_hash
 from .study_file import read_study
 from .study_progress import Progress
-from .study_runner import Rate, StudyRunner
-from .trajectories import Recorder
+from .study_runner import Rate, StudyRunner, Told
+from .table import rows_in_order
 
 NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command line."""
-    made = argparse.ArgumentParser(
-        prog="study", description="Run worlds many times with varied parameters, and measure them."
-        " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are"
-        " missing, 2 for a faulty study or command line, 130 if interrupted.")
-    actions = made.add_subparsers(dest="action", metavar="ACTION", required=True)
-    run = actions.add_parser("run", help="run a study, or the cases of it that have no result yet")
-    run.add_argument("file", metavar="FILE", help="study file (doc/studies.md)")
-    run.add_argument("--out", metavar="DIR", help="folder of the results; default: the name of the"
-                     " file, in the working directory")
-    run.add_argument("--shard", type=_shard, default=WHOLE, metavar="I/N",
-                     help="run every Nth case only, beginning with number I")
-    resume = actions.add_parser("resume", help="go on with a study that was interrupted")
-    others = {
-        "status": "print how many cases have run, and what became of them",
-        "report": "write the table, and the report as one HTML file",
-        "export": "write the table as CSV, and as parquet if pyarrow is installed"}
-    parsers = {name: actions.add_parser(name, help=text) for name, text in others.items()}
-    show = actions.add_parser("show", help="open the world of a case in the world editor")
-    show.add_argument("case", metavar="CASE", help="id of the case, or its beginning")
-    show.add_argument("--write", metavar="FILE", help="only write the world to this file")
-    show.add_argument("--in", dest="dir", metavar="DIR", default=".",
-                      help="folder of the results; default: the working directory")
-    for each in (resume, *parsers.values()):
-        each.add_argument("dir", metavar="DIR", nargs="?", default=".",
-                          help="folder of the results; default: the working directory")
-    for each in (run, resume):
-        each.add_argument("--slots", type=int, metavar="N", default=os.cpu_count() or 1,
-                          help="cases that run at a time; default: number of processors")
-    for each in (run, resume, *parsers.values()):
-        each.add_argument("--json", action="store_true", help="print JSON")
-    return made
+class Record(Protocol):
+    """A file that records what happens in a world."""
+
+    def look(self, world: OpenWorld) -> None:
+        """Add the present state."""
+
+    def close(self) -> None:
+        """Finish the file."""
 
 
-def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None) -> int:
+Records = Mapping[str, Callable[[str], Record]]
+
+
+def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
+         records: Optional[Records] = None) -> int:
     """Run the command.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
         hook: see `Slot`.
+        records: what makes the file of `export --bag` and of `export --log`, by "bag" and "log".
 
     Returns:
-        The exit code, see `parser`.
+        The exit code, see `command_line.parser`.
     """
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
     try:
+        if options.action == "export" and (options.bag or options.log):
+            return _record(options, records or {})
         return _ACTIONS[options.action](options, hook)
     except InputError as fault:
         for issue in fault.issues:
@@ -86,18 +76,15 @@ def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None) -> i
         return INTERRUPTED
 
 
-def _shard(text: str) -> Shard:
-    found = re.fullmatch(r"(\d+)/(\d+)", text)
-    if not found or not 1 <= int(found[1]) <= int(found[2]):
-        raise argparse.ArgumentTypeError(f"{text!r} is not I/N with I from 1 to N")
-    return Shard(int(found[1]), int(found[2]))
-
-
 def _run(options: argparse.Namespace, hook: Optional[Hook]) -> int:
     stem = os.path.splitext(os.path.basename(options.file))[0]
     folder = StudyFolder(options.out or stem)
     plan = _plan(options.file)
+    if options.on != SLURM:
+        folder.check_shards(options.shard.of)
     folder.create(options.file)
+    if options.on == SLURM:
+        return _on_slurm(options, folder, plan)
     return _work(options, folder, plan, options.shard, hook)
 
 
@@ -105,12 +92,32 @@ def _resume(options: argparse.Namespace, hook: Optional[Hook]) -> int:
     folder = StudyFolder(options.dir)
     header = folder.header()
     plan = _plan(header["file"])
-    codes = []
-    for path in folder.journals():
-        found = re.search(r"-(\d+)-of-(\d+)\.jsonl$", path)
-        shard = Shard(int(found[1]), int(found[2])) if found else WHOLE
-        codes.append(_work(options, folder, plan, shard, hook))
-    return max(codes)
+    if options.on == SLURM:
+        return _on_slurm(options, folder, plan)
+    return max([_work(options, folder, plan, shard_of(path), hook) for path in folder.journals()])
+
+
+def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) -> int:
+    shards = min(options.shards, len(plan))
+    if shards < 1:
+        raise CommandError(f"--shards must be at least 1, is {options.shards}")
+    folder.check_shards(shards)
+    path = slurm.write_script(folder.path, slurm.job_script(
+        plan.study.name, plan.study.file, folder.path, shards, _slots(options, 1),
+        options.sbatch))
+    told = slurm.submit(path) if slurm.can_submit() else ""
+    if options.json:
+        _say(json.dumps({"script": path, "shards": shards, "submitted": bool(told)}))
+    else:
+        _say(path)
+        _tell(told or f"sbatch is not on this machine: submit it where it is, sbatch {path}")
+    return 0
+
+
+def _slots(options: argparse.Namespace, default: int) -> int:
+    if options.slots is not None and options.slots < 1:
+        raise CommandError(f"--slots must be at least 1, is {options.slots}")
+    return options.slots or default
 
 
 def _plan(file: str) -> CasePlan:
@@ -122,29 +129,47 @@ def _plan(file: str) -> CasePlan:
 
 def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shard: Shard,
           hook: Optional[Hook]) -> int:
-    if options.slots < 1:
-        raise CommandError(f"--slots must be at least 1, is {options.slots}")
+    _slots(options, 1)
+    address = scheduler_address(options.on)
+    if plan.study.scenarios and not address:
+        require_ros()
     total = len(range(shard.index - 1, len(plan), shard.of))
     journal = Journal(folder.journal_of(shard), {
         "study": plan.study.name, "file": plan.study.file, "cases": total,
-        "shard": [shard.index, shard.of], "versions": plan.versions})
+        "all_cases": len(plan), "shard": [shard.index, shard.of], "versions": plan.versions})
     try:
         finished = finished_cases(journal.path)
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
         rate = Rate(total - len(finished))
         progress = Progress(rate, sys.stderr, options.json)
-        runner = StudyRunner(plan, recorder, finished, options.slots, progress.tell, hook)
         before = signal.signal(signal.SIGTERM, _interrupt)
         try:
-            runner.run(shard)
+            if address:
+                _run_on_dask(options, plan, recorder, finished, address, progress.tell, shard)
+            else:
+                StudyRunner(plan, recorder, finished, _slots(options, os.cpu_count() or 1),
+                            progress.tell, hook).run(shard)
         finally:
             signal.signal(signal.SIGTERM, before)
             progress.close()
     finally:
         journal.close()
-    files = folder.write_tables(plan)
-    files.append(_report(folder, plan))
-    return _tell_status(folder, options.json, files)
+    files = []
+    if shard.of == 1 or folder.is_complete():  # of many, the last one writes the table
+        files = [*folder.write_tables(plan, _tell), _report(folder, plan)]
+    return _tell_status(folder, journal.path, options.json, files)
+
+
+def _run_on_dask(options: argparse.Namespace, plan: CasePlan, recorder: Recorder,
+                 finished: Set[int], address: str, told: Told, shard: Shard) -> None:
+    try:
+        from .dask_runner import DaskRunner
+    except ImportError as fault:
+        raise CommandError(f"--on dask needs Dask: pip install my_simulations[dask] ({fault})"
+                           ) from None
+    tls = TlsFiles(options.tls_ca, options.tls_cert, options.tls_key)
+    DaskRunner(plan, recorder, finished, _slots(options, 0), address, tls, told,
+               lambda text: _tell(f"study: {text}")).run(shard)
 
 
 def _interrupt(_: int, __: Optional[FrameType]) -> None:
@@ -152,18 +177,22 @@ def _interrupt(_: int, __: Optional[FrameType]) -> None:
 
 
 def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    return _tell_status(StudyFolder(options.dir), options.json, [])
+    return _tell_status(StudyFolder(options.dir), None, options.json, [])
 
 
-def _tell_status(folder: StudyFolder, as_json: bool, files: List[str]) -> int:
+def _tell_status(folder: StudyFolder, shard: Optional[str], as_json: bool, files: List[str]
+                 ) -> int:
+    """Tell what became of the cases of one journal, or of all; returns the exit code."""
     total: Dict[str, int] = {}
     cases = 0
     header: Dict[str, Any] = {}
-    for path in folder.journals():
+    for path in folder.journals() if shard is None else [shard]:
         header = header_of(path)
         cases += header["cases"]
         for status, count in counts(path).items():
             total[status] = total.get(status, 0) + count
+    if shard is None:  # shards that have not begun count, too
+        cases = max(cases, header.get("all_cases", 0))
     done = sum(total.values())
     if as_json:
         _say(json.dumps({"study": header["study"], "folder": folder.path, "cases": cases,
@@ -185,7 +214,7 @@ def _report(folder: StudyFolder, plan: CasePlan) -> str:
 def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
     folder = StudyFolder(options.dir)
     plan = _plan(folder.header()["file"])
-    files = folder.write_tables(plan)
+    files = folder.write_tables(plan, _tell)
     if options.action == "report":
         files.append(_report(folder, plan))
     _say(json.dumps({"files": files}) if options.json else "\n".join(files))
@@ -195,20 +224,65 @@ def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
 def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
     folder = StudyFolder(options.dir)
     plan = _plan(folder.header()["file"])
-    case = plan.find(options.case)
+    case = _case(plan, options.case)
     if case is None:
-        _tell(f"study: no case has an id that begins with {options.case}; ids change with the study"
-              " file and the files it names")
         return INVALID
+    if plan.study.scenarios:
+        return _show_command(["roslaunch", *launch_words(plan, case)], bool(options.write))
     path = options.write or os.path.join(folder.path, f"case-{case.id}.world")
     path = write_world(plan, case, path)
-    command = launch_command(path)
     if options.write or not can_launch():
         _say(path)
-        _tell("to open it: " + " ".join(command))
+    return _show_command(launch_command(path), bool(options.write))
+
+
+def _show_command(command: List[str], only_tell: bool) -> int:
+    text = " ".join(map(shlex.quote, command))
+    if only_tell or not can_launch():
+        _tell("to open it: " + text)
         return 0
-    _tell(" ".join(command))
+    _tell(text)
     os.execvp(command[0], command)
+
+
+def _record(options: argparse.Namespace, records: Records) -> int:
+    """Run a case again and record it."""
+    if not options.every > 0.0:
+        raise CommandError(f"--every must be above 0, is {options.every:g}")
+    folder = StudyFolder(options.folder)
+    plan = _plan(folder.header()["file"])
+    case = _case(plan, options.dir)
+    if case is None:
+        return INVALID
+    if plan.study.scenarios:
+        raise CommandError("a scenario cannot be recorded from here: add a <node pkg=\"rosbag\""
+                           " type=\"record\"> to it")
+    wanted = {kind: path for kind, path in (("bag", options.bag), ("log", options.log)) if path}
+    missing = [kind for kind in wanted if kind not in records]
+    if missing:
+        raise CommandError(f"--{missing[0]} is of the command `study`, not of"
+                           " `python3 -m my_simulations.studies`")
+    with contextlib.ExitStack() as stack:
+        files = [stack.enter_context(contextlib.closing(records[kind](path)))
+                 for kind, path in wanted.items()]
+        world = stack.enter_context(opened(plan, case))
+        play(world, plan.study.duration, options.every, [file.look for file in files])
+        found = final_hash(world)
+    known = next((row for row in rows_in_order(folder.journals()) if row.case == case.id), None)
+    if known is not None and known.hash and known.hash != found:
+        _tell(f"study: the final state differs from that of the study, which ran on"
+              f" {known.processor}")
+    paths = [os.path.abspath(path) for path in wanted.values()]
+    _say(json.dumps({"files": paths}) if options.json else "\n".join(paths))
+    return 0
+
+
+def _case(plan: CasePlan, start_of_id: str) -> Optional[Case]:
+    case = plan.find(start_of_id)
+    if case is None:
+        _tell(f"study: no case has an id that begins with {start_of_id}; ids change with the study"
+              " file and the files it names")
+    return case
 
 
 _ACTIONS = {"run": _run, "resume": _resume, "status": _status, "report": _write,

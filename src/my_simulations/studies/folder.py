@@ -3,16 +3,24 @@ from __future__ import annotations
 
 import glob
 import os
+import re
 import shutil
-from typing import Any, Dict, List
+from typing import Any, Callable, Dict, List
 
 from ..errors import CommandError
-from .journal import header_of
-from .plan import CasePlan, Shard
-from .table import has_parquet, write_csv, write_parquet
+from .journal import counts, header_of
+from .plan import WHOLE, CasePlan, Shard
+from .replacing import replaced
+from .table import parquet_fault, write_csv, write_parquet
 
 COPY = "study.yaml"
 REPORT = "report.html"
+
+
+def shard_of(journal: str) -> Shard:
+    """Which shard a journal is of, by its name."""
+    found = re.search(r"-(\d+)-of-(\d+)\.jsonl$", journal)
+    return Shard(int(found[1]), int(found[2])) if found else WHOLE
 
 
 class StudyFolder:
@@ -42,6 +50,24 @@ class StudyFolder:
                                " `study run FILE`")
         return found
 
+    def check_shards(self, of: int) -> None:
+        """Raise CommandError if the folder has journals of another number of shards.
+
+        Each shard knows only its own journal: cases would run twice.
+        """
+        for path in glob.glob(os.path.join(glob.escape(self.path), "journal*.jsonl")):
+            found = shard_of(path).of
+            if found != of:
+                raise CommandError(
+                    f"{self.path} holds a run in {found} shard{'s' * (found > 1)}, not in {of}:"
+                    " go on with that number or name another folder with --out")
+
+    def is_complete(self) -> bool:
+        """Whether there is a journal of each shard, and it has a row for each of its cases."""
+        paths = self.journals()
+        return len(paths) >= shard_of(paths[0]).of and all(
+            sum(counts(path).values()) >= header_of(path)["cases"] for path in paths)
+
     def header(self) -> Dict[str, Any]:
         """What the first journal says about the study."""
         return header_of(self.journals()[0])
@@ -50,16 +76,20 @@ class StudyFolder:
         """Make the folder, with a copy of the study file for the record."""
         try:
             os.makedirs(self.path, exist_ok=True)
-            shutil.copyfile(study_file, os.path.join(self.path, COPY))
+            with replaced(os.path.join(self.path, COPY)) as part:
+                shutil.copyfile(study_file, part)
         except OSError as fault:
             raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
 
-    def write_tables(self, plan: CasePlan) -> List[str]:
-        """Write the table in all formats; returns the files."""
+    def write_tables(self, plan: CasePlan, say: Callable[[str], None]) -> List[str]:
+        """Write the table in all formats; returns the files. Says why one is left out."""
         paths = self.journals()
         files = [os.path.join(self.path, "results.csv")]
         write_csv(files[0], plan.study, paths)
-        if has_parquet():
+        fault = parquet_fault()
+        if fault is None:
             files.append(os.path.join(self.path, "results.parquet"))
             write_parquet(files[1], plan.study, paths)
+        elif fault:
+            say(fault)
         return files

@@ -5,7 +5,8 @@ import os
 from dataclasses import dataclass
 from typing import Dict, Iterator, Optional, Tuple
 
-from .provenance import digest_of, digest_of_world, versions
+from .provenance import digest_of, digest_of_file, digest_of_world, versions
+from .scenario_files import SCENARIO, scenario_path
 from .study import Study
 from .variation import Setting, settings_on_grid
 
@@ -57,6 +58,7 @@ class CasePlan:
             [(p.name, p.target.kind, p.target.name, p.target.part) for p in study.parameters],
             study.trajectory and [study.trajectory.every, study.trajectory.models]])
         self._worlds = {p.name for p in study.parameters if p.target.kind == "world"}
+        self._scenarios: Dict[str, str] = {}
         self._files: Dict[Tuple[str, Tuple[str, ...]], str] = {}
 
     def __len__(self) -> int:
@@ -78,7 +80,8 @@ class CasePlan:
             place, number = divmod(index, len(study.seeds))
             settings = settings_on_grid(study.parameters, place, study.plan.seed)
             seed = study.seeds.at(number)
-        files = self._digest_of_files(*self.world_and_objects(settings))
+        files = (self._digest_of_scenario(str(settings[SCENARIO])) if study.scenarios
+                 else self._digest_of_files(*self.world_and_objects(settings)))
         draw = index if study.plan.cases else -1  # two draws may give the same values
         content = {name: os.path.basename(str(value)) if name in self._worlds else value
                    for name, value in settings.items()}
@@ -99,6 +102,11 @@ class CasePlan:
             elif parameter.target.kind == "objects" and isinstance(value, tuple):
                 objects += tuple(str(name) for name in value)
         return world, objects
+
+    def _digest_of_scenario(self, name: str) -> str:
+        if name not in self._scenarios:
+            self._scenarios[name] = digest_of_file(scenario_path(name, self.study.file))
+        return self._scenarios[name]
 
     def _digest_of_files(self, world: str, objects: Tuple[str, ...]) -> str:
         study = self.study

@@ -100,7 +100,7 @@ def digest_of_world(world: str, profile: str, objects: Sequence[str], object_lis
         except (OSError, SimulationError) as fault:
             parts.append(str(fault))
     # By base name: a study whose folder was moved, or is mounted elsewhere, keeps its ids.
-    parts += sorted((os.path.basename(name), _content(name)) for name in resolver.found)
+    parts += sorted((os.path.basename(name), digest_of_file(name)) for name in resolver.found)
     return digest_of(parts)
 
 
@@ -120,7 +120,8 @@ def _object_texts(objects: Sequence[str], object_list: str, world: str,
     return parts
 
 
-def _content(path: str) -> str:
+def digest_of_file(path: str) -> str:
+    """A digest of the content of a file; one that cannot be read counts by its fault."""
     digest = hashlib.sha256()
     try:
         with open(path, "rb") as stream:

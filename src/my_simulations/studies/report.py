@@ -2,11 +2,11 @@
 from __future__ import annotations
 
 import math
-import os
 from html import escape
 from typing import Any, Dict, List, Sequence, Tuple
 
 from .plots import scatter
+from .replacing import replaced
 from .row import OK, STATUSES, Row
 from .study import Study
 from .table import cells, columns_of, rows_in_order
@@ -40,9 +40,8 @@ def write_report(path: str, study: Study, paths: Sequence[str], command: str) ->
              f'<h1>{escape(study.name)}</h1><p><code>{escape(study.file)}</code></p>',
              _summary(study, found), _plots(study, found), _failures(found, command),
              _table(study, found), "</body></html>\n"]
-    with open(path + ".part", "w", encoding="utf-8") as stream:
-        stream.write("\n".join(part for part in parts if part))
-    os.replace(path + ".part", path)
+    with replaced(path) as part, open(part, "w", encoding="utf-8") as stream:
+        stream.write("\n".join(text for text in parts if text))
 
 
 class _Collected:
@@ -76,8 +75,9 @@ class _Collected:
 def _summary(study: Study, found: _Collected) -> str:
     rows = "".join(f"<tr><td>{status}</td><td>{count}</td></tr>"
                    for status, count in found.counts.items() if count)
-    return (f"<h2>Cases</h2><p>{found.total} of {study.count} have run, {study.duration:g} s of sim"
-            f" time each; {found.flaky} are flaky (crashed once, ran the second time).</p>"
+    each = "" if study.scenarios else f", {study.duration:g} s of sim time each"
+    return (f"<h2>Cases</h2><p>{found.total} of {study.count} have run{each}; {found.flaky} are"
+            f" flaky (crashed once, ran the second time).</p>"
             f"<table><tr><th>status</th><th>cases</th></tr>{rows}</table>")
 
 

@@ -5,9 +5,7 @@ import os
 import shutil
 from typing import List
 
-from ..errors import InputError, errors_of
-from ..python_api import OpenWorld, WorldChoice
-from .changes import CaseChanges
+from .case_world import opened
 from .plan import Case, CasePlan
 
 
@@ -18,16 +16,7 @@ def write_world(plan: CasePlan, case: Case, path: str) -> str:
         InputError: the world cannot be used.
         CommandError: it cannot be written.
     """
-    study = plan.study
-    changes = CaseChanges(study.parameters, case.settings)
-    name, objects = plan.world_and_objects(case.settings)
-    choice = WorldChoice(
-        name, case.seed, study.profile, objects, study.object_list,
-        tuple((model.name, model.file, model.pose) for model in study.models),
-        changes.world, changes.model)
-    with OpenWorld(choice) as world:
-        if errors_of(world.issues):
-            raise InputError(world.issues)
+    with opened(plan, case) as world:
         return world.save_world(path, overwrite=True)
 
 

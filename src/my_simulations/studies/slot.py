@@ -15,14 +15,15 @@ from ..engine.api import Engine
 from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, InputError, Severity, SimulationError
-from ..python_api import OpenWorld, WorldChoice
+from ..python_api import OpenWorld
+from ..python_api.kept_files import KeptFiles
 from ..simulator.watchdog import process_time
-from .changes import CaseChanges
+from .case_world import choice_of
+from .kept import CaseTrajectory
 from .plan import Case, CasePlan
 from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, TOO_LARGE, Row
 from .sampling import SignalReader
 from .study import Study
-from .trajectories import CaseTrajectory
 
 _FARTHEST = 1e9  # m: Bullet stops bodies whose bounds it cannot compute, without a word
 _SLICE = 1000  # steps between two looks at `stop`
@@ -93,15 +94,17 @@ class Slot:
         plan: of the study.
         processor: model of the processor, for rows.
         stop: ends the case that runs with StoppedError once it is set.
+        files: reads worlds and models, for all slots.
         hook: for tests.
     """
 
-    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event,
+    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event, files: KeptFiles,
                  hook: Optional[Hook] = None) -> None:
         self._plan = plan
         self._study: Study = plan.study
         self._processor = processor
         self._stop = stop
+        self._files = files
         self._hook = hook
         self._world: Optional[OpenWorld] = None
         self._engine: Optional[OneLifeEngine] = None
@@ -222,15 +225,9 @@ class Slot:
         return CaseTrajectory(np.array(run.times), run.names, np.array(run.frames))
 
     def _opened(self, case: Case) -> OpenWorld:
-        study = self._study
-        changes = CaseChanges(study.parameters, case.settings)
-        world_name, objects = self._plan.world_and_objects(case.settings)
-        choice = WorldChoice(
-            world_name, case.seed, study.profile, objects, study.object_list,
-            tuple((model.name, model.file, model.pose) for model in study.models),
-            changes.world, changes.model)
+        choice, changes = choice_of(self._plan, case)
         if self._world is None:
-            self._world = OpenWorld(choice, engine=self._new_engine)
+            self._world = OpenWorld(choice, engine=self._new_engine, files=self._files)
         else:
             self._world.open(choice)
         world = self._world

@@ -75,12 +75,14 @@ class Limits:
         steps: greatest number of steps of a case.
         attempts: how often a case is started whose engine crashes.
         memory_mb: of its engine, resident, in 10^6 bytes.
+        seconds: wall time of a scenario; the others are not of scenarios, `attempts` apart.
     """
 
     processor_seconds: float = 60.0
     steps: int = 10_000_000
     attempts: int = 2
     memory_mb: float = 4000.0
+    seconds: float = 600.0
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,8 @@ class Study:
         sample: s of sim time between two samples of signals.
         trajectory: what is kept of the motion; None for nothing.
         limits: what a case may use.
+        scenarios: roslaunch files with tests, each run by rostest instead of a world, as in
+            `scenario_path`; empty for a study of worlds.
     """
 
     name: str
@@ -122,6 +126,15 @@ class Study:
     sample: float
     trajectory: "Trajectory | None"
     limits: Limits
+    scenarios: Tuple[str, ...] = ()
+
+    @property
+    def results(self) -> Tuple[Tuple[str, bool], ...]:
+        """Columns of what is measured, and whether they are conditions."""
+        if self.scenarios:
+            return (("tests", False), ("failures", False))
+        return tuple((name, expression.condition) for name, expression
+                     in self.measure + self.require)
 
     @property
     def count(self) -> int:

@@ -2,19 +2,24 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import CommandError, InputError, Issue, errors_of
 from ..geometry import Pose
 from ..objects.yaml_source import KeyPath, read_yaml
 from ..python_api.plain_values import pose_of
 from .expressions import Expression, ExpressionError, parse
+from .scenario_files import SCENARIO, scenarios_named
 from .study import Limits, Plan, Seeds, Study, StudyModel, Trajectory
 from .value_reader import ValueReader, kind_of
+from .variation import FORMS, SCENARIO_FORMS, Parameter, Target
 from .variation_file import name_of_column, parameter_of
 
 _KEYS = ("study", "world", "profile", "objects", "object_list", "models", "duration", "seeds",
-         "plan", "vary", "measure", "require", "sample", "keep", "limits")
+         "plan", "vary", "measure", "require", "sample", "keep", "limits", "scenarios")
+_SCENARIO_KEYS = ("study", "scenarios", "seeds", "plan", "vary", "limits")
+_LIMITS = ("processor_seconds", "steps", "attempts", "memory_mb")
+_SCENARIO_LIMITS = ("seconds", "attempts")
 MOST_CASES = 10 ** 9
 
 
@@ -44,6 +49,8 @@ class StudyReader(ValueReader):
         if not isinstance(tree, Mapping):
             self.fault((), f"a study must be a mapping, is {kind_of(tree)}")
             return None
+        if "scenarios" in tree:
+            return self._scenario_study(tree, file)
         top = self.mapping(tree, (), _KEYS)
         if "duration" not in top:
             self.fault((), "'duration' is missing: s of sim time of each case", code="study-key")
@@ -53,18 +60,12 @@ class StudyReader(ValueReader):
             for name in {name for name, _ in measure} & {name for name, _ in require}:
                 self.fault(("require", name), f"'{name}' is measured, too; use another name")
         vary = self.mapping(top.get("vary"), ("vary",))
-        found = [parameter_of(self, name, value, ("vary", name)) for name, value in vary.items()]
-        parameters = tuple(parameter for parameter in found if parameter is not None)
         plan = self._plan(top.get("plan"))
-        for parameter in parameters:
-            if not plan.cases and not parameter.count:
-                self.fault(("vary", parameter.name),
-                           f"'{parameter.name}' has a distribution, of which a grid draws"
-                           " 'samples' values", "add samples: 10, or plan: {random: CASES}")
+        parameters = self._parameters(vary, plan, FORMS)
         self._check_names(measure + require, vary)
         study = Study(
-            self.text(top.get("study", os.path.splitext(os.path.basename(file))[0]), ("study",)),
-            file, self.world(top.get("world", "worlds/empty.world"), ("world",)),
+            self._name(top, file), file,
+            self.world(top.get("world", "worlds/empty.world"), ("world",)),
             self.text(top["profile"], ("profile",)) if "profile" in top else "",
             self.names(top.get("objects"), ("objects",)),
             self._file(top["object_list"], ("object_list",)) if "object_list" in top else "",
@@ -72,11 +73,65 @@ class StudyReader(ValueReader):
             self.number(top.get("duration", 1), ("duration",), above=0.0, most=1e6),
             self._seeds(top.get("seeds")), plan, parameters, measure, require,
             self.number(top.get("sample", 0.01), ("sample",), above=0.0),
-            self._trajectory(top.get("keep")), self._limits(top.get("limits")))
+            self._trajectory(top.get("keep")), self._limits(top.get("limits"), _LIMITS))
+        self._check_count(study)
+        return study
+
+    def _scenario_study(self, tree: Mapping[str, Any], file: str) -> Study:
+        for key in tree:
+            if key in _KEYS and key not in _SCENARIO_KEYS:
+                self.fault((key,), f"'{key}' is of studies of worlds: a scenario says itself what"
+                                   " runs and what is tested", "keys beside 'scenarios' are "
+                           + ", ".join(_SCENARIO_KEYS), "study-key")
+        top = self.mapping({key: value for key, value in tree.items() if key not in _KEYS
+                            or key in _SCENARIO_KEYS}, (), _SCENARIO_KEYS)
+        names = self._scenarios(top["scenarios"], file)
+        plan = self._plan(top.get("plan"))
+        chosen = Parameter(SCENARIO, Target(SCENARIO), names)
+        parameters = (chosen, *self._parameters(self.mapping(top.get("vary"), ("vary",)), plan,
+                                                SCENARIO_FORMS))
+        study = Study(
+            self._name(top, file), file, "", "", (), "", (), 0.0, self._seeds(top.get("seeds")),
+            plan, parameters, (), (), 1.0, None,
+            self._limits(top.get("limits"), _SCENARIO_LIMITS), names)
+        self._check_count(study)
+        return study
+
+    def _scenarios(self, value: Any, file: str) -> Tuple[str, ...]:
+        found: Dict[str, None] = {}
+        patterns = self.names(value, ("scenarios",))
+        for pattern in patterns:
+            names = scenarios_named(pattern, file) if pattern else ()
+            if pattern and not names:
+                self.fault(("scenarios",), f"no file is named '{pattern}'",
+                           "paths start at the folder of the study, or with package://PACKAGE/",
+                           "file-not-found")
+            found.update(dict.fromkeys(names))
+        if not patterns:
+            self.fault(("scenarios",), "'scenarios' must name roslaunch files with tests, such as"
+                                       " test/*.test")
+        return tuple(found)
+
+    def _name(self, top: Mapping[str, Any], file: str) -> str:
+        stem = os.path.splitext(os.path.basename(file))[0]
+        return self.text(top.get("study", stem), ("study",))
+
+    def _parameters(self, vary: Mapping[str, Any], plan: Plan, forms: Sequence[str]
+                    ) -> Tuple[Parameter, ...]:
+        found = [parameter_of(self, name, value, ("vary", name), forms)
+                 for name, value in vary.items()]
+        parameters = tuple(parameter for parameter in found if parameter is not None)
+        for parameter in parameters:
+            if not plan.cases and not parameter.count:
+                self.fault(("vary", parameter.name),
+                           f"'{parameter.name}' has a distribution, of which a grid draws"
+                           " 'samples' values", "add samples: 10, or plan: {random: CASES}")
+        return parameters
+
+    def _check_count(self, study: Study) -> None:
         if study.count > MOST_CASES and not errors_of(self.issues):
             self.fault(("vary",), f"a study has at most {MOST_CASES} cases, this one has"
                                   f" {study.count}")
-        return study
 
     def _file(self, value: Any, path: KeyPath) -> str:
         name = self.text(value, path)
@@ -161,9 +216,8 @@ class StudyReader(ValueReader):
         return Trajectory(self.number(inside.get("every", 0.02), (*path, "every"), above=0.0),
                           self.names(inside.get("models"), (*path, "models")))
 
-    def _limits(self, value: Any) -> Limits:
-        inside = self.mapping(value, ("limits",), ("processor_seconds", "steps", "attempts",
-                                                   "memory_mb"))
+    def _limits(self, value: Any, known: Sequence[str]) -> Limits:
+        inside = self.mapping(value, ("limits",), known)
         default = Limits()
         return Limits(
             self.number(inside.get("processor_seconds", default.processor_seconds),
@@ -171,4 +225,5 @@ class StudyReader(ValueReader):
             self.whole(inside.get("steps", default.steps), ("limits", "steps"), 1),
             self.whole(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10),
             self.number(inside.get("memory_mb", default.memory_mb), ("limits", "memory_mb"),
-                        above=0.0))
+                        above=0.0),
+            self.number(inside.get("seconds", default.seconds), ("limits", "seconds"), above=0.0))

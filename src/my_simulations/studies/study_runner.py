@@ -1,21 +1,25 @@
-"""Runs the cases of a study in slots, each a thread with an engine of its own."""
+"""Runs the cases of a study that have no row yet, on this machine."""
 from __future__ import annotations
 
-import contextlib
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 from typing import Callable, Dict, Iterator, List, Optional, Set
 
+from .kept import Kept
 from .plan import WHOLE, Case, CasePlan, Shard
-from .provenance import processor_type
 from .row import Row
-from .slot import Hook, Slot, StoppedError
-from .trajectories import Recorder
-
-_LOOK_S = 0.25
+from .row_recorder import Recorder
+from .slot import Hook
+from .slot_pool import SlotPool
 
 Told = Callable[[Row], None]
+
+
+def waiting_cases(plan: CasePlan, shard: Shard, finished: Set[int]) -> Iterator[Case]:
+    """The cases of a shard whose ids, as numbers, are not among the finished ones."""
+    for case in plan.cases(shard):
+        if int(case.id, 16) not in finished:
+            yield case
 
 
 class StudyRunner:
@@ -36,70 +40,26 @@ class StudyRunner:
         self._recorder = recorder
         self._finished = finished
         self._told = told
-        self.stop = threading.Event()
-        processor = processor_type()
-        self._slots = [Slot(plan, processor, self.stop, hook) for _ in range(slots)]
-        self._next = threading.Lock()
+        self._hook = hook
+        self._slots = slots
         self._ready = threading.Lock()
-        self._over = threading.Event()
 
     def run(self, shard: Shard = WHOLE) -> None:
-        """Run the cases of a shard; returns when all are done or `stop` was set.
+        """Run the cases of a shard; returns when all are done.
 
         The first exception that is no result of a case, such as that of a full disk, ends the run.
         """
-        cases = self._waiting(shard)
-        watcher = threading.Thread(target=self._watch, name="limits of cases", daemon=True)
-        watcher.start()
+        pool = SlotPool(self._plan, self._slots, self._hook)
         try:
-            with ThreadPoolExecutor(len(self._slots), "slot") as pool:
-                futures = [pool.submit(self._serve, slot, cases) for slot in self._slots]
-                with self._stopping():
-                    for future in futures:
-                        future.result()
+            pool.run(waiting_cases(self._plan, shard, self._finished), self._take)
         finally:
-            self._over.set()
-            watcher.join()
+            pool.close()
             self._recorder.close()
 
-    @contextlib.contextmanager
-    def _stopping(self) -> Iterator[None]:
-        """Whatever ends the wait, Ctrl-C included, lets the slots end, too."""
-        try:
-            yield
-        except BaseException:
-            self.stop.set()
-            raise
-
-    def _waiting(self, shard: Shard) -> Iterator[Case]:
-        for case in self._plan.cases(shard):
-            number = int(case.id, 16)
-            if number not in self._finished:
-                yield case
-
-    def _serve(self, slot: Slot, cases: Iterator[Case]) -> None:
-        try:
-            while not self.stop.is_set():
-                with self._next:
-                    case = next(cases, None)
-                if case is None:
-                    return
-                row, trajectory = slot.run(case)
-                self._recorder.add(row, trajectory)
-                with self._ready:
-                    self._told(row)
-        except StoppedError:
-            return
-        except BaseException:
-            self.stop.set()
-            raise
-        finally:
-            slot.close()
-
-    def _watch(self) -> None:
-        while not self._over.wait(_LOOK_S):
-            for slot in self._slots:
-                slot.look()
+    def _take(self, row: Row, kept: Optional[Kept]) -> None:
+        self._recorder.add(row, kept)
+        with self._ready:
+            self._told(row)
 
 
 class Rate:

@@ -4,11 +4,10 @@ from __future__ import annotations
 import csv
 import importlib
 import importlib.util
-import os
-from typing import Any, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
-from ..errors import CommandError
 from .journal import lines
+from .replacing import replaced
 from .row import Row, row_of
 from .study import Study
 
@@ -20,7 +19,7 @@ _GROUP = 20_000  # rows of a row group of parquet
 def columns_of(study: Study) -> List[str]:
     """Names of the columns: number, id and seed, what was varied, measured, and became of it."""
     return [*_FIRST, *(parameter.name for parameter in study.parameters),
-            *(name for name, _ in study.measure + study.require), *_LAST]
+            *(name for name, _ in study.results), *_LAST]
 
 
 def rows_in_order(paths: Sequence[str]) -> Iterator[Row]:
@@ -60,34 +59,37 @@ def write_csv(path: str, study: Study, paths: Sequence[str]) -> int:
     empty, and NaN is `nan`.
     """
     columns, count = columns_of(study), 0
-    with open(path + ".part", "w", encoding="utf-8", newline="") as stream:
+    with replaced(path) as part, open(part, "w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         writer.writerow(columns)
         for row in rows_in_order(paths):
             found = cells(row)
             writer.writerow([found.get(name, "") for name in columns])
             count += 1
-    os.replace(path + ".part", path)
     return count
 
 
-def has_parquet() -> bool:
-    """Whether pyarrow is installed."""
-    return importlib.util.find_spec("pyarrow") is not None
+def parquet_fault() -> Optional[str]:
+    """Why parquet cannot be written; "" without pyarrow, None if it can."""
+    if importlib.util.find_spec("pyarrow") is None:
+        return ""
+    try:
+        importlib.import_module("pyarrow.parquet")
+    except Exception as fault:  # such as that of one that was built for another NumPy
+        return f"results.parquet is left out, pyarrow cannot be imported: {fault}"
+    return None
 
 
 def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
     """Write the table as parquet; returns the number of rows.
 
-    Raises CommandError without pyarrow.
+    Only where `parquet_fault` is None.
     """
-    if not has_parquet():
-        raise CommandError("parquet needs pyarrow: pip install pyarrow")
     arrow = importlib.import_module("pyarrow")
     parquet = importlib.import_module("pyarrow.parquet")
     schema = arrow.schema(_types(arrow, study))
     count = 0
-    with parquet.ParquetWriter(path + ".part", schema) as writer:
+    with replaced(path) as part, parquet.ParquetWriter(part, schema) as writer:
         group: List[Dict[str, Any]] = []
         for row in rows_in_order(paths):
             group.append(cells(row))
@@ -96,7 +98,6 @@ def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
                 writer.write_table(arrow.Table.from_pylist(group, schema))
                 group = []
         writer.write_table(arrow.Table.from_pylist(group, schema))
-    os.replace(path + ".part", path)
     return count
 
 
@@ -107,8 +108,8 @@ def _types(arrow: Any, study: Study) -> List[Tuple[str, Any]]:
     for parameter in study.parameters:
         numeric = all(isinstance(value, (int, float)) for value in parameter.values)
         kinds[parameter.name] = number if numeric else text
-    for name, expression in study.measure + study.require:
-        kinds[name] = truth if expression.condition else number
+    for name, condition in study.results:
+        kinds[name] = truth if condition else whole if study.scenarios else number
     return [(name, kinds.get(name, text)) for name in columns_of(study)]
 
 

@@ -11,6 +11,7 @@ Setting = Union[float, int, str, Tuple[float, ...], Tuple[str, ...]]
 
 _COMPONENTS = ("x", "y", "z", "roll", "pitch", "yaw")
 NUMBER, POSE, NAME, NAMES = "a number", "3 or 6 numbers", "a name", "a name or a list of names"
+TEXT = "a number, a text, true or false"
 
 
 @dataclass(frozen=True)
@@ -18,8 +19,9 @@ class Target:
     """What a parameter sets.
 
     Attributes:
-        kind: world, objects, pose, mass, friction, restitution, physics, gravity or none.
-        name: model or `model::link`; "" where there is none.
+        kind: world, objects, pose, mass, friction, restitution, physics, gravity or none; for
+            scenarios scenario, arg or none.
+        name: model or `model::link`, or launch argument; "" where there is none.
         part: component, such as "z"; "" for the whole.
     """
 
@@ -29,15 +31,17 @@ class Target:
 
     @property
     def wants(self) -> str:
-        """What its values are: NUMBER, POSE, NAME or NAMES."""
+        """What its values are: NUMBER, POSE, NAME, NAMES or TEXT."""
         if self.kind == "pose" and not self.part:
             return POSE
-        return {"world": NAME, "objects": NAMES}.get(self.kind, NUMBER)
+        return {"world": NAME, "objects": NAMES, "arg": TEXT, "scenario": NAME}.get(
+            self.kind, NUMBER)
 
 
 PHYSICS = ("step_size", "iterations")
 FORMS = ("world", "objects", "pose.MODEL", "pose.MODEL.z", "mass.MODEL", "friction.MODEL",
          "restitution.MODEL", "physics.step_size", "physics.iterations", "gravity.z", "none")
+SCENARIO_FORMS = ("arg.NAME", "none")
 
 
 def target_of(text: str) -> Optional[Target]:
@@ -50,7 +54,7 @@ def target_of(text: str) -> Optional[Target]:
     if kind == "pose":
         name, _, part = rest.rpartition(".")
         return Target(kind, name, part) if name and part in _COMPONENTS else Target(kind, rest)
-    if kind in ("mass", "friction", "restitution"):
+    if kind in ("mass", "friction", "restitution", "arg"):
         return Target(kind, rest)
     if kind == "physics" and rest in PHYSICS:
         return Target(kind, part=rest)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from typing import Any, List, Optional, Tuple
+from typing import Any, List, Optional, Sequence, Tuple
 
 from ..objects.yaml_source import KeyPath
 from .value_reader import ValueReader
@@ -14,6 +14,8 @@ from .variation import (
     NAMES,
     NUMBER,
     POSE,
+    SCENARIO_FORMS,
+    TEXT,
     Parameter,
     Setting,
     Target,
@@ -22,8 +24,8 @@ from .variation import (
 
 _MOST_VALUES = 1_000_000
 _COLUMNS = ("index", "case", "seed", "status", "attempt", "flaky", "signal", "step", "issue",
-            "hash", "processor", "trajectory")
-"""Columns that every table has."""
+            "hash", "processor", "trajectory", "scenario", "tests", "failures")
+"""Columns that every table has, or every table of scenarios."""
 
 
 def name_of_column(reader: ValueReader, name: str, path: KeyPath) -> None:
@@ -33,13 +35,13 @@ def name_of_column(reader: ValueReader, name: str, path: KeyPath) -> None:
                      "use letters, digits and _, and none of " + ", ".join(_COLUMNS), "study-key")
 
 
-def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath
-                 ) -> Optional[Parameter]:
-    """The parameter of an entry; None where a fault was noted."""
+def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath,
+                 forms: Sequence[str] = FORMS) -> Optional[Parameter]:
+    """The parameter of an entry, whose target is one of `forms`; None where a fault was noted."""
     before = len(reader.issues)
     name_of_column(reader, name, path)
     inside = reader.mapping(value, path, ("set", "values", "range", "samples", *DISTRIBUTIONS))
-    target = _target(reader, inside.get("set", "none"), (*path, "set"))
+    target = _target(reader, inside.get("set", "none"), (*path, "set"), forms)
     sources = [key for key in ("values", "range", *DISTRIBUTIONS) if key in inside]
     if len(sources) != 1:
         reader.fault(path, f"'{name}' needs one of values, range, " + ", ".join(DISTRIBUTIONS),
@@ -49,7 +51,7 @@ def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath
         return None
     (key,) = sources
     below = (*path, key)
-    if key != "values" and target.wants != NUMBER:
+    if key != "values" and target.wants not in (NUMBER, TEXT):
         reader.fault(below, f"'{name}' takes {target.wants}: list its values")
         return None
     if key == "values":
@@ -67,14 +69,18 @@ def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath
     return Parameter(name, target, (), key, drawn, samples)
 
 
-def _target(reader: ValueReader, value: Any, path: KeyPath) -> Optional[Target]:
+def _target(reader: ValueReader, value: Any, path: KeyPath, forms: Sequence[str]
+            ) -> Optional[Target]:
     text = reader.text(value, path)
     target = target_of(text)
+    scenarios = forms is SCENARIO_FORMS
+    if target is not None and target.kind != "none" and scenarios != (target.kind == "arg"):
+        target = None
     if target is None and text:
-        close = difflib.get_close_matches(text, FORMS, 1)
-        reader.fault(path, f"'{text}' cannot be varied",
+        close = difflib.get_close_matches(text, forms, 1)
+        reader.fault(path, f"'{text}' cannot be varied" + (" in a scenario" if scenarios else ""),
                      (f"did you mean {close[0]}? " if close else "") + "Known are "
-                     + ", ".join(FORMS))
+                     + ", ".join(forms))
     return target
 
 
@@ -91,6 +97,8 @@ def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
             found.append(reader.names(item, path))
         elif target.wants == NAME:
             found.append(reader.world(item, path))
+        elif target.wants == TEXT:
+            found.append(_argument(reader, item, path))
         elif target.kind == "none" and isinstance(item, str):
             found.append(item)
         else:
@@ -98,6 +106,15 @@ def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
     if len(set(found)) < len(found):
         reader.fault(path, "'values' has the same value twice; use seeds to repeat a case")
     return tuple(found)
+
+
+def _argument(reader: ValueReader, item: Any, path: KeyPath) -> Setting:
+    """A value of a launch argument, as roslaunch takes it."""
+    if isinstance(item, bool):
+        return "true" if item else "false"
+    if isinstance(item, int):
+        return item
+    return reader.number(item, path) if isinstance(item, float) else reader.text(item, path)
 
 
 def _range(reader: ValueReader, value: Any, path: KeyPath) -> Tuple[float, ...]:

@@ -16,8 +16,9 @@ from my_simulations.studies.journal import (
     lines,
     rows,
 )
+from my_simulations.studies.kept import CaseTrajectory
 from my_simulations.studies.row import CRASHED, OK, Row
-from my_simulations.studies.trajectories import CaseTrajectory, Recorder
+from my_simulations.studies.row_recorder import Recorder
 
 HEADER = {"study": "s", "cases": 3}
 

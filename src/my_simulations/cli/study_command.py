@@ -1,0 +1,29 @@
+"""The command `study`, with what records cases: rosbags and state logs."""
+from __future__ import annotations
+
+import sys
+from typing import Optional, Sequence
+
+from ..studies.command import Record
+from ..studies.command import main as study
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the command; see `studies.command.main`."""
+    return study(argv, records={"bag": _bag, "log": _log})
+
+
+def _bag(path: str) -> Record:
+    from .case_records import BagRecord  # what it imports is needed for this alone
+
+    return BagRecord(path)
+
+
+def _log(path: str) -> Record:
+    from .case_records import LogRecord
+
+    return LogRecord(path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

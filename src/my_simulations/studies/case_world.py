@@ -1,0 +1,51 @@
+"""The world of one case, for whoever runs, shows or records it."""
+from __future__ import annotations
+
+from typing import Callable, Sequence, Tuple
+
+from ..errors import InputError, errors_of
+from ..python_api import OpenWorld, WorldChoice
+from .changes import CaseChanges
+from .plan import Case, CasePlan
+
+_SLICE = 1000  # steps at a time
+
+
+def choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChanges]:
+    """What to open for a case, and the changes that it brings."""
+    study = plan.study
+    changes = CaseChanges(study.parameters, case.settings)
+    name, objects = plan.world_and_objects(case.settings)
+    return WorldChoice(
+        name, case.seed, study.profile, objects, study.object_list,
+        tuple((model.name, model.file, model.pose) for model in study.models),
+        changes.world, changes.model), changes
+
+
+def opened(plan: CasePlan, case: Case) -> OpenWorld:
+    """The world of a case, before its first step. Raises InputError if it cannot be used."""
+    world = OpenWorld(choice_of(plan, case)[0])
+    if errors_of(world.issues):
+        world.close()
+        raise InputError(world.issues)
+    return world
+
+
+def play(world: OpenWorld, duration: float, every: float,
+         watchers: Sequence[Callable[[OpenWorld], None]]) -> None:
+    """Make the steps of a case; watchers see the start, every so many s of sim time, and the end.
+
+    Steps are those of the study, bit for bit: how they are divided does not matter.
+    """
+    steps = round(duration / world.step_size)
+    period = max(1, round(every / world.step_size))
+    done = 0
+    while True:
+        if done % period == 0 or done == steps:
+            for watch in watchers:
+                watch(world)
+        if done >= steps:
+            return
+        end = min(steps, done + _SLICE, done + period - done % period)
+        world.step(end - done)
+        done = end

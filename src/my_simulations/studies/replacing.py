@@ -1,0 +1,23 @@
+"""Writes files so that whoever reads one finds it whole, whatever ends the writer."""
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+from typing import Iterator
+
+
+@contextlib.contextmanager
+def replaced(path: str) -> Iterator[str]:
+    """The name of a file to write; it takes the place of `path` at the end.
+
+    Its name is that of this process alone, also in a folder that several machines share.
+    """
+    part = f"{path}.{socket.gethostname()}-{os.getpid()}.part"
+    try:
+        yield part
+        os.replace(part, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.remove(part)
+        raise
