@@ -7,17 +7,12 @@ import signal
 
 import numpy as np
 import pytest
-from plugin_graph import Graph
-from sensing_scene import until
+from plugin_case import PluginCase, kept, until
 
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.formats.reading import read_any
-from my_simulations.plugins.host import PluginHost
-from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.resources.resolver import Resolver
-from my_simulations.simulator.simulator import Simulator
 
 WORLD = """<sdf version="1.7"><world name="w">
 <scene><ambient>1 1 1 1</ambient><background>0 0 0 1</background><shadows>0</shadows></scene>
@@ -39,16 +34,11 @@ LASER = """<sensor name="laser" type="ray"><update_rate>10</update_rate><ray><sc
 FOCAL = 80.0 / math.tan(0.6)
 
 
-class Case:
+class Case(PluginCase):
     def __init__(self, sensors):
-        self.issues, self.graph = [], Graph()
         world, _ = read_any(WORLD.format(sensors=sensors), Resolver(), "test.world")
         assert isinstance(world, World)
-        self.sim = Simulator(world, engine_factory=lambda: InlineEngine(KinematicBackend),
-                             paused=True, log=self.issues.append)
-        self.sim.start()
-        self.host = PluginHost(self.sim, self.graph, PluginRegistry(), self.issues.append)
-        self.host.start()
+        super().__init__(world, KinematicBackend)
 
     def after(self, steps, topic, count):
         self.sim.clock.advance(steps)
@@ -59,22 +49,10 @@ class Case:
     def sensing(self):
         return self.host._scene._process
 
-    def close(self):
-        self.host.stop()
-        self.sim.close()
-
 
 @pytest.fixture
 def case():
-    made = []
-
-    def make(sensors):
-        made.append(Case(sensors))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
+    yield from kept(Case)
 
 
 def pixels(message, kind):

@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Any, Callable, List, Optional
 
 from .context import Context, Ending, Handle
+from .frames import stamped
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED = range(9)
 _STATUS_HZ = 5.0
@@ -148,8 +149,7 @@ class ActionServer:
         now = self._context.now_ns
         self._goals = [goal for goal in self._goals if goal.ended_ns is None
                        or 0 <= now - goal.ended_ns <= _KEEP_NS]
-        message = self._context.message("actionlib_msgs/GoalStatusArray")
-        message.header.stamp = self._context.stamp()
+        message = stamped(self._context, "actionlib_msgs/GoalStatusArray")
         message.status_list = [self._status_of(goal) for goal in self._goals]
         self._status.publish(message)
 

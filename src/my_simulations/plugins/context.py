@@ -25,6 +25,10 @@ class PluginError(SimulationError):
     """A plugin cannot work as its element says; the message is one sentence for the user."""
 
 
+class RequestError(PluginError):
+    """A request of a service that makes no sense; its caller is told, and the plugin goes on."""
+
+
 @dataclass(frozen=True)
 class View:
     """What a camera at `pose` in the frame of a link is to give: `outputs` of `sensing.api`."""
@@ -137,6 +141,10 @@ class Context(Protocol):
     @property
     def step_size(self) -> float:
         """Of the simulation, s."""
+
+    @property
+    def by_hand(self) -> bool:
+        """Whether the world is stepped manually, and waits for pictures."""
 
     @property
     def step(self) -> int:

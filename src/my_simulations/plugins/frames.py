@@ -1,5 +1,7 @@
-"""Names of tf frames under a prefix. Source: tf::resolve of ROS 1."""
+"""Names of tf frames under a prefix (source: tf::resolve of ROS 1), and headers with them."""
 from __future__ import annotations
+
+from typing import Any, Optional
 
 from .context import Context
 
@@ -15,3 +17,10 @@ def resolve(prefix: str, frame: str) -> str:
 def prefixed(context: Context, frame: str) -> str:
     """A frame under the parameter `tf_prefix` of the plugin's namespace, or of one above."""
     return resolve(str(context.search_parameter("tf_prefix", "") or ""), frame)
+
+
+def stamped(context: Context, kind: str, frame: str = "", ns: Optional[int] = None) -> Any:
+    """A new message whose header has a frame and a sim time (ns); default now."""
+    message = context.message(kind)
+    message.header.stamp, message.header.frame_id = context.stamp(ns), frame
+    return message

@@ -5,7 +5,7 @@ import time
 from collections import deque
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
-from typing import Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns, SensingError
 from ..simulator.scene_sensing import SceneSensing
@@ -28,6 +28,7 @@ class _Shot(NamedTuple):
     call: Callable[[List[Pictures], int], None]
     ns: int
     stream: str
+    first: bool   # nobody gets to see it
 
     @property
     def done(self) -> bool:
@@ -52,6 +53,7 @@ class SensingRequests:
         self._scan: Optional[_Scan] = None
         self._shots: Dict[str, _Shot] = {}
         self._unsent: Dict[str, Deque[None]] = {}
+        self._warm: Set[str] = set()   # streams that something was drawn for
         self._stream = ""
         self._fault = ""
         self._left_out = 0
@@ -97,14 +99,19 @@ class SensingRequests:
 
     def photograph(self, views: Sequence[Tuple[Mount, View]],
                    call: Callable[[List[Pictures], int], None], ns: int, wait: bool,
-                   stream: str = "") -> bool:
+                   again: Callable[[], object], stream: str = "") -> bool:
         """Ask for pictures, unless those before of the same stream are late.
+
+        A world that goes on does not wait while the renderer starts, reads textures and compiles
+        shaders. So the first pictures of a stream are drawn for that alone, and taken anew when
+        they are there: what is published first is as fresh as what follows.
 
         Args:
             views: where each camera is, and what it is to give.
             call: gets the pictures, and `ns`.
             ns: sim time, now.
             wait: for those before, however late they are.
+            again: has this asked anew, as of then.
             stream: its name.
 
         Returns:
@@ -116,27 +123,38 @@ class SensingRequests:
         if wait:
             _wait_for(unsent)
         if stream in self._shots or unsent:
-            self._leave_out()
+            if stream not in self._shots or not self._shots[stream].first:
+                self._leave_out()
             return False
         futures = self._scene.render([(mount, view.camera, view.outputs) for mount, view in views])
-        shot = self._shots[stream] = _Shot(futures, call, ns, stream)
+        first = not (wait or stream in self._warm)
+        shot = self._shots[stream] = _Shot(futures, _ignore if first else call, ns, stream, first)
+
+        def arrived() -> None:
+            if self._end_shot(shot) and first:
+                again()
+
         for future in shot.futures:
-            future.add_done_callback(lambda _: self._hear(lambda: self._end_shot(shot)))
+            future.add_done_callback(lambda _: self._hear(arrived))
         return True
 
-    def _end_shot(self, shot: _Shot, timeout: float = 0.0) -> None:
+    def _end_shot(self, shot: _Shot, timeout: float = 0.0) -> bool:
+        """Hand pictures over; whether they have come, by this call."""
         if shot is not self._shots.get(shot.stream) or not (timeout or shot.done):
-            return
+            return False
         del self._shots[shot.stream]
         deadline = time.monotonic() + timeout
         try:
             found = [future.result(max(0.0, deadline - time.monotonic()))
                      for future in shot.futures]
         except (SensingError, FutureTimeoutError) as fault:
+            self._warm.discard(shot.stream)
             self._tell_fault("a picture is", fault)
-            return
+            return False
         self._stream = shot.stream
+        self._warm.add(shot.stream)
         shot.call(found, shot.ns)
+        return True
 
     def _leave_out(self) -> None:
         self._left_out += 1
@@ -151,6 +169,10 @@ class SensingRequests:
         if text != self._fault:
             self._fault = text
             self._warn(text)
+
+
+def _ignore(pictures: List[Pictures], ns: int) -> None:
+    """Nobody sees the first ones."""
 
 
 def _wait_for(unsent: "Deque[None]") -> None:

@@ -122,6 +122,11 @@ class SimulatedContext:
         return self.simulator.physics.settings.max_step_size
 
     @property
+    def by_hand(self) -> bool:
+        """Whether the world is stepped manually."""
+        return self.simulator.clock.by_hand
+
+    @property
     def step(self) -> int:
         """The step count."""
         moment = self._schedule.moment
@@ -312,8 +317,13 @@ class SimulatedContext:
                    stream: str = "") -> bool:
         """Take pictures."""
         mounted = [(Mount(self._rows.link(view.link), view.pose), view) for view in views]
-        return self.sensing.photograph(mounted, call, self.now_ns, self.simulator.clock.by_hand,
-                                       stream)
+
+        def again() -> None:
+            self.photograph(views, call, stream)
+
+        # Anew at a step: a message says which one its picture shows.
+        return self.sensing.photograph(mounted, call, self.now_ns, self.by_hand,
+                                       lambda: self.once(0, again), stream)
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
         """The sensors of the model's links."""

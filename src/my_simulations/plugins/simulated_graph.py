@@ -6,7 +6,7 @@ from collections import deque
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..geometry import Pose
-from .context import PluginError
+from .context import PluginError, RequestError
 from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
 from .message_maker import Later
 
@@ -154,13 +154,15 @@ class PluginGraph:
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
 
-            fault: List[str] = []
+            faults: List[PluginError] = []
 
             def answer() -> None:
                 try:
                     call(request, response)
+                except RequestError as refused:
+                    faults.append(refused)
                 except Exception as raised:  # the caller hears of it as well
-                    fault.append(str(raised))
+                    faults.append(PluginError(str(raised)))
                     raise
                 finally:
                     done.set()
@@ -169,10 +171,10 @@ class PluginGraph:
             self._wake()
             while not done.wait(_LOOK_S):
                 if self._closed.is_set():
-                    fault.append("the plugin has ended")
+                    faults.append(PluginError("the plugin has ended"))
                     break
-            if fault:
-                raise PluginError(fault[0])
+            if faults:
+                raise faults[0]
 
         return OpenEnd(self, self._open(
             lambda full: self._graph.serve(full, kind, asked), name, kind))

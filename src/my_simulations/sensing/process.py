@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import logging
 import queue
 import signal
@@ -220,6 +221,8 @@ class SensingProcess:
     # The reader of one child.
 
     def _read(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+        # Answers need it. It is read while the child reads its own, and not after that.
+        importlib.import_module("numpy")
         patience = max(_START_S, self._patience)
         while True:
             try:

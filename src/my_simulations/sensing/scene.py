@@ -1,17 +1,19 @@
 """What there is to see: bodies by name, lights, surroundings; kept on both sides of the pipe."""
 from __future__ import annotations
 
-from typing import Dict, List, Tuple
+from typing import TYPE_CHECKING, Dict, List, Tuple
 
 from ..appearance.looks import Look
-from ..appearance.materials import Materials
 from ..description.light import Light
 from ..description.model import Model
 from ..description.surroundings import Scene
 from .api import AddBody, Body, Change, LoadScene, RemoveBody, SetLights
 
+if TYPE_CHECKING:
+    from ..appearance.materials import Materials
 
-def body(name: str, model: Model, first_link_row: int, materials: Materials) -> Body:
+
+def body(name: str, model: Model, first_link_row: int, materials: "Materials") -> Body:
     """A flattened model to look at, its materials resolved."""
     looks: Dict[Tuple[int, int], Look] = {}
     for n, link in enumerate(model.links):

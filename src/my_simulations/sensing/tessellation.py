@@ -18,7 +18,6 @@ from ..description.shapes import (
     Plane,
     Sphere,
 )
-from ..formats.mesh.loading import load_solid
 from ..geometry import Vec3, cross, norm, scale
 
 RAY_ERROR = 5e-5
@@ -73,6 +72,8 @@ def triangles_of(shape: Geometry, round_sides: int = 0) -> Optional[Triangles]:
     if isinstance(shape, Plane):
         return plane(shape.normal, shape.size)
     if isinstance(shape, SOLIDS):
+        from ..formats.mesh.loading import load_solid  # not before there is a mesh
+
         data = load_solid(shape)
         return Triangles(data.vertices, data.triangles)
     return None

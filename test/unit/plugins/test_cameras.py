@@ -47,18 +47,20 @@ def test_a_picture_and_its_lens_have_one_stamp_and_the_sensors_rate():
     assert first.data == context.pictures[0].rgb.tobytes()
 
 
-def test_a_first_picture_that_the_renderers_start_has_made_old_is_left_out():
-    context = camera()
-    photograph = context.photograph
+def test_who_begins_to_listen_to_a_slow_camera_gets_a_picture_at_once():
+    context = camera(rate=0.5)
+    context.unwanted.update((RAW, f"{RAW}/compressed"))
+    context.advance(2.25)
+    context.unwanted.clear()
+    context.advance(4.0)
+    assert [one.header.stamp / 1e9 for one in context.published[RAW]] == [2.3, 4.0, 6.0]
 
-    def late(views, call, stream=""):
-        return photograph(views, lambda pictures, ns: call(pictures, ns - 2 * 10 ** 9), stream)
 
-    context.photograph = late
-    context.advance(0.1)
-    assert context.published[RAW] == []
-    context.advance(0.1)
-    assert len(context.published[RAW]) == 1   # later ones are as late as the machine is slow
+def test_a_slow_camera_of_a_world_stepped_by_hand_keeps_to_its_rate():
+    context = camera(rate=0.5)
+    context.by_hand = True
+    context.advance(4.5)
+    assert [one.header.stamp / 1e9 for one in context.published[RAW]] == [2.0, 4.0]
 
 
 def test_a_triggered_camera_has_the_renderer_ready_and_publishes_nothing():
@@ -173,6 +175,7 @@ def test_the_lower_rate_counts_and_a_camera_without_one_has_a_usual_one():
     for rate, said, count in ((10.0, "<updateRate>5</updateRate>", 5), (10.0, "", 10),
                               (0.0, "<updateRate>0</updateRate>", 30)):
         context = camera(said, rate=rate)
+        context.by_hand = True
         context.advance(1.0)
         assert len(context.published[RAW]) == count
 

@@ -2,24 +2,23 @@
 from __future__ import annotations
 
 import threading
-import time
 
 import pytest
-from plugin_graph import Graph
+from plugin_case import PluginCase, kept, until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec
+from my_simulations.description.sensor import Sensor
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import Severity
+from my_simulations.geometry import Pose
 from my_simulations.plugins.base import Plugin
 from my_simulations.plugins.call_watch import PATIENCE, Patience
-from my_simulations.plugins.context import PluginError
-from my_simulations.plugins.host import PluginHost
+from my_simulations.plugins.context import PluginError, RequestError
+from my_simulations.plugins.graph import TopicUse
 from my_simulations.plugins.registry import PluginRegistry, exports, library_name
 from my_simulations.plugins.testing import Message
-from my_simulations.simulator.simulator import Simulator
 
 DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 <leftJoint>left</leftJoint><rightJoint>right</rightJoint><wheelDiameter>0.2</wheelDiameter>
@@ -55,21 +54,10 @@ def robot(name="robot", xml=DRIVE, library="libgazebo_ros_diff_drive.so"):
                  plugins=[PluginSpec("drive", library, xml, "robot.urdf", 12)])
 
 
-class Case:
+class Case(PluginCase):
     def __init__(self, *models, extra=None, patience=PATIENCE, plugins=()):
-        self.issues, self.graph = [], Graph()
-        engine = InlineEngine(KinematicBackend)
-        self.sim = Simulator(World(models=list(models), plugins=list(plugins)),
-                             engine_factory=lambda: engine,
-                             paused=True, log=self.issues.append)
-        self.sim.start()
-        self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append,
-                               patience)
-        self.host.start()
-
-    def close(self):
-        self.host.stop()
-        self.sim.close()
+        super().__init__(World(models=list(models), plugins=list(plugins)), KinematicBackend,
+                         extra, patience)
 
     def failed(self):
         return [issue for issue in self.issues if issue.code == "plugin-failed"]
@@ -83,22 +71,7 @@ class Case:
 
 @pytest.fixture
 def case():
-    made = []
-
-    def make(*models, **options):
-        made.append(Case(*models, **options))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
-
-
-def until(condition):
-    deadline = time.monotonic() + 60.0
-    while not condition():
-        assert time.monotonic() < deadline, "the condition never came true"
-        time.sleep(0.002)
+    yield from kept(Case)
 
 
 def test_a_robot_of_the_world_drives(case):
@@ -313,6 +286,28 @@ def test_who_asks_a_service_hears_why_it_failed(case):
         one.graph.heard["ask"](Message(), Message())
 
 
+class Refusing(Plugin):
+    calls = []
+
+    def load(self):
+        self.context.serve("ask", "std_srvs/Empty", self.asked)
+        self.context.every(100.0, lambda: self.calls.append(self.context.now_ns))
+
+    def asked(self, request, response):
+        raise RequestError("there is no such value")
+
+
+def test_a_request_that_makes_no_sense_is_refused_and_the_plugin_goes_on(case, monkeypatch):
+    monkeypatch.setattr(Refusing, "calls", [])
+    one = case(robot("choosy", "<plugin/>", "librefuse.so"),
+               extra={"librefuse.so": f"{__name__}:Refusing"})
+    with pytest.raises(RequestError, match="no such value"):
+        one.graph.heard["ask"](Message(), Message())
+    one.sim.clock.advance(20)
+    until(lambda: len(Refusing.calls) == 2)
+    assert not one.failed()
+
+
 class OfTheWorld(Plugin):
     found = []
 
@@ -325,6 +320,50 @@ def test_a_world_has_plugins_too(case, monkeypatch):
     case(robot(), extra={"libworld.so": f"{__name__}:OfTheWorld"},
          plugins=[PluginSpec("w", "libworld.so", "<plugin/>", "a.world", 3)])
     assert OfTheWorld.found == [("world", ["robot"])]
+
+
+class Looking(Plugin):
+    def load(self):
+        self.context.use_namespace("eyes")
+        self.topic = self.context.publish("scan", "sensor_msgs/LaserScan")
+        self.context.subscribe("/stop", "std_msgs/Empty", lambda message: self.topic.close())
+
+
+def with_eyes():
+    model, place = robot("robot", "<plugin/>", "libnone.so"), Pose((0.1, 0.0, 0.2))
+    model.plugins = []
+    model.links[1].sensors = [Sensor("laser", "ray", place, plugins=[
+        PluginSpec("look", "liblook.so", "<plugin/>", "robot.urdf", 3)])]
+    return model, place
+
+
+def test_topics_of_plugins_are_known_with_the_place_of_their_sensor(case):
+    model, place = with_eyes()
+    one = case(model, extra={"liblook.so": f"{__name__}:Looking"})
+    scan = TopicUse("eyes/scan", "sensor_msgs/LaserScan", False, "robot", "wheel_l", "ray", place)
+    stop = TopicUse("/stop", "std_msgs/Empty", True, "robot", "wheel_l", "ray", place)
+    assert one.host.topic_uses() == [scan, stop]
+    one.graph.heard["/stop"](Message())
+    until(lambda: one.host.topic_uses() == [stop])
+    one.sim.models.delete("robot")
+    one.host.settle()
+    assert one.host.topic_uses() == []
+
+
+def test_topics_of_a_drive_belong_to_no_link(case):
+    one = case(robot())
+    uses = {use.name: use for use in one.host.topic_uses()}
+    assert uses["robot/cmd_vel"].heard and not uses["robot/odom"].heard
+    assert {(use.model, use.link, use.sensor) for use in uses.values()} == {("robot", "", "")}
+
+
+def test_a_plugin_that_was_switched_off_has_no_topics(case):
+    one = case(robot("bad", "<plugin/>", "libgrumble.so"),
+               extra={"libgrumble.so": f"{__name__}:Grumbling"})
+    assert [use.name for use in one.host.topic_uses()] == ["a", "b"]
+    one.sim.clock.advance(20)
+    until(one.failed)
+    assert one.host.topic_uses() == []
 
 
 class Pushing(Plugin):

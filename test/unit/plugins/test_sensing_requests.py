@@ -31,13 +31,27 @@ class Sensing:
 
 
 class Case:
-    def __init__(self):
+    """Its renderer has started, unless it is cold; `again` counts what is to be asked anew."""
+
+    def __init__(self, cold=False):
         self.sensing, self.inbox, self.said, self.seen = Sensing(), deque(), [], []
         self.requests = SensingRequests(self.sensing, self.inbox, lambda: None, self.said.append)
+        self.again = 0
+        if not cold:
+            self.shoot(0)
+            self.answer("nobody sees it")
+            self.deliver()
+            self.sensing.asked.clear()
+
+    def answer(self, picture):
+        self.sensing.asked[-1][0].set_result(picture)
+
+    def ask_again(self):
+        self.again += 1
 
     def shoot(self, ns, wait=False, views=1):
         return self.requests.photograph([VIEW] * views, lambda got, at: self.seen.append((got, at)),
-                                        ns, wait)
+                                        ns, wait, self.ask_again)
 
     def deliver(self):
         while self.inbox:
@@ -51,6 +65,49 @@ def test_a_picture_is_handed_over_with_its_moment():
     assert not case.seen
     case.deliver()
     assert case.seen == [(["picture"], 5)]
+
+
+def test_the_first_picture_is_taken_anew_once_the_renderer_has_started():
+    case = Case(cold=True)
+    assert [case.shoot(ns) for ns in (1, 2, 3)] == [True, False, False]
+    case.answer("too old")
+    case.deliver()
+    assert case.again == 1 and not case.seen and not case.said
+    assert case.shoot(4)
+    case.answer("fresh")
+    case.deliver()
+    assert case.seen == [(["fresh"], 4)] and case.again == 1
+
+
+def test_a_step_that_comes_first_takes_the_picture_that_was_to_be_taken_anew():
+    case = Case(cold=True)
+    case.shoot(1)
+    case.answer("too old")
+    assert case.shoot(2)
+    case.deliver()
+    case.answer("fresh")
+    case.deliver()
+    assert case.seen == [(["fresh"], 2)] and case.again == 0
+
+
+def test_a_world_stepped_by_hand_sees_the_first_picture():
+    case = Case(cold=True)
+    assert case.shoot(1, wait=True)
+    case.answer("picture")
+    case.deliver()
+    assert case.seen == [(["picture"], 1)] and case.again == 0
+
+
+def test_after_a_loss_the_first_picture_is_taken_anew():
+    case = Case()
+    before = case.again
+    case.shoot(1)
+    case.sensing.asked[-1][0].set_exception(SensingGoneError("it was killed"))
+    case.deliver()
+    case.shoot(2)
+    case.answer("too old")
+    case.deliver()
+    assert case.again == before + 1 and not case.seen
 
 
 def test_pictures_of_one_moment_are_handed_over_together():
@@ -135,5 +192,6 @@ def test_a_message_that_cannot_be_made_is_told_and_the_next_is_sent():
 
 def test_streams_do_not_wait_for_each_other():
     case = Case()
-    assert case.shoot(1) and case.requests.photograph([VIEW], lambda *_: None, 1, False, "depth")
+    assert case.shoot(1) and case.requests.photograph([VIEW], lambda *_: None, 1, False,
+                                                      case.ask_again, "depth")
     assert not case.said

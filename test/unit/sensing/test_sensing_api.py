@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 import subprocess
 import sys
 
@@ -23,12 +24,13 @@ from my_simulations.sensing.api import (
     CameraSpec,
     Distortion,
     LoadScene,
+    RayReturns,
     RemoveBody,
     SetLights,
 )
 from my_simulations.sensing.camera.distortion import blended, distorted, nearest, sources
 from my_simulations.sensing.camera.pictures import draw_pattern, read_picture
-from my_simulations.sensing.poses import matrices, matrix
+from my_simulations.sensing.poses import matrices, matrix, transforms
 from my_simulations.sensing.process import SensingProcess
 from my_simulations.sensing.tessellation import sides, triangles_of
 
@@ -138,3 +140,19 @@ def test_textures_come_from_files_small_enough_and_from_patterns(tmp_path):
     assert read_picture(str(tmp_path / "none.png")) is None
     assert draw_pattern("bricks").shape == (256, 256, 4)
     assert draw_pattern("no such") is None
+
+
+def test_transforms_are_the_matrices_by_columns():
+    poses = np.random.default_rng(3).normal(size=(5, 7))
+    poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1)[:, None]
+    assert transforms(poses) == pytest.approx(matrices(poses)[:, :3].transpose(0, 2, 1), abs=1e-15)
+
+
+def test_what_rays_have_met_comes_whole_between_processes_and_is_the_caller_s_own():
+    sent = RayReturns(np.array([1.5, np.inf]), np.array([0.5, 0.0], np.float32),
+                      np.array([3, -1], np.int32), 7)
+    came = pickle.loads(pickle.dumps(sent, protocol=pickle.HIGHEST_PROTOCOL))
+    for name in ("ranges", "retro", "link_rows"):
+        one, other = getattr(came, name), getattr(sent, name)
+        assert one.dtype == other.dtype and one.tolist() == other.tolist() and one.flags.writeable
+    assert came.step == 7

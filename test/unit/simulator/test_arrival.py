@@ -3,13 +3,13 @@ from __future__ import annotations
 
 import pytest
 
-from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Plane
 from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.formats.loading_advice import ADVICE_LIMIT, advice_issues
-from my_simulations.geometry import Pose
+from my_simulations.geometry import STILL, Pose
 from my_simulations.simulator import spawn_advice
 from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.spawn_advice import arrival_advice
@@ -54,6 +54,22 @@ def test_a_model_inside_others_is_told_with_them_and_them_alone(sim):
 def test_others_count_where_they_are_now(sim):
     sim.states.set_model_state("high", Pose((9, 0, 5)), sim.states.model_state("high")[1])
     assert said(sim, cube("new", 4.5)) == []
+
+
+def test_legs_count_as_they_are_folded(sim):
+    """With straight legs the robot would stand half a metre in the ground.
+
+    The engine of these tests knows no joints, so the leg is put where its joint would.
+    """
+    leg = Link("leg", Pose((0, 0, -1.0)), Inertial(1.0, ixx=0.1, iyy=0.1, izz=0.1),
+               [Collision("c", Box((0.1, 0.1, 0.2)))])
+    body = Link("body", inertial=Inertial(5.0, ixx=0.1, iyy=0.1, izz=0.1))
+    robot = Model("robot", Pose((20, 0, 0.6)), links=[body, leg], joints=[
+        Joint("hip", "prismatic", "body", "leg", axis=JointAxis((0, 0, 1), lower=0, upper=1))])
+    (text,) = (text for code, text in said(sim, robot) if code == "starts-inside")
+    assert "robot::leg" in text
+    sim.states.set_link_state("robot::leg", Pose((20, 0, 0.5)), STILL)
+    assert "starts-inside" not in [one.code for one in arrival_advice(sim, "robot", {})]
 
 
 def test_its_own_oddities_are_told(sim):

@@ -5,9 +5,13 @@ from my_simulations.plugins.testing import Message
 
 
 class Graph:
-    """Keeps what is published; a test sends what is heard. Nobody listens to `ignored` topics."""
+    """Keeps what is published; a test sends what is heard. Nobody listens to `ignored` topics.
 
-    def __init__(self):
+    `parameters`: dictionaries in dictionaries, by namespace.
+    """
+
+    def __init__(self, parameters=None):
+        self.parameters = parameters or {}
         self.sent, self.heard, self.transforms = [], {}, []
         self.ignored = set()
 
@@ -43,6 +47,14 @@ class Graph:
 
     def serve(self, name, kind, call):
         return self.subscribe(name, kind, call, 1)
+
+    def parameter(self, namespace, name, default):
+        found = self.parameters
+        for part in f"{namespace}/{name}".strip("/").split("/"):
+            if not isinstance(found, dict) or part not in found:
+                return default
+            found = found[part]
+        return found
 
     def search_parameter(self, namespace, name, default):
         return default

@@ -15,6 +15,7 @@ from ...description.shapes import Cylinder, Sphere
 from ...geometry import Vec3, transform
 from ..context import PluginError
 from ..drive.odometry import diagonal, fill_pose, planar
+from ..frames import stamped
 from .controller import Controller
 from .speed_limits import speed_limits
 
@@ -133,8 +134,7 @@ class BaseController(Controller):
         self.before, self.last = self.last, limited
         self.drive(limited)
         if self._limited is not None:
-            message = self.context.message("geometry_msgs/TwistStamped")
-            message.header.stamp = self.context.stamp()
+            message = stamped(self.context, "geometry_msgs/TwistStamped")
             message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = limited
             self._limited.publish(message)
 
@@ -165,8 +165,7 @@ class BaseController(Controller):
             self._odom.publish(self._odometry())
 
     def _odometry(self) -> Any:
-        message = self.context.message("nav_msgs/Odometry")
-        message.header.stamp = self.context.stamp()
+        message = stamped(self.context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self._frames
         fill_pose(message.pose.pose, planar(*self._pose))
         message.pose.covariance, message.twist.covariance = map(list, self._covariances)

@@ -6,6 +6,7 @@ from typing import Dict
 
 from ...engine.commands import PidGains
 from ...engine.servo_law import shortest
+from ..frames import stamped
 from .controller import Controller
 from .forward import Group
 from .hardware import EFFORT, VELOCITY, HardwareJoint
@@ -47,8 +48,7 @@ class JointLoop(Controller):
         if not self._state.wanted:
             return
         joint, gains = self._joint, self._gains
-        message = self.context.message("control_msgs/JointControllerState")
-        message.header.stamp = self.context.stamp()
+        message = stamped(self.context, "control_msgs/JointControllerState")
         message.set_point = self._wanted
         message.process_value = joint.velocity if self.of_rate else joint.position
         message.process_value_dot = 0.0 if self.of_rate else joint.velocity

@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import List, Tuple
 
 from ..context import PluginError
+from ..frames import stamped
 from .controller import Controller
 
 
@@ -40,8 +41,7 @@ class JointStateController(Controller):
         return found
 
     def _tell(self) -> None:
-        message = self.context.message("sensor_msgs/JointState")
-        message.header.stamp = self.context.stamp()
+        message = stamped(self.context, "sensor_msgs/JointState")
         names = [joint.name for joint in self._joints]
         extra = self._extra
         efforts = self.hardware.efforts(names) if self._topic.wanted else [0.0] * len(names)

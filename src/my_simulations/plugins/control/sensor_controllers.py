@@ -14,6 +14,7 @@ from ...sensing.models import force_torque
 from ...sensing.models.imu import measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..context import Link, PluginError, Publication
+from ..frames import stamped
 from .controller import Controller
 
 _HANDLES = 4  # messages in a topic's queue, as the original
@@ -62,8 +63,7 @@ class ImuSensorController(_SensorController):
                 continue
             sample = measure(link.pose, link.twist, acceleration_between(
                 then, now, (now_ns - then_ns) * 1e-9), self.context.gravity, sensor.pose)
-            message = self.context.message("sensor_msgs/Imu")
-            message.header.stamp, message.header.frame_id = self.context.stamp(), link.name
+            message = stamped(self.context, "sensor_msgs/Imu", link.name)
             turn = message.orientation
             turn.x, turn.y, turn.z, turn.w = sample.orientation
             rate, push = message.angular_velocity, message.linear_acceleration
@@ -100,8 +100,7 @@ class ForceTorqueSensorController(_SensorController):
             if wrench is None:
                 return
             sample = force_torque.measure(wrench, frame, direction, joint.pose, sensor.pose)
-            message = self.context.message("geometry_msgs/WrenchStamped")
-            message.header.stamp, message.header.frame_id = self.context.stamp(), named
+            message = stamped(self.context, "geometry_msgs/WrenchStamped", named)
             force, torque = message.wrench.force, message.wrench.torque
             force.x, force.y, force.z = sample.force
             torque.x, torque.y, torque.z = sample.torque

@@ -16,7 +16,7 @@ from ...sensing.models.imu import measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
 from ..context import PluginError, Publication
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 from ..sensors.rays import fan_of
 from .odometry import Odometer, planar
@@ -129,9 +129,7 @@ class Kobuki(Plugin):
         context, link = self.context, self.context.link(self._imu_link)
         sample = measure(link.pose, link.twist, acceleration_between(before, self._before, dt),
                          context.gravity, self._imu.pose)
-        message = context.message("sensor_msgs/Imu")
-        message.header.stamp = context.stamp()
-        message.header.frame_id = prefixed(context, "base_link")
+        message = stamped(context, "sensor_msgs/Imu", prefixed(context, "base_link"))
         turn, rate, push = (message.orientation, message.angular_velocity,
                             message.linear_acceleration)
         turn.x, turn.y, turn.z, turn.w = sample.orientation
@@ -245,9 +243,8 @@ class KobukiEvents:
                 self._topics[topic].publish(message)
 
     def _state(self) -> Any:
-        message = self._context.message("kobuki_msgs/SensorState")
-        message.header.stamp = self._context.stamp()
-        message.header.frame_id = prefixed(self._context, "base_link")
+        message = stamped(self._context, "kobuki_msgs/SensorState",
+                          prefixed(self._context, "base_link"))
         message.bumper = sum(_BITS[side] for side, on in self._pressed.items() if on)
         message.cliff = sum(_BITS[side] for side, on in self._over.items() if on)
         message.wheel_drop = (2 if self._dropped["left"] else 0) + self._dropped["right"]

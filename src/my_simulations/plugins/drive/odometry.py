@@ -6,7 +6,7 @@ from typing import Any, List, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from ..context import Context, Joint
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 
 _NO_IDEA = 1e12  # of what a wheeled robot does not measure
 
@@ -96,8 +96,7 @@ class Odometer:
         """Publish a pose, and (forward, sideways, yaw) velocity in the base frame."""
         if self._topic is None:
             return
-        message = self._context.message("nav_msgs/Odometry")
-        message.header.stamp = self._context.stamp()
+        message = stamped(self._context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self.frame, self.base
         fill_pose(message.pose.pose, pose)
         message.pose.covariance = list(self._covariance)

@@ -5,7 +5,7 @@ from typing import Any, Sequence
 
 from ...geometry import compose, inverse
 from ..context import Context, Joint
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 
 
 class VelocityCommand:
@@ -62,8 +62,7 @@ class WheelStates:
 
     def send(self) -> None:
         """As of now."""
-        message = self._context.message("sensor_msgs/JointState")
-        message.header.stamp = self._context.stamp()
+        message = stamped(self._context, "sensor_msgs/JointState")
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         if self._motion:

@@ -10,7 +10,7 @@ from typing import Any, Dict, List, Tuple
 from ...geometry import Vec3, add, cross, scale, subtract
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 
 
@@ -42,8 +42,7 @@ class Bumper(Plugin):
             if mine in (one, other):
                 touching.setdefault(other if one == mine else one, []).append(
                     (contact, 1.0 if one == mine else -1.0))
-        message = context.message("gazebo_msgs/ContactsState")
-        message.header.stamp, message.header.frame_id = context.stamp(), self._frame
+        message = stamped(context, "gazebo_msgs/ContactsState", self._frame)
         message.states = [self._state(mine, other, points) for other, points in touching.items()]
         self._topic.publish(message)
 

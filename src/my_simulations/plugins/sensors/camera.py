@@ -27,7 +27,7 @@ class Camera(Plugin):
         self._stream = PictureStream(context, sensor, context.sensor_link, block,
                                      topics_of(context), p.number("hackBaseline", 0.0),
                                      p.flag("borderCrop", True))
-        self._rate = ImagerRate(context, [self._stream.topics.base], self.update)
+        ImagerRate(context, [self._stream.topics.base], self.update, lambda: self._stream.wanted)
 
     def update(self) -> None:
         """Take a picture, if somebody wants one."""
@@ -41,8 +41,7 @@ class Camera(Plugin):
         return self.context.photograph([self._stream.view()], self._seen)
 
     def _seen(self, pictures: List[Any], ns: int) -> None:
-        if self._rate.is_fresh(ns):
-            self._stream.publish(pictures[0].rgb, ns)
+        self._stream.publish(pictures[0].rgb, ns)
 
 
 class TriggeredCamera(Camera):
@@ -56,9 +55,6 @@ class TriggeredCamera(Camera):
         self._warm = False
         self.context.subscribe(self._stream.topics.named(topic), "std_msgs/Empty", self._trigger,
                                _TRIGGERS)
-
-    def _seen(self, pictures: List[Any], ns: int) -> None:
-        self._stream.publish(pictures[0].rgb, ns)   # what was asked for is given, however late
 
     def _trigger(self, message: Any) -> None:
         self._triggers += 1
@@ -92,8 +88,8 @@ class MultiCamera(Plugin):
                 context, sensor, context.sensor_link, block,
                 topics_of(context, f"/{side or block.name}"), baseline,
                 p.flag("borderCrop", True)))
-        self._rate = ImagerRate(context, [stream.topics.base for stream in self._streams],
-                                self.update)
+        ImagerRate(context, [stream.topics.base for stream in self._streams], self.update,
+                   lambda: any(stream.wanted for stream in self._streams))
 
     def update(self) -> None:
         """Take pictures with the cameras that are listened to."""

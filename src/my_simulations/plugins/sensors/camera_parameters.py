@@ -60,7 +60,7 @@ def rate_of(context: Context) -> float:
     return min((rate for rate in said if rate > 0.0), default=USUAL_RATE)
 
 
-_OLD_S = 0.5   # of sim time
+_LOOK_HZ = 10.0   # how often a slow camera looks whether somebody listens
 _RATE = Option("imager_rate", 2.0, 1.0, 50.0, "pictures a second of sim time (Hz)")
 
 
@@ -71,24 +71,25 @@ class ImagerRate:
         context: of the plugin.
         names: of the cameras; "" is one that nobody can change (gazebo_plugins).
         call: takes a picture.
+        wanted: whether somebody listens.
     """
 
-    def __init__(self, context: Context, names: Sequence[str], call: Callable[[], None]) -> None:
-        self._context, self._call = context, call
+    def __init__(self, context: Context, names: Sequence[str], call: Callable[[], None],
+                 wanted: Callable[[], bool]) -> None:
+        self._context, self._call, self._wanted = context, call, wanted
         rate = rate_of(context)
         self._timer = context.every(rate, call)
-        self._most_ns = round(max(_OLD_S, 2.0 / rate) * 1e9)
-        self._looked = False
+        self._listened = False
+        if rate < _LOOK_HZ:
+            context.every(_LOOK_HZ, self._look)
         self._offers = [Reconfigure(context, name, (_RATE,), {_RATE.name: rate}, self._change)
                         for name in names if name]
 
-    def is_fresh(self, ns: int) -> bool:
-        """Whether a picture of a sim time is to be published.
-
-        While the renderer starts for the first one, the world goes on: that one may be too old.
-        """
-        first, self._looked = not self._looked, True
-        return not first or self._context.now_ns - ns <= self._most_ns
+    def _look(self) -> None:
+        """Who begins to listen gets a picture at once, as in Gazebo, and not a period later."""
+        before, self._listened = self._listened, self._wanted()
+        if self._listened and not before and not self._context.by_hand:
+            self._call()
 
     def _change(self, values: Mapping[str, Value]) -> None:
         self._timer.end()

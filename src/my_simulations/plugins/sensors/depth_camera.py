@@ -105,7 +105,8 @@ class DepthCamera(Plugin):
             context, self._colors, _names(context, topics), p.number("pointCloudCutoff", 0.4),
             p.number("pointCloudCutoffMax", self.furthest),
             not p.flag("useDepth16UC1Format", False))
-        self._rate = ImagerRate(context, [topics.base], self.update)
+        ImagerRate(context, [topics.base], self.update,
+                   lambda: self._colors.wanted or self._depth.wanted)
 
     def update(self) -> None:
         """Take a picture of what is wanted."""
@@ -120,8 +121,7 @@ class DepthCamera(Plugin):
             self._tell(None, None, self.context.now_ns)
 
     def _taken(self, pictures: List[Any], ns: int) -> None:
-        if self._rate.is_fresh(ns):
-            self._tell(pictures[0].rgb, pictures[0].depth, ns)
+        self._tell(pictures[0].rgb, pictures[0].depth, ns)
 
     def _tell(self, rgb: Optional[Any], depth: Optional[Any], ns: int) -> None:
         self._colors.publish(rgb, ns)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from ...geometry import Vec3, add, conjugate, rotate, scale
 from ..base import Plugin
 from ..context import PluginError
+from ..frames import stamped
 
 
 class FootContact(Plugin):
@@ -34,8 +35,7 @@ class FootContact(Plugin):
                 force: Vec3 = add(scale(contact.normal, contact.force), contact.friction)
                 total = add(total, scale(force, 1.0 if one == mine else -1.0))
                 count += 1
-        message = context.message("geometry_msgs/WrenchStamped")
-        message.header.stamp, message.header.frame_id = context.stamp(), self._link.name
+        message = stamped(context, "geometry_msgs/WrenchStamped", self._link.name)
         force = rotate(conjugate(self._link.pose.orientation), scale(total, 1.0 / max(1, count)))
         at = message.wrench.force
         at.x, at.y, at.z = force

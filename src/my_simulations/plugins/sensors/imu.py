@@ -14,6 +14,7 @@ from ...sensing.models.imu import ImuSample, measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
 from ..context import Link, PluginError
+from ..frames import stamped
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 from .rays import SampledNoise
@@ -71,8 +72,7 @@ class Imu(Plugin):
             return
         sample = self._noisy(self.measured())
         context, noise = self.context, self._white.draw(6)
-        message = context.message("sensor_msgs/Imu")
-        message.header.stamp, message.header.frame_id = context.stamp(), self._frame
+        message = stamped(context, "sensor_msgs/Imu", self._frame)
         turn = message.orientation
         turn.x, turn.y, turn.z, turn.w = multiply(self._offset, sample.orientation)
         rate, push = message.angular_velocity, message.linear_acceleration

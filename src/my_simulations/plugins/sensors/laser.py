@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 from .rays import RayPlugin, SampledNoise
 
@@ -40,8 +40,7 @@ class Laser(RayPlugin):
         true = np.asarray(returns.ranges)
         noisy = np.clip(self._noise.apply(true, ns), fan.near, fan.far)
         ranges = np.where(true >= fan.far, np.inf, np.where(true <= fan.near, -np.inf, noisy))
-        message = context.message("sensor_msgs/LaserScan")
-        message.header.stamp, message.header.frame_id = context.stamp(ns), self._frame
+        message = stamped(context, "sensor_msgs/LaserScan", self._frame, ns)
         message.angle_min, message.angle_max = ray.horizontal.min_angle, ray.horizontal.max_angle
         message.angle_increment = ((message.angle_max - message.angle_min)
                                    / max(1, fan.samples - 1))

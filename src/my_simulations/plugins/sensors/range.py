@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 from .rays import RayPlugin
@@ -38,8 +38,7 @@ class Range(RayPlugin):
         nearest = min(float(min(returns.ranges)), most)
         if nearest < most:
             nearest = min(most, nearest + self._noise.draw(1)[0])
-        message = self.context.message("sensor_msgs/Range")
-        message.header.stamp, message.header.frame_id = self.context.stamp(ns), self._frame
+        message = stamped(self.context, "sensor_msgs/Range", self._frame, ns)
         message.radiation_type, message.field_of_view = self._kind, self._view
         message.min_range, message.max_range, message.range = self._ray.min_range, most, nearest
         self._topic.publish(message)

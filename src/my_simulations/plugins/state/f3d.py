@@ -13,7 +13,7 @@ from ...geometry import Quat, Vec3, conjugate, multiply, rotate, scale, subtract
 from ...sensing.models.motion import velocity_at
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 
 
@@ -50,8 +50,7 @@ class F3d(Plugin):
         if before is None or before[0] == now:
             return
         per_second = 1e9 / (now - before[0])
-        message = self.context.message("geometry_msgs/WrenchStamped")
-        message.header.stamp, message.header.frame_id = self.context.stamp(), self._frame
+        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
         force, torque = message.wrench.force, message.wrench.torque
         force.x, force.y, force.z = scale(subtract(linear, before[1]), per_second)
         torque.x, torque.y, torque.z = scale(subtract(angular, before[2]), per_second)

@@ -13,7 +13,7 @@ from ...description.sensor import ForceTorque
 from ...sensing.models.force_torque import measure
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 from ..sensors.rays import SampledNoise
@@ -85,8 +85,7 @@ class FtSensor(Plugin):
         self._topic.publish(self._message(values))
 
     def _message(self, values: "list[float]") -> Any:
-        message = self.context.message("geometry_msgs/WrenchStamped")
-        message.header.stamp, message.header.frame_id = self.context.stamp(), self._frame
+        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
         force, torque = message.wrench.force, message.wrench.torque
         force.x, force.y, force.z, torque.x, torque.y, torque.z = values
         return message

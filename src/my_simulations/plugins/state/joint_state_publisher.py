@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from ..base import Plugin
+from ..frames import stamped
 from ..parameters import namespace_or
 
 
@@ -21,8 +22,7 @@ class JointStatePublisher(Plugin):
 
     def update(self) -> None:
         """Publish."""
-        message = self.context.message("sensor_msgs/JointState")
-        message.header.stamp = self.context.stamp()
+        message = stamped(self.context, "sensor_msgs/JointState")
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         message.velocity = [joint.velocity for joint in self._joints]

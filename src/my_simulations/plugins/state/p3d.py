@@ -10,7 +10,7 @@ from typing import Any, Optional
 from ...geometry import Pose, Twist, add, compose, conjugate, inverse, multiply, rotate, subtract
 from ..base import Plugin
 from ..context import Link
-from ..frames import prefixed
+from ..frames import prefixed, stamped
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 
@@ -51,8 +51,7 @@ class P3d(Plugin):
 
     def _message(self, pose: Pose, twist: Twist) -> Any:
         context, noise = self.context, self._noise.draw(6)
-        message = context.message("nav_msgs/Odometry")
-        message.header.stamp = context.stamp()
+        message = stamped(context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self._frame_id, self._child_id
         at, turn = message.pose.pose.position, message.pose.pose.orientation
         at.x, at.y, at.z = add(pose.position, self._offset.position)

@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, List
 import genpy
 import rospy
 
+from ...errors import SimulationError
 from ...plugins.graph import Closing, MissingTypeError, Topic, TransformOf
 from ..direct_connection import direct
 from .packed_transforms import PackedTransforms
@@ -79,12 +80,17 @@ class RosGraph:
                                          tcp_nodelay=True).unregister)
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
-        """Offer a service."""
+        """Offer a service; a plugin's refusal goes to who has asked, and not into the log."""
         service = self._type(kind, "srv")
 
         def answer(request: Any) -> Any:
             response = service._response_class()
-            call(request, response)
+            try:
+                call(request, response)
+            except SimulationError as fault:
+                # Of another exception rospy would log a traceback; the plugins' host tells of
+                # faults itself, with file and line.
+                raise rospy.ServiceException(str(fault)) from fault
             return response
 
         return _Closing(rospy.Service(name, service, answer).shutdown)

@@ -2,14 +2,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Dict, Mapping, Tuple, Union
+from typing import Any, Dict, Mapping, Tuple
 
 from ...errors import CommandError
 from ...geometry import Vec3, is_finite
+from ...plugins.reconfigure_options import Option, Value
 from ...simulator.simulator import Simulator
 from ..message_conversion import between
-
-Value = Union[bool, int, float]
 
 SHORTEST_STEP = 1e-6
 """s; smallest accepted step size."""
@@ -22,22 +21,15 @@ FASTEST = 1e6
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(Option):
     """One of the 15 parameters (names, types, defaults and ranges: Gazebo behaviour).
 
+    The names of those of `ode` are also in gazebo_msgs/ODEPhysics.
+
     Attributes:
-        name: in dynamic_reconfigure; those of `ode` also in gazebo_msgs/ODEPhysics.
-        default: default value in dynamic_reconfigure; its type is the parameter's.
-        low, high: range; dynamic_reconfigure clamps to it.
-        meaning: description shown by rqt_reconfigure.
         ode: field of `description.world.OdePhysics`; "" for parameters that are none.
     """
 
-    name: str
-    default: Value
-    low: Value
-    high: Value
-    meaning: str
     ode: str = ""
 
     def checked(self, value: Value) -> Value:

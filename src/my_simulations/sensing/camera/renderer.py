@@ -23,11 +23,10 @@ from .lamps import (
     shadow_lights,
     shadow_view,
 )
-from .pictures import draw_pattern, read_picture
 from .sky import linear, sky_uniforms
-from .surfaces import Surface, pieces_of
+from .surfaces import pieces_of
+from .uploaded_textures import Textures
 
-_SRGB = 0x8C43  # GL_SRGB8_ALPHA8
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
 
 
@@ -64,7 +63,7 @@ class Renderer:
         self._sky = self._context.vertex_array(
             self._programs["sky"], [(self._context.buffer(corners.tobytes()), "2f", "at")])
         self._batches: Dict[Tuple[str, int], Batch] = {}
-        self._textures: Dict[Any, Any] = {}
+        self._textures = Textures(self._context, lambda text: self._trouble(text))
         self._lights: List[Light] = []
         self._scene = Scene()
         self._targets: Dict[Tuple[str, int, int, int], Any] = {}
@@ -240,7 +239,7 @@ class Renderer:
         if not batch.count:
             return
         surface = batch.surface
-        texture = self._texture(surface)
+        texture = self._textures.of(surface)
         name = self._program(shaders.LitKind(
             texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
             surface.opacity < 1.0 or (texture is not None and texture.extra), lighting.fog,
@@ -252,30 +251,6 @@ class Renderer:
         if texture is not None:
             texture.use(location=0)
         batch.draw(name)
-
-    def _texture(self, surface: Surface) -> Any:
-        if surface.picture is None and not surface.pattern:
-            return None
-        key = surface.picture if isinstance(surface.picture, str) else (
-            id(surface.picture) if surface.picture is not None else ("pattern", surface.pattern))
-        if key not in self._textures:
-            pixels = (read_picture(surface.picture) if surface.picture is not None
-                      else draw_pattern(surface.pattern))
-            if pixels is None and surface.picture is not None:
-                self._trouble(f"the picture {surface.picture} cannot be read: cameras see its "
-                              "material without")
-            self._textures[key] = None if pixels is None else self._uploaded(pixels)
-        return self._textures[key]
-
-    def _uploaded(self, pixels: np.ndarray) -> Any:
-        height, width = pixels.shape[:2]
-        texture = self._context.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes(),
-                                        internal_format=_SRGB)
-        texture.build_mipmaps()
-        texture.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)
-        texture.repeat_x = texture.repeat_y = True
-        texture.extra = bool((pixels[..., 3] == 0).any())  # holes
-        return texture
 
     def _draw_sky(self, spec: CameraSpec, view: np.ndarray) -> None:
         program = self._programs["sky"]

@@ -9,8 +9,6 @@ import numpy as np
 from ...appearance.looks import Look
 from ...appearance.palette import DULLEST, GREY, GROUND
 from ...description.shapes import SOLIDS, Color, Mesh, Plane, Visual
-from ...formats.mesh.loading import load_solid
-from ...formats.mesh.painted import flat, painted_parts
 from ..tessellation import triangles_of
 
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
@@ -57,6 +55,10 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     speaks = look is not None and bool(look.diffuse or look.ambient or look.emissive
                                        or look.texture or look.pattern)
     if isinstance(shape, SOLIDS):
+        # A world without a mesh has its first picture earlier.
+        from ...formats.mesh.loading import load_solid
+        from ...formats.mesh.painted import flat, painted_parts
+
         parts = (painted_parts(shape) if isinstance(shape, Mesh)
                  else [flat(load_solid(shape))])
         return [_piece(part.vertices, part.normals, part.uv, part.triangles,

@@ -14,21 +14,22 @@ from typing import Any, Optional, Tuple
 
 from ..api import SensingError, SensingUnavailableError
 
-TRIANGLES, SPHERES, INSTANCE = 0, 50, 121
-INDEX, VERTEX = 0, 1
-UINT3, FLOAT3, FLOAT4 = 0x5003, 0x9003, 0x9004
+TRIANGLES, SPHERES, INSTANCES = 0, 50, 122
+INDEX, VERTEX, TRANSFORM = 0, 1, 23
+UINT, UINT3, FLOAT3, FLOAT4 = 0x5001, 0x5003, 0x9003, 0x9004
 MATRIX = 0x9234
 """RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR; the number beside it, 0x9134, is row major's."""
 DYNAMIC, ROBUST = 1 << 0, 1 << 2
-LOW_QUALITY, MEDIUM_QUALITY = 0, 1
+MEDIUM_QUALITY = 1
 NOTHING = 0xFFFFFFFF
 """RTC_INVALID_GEOMETRY_ID."""
 
 PACKET = 16
 """Rays a call."""
-# A packet's fields, `PACKET` words each: RTCRay16 then RTCHit16 (one level of instances).
+# A packet's fields, `PACKET` words each: RTCRay16 then RTCHit16 (one level of instances). BODY is a
+# place in the array of instances.
 (ORIGIN, NEAR, DIRECTION, TIME, FAR, MASK, _ID, _FLAGS, _NORMAL, _U, _V, _PRIMITIVE, GEOMETRY,
- BODY, _BODY_PRIMITIVE) = (0, 3, 4, 7, 8, 9, 10, 11, 12, 15, 16, 17, 18, 19, 20)
+ _ARRAY, BODY) = (0, 3, 4, 7, 8, 9, 10, 11, 12, 15, 16, 17, 18, 19, 20)
 FIELDS = 21
 
 _POINTER, _UINT, _INT, _SIZE = ctypes.c_void_p, ctypes.c_uint, ctypes.c_int, ctypes.c_size_t
@@ -47,10 +48,10 @@ _CALLS = {
     "rtcCommitGeometry": (None, [_POINTER]),
     "rtcAttachGeometry": (_UINT, [_POINTER, _POINTER]),
     "rtcDetachGeometry": (None, [_POINTER, _UINT]),
-    "rtcEnableGeometry": (None, [_POINTER]),
-    "rtcDisableGeometry": (None, [_POINTER]),
-    "rtcSetGeometryInstancedScene": (None, [_POINTER, _POINTER]),
-    "rtcSetGeometryTransform": (None, [_POINTER, _UINT, _INT, _POINTER]),
+    "rtcSetGeometryInstancedScenes": (None, [_POINTER, _POINTER, _SIZE]),
+    "rtcSetSharedGeometryBuffer": (None, [_POINTER, _INT, _UINT, _INT, _POINTER, _SIZE, _SIZE,
+                                          _SIZE]),
+    "rtcUpdateGeometryBuffer": (None, [_POINTER, _INT, _UINT]),
     "rtcIntersect16": (None, [_POINTER, _POINTER, _POINTER, _POINTER]),
 }
 
@@ -66,7 +67,7 @@ class Embree:
         path = library_path()
         if path is None:
             raise SensingUnavailableError(
-                "lasers need Embree 4: on x86-64 'pip install embreex'; on other processors the "
+                "lasers need Embree 4.3: on x86-64 'pip install embreex'; on other processors the "
                 "system's library (Debian 13: apt-get install libembree4-4)")
         try:
             # Calls are short: to let other threads run meanwhile costs more than the calls.
@@ -96,7 +97,7 @@ class Embree:
         """An empty scene; rays do not slip through its edges."""
         made: int = self.rtcNewScene(self.device)
         self.rtcSetSceneFlags(made, ROBUST | (DYNAMIC if dynamic else 0))
-        self.rtcSetSceneBuildQuality(made, LOW_QUALITY if dynamic else MEDIUM_QUALITY)
+        self.rtcSetSceneBuildQuality(made, MEDIUM_QUALITY)  # no slower to make than the low one
         return made
 
     def attach(self, scene: int, kind: int, buffers: "Tuple[Tuple[int, int, Any], ...]") -> None:

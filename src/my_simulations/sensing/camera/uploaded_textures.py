@@ -1,0 +1,50 @@
+"""Textures of surfaces, read or drawn once, and uploaded."""
+from __future__ import annotations
+
+from typing import Any, Callable, Dict
+
+import numpy as np
+
+from .surfaces import Surface
+
+_SRGB = 0x8C43  # GL_SRGB8_ALPHA8
+
+
+class Textures:
+    """The textures of one context.
+
+    Args:
+        context: of moderngl.
+        trouble: is told of pictures that cannot be read.
+    """
+
+    def __init__(self, context: Any, trouble: Callable[[str], None]) -> None:
+        self._context, self._trouble = context, trouble
+        self._made: Dict[Any, Any] = {}
+
+    def of(self, surface: Surface) -> Any:
+        """The texture of a surface; None where it has none, or one that cannot be read."""
+        if surface.picture is None and not surface.pattern:
+            return None
+        key = surface.picture if isinstance(surface.picture, str) else (
+            id(surface.picture) if surface.picture is not None else ("pattern", surface.pattern))
+        if key not in self._made:
+            from .pictures import draw_pattern, read_picture  # not before there is a texture
+
+            pixels = (read_picture(surface.picture) if surface.picture is not None
+                      else draw_pattern(surface.pattern))
+            if pixels is None and surface.picture is not None:
+                self._trouble(f"the picture {surface.picture} cannot be read: cameras see its "
+                              "material without")
+            self._made[key] = None if pixels is None else self._uploaded(pixels)
+        return self._made[key]
+
+    def _uploaded(self, pixels: np.ndarray) -> Any:
+        height, width = pixels.shape[:2]
+        texture = self._context.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes(),
+                                        internal_format=_SRGB)
+        texture.build_mipmaps()
+        texture.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)
+        texture.repeat_x = texture.repeat_y = True
+        texture.extra = bool((pixels[..., 3] == 0).any())  # holes
+        return texture

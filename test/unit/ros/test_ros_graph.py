@@ -1,0 +1,78 @@
+"""Services of plugins: what a caller and the log are told of a refusal."""
+from __future__ import annotations
+
+import struct
+from io import BytesIO
+
+import pytest
+from rospy.impl.tcpros_service import ServiceImpl
+from std_srvs.srv import Empty, EmptyRequest
+
+from my_simulations.plugins.context import PluginError
+from my_simulations.ros.plugins import ros_graph
+from my_simulations.ros.plugins.ros_graph import RosGraph
+
+
+class Transport:
+    """What an answer is written to."""
+
+    def __init__(self):
+        self.write_buff, self.sent = BytesIO(), b""
+
+    def write_data(self, data):
+        self.sent += data
+
+    def send_message(self, message, seq):
+        self.sent += b"\1"
+
+
+class Service(ServiceImpl):
+    """rospy's own way from a request to an answer, without a socket and a master."""
+
+    def __init__(self, name, service_class, handler):
+        self.handler, self.response_class = handler, service_class._response_class
+        self.seq, self.faults = 0, []
+        self.error_handler = lambda fault, *_: self.faults.append(fault)  # it would log a traceback
+
+
+@pytest.fixture
+def served(monkeypatch):
+    made = []
+
+    class Kept(Service):
+        def __init__(self, *arguments):
+            super().__init__(*arguments)
+            made.append(self)
+
+        def shutdown(self):
+            made.remove(self)
+
+    monkeypatch.setattr(ros_graph.rospy, "Service", Kept)
+
+    def ask(call):
+        RosGraph().serve("it", "std_srvs/Empty", call)
+        transport = Transport()
+        made[-1]._handle_request(transport, EmptyRequest())
+        return made[-1], transport.sent
+    return ask
+
+
+def test_a_plugin_that_has_ended_answers_with_its_reason_and_logs_nothing(served):
+    def ended(request, response):
+        raise PluginError("the plugin has ended")
+
+    service, sent = served(ended)
+    assert service.faults == []
+    ok, length = struct.unpack_from("<BI", sent)
+    assert ok == 0 and sent[5:5 + length].decode().endswith("the plugin has ended")
+
+
+def test_a_fault_that_nobody_expects_is_logged(served):
+    service, _ = served(lambda request, response: 1 / 0)
+    assert [type(fault) for fault in service.faults] == [ZeroDivisionError]
+
+
+def test_an_answer_of_a_plugin_leaves(served):
+    seen = []
+    service, sent = served(lambda request, response: seen.append(type(response)))
+    assert seen == [Empty._response_class] and service.faults == [] and sent == b"\1"

@@ -1,0 +1,79 @@
+"""A world with plugins: a simulator that is stepped by a test, a host, and a graph that keeps."""
+from __future__ import annotations
+
+import time
+
+from plugin_graph import Graph
+
+from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.plugins.call_watch import PATIENCE
+from my_simulations.plugins.host import PluginHost
+from my_simulations.plugins.registry import PluginRegistry
+from my_simulations.plugins.testing import Message
+from my_simulations.simulator.simulator import Simulator
+
+
+def until(condition, what="the condition never came true"):
+    """Wait for a condition, with a deadline."""
+    deadline = time.monotonic() + 60.0
+    while not condition():
+        assert time.monotonic() < deadline, what
+        time.sleep(0.001)
+
+
+class PluginCase:
+    """Begins paused, with the plugins of the world's models loaded; `backend` moves it.
+
+    `extra`: classes of plugins by library; `parameters`: of the graph, by namespace.
+    """
+
+    def __init__(self, world, backend, extra=None, patience=PATIENCE, parameters=None):
+        self.issues, self.graph = [], Graph(parameters)
+        self.sim = Simulator(world, engine_factory=lambda: InlineEngine(backend), paused=True,
+                             log=self.issues.append)
+        self.sim.start()
+        self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append,
+                               patience)
+        self.host.start()
+
+    def hear(self, topic, **fields):
+        """Send a message; returns when the plugin has heard it."""
+        self.graph.heard[topic](Message(**fields))
+        until(lambda: not self.host.unheard)
+
+    def ask(self, service, **fields):
+        """The response of a service."""
+        response = Message()
+        self.graph.heard[service](Message(**fields), response)
+        return response
+
+    def last(self, topic, ns):
+        """The message of a topic that is stamped with a sim time."""
+        def found():
+            return [one for one in self.graph.on(topic) if one.header.stamp == ns]
+        until(found)
+        return found()[-1]
+
+    def now(self):
+        """Sim time, ns, of a world whose steps are a millisecond."""
+        return self.sim.clock.step * 10 ** 6
+
+    def close(self):
+        """End plugins and world."""
+        self.host.stop()
+        self.sim.close()
+
+
+def kept(make):
+    """For a fixture: a function that makes cases, all closed at the end."""
+    made = []
+
+    def one(*arguments, **options):
+        made.append(make(*arguments, **options))
+        return made[-1]
+
+    try:
+        yield one
+    finally:
+        for case in made:
+            case.close()
