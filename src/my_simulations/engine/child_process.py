@@ -5,10 +5,14 @@ import contextlib
 import ctypes
 import os
 import signal
+import subprocess
 import sys
 from typing import Dict, Iterator, List
 
+from .message_pipe import Wire
+
 _PR_SET_PDEATHSIG = 1
+_END_S = 3.0  # how long a child may take to end by itself
 _PARENT = "MY_SIMULATIONS_PARENT"
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3  # of mallopt(3)
 _KEPT_BYTES, _HEAP_BYTES = 64 << 20, 32 << 20
@@ -43,6 +47,16 @@ def shielded() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def await_end(child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+    """Wait for the end of a child whose stream has ended; one that lives on is killed."""
+    wire.hang_up()
+    try:
+        child.wait(_END_S)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        child.wait()
 
 
 def die_with_parent() -> None:

@@ -1,6 +1,7 @@
 """Messages over a stream socket between our own processes: a length and a pickle."""
 from __future__ import annotations
 
+import contextlib
 import pickle
 import select
 import socket
@@ -16,17 +17,29 @@ class Wire:
 
     def __init__(self, sock: socket.socket) -> None:
         self.sock = sock
+        # rospy sets a default timeout for all sockets of a process as soon as it subscribes. One
+        # made then does not block, in the child neither: what does not fit at once would be lost.
+        sock.settimeout(None)
         self._pending = bytearray()
 
     def send(self, message: object) -> None:
         """Send a message completely. Raises OSError if the other side is closed."""
         body = pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
-        self.sock.sendall(_LENGTH.pack(len(body)) + body)
+        try:
+            self.sock.sendall(_LENGTH.pack(len(body)) + body)
+        except OSError:
+            self.hang_up()  # a part may have left: nothing that follows could be read
+            raise
+
+    def hang_up(self) -> None:
+        """Let both sides see the end."""
+        with contextlib.suppress(OSError):  # it may have hung up already
+            self.sock.shutdown(socket.SHUT_RDWR)
 
     def receive(self, timeout: float) -> List[Any]:
         """All complete messages received; waits up to `timeout` s for the first bytes.
 
-        Raises EOFError if the other side is closed.
+        Raises EOFError if the other side is closed, or sends what is no message.
         """
         while True:
             if not select.select([self.sock], [], [], timeout)[0]:
@@ -50,7 +63,10 @@ class Wire:
             end = at + _LENGTH.size + length
             if len(self._pending) < end:
                 break
-            found.append(pickle.loads(memoryview(self._pending)[at + _LENGTH.size:end]))
+            try:
+                found.append(pickle.loads(memoryview(self._pending)[at + _LENGTH.size:end]))
+            except Exception as fault:  # pickle raises what the bytes make it
+                raise EOFError(f"damaged message: {fault}") from fault
             at = end
         if at:
             self._pending = self._pending[at:]

@@ -1,7 +1,6 @@
 """The engine in a child process: the parent's side."""
 from __future__ import annotations
 
-import contextlib
 import logging
 import os
 import select
@@ -144,8 +143,7 @@ class ProcessEngine:
         with self._lock:
             wire, self._wire = self._wire, None
         if wire is not None:
-            with contextlib.suppress(OSError):  # it may have hung up already
-                wire.sock.shutdown(socket.SHUT_RDWR)
+            wire.hang_up()
         if self._child is not None:
             try:
                 self._child.wait(_END_S)
@@ -169,7 +167,7 @@ class ProcessEngine:
                     waiting = self._waiting.pop(number, None)
                 if waiting is not None:
                     waiting[1].set_result(message)
-        process.wait()
+        child_process.await_end(process, wire)
         sweep()  # what a killed child could not take along
         self._bury(process, wire)
 

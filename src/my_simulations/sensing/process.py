@@ -1,7 +1,6 @@
 """The sensing process, seen from the parent."""
 from __future__ import annotations
 
-import contextlib
 import importlib
 import logging
 import queue
@@ -159,8 +158,7 @@ class SensingProcess:
         with self._lock:
             wire = self._wire
         if wire is not None:
-            with contextlib.suppress(OSError):  # it may have hung up already
-                wire.sock.shutdown(socket.SHUT_RDWR)
+            wire.hang_up()
 
     # The writer: keeps the scene, starts children. It lives as long as this object, as it must: the
     # kernel ends a child with the thread that started it.
@@ -237,7 +235,7 @@ class SensingProcess:
                 self._verdict = (f"the sensing process has not answered for {patience:g} s "
                                  "and was ended")
                 child.kill()
-        child.wait()
+        child_process.await_end(child, wire)
         self._bury(child, wire)
 
     def _answer(self, number: int, message: Any) -> None:
