@@ -97,6 +97,10 @@ class Refused(Exception):
         self.code = issues[0]["code"]
 
 
+COME_AGAIN = 1012
+"""Close code of a server that goes on as another one (RFC 6455 registry)."""
+
+
 class Browser:
     """Keeps what a page would: the document, the poses, and all pushes."""
 
@@ -116,19 +120,29 @@ class Browser:
     @classmethod
     async def open(cls, session, url, hello=True, **headers):
         base, mark, query = url.partition("?")
-        socket = await session.ws_connect(base + "ws" + mark + query, max_msg_size=0,
-                                          headers=headers or None)
-        browser = cls(session, socket)
-        if hello:
-            await browser.ask("hello", version=1)
-            await browser.until(lambda: browser.document is not None)
-        return browser
+        while True:
+            socket = await session.ws_connect(base + "ws" + mark + query, max_msg_size=0,
+                                              headers=headers or None)
+            browser = cls(session, socket)
+            if not hello:
+                return browser
+            try:
+                await browser.ask("hello", version=1)
+            except ConnectionError:
+                # Served while the world was loaded: as the page does, come again.
+                if socket.close_code != COME_AGAIN:
+                    raise
+            else:
+                await browser.until(lambda: browser.document is not None)
+                return browser
 
     async def ask(self, kind, **fields):
         """The answer's value; raises Refused."""
         self._number += 1
         number = self._number
         self._replies[number] = asyncio.get_running_loop().create_future()
+        if self._reader.done():
+            raise ConnectionError(f"closed: {self.socket.close_code}")
         await self.socket.send_json({"type": kind, "id": number, **fields})
         reply = await asyncio.wait_for(self._replies[number], DEADLINE)
         if not reply["ok"]:
@@ -170,6 +184,9 @@ class Browser:
                 else:
                     self._text(json.loads(message.data))
                 self.news.notify_all()
+        for waiting in self._replies.values():
+            waiting.set_exception(ConnectionError(f"closed: {self.socket.close_code}"))
+        self._replies.clear()
 
     def _frame(self, data):
         if data[0] == TOPIC:
