@@ -209,6 +209,28 @@ def test_a_texture_lies_upright_on_a_wall_and_repeats(view, tmp_path):
     assert found[240 - 90, 320 - 90].tolist() == found[240 - 90, 320 + 20].tolist() == [255, 0, 0]
 
 
+@pytest.mark.parametrize("material, faint", [
+    ({}, [255, 255, 255]), ({"alpha_test": 0.5}, [255, 0, 0]), ({"blended": True}, None)])
+def test_a_texture_s_alpha_counts_as_its_material_says(view, tmp_path, material, faint):
+    from PIL import Image
+
+    path = str(tmp_path / "leaf.png")
+    pixels = np.full((32, 32, 4), 255, dtype=np.uint8)
+    pixels[:, 8:24, 3] = 77   # the same from behind
+    Image.fromarray(pixels, "RGBA").save(path)
+    leaf = Look(diffuse=(1, 1, 1, 1), texture=path, lit=False, **material)
+    behind = Look(diffuse=(1, 0, 0, 1), lit=False)
+    found = view([body("leaf", Box((0.01, 1.0, 1.0)), 0, leaf),
+                  body("wall", Box((0.1, 4.0, 4.0)), 1, behind)],
+                 [Pose((3.0, 0, 0)), Pose((4.0, 0, 0))]).rgb
+    middle, edge = found[240, 320].tolist(), found[240, 320 - 70].tolist()
+    assert edge == [255, 255, 255]
+    if faint is None:   # half of the light is that of the leaf's two sides
+        assert middle[0] == 255 and 100 <= middle[1] == middle[2] <= 200
+    else:
+        assert middle == faint
+
+
 def test_an_unreadable_picture_is_told_and_the_rest_is_drawn(view):
     look = Look(diffuse=(1, 0, 0, 1), texture="/nowhere/wood.png", lit=False)
     found = view([body("b", Box((1.0, 9, 9)), 0, look)], [Pose((3.0, 0, 0))])

@@ -1,7 +1,7 @@
 """Instances of the same triangles and surface, drawn together."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Tuple, Union
 
 import numpy as np
 
@@ -23,7 +23,7 @@ class Batch:
     def __init__(self, context: Any, programs: Dict[str, Any], piece: Piece, shadows: bool) -> None:
         self.surface: Surface = piece.surface
         self.uniforms = _uniforms(piece.surface)
-        self.casts_shadow = shadows and piece.surface.opacity >= 1.0
+        self.casts_shadow = shadows and not piece.surface.clear
         places: np.ndarray = piece.rows[:, :3].astype(np.float64)
         low, high = places.min(axis=0), places.max(axis=0)
         self.center = (low + high) / 2
@@ -90,11 +90,12 @@ class Batch:
         self._index.release()
 
 
-def _uniforms(surface: Surface) -> Dict[str, Tuple[float, ...]]:
+def _uniforms(surface: Surface) -> Dict[str, Union[float, Tuple[float, ...]]]:
     """What a surface says to its program."""
     return {"diffuse": (*(linear(surface.diffuse) * surface.brightness), surface.opacity),
             "specular": tuple(linear(surface.specular)),
-            "emissive": tuple(linear(surface.emissive)), "repeats": surface.repeats}
+            "emissive": tuple(linear(surface.emissive)), "repeats": surface.repeats,
+            "alpha_test": surface.alpha_test}
 
 
 def _inputs(program: Any, names: Tuple[str, ...], widths: Tuple[int, ...], kind: str,

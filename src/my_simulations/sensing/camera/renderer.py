@@ -148,7 +148,7 @@ class Renderer:
                 center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
                 near_enough = in_sight(center, batch.radius, spec)
                 frames, here = frames[near_enough], here[near_enough]
-            if batch.surface.opacity < 1.0 and len(frames) > 1:
+            if batch.surface.clear and len(frames) > 1:
                 far_first = np.argsort(frames[:, 2, 3], kind="stable")
                 frames, here = frames[far_first], here[far_first]
             batch.upload(frames, batch.rows[here])
@@ -168,7 +168,7 @@ class Renderer:
         clear: List[Batch] = []
         # Small ones first: walls and grounds are mostly behind them, and need not be lit there.
         for batch in sorted(self._batches.values(), key=lambda one: one.radius):
-            if batch.surface.opacity < 1.0:
+            if batch.surface.clear:
                 clear.append(batch)
             else:
                 self._draw_lit(batch, lighting)
@@ -242,8 +242,8 @@ class Renderer:
         texture = self._textures.of(surface)
         name = self._program(shaders.LitKind(
             texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
-            surface.opacity < 1.0 or (texture is not None and texture.extra), lighting.fog,
-            lighting.kinds if surface.lit else ()), lighting)
+            surface.alpha_test > 0.0 and texture is not None and texture.extra,
+            surface.blended, lighting.fog, lighting.kinds if surface.lit else ()), lighting)
         program = self._programs[name]
         for uniform, values in batch.uniforms.items():
             if uniform in program:

@@ -46,7 +46,8 @@ class LitKind(NamedTuple):
         textured: has a picture.
         lit: lights count.
         shiny: has highlights.
-        clear: may be seen through.
+        cut: what of the picture is nearly transparent is left out.
+        blended: the picture's alpha counts.
         fog: "", linear or exponential.
         lights: type of each light, and the number of its shadow map or -1.
     """
@@ -54,7 +55,8 @@ class LitKind(NamedTuple):
     textured: bool
     lit: bool
     shiny: bool
-    clear: bool
+    cut: bool
+    blended: bool
     fog: str
     lights: Tuple[Tuple[str, int], ...]
 
@@ -67,6 +69,7 @@ out vec4 seen;
 uniform vec4 diffuse;
 uniform vec3 specular, emissive, ambient, up;
 uniform sampler2D picture;
+uniform float alpha_test;
 uniform vec4 light_at[LIGHTS];       // xyz: place, or direction to it
 uniform vec3 light_color[LIGHTS];
 uniform vec3 light_way[LIGHTS];      // of a spot
@@ -100,9 +103,11 @@ def lit_fragment(kind: LitKind) -> str:
     """The program of a surface under some lights."""
     parts = [_UNIFORMS]
     if kind.textured:
-        parts.append("  vec4 t = texture(picture, out_uv); albedo *= t.rgb; opacity *= t.a;\n")
-    if kind.clear:
-        parts.append("  if (opacity < 0.004) discard;\n")
+        parts.append("  vec4 t = texture(picture, out_uv); albedo *= t.rgb;\n")
+        if kind.cut:
+            parts.append("  if (t.a < alpha_test) discard;\n")
+        if kind.blended:
+            parts.append("  opacity *= t.a;\n")
     parts.append("  vec3 color = albedo;\n")
     if kind.lit:
         parts.append(_SURROUNDED)

@@ -14,6 +14,7 @@ from ..tessellation import triangles_of
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
 _DULL: Color = (0.0, 0.0, 0.0, 1.0)
 _SIDES = 48
+_HOLE = 0.004   # alpha of what a mesh's own picture leaves out
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,8 @@ class Surface:
     """How triangles look; colours sRGB.
 
     `picture`: a path, a PIL image, or None; `pattern`: a drawn one; `brightness`: times the
-    diffuse colour in linear units.
+    diffuse colour in linear units; `alpha_test`: what of the picture has less alpha is not drawn;
+    `blended`: the picture's alpha makes it transparent.
     """
 
     diffuse: Color = GREY
@@ -33,6 +35,13 @@ class Surface:
     opacity: float = 1.0
     lit: bool = True
     brightness: float = 1.0
+    alpha_test: float = 0.0
+    blended: bool = False
+
+    @property
+    def clear(self) -> bool:
+        """Whether what is behind may be seen through it."""
+        return self.opacity < 1.0 or self.blended
 
 
 @dataclass(frozen=True)
@@ -63,7 +72,8 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
                  else [flat(load_solid(shape))])
         return [_piece(part.vertices, part.normals, part.uv, part.triangles,
                        surface_of(look, opacity) if speaks else
-                       Surface(part.color or _OF_MESH, picture=part.picture, opacity=opacity))
+                       Surface(part.color or _OF_MESH, picture=part.picture, opacity=opacity,
+                               alpha_test=_HOLE))
                 for part in parts]
     made = triangles_of(shape, _SIDES)
     if made is None or made.normals is None or made.uv is None:
@@ -93,4 +103,5 @@ def surface_of(look: Optional[Look], opacity: float) -> Surface:
         specular = _DULL
     return Surface(diffuse, specular, look.emissive or _DULL, look.texture or None,
                    look.pattern, (1.0 / (look.scale[0] or 1.0), 1.0 / (look.scale[1] or 1.0)),
-                   (1.0 - look.transparency) * opacity, look.lit)
+                   (1.0 - look.transparency) * opacity, look.lit,
+                   alpha_test=look.alpha_test, blended=look.blended)

@@ -46,5 +46,5 @@ class Textures:
         texture.build_mipmaps()
         texture.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)
         texture.repeat_x = texture.repeat_y = True
-        texture.extra = bool((pixels[..., 3] == 0).any())  # holes
+        texture.extra = bool((pixels[..., 3] < 255).any())  # what may be seen through
         return texture
