@@ -7,7 +7,7 @@ import os
 import signal
 import subprocess
 import sys
-from typing import Dict, Iterator, List
+from typing import Any, Dict, Iterator, List
 
 from .message_pipe import Wire
 
@@ -52,8 +52,13 @@ def shielded() -> Iterator[None]:
 def await_end(child: "subprocess.Popen[bytes]", wire: Wire) -> None:
     """Wait for the end of a child whose stream has ended; one that lives on is killed."""
     wire.hang_up()
+    wait_or_kill(child, _END_S)
+
+
+def wait_or_kill(child: "subprocess.Popen[Any]", seconds: float) -> None:
+    """Wait for the end of a child; kill it if that does not come within `seconds` of wall time."""
     try:
-        child.wait(_END_S)
+        child.wait(seconds)
     except subprocess.TimeoutExpired:
         child.kill()
         child.wait()

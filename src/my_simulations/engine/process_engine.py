@@ -145,11 +145,7 @@ class ProcessEngine:
         if wire is not None:
             wire.hang_up()
         if self._child is not None:
-            try:
-                self._child.wait(_END_S)
-            except subprocess.TimeoutExpired:
-                self._child.kill()
-                self._child.wait()
+            child_process.wait_or_kill(self._child, _END_S)
         if self._reader is not None and self._reader is not threading.current_thread():
             self._reader.join(_END_S)
 

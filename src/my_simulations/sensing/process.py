@@ -144,11 +144,7 @@ class SensingProcess:
         self._outbox.put(None)
         self._hang_up()
         if child is not None:
-            try:
-                child.wait(_END_S)
-            except subprocess.TimeoutExpired:
-                child.kill()
-                child.wait()
+            child_process.wait_or_kill(child, _END_S)
         writer.join(_END_S)
         reader = self._reader
         if reader is not None:

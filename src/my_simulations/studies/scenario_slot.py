@@ -13,6 +13,7 @@ import threading
 import time
 from typing import Dict, List, Optional, Tuple
 
+from ..engine.child_process import wait_or_kill
 from ..errors import CommandError, InputError
 from . import scenario_process
 from .junit import results_below
@@ -158,11 +159,7 @@ class ScenarioSlot:
         finally:
             if process.poll() is None:
                 process.terminate()
-                try:
-                    process.wait(_END_S)
-                except subprocess.TimeoutExpired:
-                    process.kill()
-                    process.wait()
+                wait_or_kill(process, _END_S)
 
 
 def _signal(code: int) -> str:
