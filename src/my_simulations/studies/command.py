@@ -9,7 +9,7 @@ import shlex
 import signal
 import sys
 from types import FrameType
-from typing import Any, Callable, Dict, List, Mapping, Optional, Protocol, Sequence, Set
+from typing import Any, Callable, Dict, List, Mapping, Optional, Protocol, Sequence, Set, Tuple
 
 from ..errors import CommandError, InputError, SimulationError
 from ..python_api import OpenWorld
@@ -212,8 +212,7 @@ def _report(folder: StudyFolder, plan: CasePlan) -> str:
 
 
 def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    folder = StudyFolder(options.dir)
-    plan = _plan(folder.header()["file"])
+    folder, plan = _opened(options.dir)
     files = folder.write_tables(plan, _tell)
     if options.action == "report":
         files.append(_report(folder, plan))
@@ -221,9 +220,14 @@ def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
     return 0
 
 
+def _opened(path: str) -> Tuple[StudyFolder, CasePlan]:
+    """The folder of a study, and the plan of the study file that it names."""
+    folder = StudyFolder(path)
+    return folder, _plan(folder.header()["file"])
+
+
 def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    folder = StudyFolder(options.dir)
-    plan = _plan(folder.header()["file"])
+    folder, plan = _opened(options.dir)
     case = _case(plan, options.case)
     if case is None:
         return INVALID
@@ -249,8 +253,7 @@ def _record(options: argparse.Namespace, records: Records) -> int:
     """Run a case again and record it."""
     if not options.every > 0.0:
         raise CommandError(f"--every must be above 0, is {options.every:g}")
-    folder = StudyFolder(options.folder)
-    plan = _plan(folder.header()["file"])
+    folder, plan = _opened(options.folder)
     case = _case(plan, options.dir)
     if case is None:
         return INVALID

@@ -16,6 +16,7 @@ from typing import Dict, List, Optional, Tuple
 from ..engine.child_process import wait_or_kill
 from ..errors import CommandError, InputError
 from . import scenario_process
+from .attempts import until_no_crash
 from .junit import results_below
 from .kept import ScenarioFiles
 from .plan import Case, CasePlan
@@ -92,9 +93,8 @@ class ScenarioSlot:
         Raises:
             StoppedError: `stop` was set; there is no result.
         """
-        crash: Optional[Row] = None
-        for attempt in range(1, self._plan.study.limits.attempts + 1):
-            row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=attempt,
+        def attempt(number: int) -> Tuple[Row, Optional[ScenarioFiles]]:
+            row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=number,
                       processor=self._processor)
             kept: Optional[ScenarioFiles] = None
             try:
@@ -103,13 +103,8 @@ class ScenarioSlot:
                 row.status, row.issue = REFUSED, str(fault.first)
             except CommandError as fault:
                 row.status, row.issue = REFUSED, str(fault)
-            if row.status != CRASHED:
-                break
-            crash = crash or row
-        if crash is not None and row.status != CRASHED:
-            row.flaky, row.signal = True, crash.signal
-            row.issue = row.issue or f"in attempt 1: {crash.issue}"
-        return row, kept
+            return row, kept
+        return until_no_crash(self._plan.study.limits.attempts, attempt)
 
     def _attempt(self, case: Case, row: Row) -> ScenarioFiles:
         require_ros()

@@ -18,6 +18,7 @@ from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld
 from ..python_api.kept_files import KeptFiles
 from ..simulator.watchdog import process_time
+from .attempts import until_no_crash
 from .case_world import choice_of
 from .kept import CaseTrajectory
 from .plan import Case, CasePlan
@@ -141,18 +142,12 @@ class Slot:
         Raises:
             StoppedError: `stop` was set; there is no result.
         """
-        first_crash: Optional[Row] = None
-        for attempt in range(1, self._study.limits.attempts + 1):
-            row, trajectory = self._attempt(case, attempt)
-            if row.status != CRASHED:
-                break
-            self.close()
-            first_crash = first_crash or row
-        if first_crash is not None and row.status != CRASHED:
-            row.flaky = True
-            row.signal = first_crash.signal
-            row.issue = row.issue or f"in attempt 1: {first_crash.issue}"
-        return row, trajectory
+        def attempt(number: int) -> Tuple[Row, Optional[CaseTrajectory]]:
+            row, trajectory = self._attempt(case, number)
+            if row.status == CRASHED:
+                self.close()
+            return row, trajectory
+        return until_no_crash(self._study.limits.attempts, attempt)
 
     def _attempt(self, case: Case, attempt: int) -> Tuple[Row, Optional[CaseTrajectory]]:
         row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=attempt,
