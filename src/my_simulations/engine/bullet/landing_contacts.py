@@ -175,10 +175,11 @@ class LandingContacts:
         turn = EVERY * (look + looks_until_turn(len(watched), look, _ROUNDS))
         return max(step, min(turn, self._next))
 
-    def see_rolling(self, uids: AbstractSet[int], step: int) -> None:
-        """Contact points of bodies that roll are dropped for this step: they do not fly."""
+    def see_rolling(self, links: AbstractSet[Tuple[int, int]], step: int) -> None:
+        """Contact points of links that roll are dropped for this step: their bodies do not fly."""
         if self._next > step:
             return
+        uids = {uid for uid, _ in links}
         for flight in list(self._flights.values()):
             if flight.look <= step and flight.body.uid in uids:
                 self._is_on_ground(flight, step)

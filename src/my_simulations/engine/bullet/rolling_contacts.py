@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import dist
-from typing import Any, Callable, Dict, FrozenSet, List, Optional, Set, Tuple
+from typing import AbstractSet, Any, Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -81,15 +81,14 @@ class RollingContacts:
     """Drops the contact points of lying cylinders before each step.
 
     Args:
-        dropping: is told, before that, of which bodies points are dropped, and in which step.
+        dropping: is told, before that, of which links points are dropped, and in which step.
 
     Attributes:
         on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
     """
 
-    def __init__(self, dropping: Callable[[FrozenSet[int], int], None]) -> None:
+    def __init__(self, dropping: Callable[[AbstractSet[Key], int], None]) -> None:
         self._dropping = dropping
-        self._dropped: Optional[FrozenSet[int]] = None   # bodies of `_rolling`; None: ask anew
         self.on_seams: Dict[Key, Vec3] = {}
         self._rollers: Dict[Key, _Roller] = {}
         self._rolling: Dict[Key, collision_groups.Filter] = {}
@@ -115,7 +114,6 @@ class RollingContacts:
         self._standing.pop(body.uid, None)
         self._moving.discard(body.uid)
         self._seams.difference_update(body.uids)
-        self._dropped = None
         for part in body.parts:
             for table in (self._rollers, self._rolling, self.on_seams):
                 table.pop((body.uid, part.index), None)
@@ -125,7 +123,6 @@ class RollingContacts:
         self.on_seams.clear()
         self._rollers.clear()
         self._rolling.clear()
-        self._dropped = None
         self._standing.clear()
         self._moving.clear()
         self._seams.clear()
@@ -137,7 +134,6 @@ class RollingContacts:
         if roller is not None:
             roller.still = roller.wait = 0
             self._rolling[body.uid, BASE] = roller.meets
-            self._dropped = None
 
     def landed(self, uid: int, normal: Vec3) -> None:
         """A rigid body is about to touch something: if it stands on it, it keeps its points."""
@@ -146,7 +142,6 @@ class RollingContacts:
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
             if abs(dot(normal, rotate(turn, roller.axis))) > _UPRIGHT:
                 del self._rolling[uid, BASE]
-                self._dropped = None
 
     @property
     def knows_seams(self) -> bool:
@@ -160,7 +155,6 @@ class RollingContacts:
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find out now and then who rolls, and let it roll in the next step."""
         if step % EVERY == 0:
-            self._dropped = None
             for key, roller in self._rollers.items():
                 if roller.wait:
                     roller.wait -= 1
@@ -175,9 +169,7 @@ class RollingContacts:
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
-        if self._dropped is None:
-            self._dropped = frozenset(uid for uid, _ in self._rolling)
-        self._dropping(self._dropped, step)
+        self._dropping(self._rolling.keys(), step)
         for (uid, index), meets in self._rolling.items():
             pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 
