@@ -279,7 +279,8 @@ def test_a_killed_sensing_process_costs_its_requests_only(record):
                           engine_factory=ProcessEngine, log=lambda issue: None)
     simulator.start()
     sensing = SensingProcess()
-    sensing.on_trouble(lambda said: None)
+    deaths = []
+    sensing.on_trouble(deaths.append)
     kills, lost, answers = scaled(4, 200), 0, 0
     fan, mount = RayFan(31, -math.pi / 2, math.pi / 2, far=20.0), Mount()
     try:
@@ -299,6 +300,8 @@ def test_a_killed_sensing_process_costs_its_requests_only(record):
                     answers += 1
                 except SensingGoneError:
                     lost += 1
+            # All may have been answered before the kill: then its death was not seen yet.
+            until(lambda n=n: len(deaths) > n, "the death to be seen")
             again = sensing.cast(CastRays(mount, fan, at=places)).result(LONGEST_CALL_S)
             assert list(again.ranges) == list(expected)
             simulator.clock.advance(5)
