@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pictures, depth, points and scans as image_proc, depth_image_proc, laser_geometry and PCL read them.
+"""What image_proc, depth_image_proc, laser_geometry and PCL make of pictures, depth and scans.
 
 Each case computes from our messages alone what such a program computes, by its documented formula,
 and holds that against the known world. Where Debian's program is installed it runs, too, and must
