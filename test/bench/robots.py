@@ -118,8 +118,8 @@ def drive() -> List[Row]:
             found[plugins].append(shares.end()[0])
             rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("r0")
     none, alone, both = (statistics.median(found[one]) for one in sets)
-    return [("one diff drive, odometry at 50 Hz published", f"{100 * (alone - none):.1f} % of a core",
-             "1 %", alone - none <= 0.01),
+    return [("one diff drive, odometry at 50 Hz published",
+             f"{100 * (alone - none):.1f} % of a core", "1 %", alone - none <= 0.01),
             ("the same with joint states at 50 Hz", f"{100 * (both - none):.1f} % of a core", "",
              True)]
 

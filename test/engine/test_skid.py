@@ -123,8 +123,8 @@ def test_a_base_on_wide_wheels_turns_as_its_edges_share_its_weight(lab: Lab, law
     lab.load(ground(1.0))
     base, width = _base(), 0.12
     for link in base.links[1:]:
-        link.collisions[0] = replace(link.collisions[0], geometry=Cylinder(RADIUS, width), pose=Pose(
-            (0, 0, 0), quat_from_rpy(crooked, 0, 0)))
+        link.collisions[0] = replace(link.collisions[0], geometry=Cylinder(RADIUS, width),
+                                     pose=Pose((0, 0, 0), quat_from_rpy(crooked, 0, 0)))
     # Of the whole: the wheels' 2 kg stand where they are.
     base.links[0].inertial = replace(base.links[0].inertial, pose=Pose((0.0, 1.2 * com, 0.0)))
     car = lab.load(base, (0, 0, RADIUS))

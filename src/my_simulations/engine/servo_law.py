@@ -83,7 +83,8 @@ class ServoLaw:
         self.servo = servo
         self._seen_step, self._seen = -1, (0.0, 0.0)
         self._begin, self._end = math.inf, -math.inf
-        self._coefficients = (0.0,) * 10   # of the position, c0 to c5, and of its rate, 2 c2 to 5 c5
+        # Of the position, c0 to c5, and of the rate, 2 c2 to 5 c5.
+        self._coefficients: Tuple[float, ...] = (0.0,) * 10
         self.gives_effort = servo.drive == "effort" or self._inner is not None
         # Most loops: an effort that follows a position, and limits that are seldom reached.
         self._plain = (servo.drive == "effort" and servo.soft is None

@@ -222,6 +222,15 @@ def test_a_trigger_takes_one_picture():
     assert len(context.published[RAW]) == 4
 
 
+def test_a_trigger_does_not_wait_for_the_rate_of_the_sensor():
+    context = camera(rate=1.0, cls=TriggeredCamera)
+    context.advance(1.5)
+    context.hear("cam/image_trigger")
+    context.hear("cam/image_trigger")
+    context.advance(0.01)
+    assert [round(one.header.stamp / 1e9, 2) for one in context.published[RAW]] == [1.5, 1.5]
+
+
 def test_a_pair_looks_at_the_same_time_and_the_right_one_has_the_baseline():
     block = CameraBlock("left_eye", width=8, height=6)
     right = CameraBlock("right_eye", Pose((0.0, -0.07, 0.0)), width=8, height=6)

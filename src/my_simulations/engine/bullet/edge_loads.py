@@ -53,6 +53,7 @@ def shared(uid: int, wheels: Sequence[Tuple[int, Vec3, Sequence[Contact]]]) -> L
     """The contacts that carry each wheel of a body, with the loads of edges that give way alike.
 
     Args:
+        uid: the body, PyBullet's number.
         wheels: of each PyBullet's index, the axle in its frame, and all its contacts.
 
     Where the wheels do not stand on one plane, or an edge would be pulled down, loads stay.

@@ -45,30 +45,54 @@ class Camera(Plugin):
 
 
 class TriggeredCamera(Camera):
-    """One picture, at the next appointment, for each message on its trigger topic."""
+    """One picture, as soon as one can be drawn, for each message on its trigger topic.
+
+    `<update_rate>` does not delay it (gazebo_plugins); it says how often is looked after a picture
+    that was lost.
+    """
 
     def load(self) -> None:
         """Read parameters."""
         super().load()
         topic = self.context.parameters.text("triggerTopicName") or "image_trigger"
         self._triggers = 0
-        self._warm = False
+        self._warm = self._drawing = False
         self.context.subscribe(self._stream.topics.named(topic), "std_msgs/Empty", self._trigger,
                                _TRIGGERS)
 
     def _trigger(self, message: Any) -> None:
         self._triggers += 1
+        self._soon()
 
     def reset(self) -> None:
         """Nobody has asked for a picture of the new time."""
         self._triggers = 0
+        self._drawing = False
 
     def update(self) -> None:
         """Take a picture, if one is due; have the renderer ready once somebody listens."""
         if not (self._warm or self._triggers) and self._stream.wanted:
-            self._warm = self.context.photograph([self._stream.view()], lambda pictures, ns: None)
-        elif self._triggers and (not self._stream.wanted or self.take()):
+            self._warm = self._drawing = self.context.photograph([self._stream.view()],
+                                                                 self._warmed)
+        elif self._triggers:
+            self._take_due()
+
+    def _soon(self) -> None:
+        if self._triggers and not self._drawing:
+            self.context.once(self.context.now_ns, self._take_due)
+
+    def _take_due(self) -> None:
+        if self._triggers and (not self._stream.wanted or self.take()):
             self._triggers -= 1
+            self._drawing = self._stream.wanted
+
+    def _seen(self, pictures: List[Any], ns: int) -> None:
+        super()._seen(pictures, ns)
+        self._warmed(pictures, ns)
+
+    def _warmed(self, pictures: List[Any], ns: int) -> None:
+        self._drawing = False
+        self._soon()
 
 
 class MultiCamera(Plugin):
