@@ -6,7 +6,7 @@ with. Where they are drawn slower than the rate asks for, some are left out, and
 """
 from __future__ import annotations
 
-from typing import Any, List
+from typing import Any, Callable, List
 
 from ..base import Plugin
 from .camera_parameters import ImagerRate, enter_namespace, topics_of
@@ -72,8 +72,7 @@ class TriggeredCamera(Camera):
     def update(self) -> None:
         """Take a picture, if one is due; have the renderer ready once somebody listens."""
         if not (self._warm or self._triggers) and self._stream.wanted:
-            self._warm = self._drawing = self.context.photograph([self._stream.view()],
-                                                                 self._warmed)
+            self._warm = self._drawn(self._warmed)
         elif self._triggers:
             self._take_due()
 
@@ -84,7 +83,17 @@ class TriggeredCamera(Camera):
     def _take_due(self) -> None:
         if self._triggers and (not self._stream.wanted or self.take()):
             self._triggers -= 1
-            self._drawing = self._stream.wanted
+            self._soon()
+
+    def take(self) -> bool:
+        """Ask for a picture; False where the one before is late."""
+        return self._drawn(self._seen)
+
+    def _drawn(self, call: Callable[[List[Any], int], None]) -> bool:
+        self._drawing = True   # the answer may come before the request returns
+        taken = self.context.photograph([self._stream.view()], call)
+        self._drawing = self._drawing and taken
+        return taken
 
     def _seen(self, pictures: List[Any], ns: int) -> None:
         super()._seen(pictures, ns)
