@@ -5,12 +5,12 @@ import math
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import time
 import xmlrpc.client
 from unittest import mock
 
+from free_ports import free_port
 from playwright.sync_api import sync_playwright
 
 from my_simulations.editor.transport import address_file
@@ -36,12 +36,6 @@ def wait_for(condition, what, seconds=SECONDS):
         # To ask the page takes time from what is waited for, a picture of it the most.
         time.sleep(max(pause, min(now - began, 0.5)))
         pause = min(1.5 * pause, 0.1)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Node:

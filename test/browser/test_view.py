@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import pytest
+from free_ports import free_port
 from gazebo_msgs.srv import GetModelState
 from pytest import approx
-from support import Node, free_port, wait_for
+from support import Node, wait_for
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,6 @@ import math
 import os
 import random
 import signal
-import socket
 import subprocess
 import threading
 import time
@@ -18,6 +17,7 @@ import pytest
 import rospy
 import rosservice
 from editor_case import box
+from free_ports import free_port
 from gazebo_msgs import srv
 from geometry_msgs.msg import Point, Quaternion
 from geometry_msgs.msg import Pose as PoseMessage
@@ -40,12 +40,6 @@ LONGEST_CALL_S = 60.0
 
 ENGINE = "/gazebo/my_simulations/engine_pid"
 PLACE = PoseMessage(Point(0.0, 0.0, 0.5), Quaternion(0.0, 0.0, 0.0, 1.0))
-
-
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
 
 
 def lives(pid):
