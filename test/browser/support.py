@@ -123,6 +123,7 @@ class Editor:
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]},
                                            color_scheme=color_scheme, accept_downloads=True,
                                            **options)
+        self.context.set_default_timeout(1000.0 * SECONDS)
         self.page = self.context.new_page()
         self.faults = []
         self.said = []
@@ -149,6 +150,15 @@ class Editor:
             return wait_for(lambda: self.get(expression), what)
         except AssertionError as fault:
             raise AssertionError(f"{fault}; the page said {self.faults + self.said}") from fault
+
+    def frame(self):
+        """Waits until what the page knows by now is drawn."""
+        self.get("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def rest(self):
+        """Waits until nothing moves in the view any more, and its picture is finished."""
+        self.frame()
+        self.until("editor.view.fps === 0", "rest of the view")
 
     # -- what a person sees ------------------------------------------------------------------------
 
@@ -190,10 +200,15 @@ class Editor:
         self.page.mouse.move(x - 40, y - 25)
         self.page.mouse.move(x, y, steps=5)
         self.page.mouse.click(x, y)
-        return wait_for(lambda: next(iter(
+        name = wait_for(lambda: next(iter(
             (set(self.names()) - before) |
             (set(self.get("editor.store.document.lights.map((light) => light.name)")) - lights)),
             None), f"the new {tool}")
+        # The world tells of it first, then the history; the page selects it when it is answered.
+        self.until(f"editor.store.history.undo[0]?.toLowerCase() === 'insert {name}'",
+                   f"{name} in the history")
+        self.until(f"editor.store.selection.join() === '{name}'", f"the selection of {name}")
+        return name
 
     def drag(self, start, end, keys=()):
         """Presses at a point of the world, moves to another in small steps, lets go."""
