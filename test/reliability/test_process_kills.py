@@ -54,7 +54,7 @@ def children(pid):
     found = []
     for task in os.listdir(f"/proc/{pid}/task"):
         # Threads come and go.
-        with contextlib.suppress(FileNotFoundError), open(
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError), open(
                 f"/proc/{pid}/task/{task}/children", encoding="ascii") as stream:
             found += list(map(int, stream.read().split()))
     return found

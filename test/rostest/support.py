@@ -268,9 +268,11 @@ class Launched:
         return list(self.ask("get_world_properties", srv.GetWorldProperties).model_names)
 
     def says(self, text):
-        wait_for(lambda: text in self.program.text or self.program.process.poll() is not None,
-                 f"the words {text!r} in {self.program.text}")
-        assert text in self.program.text, self.program.text
+        try:
+            wait_for(lambda: text in self.program.text or self.program.process.poll() is not None,
+                     f"the words {text!r}")
+        finally:
+            assert text in self.program.text, self.program.text
 
     def __enter__(self):
         return self
