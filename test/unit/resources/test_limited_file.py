@@ -1,4 +1,4 @@
-"""Files of a limited size: small ones whole, the begin of large ones, and no more room than that."""
+"""Files of a limited size: small ones whole, the begin of large ones, no more room than that."""
 import os
 import threading
 import tracemalloc
