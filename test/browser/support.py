@@ -57,9 +57,11 @@ class Node:
             ["roslaunch", "-p", str(port), "gazebo_ros", "empty_world.launch", "gui:=true",
              "paused:=true", f"world_name:={world}", *arguments],
             env=environment, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
-        self.url = address_file.whole(
-            wait_for(self._editor_url, "the editor's address"),
-            os.path.join(self.home, ".cache", "my_simulations"))
+        try:
+            public = wait_for(self._editor_url, "the editor's address")
+        except AssertionError as fault:
+            raise AssertionError(f"{fault}; roslaunch said {self.said()}") from fault
+        self.url = address_file.whole(public, os.path.join(self.home, ".cache", "my_simulations"))
 
     def _editor_url(self):
         assert self.process.poll() is None, self.said()

@@ -35,7 +35,7 @@ def log_fatal(lines: List[str]) -> None:
     out = rospy.Publisher("/rosout", Log, queue_size=100)
     until = time.monotonic() + ROSOUT_SECONDS
     wanted = _subscribers("/rosout")
-    _wait(lambda: wanted <= {one.callerid_sub for one in out.impl.connections}, until)
+    _wait(lambda: wanted <= {one.endpoint_id for one in out.impl.connections}, until)
     # rospy sends from a thread of each connection, which ends with the process.
     due = [(one, one.stat_num_msg + len(lines)) for one in out.impl.connections]
     for line in lines:
