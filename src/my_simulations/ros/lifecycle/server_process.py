@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     from .log_recorder import RunningRecorder, StartRecording
 
 NODE = "gazebo"
-END_SECONDS = 3.0
-"""Wall seconds after which a shutdown that hangs in a network call is forced."""
+END_SECONDS = 10.0
+"""Wall seconds after which a shutdown that hangs in a network call is forced. A busy machine takes
+seconds to end all that was started; roslaunch waits for 15 s before it asks again."""
 
 UPKEEP_SECONDS = 1.0
 EARLY_SECONDS = 1.0
