@@ -105,6 +105,21 @@ def half_extents(geometry: Geometry) -> Optional[Vec3]:
     return None
 
 
+def reach_of(link: Link) -> float:
+    """Radius about the link's origin, m, that contains its shapes; infinite for planes.
+
+    Without meshes, of which `advice` does not tell whether they overlap.
+    """
+    reach = 0.0
+    for collision in link.collisions:
+        if isinstance(collision.geometry, Plane):
+            return math.inf
+        half = half_extents(collision.geometry)
+        if half is not None:
+            reach = max(reach, norm(collision.pose.position) + norm(half))
+    return reach
+
+
 def _thin(collision: Collision, link: str) -> Iterator[Fault]:
     half = half_extents(collision.geometry)
     if half is not None and 2 * min(half) < THINNEST_M:
