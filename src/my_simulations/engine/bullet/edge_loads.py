@@ -16,24 +16,26 @@ from ...description.model import Link
 from ...description.shapes import Cylinder
 from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale
 from .bodies import Part
-from .link_states import motion
+from .link_states import Motion
 
 Contact = Tuple[Any, ...]  # as PyBullet tells them
+Loads = Tuple[List[Contact], List[float]]
+_Plane = Tuple[Vec3, Vec3, Vec3, float]  # two directions in it, its normal, its height along that
 
 _NEAR = 1e-4   # m: an edge nearer to the floor than this carries its share
 _LYING = 0.02  # of the axle along the normal of the floor: a wheel that is tilted has one edge
-_LEVEL = 1e-3  # m, and of the normal: floors that differ by more are several
+_LEVEL = 1e-3  # m: floors that differ by more are several
+_ALIKE = 0.999  # of normals, likewise
 
 
 @dataclass
 class _Edge:
-    """Contacts of one edge of a wheel: their place in the plane of the floor, and their load."""
+    """Contacts of one edge of a wheel, the middle of their places in the plane of the floor."""
 
     wheel: int
     contacts: List[Contact]
-    x: float = 0.0
-    y: float = 0.0
-    load: float = 0.0
+    x: float
+    y: float
 
 
 def axle_of(part: Part, link: Link) -> Optional[Vec3]:
@@ -44,76 +46,90 @@ def axle_of(part: Part, link: Link) -> Optional[Vec3]:
     return rotate(conjugate(part.link_from_com.orientation), along)
 
 
-def carrying(contacts: Sequence[Contact]) -> List[Contact]:
-    """Those of a link's contacts that carry something."""
-    return [contact for contact in contacts if contact[9] > 0.0 and contact[8] <= 0.0]
+def carrying(contacts: Sequence[Contact]) -> Loads:
+    """Those of a link's contacts that carry something, and what, N."""
+    kept = [contact for contact in contacts if contact[9] > 0.0 and contact[8] <= 0.0]
+    return kept, [contact[9] for contact in kept]
 
 
-def shared(uid: int, wheels: Sequence[Tuple[int, Vec3, Sequence[Contact]]]) -> List[List[Contact]]:
+def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[Contact]]]) -> List[Loads]:
     """The contacts that carry each wheel of a body, with the loads of edges that give way alike.
 
     Args:
-        uid: the body, PyBullet's number.
-        wheels: of each PyBullet's index, the axle in its frame, and all its contacts.
+        wheels: of each its motion, the axle in PyBullet's frame, and all its contacts.
 
     Where the wheels do not stand on one plane, or an edge would be pulled down, loads stay.
     """
     found = [carrying(contacts) for _, _, contacts in wheels]
-    normal = next((contact[7] for contacts in found for contact in contacts), None)
-    if normal is None:
+    first = next((contacts[0] for contacts, _ in found if contacts), None)
+    if first is None:
         return found
+    normal = first[7]
+    along = cross(normal, (0.0, 0.0, 1.0) if abs(normal[2]) < 0.9 else (0.0, 1.0, 0.0))
+    along = scale(along, 1.0 / norm(along))
+    plane = (along, cross(normal, along), normal, dot(first[5], normal))
     edges: List[_Edge] = []
-    for n, (index, axle, contacts) in enumerate(wheels):
-        centre, turn, _, _ = motion(uid, index)
-        axis = rotate(turn, axle)
+    moments = [0.0, 0.0, 0.0]
+    for n, (motion, axle, contacts) in enumerate(wheels):
+        axis = rotate(motion[1], axle)
         if abs(dot(axis, normal)) > _LYING:
             return found
-        edges += _edges(n, centre, axis, contacts)
-    if not _spread(edges, normal):
+        own = _edges(n, motion[0], axis, contacts, plane, moments)
+        if own is None:
+            return found
+        edges += own
+    loads = _spread(edges, *moments)
+    if loads is None:
         return found
-    made: List[List[Contact]] = [[] for _ in wheels]
-    for edge in edges:
-        part = edge.load / len(edge.contacts)
-        made[edge.wheel] += [(*contact[:9], part, *contact[10:]) for contact in edge.contacts]
+    made: List[Loads] = [([], []) for _ in wheels]
+    for edge, load in zip(edges, loads):
+        kept, parts = made[edge.wheel]
+        kept += edge.contacts
+        parts += [load / len(edge.contacts)] * len(edge.contacts)
     return made
 
 
-def _edges(wheel: int, centre: Vec3, axis: Vec3, contacts: Sequence[Contact]) -> List[_Edge]:
+def _edges(wheel: int, centre: Vec3, axis: Vec3, contacts: Sequence[Contact], plane: _Plane,
+           moments: List[float]) -> Optional[List[_Edge]]:
+    """The edges of a wheel; adds load and moments of its contacts. None off the plane."""
+    (tx, ty, tz), (sx, sy, sz), (nx, ny, nz), height = plane
+    u, v, w = centre
+    a, b, c = axis
     sides: Tuple[List[Contact], List[Contact]] = ([], [])
+    places = [[0.0, 0.0], [0.0, 0.0]]
     for contact in contacts:
-        if contact[8] < _NEAR:
-            (x, y, z), (u, v, w), (a, b, c) = contact[5], centre, axis
-            sides[(x - u) * a + (y - v) * b + (z - w) * c > 0.0].append(contact)
-    return [_Edge(wheel, side) for side in sides if side]
+        if contact[8] >= _NEAR:
+            continue
+        (x, y, z), (p, q, r) = contact[5], contact[7]
+        if abs(x * nx + y * ny + z * nz - height) > _LEVEL or p * nx + q * ny + r * nz < _ALIKE:
+            return None
+        side = (x - u) * a + (y - v) * b + (z - w) * c > 0.0
+        sides[side].append(contact)
+        along, aside, load = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz, contact[9]
+        places[side][0] += along
+        places[side][1] += aside
+        moments[0] += load
+        moments[1] += load * along
+        moments[2] += load * aside
+    return [_Edge(wheel, side, x / len(side), y / len(side))
+            for side, (x, y) in zip(sides, places) if side]
 
 
-def _spread(edges: List[_Edge], normal: Vec3) -> bool:
-    """Give each edge its load; False where that cannot be said."""
-    along = cross(normal, (0.0, 0.0, 1.0) if abs(normal[2]) < 0.9 else (0.0, 1.0, 0.0))
-    along = scale(along, 1.0 / norm(along))
-    aside, height = cross(normal, along), dot(edges[0].contacts[0][5], normal)
-    total = x_load = y_load = 0.0
-    for edge in edges:
-        for contact in edge.contacts:
-            at, load = contact[5], contact[9]
-            if (abs(dot(at, normal) - height) > _LEVEL
-                    or dot(contact[7], normal) < 1.0 - _LEVEL):
-                return False
-            x, y = dot(at, along), dot(at, aside)
-            edge.x, edge.y = edge.x + x, edge.y + y
-            total, x_load, y_load = total + load, x_load + load * x, y_load + load * y
-        edge.x, edge.y = edge.x / len(edge.contacts), edge.y / len(edge.contacts)
+def _spread(edges: List[_Edge], total: float, x_load: float, y_load: float,
+            ) -> Optional[List[float]]:
+    """The load of each edge, linear in x and y; None where that cannot be said."""
     count = len(edges)
-    x0, y0 = sum(edge.x for edge in edges) / count, sum(edge.y for edge in edges) / count
-    xx = xy = yy = 0.0
+    x0 = y0 = xx = xy = yy = 0.0
     for edge in edges:
-        edge.x, edge.y = edge.x - x0, edge.y - y0
-        xx, xy, yy = xx + edge.x ** 2, xy + edge.x * edge.y, yy + edge.y ** 2
+        x, y = edge.x, edge.y
+        x0, y0, xx, xy, yy = x0 + x, y0 + y, xx + x * x, xy + x * y, yy + y * y
+    x0, y0 = x0 / count, y0 / count
+    xx, xy, yy = xx - count * x0 * x0, xy - count * x0 * y0, yy - count * y0 * y0
     x_load, y_load = x_load - total * x0, y_load - total * y0
     span = xx * yy - xy * xy
     if span <= 1e-9 * (xx + yy) ** 2:
-        return False
+        return None
     p, q = (yy * x_load - xy * y_load) / span, (xx * y_load - xy * x_load) / span
-    for edge in edges:
-        edge.load = total / count + p * edge.x + q * edge.y
-    return all(edge.load > 0.0 for edge in edges)
+    mean = total / count - p * x0 - q * y0
+    loads = [mean + p * edge.x + q * edge.y for edge in edges]
+    return loads if min(loads) > 0.0 else None

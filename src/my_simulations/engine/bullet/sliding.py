@@ -21,8 +21,8 @@ import pybullet
 from ...description.model import Link
 from ...geometry import Vec3, dot, norm, scale
 from .bodies import Body, Part
-from .edge_loads import axle_of, carrying, shared
-from .link_states import motion
+from .edge_loads import Loads, axle_of, carrying, shared
+from .link_states import Motion, motion, motions
 from .step_helper import FAR, next_multiple
 from .surface_coefficients import directed
 
@@ -159,8 +159,9 @@ class Sliding:
                     self._look(uid, parts)
         if self._slides:
             least = norm(gravity)
-            for key, contacts in self._contacts().items():
-                self._go_on(key, contacts, step, dt, least)
+            found = self._loads()
+            for key in list(self._slides):
+                self._go_on(key, *found[key], step, dt, least)
 
     def _look(self, uid: int, parts: Dict[int, Part]) -> None:
         """Find the links of a body that slide."""
@@ -171,7 +172,7 @@ class Sliding:
         for index, contacts in found.items():
             if (uid, index) in self._slides or self._touches_moving(contacts):
                 continue
-            slip = _slips(uid, index, contacts)[1]
+            slip = _slips(motion(uid, index), *carrying(contacts))[1]
             if norm(slip) > _SLIDES:
                 part = parts[index]
                 self._slides[uid, index] = _Slide(part, self._mass[uid], slip,
@@ -181,33 +182,41 @@ class Sliding:
     def _touches_moving(self, contacts: Contacts) -> bool:
         return any(contact[2] not in self._static for contact in contacts)
 
-    def _contacts(self) -> Dict[Key, Contacts]:
-        """What carries each link that slides; wheels of a body share their load."""
-        found: Dict[Key, Contacts] = {}
-        wheels: Dict[int, List[Tuple[int, Vec3, Contacts]]] = {}
-        for key, slide in self._slides.items():
-            uid, index = key
-            found[key] = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
-            if slide.axle is not None and not slide.trying:
-                wheels.setdefault(uid, []).append((index, slide.axle, found[key]))
-        found = {key: carrying(contacts) for key, contacts in found.items()}
-        for uid, group in wheels.items():
-            if len(group) > 1:
-                for (index, _, _), contacts in zip(group, shared(uid, group)):
-                    found[uid, index] = contacts
+    def _loads(self) -> Dict[Key, Tuple[Motion, Loads]]:
+        """How each link that slides moves, and what carries it; wheels of a body share."""
+        bodies: Dict[int, List[int]] = {}
+        for uid, index in self._slides:
+            bodies.setdefault(uid, []).append(index)
+        found: Dict[Key, Tuple[Motion, Loads]] = {}
+        for uid, indices in bodies.items():
+            wheels: List[Tuple[Motion, Vec3, Contacts]] = []
+            names: List[Tuple[Key, Motion]] = []
+            for index, moves in zip(indices, motions(uid, indices)):
+                slide = self._slides[uid, index]
+                contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
+                if slide.axle is None or slide.trying:
+                    found[uid, index] = moves, carrying(contacts)
+                else:
+                    wheels.append((moves, slide.axle, contacts))
+                    names.append(((uid, index), moves))
+            told = shared(wheels) if len(wheels) > 1 else [carrying(each[2]) for each in wheels]
+            for (key, moves), loads in zip(names, told):
+                found[key] = moves, loads
         return found
 
-    def _go_on(self, key: Key, contacts: Contacts, step: int, dt: float, gravity: float) -> None:
+    def _go_on(self, key: Key, moves: Motion, carried_by: Loads, step: int, dt: float,
+               gravity: float) -> None:
         """Work out the forces of the next step, or give the link back to Bullet."""
         slide = self._slides[key]
+        contacts, loads = carried_by
         slide.forces = {}
-        slide.loads = {contact[5]: contact[9] for contact in contacts}
+        slide.loads = {contact[5]: load for contact, load in zip(contacts, loads)}
         slide.apart = 0 if contacts else slide.apart + 1
         if slide.apart > _LOST or self._touches_moving(contacts):
             self._give_back(key)
         if not contacts or key not in self._slides:
             return
-        slips, slip = _slips(*key, contacts)
+        slips, slip = _slips(moves, contacts, loads)
         before = slide.slip
         slide.slip = slip
         if slide.trying:
@@ -217,16 +226,15 @@ class Sliding:
             if norm(slip) < _SLOWS * norm(before):
                 return
             self._try(key, slide, False)
-        carried = sum(contact[9] for contact in contacts)
-        soft = _SOFT * dt * max(gravity, carried / slide.mass)
+        soft = _SOFT * dt * max(gravity, sum(loads) / slide.mass)
         slow = False
-        for contact, velocity in zip(contacts, slips):
+        for contact, load, velocity in zip(contacts, loads, slips):
             mu = min(slide.part.mu, self._static[contact[2]])
             speed = norm(velocity)
             slow = slow or speed < soft * mu
             if speed > 0.0:
                 slide.forces[contact[5]] = scale(
-                    velocity, -mu * contact[9] / max(speed, soft * mu))
+                    velocity, -mu * load / max(speed, soft * mu))
         if dot(slip, before) < 0.0 or (slow and step % _TRY == 0):
             self._try(key, slide, True)
 
@@ -243,17 +251,17 @@ class Sliding:
         pybullet.changeDynamics(*key, anisotropicFriction=_BULLETS)
 
 
-def _slips(uid: int, index: int, contacts: Contacts) -> Tuple[List[Vec3], Vec3]:
+def _slips(moves: Motion, contacts: Contacts, loads: List[float]) -> Tuple[List[Vec3], Vec3]:
     """The velocity of a link across the floor at each contact, and their mean, m/s.
 
     Contacts count by what they carry: a wheel of a robot in a curve rolls on the edge that carries
     it, while the other one slips.
     """
-    centre, _, (u, v, w), (p, q, r) = motion(uid, index)
+    centre, _, (u, v, w), (p, q, r) = moves
     found: List[Vec3] = []
     mean_x = mean_y = mean_z = carried = 0.0
-    for contact in contacts:
-        (x, y, z), (a, b, c), load = contact[5], contact[7], contact[9]
+    for contact, load in zip(contacts, loads):
+        (x, y, z), (a, b, c) = contact[5], contact[7]
         x, y, z = x - centre[0], y - centre[1], z - centre[2]
         sx, sy, sz = u + q * z - r * y, v + r * x - p * z, w + p * y - q * x
         away = sx * a + sy * b + sz * c
