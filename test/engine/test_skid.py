@@ -11,6 +11,8 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Collision, Cylinder, Surface
+from my_simulations.engine.bullet.edge_loads import shared
+from my_simulations.engine.bullet.link_states import Motion
 from my_simulations.engine.commands import ReadContacts
 from my_simulations.geometry import Pose, norm, quat_from_rpy, rotate
 
@@ -135,3 +137,37 @@ def test_a_base_on_wide_wheels_turns_as_its_edges_share_its_weight(lab: Lab, law
         turn += lab.twist(car).angular[2] / 100
     laws.near("a skid-steered base on wide wheels, its weight aside: mean turn, rad/s", turn,
               _turn_by_coulomb(ASIDE, width, com), rel=0.05)
+
+
+def _wheel_at(x: float, y: float, loads, gap: float = 0.0, tilt: float = 0.0):
+    """A lying wheel for `shared`: its contacts at two edges 0.1 m apart."""
+    contacts = [(0, 1, 0, 0, -1, (x, y + side, 0.0), (x, y + side, 0.0), (0.0, 0.0, 1.0), gap * n,
+                 load, 0, (1.0, 0.0, 0.0), 0, (0.0, 1.0, 0.0))
+                for n, (side, load) in enumerate(zip((-0.05, 0.05), loads))]
+    moves = Motion((x, y, 0.1), quat_from_rpy(tilt, 0.0, 0.0), (0, 0, 0), (0, 0, 0))
+    return moves, (0.0, 1.0, 0.0), contacts
+
+
+CORNERS = [(0.3, 0.3), (0.3, -0.3), (-0.3, 0.3), (-0.3, -0.3)]
+
+
+def test_edges_share_with_the_same_sum_and_the_same_moments():
+    wheels = [_wheel_at(*at, loads) for at, loads in zip(
+        CORNERS, [(20.0, 0.0), (30.0, 0.0), (0.0, 25.0), (0.0, 35.0)])]
+    before = [(contact[5], contact[9]) for _, _, contacts in wheels for contact in contacts]
+    after = [(contact[5], load) for contacts, loads in shared(wheels)
+             for contact, load in zip(contacts, loads)]
+    assert len(after) == 8 and min(load for _, load in after) > 0.0
+    for weight in (lambda at: 1.0, lambda at: at[0], lambda at: at[1]):
+        assert sum(weight(at) * load for at, load in after) == pytest.approx(
+            sum(weight(at) * load for at, load in before))
+
+
+@pytest.mark.parametrize("wheels", [
+    [_wheel_at(*at, (10.0, 0.0), tilt=0.1) for at in CORNERS],
+    [_wheel_at(*at, loads) for at, loads in zip(CORNERS, [(99.0, 0.0), *[(0.1, 0.0)] * 3])],
+    [_wheel_at(*at, (10.0, 0.0), gap=1e-3) for at in CORNERS[::3]][:1]])
+def test_loads_stay_where_wheels_are_tilted_or_an_edge_would_be_pulled_down(wheels):
+    for (contacts, loads), (_, _, all_of_it) in zip(shared(wheels), wheels):
+        assert loads == [contact[9] for contact in all_of_it if contact[9] > 0.0]
+        assert len(contacts) == 1
