@@ -1,4 +1,4 @@
-"""What pixels show: materials of mesh files, terrains, and many copies of a shape, read back."""
+"""What is seen: pixels of materials, terrains and many copies read back; hints in small windows."""
 from __future__ import annotations
 
 import base64
@@ -184,3 +184,27 @@ def boxes_seen(editor, places):
         if red < blue + 40:
             return False
     return True
+
+
+HINTS = """(() => {
+  const line = document.querySelector('.hint-line').getBoundingClientRect();
+  const words = document.querySelector('.hint-line .hints').getBoundingClientRect();
+  const shown = [...document.querySelectorAll('.hint-line .hints span')].map((one) =>
+    ({text: one.textContent, box: one.getBoundingClientRect()})).filter(({box}) =>
+    box.top < words.bottom - 1);
+  return {inside: line.left >= 0 && line.right <= innerWidth, shown: shown.map(({text}) => text),
+    cut: shown.filter(({box}) => box.right > words.right + 1).map(({text}) => text)};
+})()"""
+
+
+@pytest.mark.parametrize("size, touch", [((800, 600), False), ((400, 720), True)], ids=str)
+def test_hints_fit_a_small_window_and_can_be_closed(node, browser, size, touch):
+    editor = browser.open(node.url, size=size, has_touch=touch, is_mobile=touch)
+    hints = editor.get(HINTS)
+    assert hints["inside"] and hints["cut"] == [] and len(hints["shown"]) >= 3, hints
+    assert ("one finger turn" in hints["shown"]) is touch
+    editor.button("Close the hints").click()
+    editor.until("document.querySelector('.hint-line') === null", "no hints")
+    faults = editor.faults
+    editor.close()
+    assert faults == []

@@ -49,6 +49,8 @@ export class Stage {
   camera = this.perspective;
   /** Pictures in the last second, 0 at rest. */
   fps = 0;
+  /** Pictures since the page began. */
+  pictures = 0;
   /**
    * Called before each picture with its time, ms; true: another one is wanted after it.
    * @type {(time: number) => boolean}
@@ -301,6 +303,7 @@ export class Stage {
       this.#begun = performance.now();
     }
     this.#drawn = true;
+    this.pictures++;
     return more;
   }
 

@@ -181,6 +181,9 @@ class View {
   /** Meshes and textures that are on their way. */
   get waiting() { return this.#stock.meshes.waiting; }
 
+  /** Pictures drawn since the page began, for the benchmark. */
+  get pictures() { return this.#stage.pictures; }
+
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
 
