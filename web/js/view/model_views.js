@@ -67,7 +67,7 @@ export class Models {
 
   /**
    * Metres that a pixel covers at a point.
-   * @type {(point: ArrayLike<number>) => number}
+   * @type {(point: Pose7|Float32Array) => number}
    */
   unitAt = () => 0;
 

@@ -89,7 +89,8 @@ export class Stage {
   #next = null;
   #resizes;
   #shadowsWanted = true;
-  #size = [0, 0];
+  /** Pixels of the page, noted because asking the element costs a layout. */
+  #size = [1, 1];
 
   /**
    * @param {HTMLElement} element  the canvas is put into it and follows its size
@@ -133,8 +134,8 @@ export class Stage {
     this.#resize();
   }
 
-  get width() { return Math.max(this.#element.clientWidth, 1); }
-  get height() { return Math.max(this.#element.clientHeight, 1); }
+  get width() { return this.#size[0]; }
+  get height() { return this.#size[1]; }
   get aspect() { return this.width / this.height; }
 
   /** Asks for a picture at the browser's next turn. */
@@ -315,7 +316,8 @@ export class Stage {
   }
 
   #resize() {
-    const {width, height} = this;
+    const width = Math.max(this.#element.clientWidth, 1);
+    const height = Math.max(this.#element.clientHeight, 1);
     if (width === this.#size[0] && height === this.#size[1]) return;
     this.#size = [width, height];
     this.#applySize();

@@ -135,7 +135,7 @@ class View {
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
     const rig = new CameraRig({stage, store, models});
-    models.unitAt = (point) => rig.unitAt(Array.from(point));
+    models.unitAt = (pose) => rig.unitAt([pose[0], pose[1], pose[2]]);
     const picker = new Picker(stage);
     const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
       picker};
