@@ -72,7 +72,7 @@ def look(editor, eye, target):
 
 def room(editor):
     """A room with furniture; a table chosen, with its handles."""
-    look(editor, (2.6, -6.6, 6.0), (0.3, -0.2, 0.0))
+    look(editor, (4.9, -6.3, 7.0), (0.0, 0.1, 0.0))
     editor.row("bench_2").click()
     editor.page.keyboard.press("t")
 

@@ -1,4 +1,4 @@
-"""What pixels show: materials of mesh files, terrains, and many copies of a shape, read back."""
+"""What is seen: pixels of materials, terrains and copies read back; hints in small windows."""
 from __future__ import annotations
 
 import base64
@@ -10,16 +10,19 @@ from PIL import Image
 from support import Node, wait_for
 
 QUAD = """<source id="p"><float_array id="pa" count="12">-1 0 -1 1 0 -1 1 0 1 -1 0 1</float_array>
-  <technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
-  <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+  <technique_common><accessor source="#pa" count="4" stride="3">
+  <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+  </accessor></technique_common></source>
   <source id="n"><float_array id="na" count="6">0 -1 0 0 1 0</float_array>
-  <technique_common><accessor source="#na" count="2" stride="3"><param name="X" type="float"/>
-  <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+  <technique_common><accessor source="#na" count="2" stride="3">
+  <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+  </accessor></technique_common></source>
   <source id="t"><float_array id="ta" count="8">0 0 1 0 1 1 0 1</float_array>
-  <technique_common><accessor source="#ta" count="4" stride="2"><param name="S" type="float"/>
-  <param name="T" type="float"/></accessor></technique_common></source>
+  <technique_common><accessor source="#ta" count="4" stride="2">
+  <param name="S" type="float"/><param name="T" type="float"/>
+  </accessor></technique_common></source>
   <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>"""
-"""A square of 2 m that stands, and its two normals: the first one looks at who takes the picture."""
+"""A square of 2 m that stands, and its two normals: the first looks at who takes the picture."""
 FRONT = "0 0 0 1 0 1 2 0 2 0 0 0 2 0 2 3 0 3"
 BACK = "2 1 2 1 1 1 0 1 0 3 1 3 2 1 2 0 1 0"
 
@@ -83,7 +86,7 @@ def write_model(node, name, geometry, files):
     """A model of the user's own, whose picture the library draws."""
     folder = os.path.join(node.home, ".gazebo", "models", name)
     os.makedirs(folder)
-    texts = {"model.config": f"<?xml version='1.0'?><model><name>{name}</name><version>1.0</version>"
+    texts = {"model.config": f"<?xml version='1.0'?><model><name>{name}</name><version>1</version>"
                              "<sdf version='1.6'>model.sdf</sdf></model>",
              "model.sdf": f"<?xml version='1.0'?><sdf version='1.6'><model name='{name}'>"
                           "<static>true</static><link name='link'><visual name='v'><geometry>"
@@ -184,3 +187,27 @@ def boxes_seen(editor, places):
         if red < blue + 40:
             return False
     return True
+
+
+HINTS = """(() => {
+  const line = document.querySelector('.hint-line').getBoundingClientRect();
+  const words = document.querySelector('.hint-line .hints').getBoundingClientRect();
+  const shown = [...document.querySelectorAll('.hint-line .hints span')].map((one) =>
+    ({text: one.textContent, box: one.getBoundingClientRect()})).filter(({box}) =>
+    box.top < words.bottom - 1);
+  return {inside: line.left >= 0 && line.right <= innerWidth, shown: shown.map(({text}) => text),
+    cut: shown.filter(({box}) => box.right > words.right + 1).map(({text}) => text)};
+})()"""
+
+
+@pytest.mark.parametrize("size, touch", [((800, 600), False), ((400, 720), True)], ids=str)
+def test_hints_fit_a_small_window_and_can_be_closed(node, browser, size, touch):
+    editor = browser.open(node.url, size=size, has_touch=touch, is_mobile=touch)
+    hints = editor.get(HINTS)
+    assert hints["inside"] and hints["cut"] == [] and len(hints["shown"]) >= 3, hints
+    assert ("one finger turn" in hints["shown"]) is touch
+    editor.button("Close the hints").click()
+    editor.until("document.querySelector('.hint-line') === null", "no hints")
+    faults = editor.faults
+    editor.close()
+    assert faults == []

@@ -8,11 +8,18 @@ const HINTS = [
   ['Space', 'play'], ['F1', 'all keys'],
 ];
 
+/** @type {[string, string][]} */
+const TOUCH_HINTS = [
+  ['one finger', 'turn'], ['two', 'pan, zoom'], ['tap', 'select'], ['hold', 'menu'],
+];
+
 /** @param {HTMLElement} element  what the line lies in */
 export function mountHints(element) {
   if (remembered.get('hints-closed', false)) return;
+  const hints = matchMedia('(pointer: coarse)').matches ? TOUCH_HINTS : HINTS;
   const line = h('div', {class: 'hint-line', role: 'note', 'aria-label': 'Hints'},
-    ...HINTS.map(([keys, what]) => h('span', {}, h('kbd', {text: keys}), ` ${what}`)),
+    h('div', {class: 'hints'},
+      ...hints.map(([keys, what]) => h('span', {}, h('kbd', {text: keys}), ` ${what}`))),
     h('button', {type: 'button', class: 'plain', 'aria-label': 'Close the hints', title: 'Close the hints',
       onclick: () => {
         remembered.set('hints-closed', true);

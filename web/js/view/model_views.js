@@ -66,8 +66,8 @@ export class Models {
   onArrived = () => {};
 
   /**
-   * Metres that a pixel covers at a point.
-   * @type {(point: ArrayLike<number>) => number}
+   * Metres that a pixel covers at a pose's place.
+   * @type {(pose: ArrayLike<number>) => number}
    */
   unitAt = () => 0;
 

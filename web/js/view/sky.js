@@ -56,12 +56,12 @@ varying vec3 shown;
 void main() { gl_FragColor = vec4(shown, 1.0); }`;
 
 /** Rings of the gradient, closer together towards the horizon, where it changes most. */
-const RINGS = 20;
+const RINGS = 40;
 
 function rings() {
   const levels = Array.from({length: RINGS + 1}, (_, ring) => (ring / RINGS) ** 2);
   const outline = [-1, ...levels].map((z) => new Vector2(Math.sqrt(1 - z * z), z));
-  return new LatheGeometry(outline, 48).rotateX(Math.PI / 2);
+  return new LatheGeometry(outline, 24).rotateX(Math.PI / 2);
 }
 
 /**

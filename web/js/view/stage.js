@@ -49,6 +49,8 @@ export class Stage {
   camera = this.perspective;
   /** Pictures in the last second, 0 at rest. */
   fps = 0;
+  /** Pictures since the page began. */
+  pictures = 0;
   /**
    * Called before each picture with its time, ms; true: another one is wanted after it.
    * @type {(time: number) => boolean}
@@ -87,7 +89,8 @@ export class Stage {
   #next = null;
   #resizes;
   #shadowsWanted = true;
-  #size = [0, 0];
+  /** Pixels of the page, noted because asking the element costs a layout. */
+  #size = [1, 1];
 
   /**
    * @param {HTMLElement} element  the canvas is put into it and follows its size
@@ -131,8 +134,8 @@ export class Stage {
     this.#resize();
   }
 
-  get width() { return Math.max(this.#element.clientWidth, 1); }
-  get height() { return Math.max(this.#element.clientHeight, 1); }
+  get width() { return this.#size[0]; }
+  get height() { return this.#size[1]; }
   get aspect() { return this.width / this.height; }
 
   /** Asks for a picture at the browser's next turn. */
@@ -301,6 +304,7 @@ export class Stage {
       this.#begun = performance.now();
     }
     this.#drawn = true;
+    this.pictures++;
     return more;
   }
 
@@ -312,7 +316,8 @@ export class Stage {
   }
 
   #resize() {
-    const {width, height} = this;
+    const width = Math.max(this.#element.clientWidth, 1);
+    const height = Math.max(this.#element.clientHeight, 1);
     if (width === this.#size[0] && height === this.#size[1]) return;
     this.#size = [width, height];
     this.#applySize();

@@ -135,7 +135,7 @@ class View {
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
     const rig = new CameraRig({stage, store, models});
-    models.unitAt = (point) => rig.unitAt(Array.from(point));
+    models.unitAt = (pose) => rig.unitAt([pose[0], pose[1], pose[2]]);
     const picker = new Picker(stage);
     const shared = {store, actions, connection, watches, stage, stock, batches, models, lights, rig,
       picker};
@@ -180,6 +180,9 @@ class View {
 
   /** Meshes and textures that are on their way. */
   get waiting() { return this.#stock.meshes.waiting; }
+
+  /** Pictures drawn since the page began, for the benchmark. */
+  get pictures() { return this.#stage.pictures; }
 
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
