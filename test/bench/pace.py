@@ -80,7 +80,7 @@ def measured(kind: str, count: int, sleeping: bool) -> Pace:
         rospy.wait_for_service("/gazebo/get_world_properties", 60)
         pause, go_on = (rospy.ServiceProxy(f"/gazebo/{what}_physics", Empty, persistent=True)
                         for what in ("pause", "unpause"))
-        wait(lambda: clock.sim > (4.0 if sleeping else 0.3), 120, "settled world")
+        wait(lambda: clock.sim > (4.0 if sleeping else 1.5), 120, "settled world")
         for _ in range(PAIRS):
             pause()
             alone.append(bare.factor(SECONDS))
