@@ -5,12 +5,12 @@ import math
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import time
 import xmlrpc.client
 from unittest import mock
 
+from free_ports import free_port
 from playwright.sync_api import sync_playwright
 
 from my_simulations.editor.transport import address_file
@@ -38,12 +38,6 @@ def wait_for(condition, what, seconds=SECONDS):
         pause = min(1.5 * pause, 0.1)
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 class Node:
     """`roslaunch` of a world on a master of its own, with a home folder of its own."""
 
@@ -63,9 +57,11 @@ class Node:
             ["roslaunch", "-p", str(port), "gazebo_ros", "empty_world.launch", "gui:=true",
              "paused:=true", f"world_name:={world}", *arguments],
             env=environment, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
-        self.url = address_file.whole(
-            wait_for(self._editor_url, "the editor's address"),
-            os.path.join(self.home, ".cache", "my_simulations"))
+        try:
+            public = wait_for(self._editor_url, "the editor's address")
+        except AssertionError as fault:
+            raise AssertionError(f"{fault}; roslaunch said {self.said()}") from fault
+        self.url = address_file.whole(public, os.path.join(self.home, ".cache", "my_simulations"))
 
     def _editor_url(self):
         assert self.process.poll() is None, self.said()
@@ -129,6 +125,7 @@ class Editor:
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]},
                                            color_scheme=color_scheme, accept_downloads=True,
                                            **options)
+        self.context.set_default_timeout(1000.0 * SECONDS)
         self.page = self.context.new_page()
         self.faults = []
         self.said = []
@@ -155,6 +152,15 @@ class Editor:
             return wait_for(lambda: self.get(expression), what)
         except AssertionError as fault:
             raise AssertionError(f"{fault}; the page said {self.faults + self.said}") from fault
+
+    def frame(self):
+        """Waits until what the page knows by now is drawn."""
+        self.get("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def rest(self):
+        """Waits until nothing moves in the view any more, and its picture is finished."""
+        self.frame()
+        self.until("editor.view.fps === 0", "rest of the view")
 
     # -- what a person sees ------------------------------------------------------------------------
 
@@ -196,10 +202,15 @@ class Editor:
         self.page.mouse.move(x - 40, y - 25)
         self.page.mouse.move(x, y, steps=5)
         self.page.mouse.click(x, y)
-        return wait_for(lambda: next(iter(
+        name = wait_for(lambda: next(iter(
             (set(self.names()) - before) |
             (set(self.get("editor.store.document.lights.map((light) => light.name)")) - lights)),
             None), f"the new {tool}")
+        # The world tells of it first, then the history; the page selects it when it is answered.
+        self.until(f"editor.store.history.undo[0]?.toLowerCase() === 'insert {name}'",
+                   f"{name} in the history")
+        self.until(f"editor.store.selection.join() === '{name}'", f"the selection of {name}")
+        return name
 
     def drag(self, start, end, keys=()):
         """Presses at a point of the world, moves to another in small steps, lets go."""

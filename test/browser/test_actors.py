@@ -87,5 +87,7 @@ def test_an_actor_walks_its_path_by_sim_time_and_stands_while_time_stands(editor
 def test_a_missing_skin_is_told_once(editor):
     told = "editor.store.issues.filter((issue) => issue.message.includes('nowhere.dae')).length"
     seen(editor, BEFORE, POST)
+    editor.until(f"{told} > 0", "a word about the skin")
     editor.get("editor.store.emit('document')")
+    editor.rest()
     assert editor.get(told) == 1

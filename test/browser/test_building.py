@@ -78,9 +78,10 @@ def draw_two_rooms(sheet):
     sheet.page.mouse.click(*sheet.pixel((1.0, 1.0)), button="right")
     sheet.page.keyboard.press("Escape")
     sheet.shows(walls=5)
-    areas = sorted(float(text.split()[0]) for text in sheet.texts() if "m²" in text)
     height = 3.85 - INNER
-    assert areas == approx([(2.85 - INNER) * height, (3.0 - INNER) * height], abs=0.011)
+    wanted = [(2.85 - INNER) * height, (3.0 - INNER) * height]
+    wait_for(lambda: sorted(float(text.split()[0]) for text in sheet.texts() if "m²" in text) ==
+             approx(wanted, abs=0.011), f"areas of {wanted}")
 
 
 def add_features(sheet):

@@ -10,7 +10,8 @@ from urllib.parse import urlsplit
 
 import pytest
 from editor_case import box, cases
-from support import free_port, wait_for
+from free_ports import free_port
+from support import wait_for
 
 from my_simulations.editor.editor_options import TOKEN_VARIABLE
 from my_simulations.editor.transport.access_guard import Guard

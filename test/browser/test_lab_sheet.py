@@ -66,7 +66,7 @@ def insert_the_three_shapes(editor):
         x, y, z = editor.model(name)["pose"][:3]
         assert (x, y) == approx(place, abs=0.02)
         assert z == approx(HALF_UP)
-    assert editor.get("editor.store.mode") == "select"
+    editor.until("editor.store.mode === 'select'", "the mode of before")
 
 
 def move_the_box_to_whole_metres(editor):
@@ -77,13 +77,15 @@ def move_the_box_to_whole_metres(editor):
     # Taken by the body it goes along the ground; Ctrl draws it to whole metres near by.
     grip = off_the_handles(box)
     editor.drag(grip, (grip[0] + 1.3, grip[1] - 0.5, grip[2]), keys=["Control"])
-    wait_for(lambda: abs(editor.model("unit_box")["pose"][0] - 1.0) < WHOLE, "x at a whole metre")
-    x, y, z = editor.model("unit_box")["pose"][:3]
-    assert (x, y) == approx((1.0, -2.0), abs=WHOLE)
-    assert z == approx(HALF_UP)
-    # The pose was there already while the box was dragged; the history comes with the release.
-    wait_for(lambda: editor.get("editor.store.history.undo[0]").lower().startswith("translate"),
-             "the move in the history")
+    # Poses come while the box is dragged already; the history comes with the release.
+    in_history(editor, "translate")
+    wait_for(lambda: editor.model("unit_box")["pose"][:3] == approx((1.0, -2.0, HALF_UP),
+                                                                   abs=WHOLE), "whole metres")
+
+
+def in_history(editor, verb):
+    wait_for(lambda: editor.get("editor.store.history.undo[0]").lower().startswith(verb),
+             f"{verb} in the history")
 
 
 def turn_the_box_by_45_degrees(editor):
@@ -91,6 +93,7 @@ def turn_the_box_by_45_degrees(editor):
     editor.page.keyboard.press("r")
     grip = off_the_handles(box)
     editor.drag(grip, (grip[0] + 0.9, grip[1] + 0.2, grip[2]), keys=["z", "Control"])
+    in_history(editor, "rotate")
     turned = wait_for(lambda: abs(yaw_of(editor.model("unit_box")["pose"])) > 1.0 and
                       yaw_of(editor.model("unit_box")["pose"]), "the turn")
     assert turned / 45.0 == approx(round(turned / 45.0), abs=1e-4)
@@ -106,6 +109,7 @@ def scale_the_cylinder(editor):
     grip = (centre[0] - 0.3, centre[1] - 0.4, centre[2] - 0.2)
     editor.drag(grip, (grip[0], grip[1], grip[2] + 0.5), keys=["z"])
     before = cylinder["links"][0]["collisions"][0]["geometry"]
+    in_history(editor, "scale")
     wait_for(lambda: geometry(editor, "unit_cylinder")["length"] > 1.05, "the longer cylinder")
     after = geometry(editor, "unit_cylinder")
     assert after["radius"] == approx(before["radius"])

@@ -74,7 +74,7 @@ def test_masses_sizes_and_friction_are_set_where_they_are_shown(editor):
         field.press("Enter")
         wait_for(lambda path=path, text=text: editor.get(
             f"editor.store.model('unit_box').links[0].{path}") == float(text), label)
-    assert editor.get("editor.store.history.undo.length") == 4
+    editor.until("editor.store.history.undo.length === 4", "each of them in the history")
 
 
 def test_a_number_that_makes_no_sense_is_refused_and_the_old_one_comes_back(editor):
@@ -100,7 +100,7 @@ def test_a_name_that_is_taken_is_refused_by_the_simulator_and_said_at_the_field(
     name.press("Enter")
     note = editor.page.locator('[data-path="name"] .field-note')
     wait_for(lambda: "unit_box" in note.text_content(), "the refusal")
-    assert name.input_value() == "unit_box_0"
+    wait_for(lambda: name.input_value() == "unit_box_0", "the name of before")
     assert set(editor.names()) == {"ground_plane", "unit_box", "unit_box_0"}
 
 
@@ -157,6 +157,7 @@ def test_the_history_is_in_words_and_takes_back_several_steps_at_once(editor):
 def test_selecting_renaming_and_deleting_need_no_mouse(editor):
     with_box(editor)
     with_box(editor, (2.0, 1.0))
+    editor.row("unit_box_0").wait_for()
     press = editor.page.keyboard.press
     press("Escape")
     editor.until("editor.store.selection.length === 0", "an empty selection")
@@ -276,7 +277,7 @@ def test_unsaved_changes_are_asked_for_before_another_world_is_opened(editor, no
     dialog = in_dialog(editor, "Open World")
     dialog.get_by_role("option", name="one_box.world").dblclick()
     wait_for(lambda: editor.names() == ["ground_plane", "unit_box"], "the opened world")
-    assert editor.page.title().startswith("one_box.world")
+    wait_for(lambda: editor.page.title().startswith("one_box.world"), "its name")
 
 
 def write_world(node, name, text):
@@ -328,7 +329,7 @@ def test_a_model_of_the_library_follows_the_mouse_and_is_placed_by_a_click(edito
     editor.click((1.0, 1.0, 0.0))
     wait_for(lambda: "table" in editor.names(), "the table")
     assert editor.model("table")["pose"][:2] == approx([1.0, 1.0], abs=0.02)
-    assert editor.get("editor.store.mode") == "select"
+    editor.until("editor.store.mode === 'select'", "the mode of before")
 
 
 def test_a_force_from_the_dialog_pushes_the_box(editor):
@@ -362,9 +363,11 @@ def test_the_joints_panel_turns_a_hinge(editor):
     speed.fill("1")
     speed.press("Enter")
     editor.button("Play").click()
-    now = panel.get_by_label("hinge state")
-    wait_for(lambda: now.text_content() and abs(float(now.text_content().split()[0])) > 0.05,
-             "the hinge's turn")
+
+    def angle():
+        return float((panel.get_by_label("hinge state").text_content() or "0").split()[0])
+
+    wait_for(lambda: abs(angle()) > 0.05, "the hinge's turn")
     position = panel.get_by_role("textbox", name="hinge position")
     panel.get_by_role("tab", name="Position").click()
     for gain, value in (("P gain", "400"), ("D gain", "40")):
@@ -372,8 +375,7 @@ def test_the_joints_panel_turns_a_hinge(editor):
         panel.get_by_role("textbox", name=f"hinge {gain}").press("Enter")
     position.fill("0.5")
     position.press("Enter")
-    wait_for(lambda: now.text_content() and abs(float(now.text_content().split()[0]) - 0.5) < 0.02,
-             "the hinge at 0.5")
+    wait_for(lambda: abs(angle() - 0.5) < 0.02, "the hinge at 0.5")
     # What the panel shows is what the simulator says drives the joint.
     editor.get("editor.request('undo', {})")
     wait_for(lambda: position.input_value() == "0", "the loop undone")
@@ -390,12 +392,12 @@ def test_the_joints_panel_turns_a_hinge(editor):
 
 def test_a_falling_box_is_plotted_and_exported(editor, tmp_path):
     name = with_box(editor)
-    editor.get(f"editor.actions.move({{{name!r}: [0, 0, 4, 0, 0, 0, 1]}})")
+    editor.get(f"editor.actions.move({{{name!r}: [0, 0, 40, 0, 0, 0, 1]}})")
     editor.page.keyboard.press("Control+p")
     editor.page.get_by_label("Find a variable").fill(f"{name}.vz")
     editor.page.get_by_role("option", name=f"{name}.vz").click()
     editor.get("editor.actions.play()")
-    editor.until("editor.store.stats.sim_ns > 5e8", "half a second of falling")
+    editor.until("editor.store.stats.sim_ns > 1.5e9", "some time of falling")
     editor.get("editor.actions.pause()")
     with editor.page.expect_download() as csv:
         editor.button("CSV").click()
@@ -403,7 +405,7 @@ def test_a_falling_box_is_plotted_and_exported(editor, tmp_path):
     head, *rows = (tmp_path / "plot.csv").read_text().splitlines()
     assert head == f"time,{name}.vz"
     pairs = [tuple(map(float, row.split(","))) for row in rows]
-    falling = [(time, rate) for time, rate in pairs if 0.05 < time < 0.5]
+    falling = [(time, rate) for time, rate in pairs if 0.05 < time < 1.5]
     assert len(falling) > 3
     for time, rate in falling:
         assert rate == approx(-9.8 * time, rel=0.02)
@@ -562,10 +564,13 @@ def test_several_models_are_set_together_and_an_empty_selection_gives_room(launc
     editor.place("Sphere", (2.0, 0.0, 0.0))
     editor.page.keyboard.press("Escape")
     editor.page.keyboard.press("Escape")
+    editor.until("editor.store.selection.length === 0", "an empty selection")
+    editor.frame()
     tall = editor.page.locator(".world-tree").bounding_box()["height"]
     editor.get("editor.store.select(['unit_box', 'unit_sphere'])")
     editor.page.get_by_text("2 models", exact=True).wait_for()
-    assert editor.page.locator(".world-tree").bounding_box()["height"] < tall - 100
+    wait_for(lambda: editor.page.locator(".world-tree").bounding_box()["height"] < tall - 100,
+             "less room for the tree")
     editor.field("friction mu").fill("0.25")
     editor.field("friction mu").press("Enter")
     editor.until("['unit_box', 'unit_sphere'].every((name) => "

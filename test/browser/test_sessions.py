@@ -5,8 +5,9 @@ import os
 import signal
 import xmlrpc.client
 
+from free_ports import free_port
 from pytest import approx
-from support import free_port, wait_for
+from support import wait_for
 
 
 def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, browser):

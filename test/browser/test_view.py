@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import pytest
+from free_ports import free_port
 from gazebo_msgs.srv import GetModelState
 from pytest import approx
-from support import Node, free_port, wait_for
+from support import Node, wait_for
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,8 @@ def editor(node, browser):
 def insert(editor, name, pose, shape="box"):
     editor.get(f"editor.actions.edit({{kind: 'insert', shape: '{shape}', name: '{name}', "
                f"pose: {list(pose)}}})")
-    editor.until(f"Boolean(editor.store.model('{name}'))", name)
+    editor.until(f"Boolean(editor.store.model('{name}') && editor.view.pixelOf('{name}'))", name)
+    editor.frame()
 
 
 def standing(x, y):
@@ -44,14 +46,8 @@ def pixel_of(editor, name):
 
 def at_rest(editor, name):
     """Where a thing is on the page once the camera has stopped."""
-    seen = []
-
-    def still():
-        seen.append(pixel_of(editor, name))
-        return len(seen) > 3 and seen[-1] == seen[-3]
-
-    wait_for(still, "rest of the camera")
-    return seen[-1]
+    editor.rest()
+    return pixel_of(editor, name)
 
 
 def drag(editor, start, end, button="left"):
@@ -132,7 +128,7 @@ def test_two_clicks_put_a_face_on_a_face(editor):
     editor.page.mouse.click(*pixel_of(editor, "stays"))
     editor.until("editor.store.history.undo[0]?.startsWith('Snap')", "the snap")
     wait_for(lambda: 0.9 < distance(editor, "moves", "stays") < 1.45, "touching boxes")
-    assert editor.get("editor.store.mode") == "select"
+    editor.until("editor.store.mode === 'select'", "the mode of before")
 
 
 def distance(editor, one, other):
@@ -191,7 +187,7 @@ def test_while_physics_runs_a_drag_moves_the_body_and_then_lets_it_fall(editor, 
     keyboard.up("z")
     wait_for(lambda: height() == approx(0.5, abs=0.01), "the body's fall")
     editor.get("editor.actions.pause()")
-    assert editor.get("editor.store.history.undo[0]").startswith("Translate")
+    editor.until("editor.store.history.undo[0].startsWith('Translate')", "the drag in the history")
 
 
 def test_escape_during_a_drag_brings_the_body_back(editor):
@@ -205,7 +201,7 @@ def test_escape_during_a_drag_brings_the_body_back(editor):
     editor.page.keyboard.press("Escape")
     editor.page.mouse.up()
     wait_for(lambda: editor.model("box")["pose"][:3] == approx([0, 0, 0.5], abs=1e-5), "the return")
-    assert pixel_of(editor, "box") == approx([x, y], abs=1)
+    wait_for(lambda: pixel_of(editor, "box") == approx([x, y], abs=1), "its return in the view")
     assert editor.get("editor.store.history.undo.length") == steps
 
 
@@ -272,7 +268,7 @@ SHARPNESS = "document.querySelector('.view-canvas').width / innerWidth"
 
 def test_what_moves_less_than_a_pixel_leaves_the_picture_at_full_resolution(editor):
     insert(editor, "box", standing(0, 0))
-    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
+    editor.rest()
     full = editor.get(SHARPNESS)
     editor.page.evaluate(CREEP, 0.02)
     wait_for(lambda: editor.get(SHARPNESS) < full, "coarser pictures of what moves")

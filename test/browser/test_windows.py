@@ -51,6 +51,7 @@ def open_page(node, browser):
         first.get(f"editor.actions.edit({{kind: 'insert', shape: '{shape}', "
                   f"name: '{shape}', pose: [{x}, 0, 0.5, 0, 0, 0, 1]}})")
     first.until("editor.store.model('box') && editor.store.model('sphere')", "both shapes")
+    first.frame()
     open_one.first = first
     yield open_one
     faults = [fault for page in pages for fault in page.faults]
@@ -138,7 +139,7 @@ def test_two_clicks_measure_a_distance_and_escape_ends_it(open_page):
     text = wait_for(lambda: editor.get("editor.view.measured")[:1], "the distance")[0]
     assert float(text.split(" m")[0]) == approx(1.5, abs=0.3)
     editor.page.keyboard.press("Escape")
-    assert editor.get("editor.view.measured") == []
+    editor.until("editor.view.measured.length === 0", "the end of the measure")
 
 
 def test_a_link_opens_at_this_camera_and_selection(open_page):
@@ -146,7 +147,7 @@ def test_a_link_opens_at_this_camera_and_selection(open_page):
     editor.get("editor.store.select(['box'])")
     editor.get("editor.actions.viewFrom('top')")
     wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
-    wait_for(lambda: editor.get("editor.view.fps") == 0, "the end of the flight")
+    editor.rest()
     link = editor.get("editor.actions.viewLink()")
     other = open_page("#" + link.split("#")[1])
     assert other.get("editor.store.selection") == ["box"]
@@ -179,12 +180,15 @@ def test_a_face_of_the_cube_is_a_view_and_home_comes_back(open_page):
 def test_collisions_of_infinite_planes_are_not_laid_over_everything(open_page):
     editor = open_page.first
     assert "ground_plane" in editor.names()
-    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
+    editor.rest()
     corner = {"x": 700, "y": 690, "width": 40, "height": 30}
     before = editor.page.screenshot(clip=corner)
-    editor.get("editor.actions.toggleOverlay('collisions')")
-    wait_for(lambda: editor.get("editor.view.fps") > 0, "another picture")
-    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
+    # The page itself waits: a picture counts for a moment only.
+    editor.get("""(async () => {
+        editor.actions.toggleOverlay('collisions');
+        while (editor.view.fps === 0) await new Promise(requestAnimationFrame);
+    })()""")
+    editor.rest()
     assert editor.page.screenshot(clip=corner) == before
 
 
@@ -206,14 +210,10 @@ def choose(editor, menu, item):
     editor.page.get_by_role("menu").get_by_role("menuitem", name=item).click()
 
 
-def rest(editor):
-    wait_for(lambda: editor.get("editor.view.fps") == 0, "rest")
-
-
 def from_top(editor):
     editor.get("editor.actions.viewFrom('top')")
     wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
-    rest(editor)
+    editor.rest()
     return editor.get("editor.view.camera.position")
 
 
@@ -265,6 +265,7 @@ def test_what_moves_is_seen_in_the_first_view_of_a_walled_room(open_page):
     outcome = open_page.first.get(f"editor.actions.open({LAB_COURSE!r}, {{discard: true}})")
     assert outcome["ok"], outcome
     editor = open_page("#")
+    editor.rest()
     for name in ("box", "sphere", "cylinder"):
         editor.page.mouse.click(*editor.get(f"editor.view.pixelOf('{name}')"))
         editor.until(f"editor.store.selection.join() === '{name}'", f"{name} under the mouse")
@@ -273,7 +274,7 @@ def test_what_moves_is_seen_in_the_first_view_of_a_walled_room(open_page):
 def test_the_ground_is_darker_where_something_stands_on_it(open_page):
     editor = open_page.first
     editor.get("editor.store.setOverlay('grid', false)")
-    rest(editor)
+    editor.rest()
 
     def brightness(point):
         x, y = editor.pixel(point)

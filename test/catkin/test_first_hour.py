@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import List
 
 import pytest
+from free_ports import free_port
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = REPOSITORY / "doc" / "first_hour.md"
@@ -61,12 +61,6 @@ def blocks(text):
         elif language == "text":
             found[-1].shown += body.splitlines()
     return found
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Terminals:

@@ -7,7 +7,6 @@ import math
 import os
 import random
 import signal
-import socket
 import subprocess
 import threading
 import time
@@ -18,6 +17,7 @@ import pytest
 import rospy
 import rosservice
 from editor_case import box
+from free_ports import free_port
 from gazebo_msgs import srv
 from geometry_msgs.msg import Point, Quaternion
 from geometry_msgs.msg import Pose as PoseMessage
@@ -42,12 +42,6 @@ ENGINE = "/gazebo/my_simulations/engine_pid"
 PLACE = PoseMessage(Point(0.0, 0.0, 0.5), Quaternion(0.0, 0.0, 0.0, 1.0))
 
 
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
-
-
 def lives(pid):
     try:
         with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as stat:
@@ -60,7 +54,7 @@ def children(pid):
     found = []
     for task in os.listdir(f"/proc/{pid}/task"):
         # Threads come and go.
-        with contextlib.suppress(FileNotFoundError), open(
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError), open(
                 f"/proc/{pid}/task/{task}/children", encoding="ascii") as stream:
             found += list(map(int, stream.read().split()))
     return found

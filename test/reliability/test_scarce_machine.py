@@ -86,7 +86,7 @@ def test_an_editor_whose_home_cannot_be_written_says_so_and_keeps_edits_later(
             await browser.until(
                 lambda: browser.model("unit_sphere") and browser.model("unit_cylinder"))
         await browser.edit("insert", shape="box")
-        until = time.monotonic() + 20.0
+        until = time.monotonic() + 60.0
         while not kept():
             assert time.monotonic() < until, "the autosave"
             await asyncio.sleep(0.02)

@@ -10,7 +10,8 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rosgraph
 import support
-from support import Launched, Program, executable, free_port, wait_for
+from free_ports import free_port
+from support import Launched, Program, executable, is_alive, wait_for
 
 from my_simulations.ros.lifecycle import master_api
 
@@ -25,14 +26,6 @@ LAUNCH = """<launch>
 ENGINE = "/gazebo/my_simulations/engine_pid"
 STARTED = "all offered"
 """Last phase of a start, as the profile names it."""
-
-
-def is_alive(pid):
-    try:
-        with open(f"/proc/{pid}/stat", encoding="utf-8") as stat:
-            return stat.read().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
 
 
 class Abandoned(unittest.TestCase):

@@ -31,6 +31,7 @@ def hut():
 class Building(flow.ToolCase, unittest.TestCase):
     def setUp(self):
         self.gazebo = support.Gazebo()
+        flow.wait_for_list()
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
         package = os.path.join(self.folder.name, "my_house")

@@ -3,7 +3,6 @@
 import asyncio
 import os
 import signal
-import socket
 import sys
 import tempfile
 import time
@@ -19,6 +18,7 @@ import rospkg
 import rospy
 import support
 from editor_case import Browser
+from free_ports import silent_uri
 from support import Program, executable, wait_for
 
 from my_simulations.editor.transport import address_file
@@ -26,13 +26,6 @@ from my_simulations.editor.transport import address_file
 WORLD = '<sdf version="1.7"><world name="default">{}</world></sdf>'
 BALL = ("<sdf version='1.7'><model name='ball'><link name='link'><collision name='c'><geometry>"
         "<sphere><radius>0.5</radius></sphere></geometry></collision></link></model></sdf>")
-
-
-def no_master():
-    """The URI of a port where nobody listens."""
-    with socket.socket() as unused:
-        unused.bind(("127.0.0.1", 0))
-        return f"http://127.0.0.1:{unused.getsockname()[1]}"
 
 
 def browse(url, scenario):
@@ -200,7 +193,7 @@ class EditorNode(unittest.TestCase):
 
     def test_gazebo_runs_a_world_and_its_editor_without_ros(self):
         program = Program([executable("gazebo_ros", "gazebo"), self.world()],
-                          ROS_MASTER_URI=no_master())
+                          ROS_MASTER_URI=silent_uri())
         with program:
             url = wait_for(lambda: program.text.partition("editor is at ")[2].partition("\n")[0],
                            "the address").strip()

@@ -7,16 +7,9 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import socket
-
 import object_flow_support as flow
 import support
-
-
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
+from free_ports import free_port
 
 
 class Worlds(unittest.TestCase):
@@ -42,9 +35,10 @@ class Worlds(unittest.TestCase):
         self.assertEqual(warned, [])
 
     def check_running(self, server, world, master):
-        support.wait_for(lambda: "spawned" in server.text or server.process.poll() is not None,
-                         f"{world} with its robot", 30)
-        self.assertIn("robot_description: Successfully spawned", server.text)
+        spawned = "robot_description: Successfully spawned"
+        support.wait_for(lambda: spawned in server.text or server.process.poll() is not None,
+                         f"{world} with its robot")
+        self.assertIn(spawned, server.text)
         with flow.tool("spawn_object.py", "all", ROS_MASTER_URI=master) as program:
             self.assertEqual(program.ended(60), 0, program.text)
         self.assertIn("MY_OBJECT spawned", program.text)

@@ -21,6 +21,7 @@ class ObjectFlow(flow.ToolCase, unittest.TestCase):
     def setUpClass(cls):
         cls.gazebo = support.Gazebo()
         support.wait_for(lambda: "robo" in cls.gazebo.names(), "the robot")
+        flow.wait_for_list()
 
     def setUp(self):
         self.gazebo.clear(keep=("ground_plane", "robo"))

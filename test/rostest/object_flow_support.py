@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 
 import rospkg
+import rospy
 import support
 
 
@@ -15,6 +16,11 @@ def package_file(inside):
 def tool(name, *words, **environment):
     """A script of this package, started as rosrun would; use it in a `with`."""
     return support.Program([support.executable(support.PACKAGE, name), *words], **environment)
+
+
+def wait_for_list():
+    """Until the launch file's own list is loaded: after that nobody but the test changes it."""
+    support.wait_for(lambda: rospy.get_param("/my_simulations/object_list", None), "the list")
 
 
 def entry(model="my_simulations/objects/MY_OBJECT.urdf", position=(0, 0, 0),

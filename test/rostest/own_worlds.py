@@ -132,7 +132,7 @@ class OwnWorlds(unittest.TestCase):
             with Program([executable("gazebo_ros", "spawn_model"), "-urdf", "-model", "by_hand",
                           "-param", "robot_description", "-x", "2"],
                          ROS_MASTER_URI=launched.uri) as program:
-                self.assertEqual(program.ended(30), 0, program.text)
+                self.assertEqual(program.ended(), 0, program.text)
             launched.ask("delete_model", DeleteModel, model_name="students")
             saved = launched.ask("save_world", SaveWorld, path="out.world", inline=True)
         self.assertEqual(saved.path, os.path.join(self.typed, "out.world"))

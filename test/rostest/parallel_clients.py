@@ -35,7 +35,7 @@ class ParallelClients(unittest.TestCase):
         for thread in threads:
             thread.start()
         for thread in threads:
-            thread.join(60.0)
+            thread.join(2 * support.SECONDS)
             self.assertFalse(thread.is_alive(), "a client was never answered")
         if faults:
             raise faults[0]

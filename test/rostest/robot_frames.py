@@ -35,14 +35,16 @@ class RobotFrames(unittest.TestCase):
         for frame in WHEELS:
             reply = self.gazebo.get_link_state(f"robo::{frame}", "robo::base_footprint")
             self.assertTrue(reply.success, reply.status_message)
-            seen, truth = self.transform(frame), reply.link_state.pose
+            truth = reply.link_state.pose
+            # They have turned by up to a period of joint_states since they were told, and that has
+            # to come here first.
+            wait_for(lambda frame=frame, truth=truth: 1.0 - abs(sum(
+                getattr(self.transform(frame).rotation, axis) * getattr(truth.orientation, axis)
+                for axis in "xyzw")) < 0.02, f"{frame} turned as far as the physics says")
+            seen = self.transform(frame)
             for axis in "xyz":
                 self.assertAlmostEqual(getattr(seen.translation, axis),
                                        getattr(truth.position, axis), delta=2e-3, msg=frame)
-            # They have turned by up to a period of joint_states since they were told.
-            self.assertAlmostEqual(abs(sum(
-                getattr(seen.rotation, axis) * getattr(truth.orientation, axis)
-                for axis in "xyzw")), 1.0, delta=0.02, msg=frame)
 
     def test_what_sensors_publish_is_in_the_frame_of_odometry(self):
         self.gazebo.unpause_physics()

@@ -47,6 +47,7 @@ class Saving(unittest.TestCase):
         self.assertEqual(open(again.path, "rb").read(), first)
 
     def test_with_state_sim_time_is_saved_too(self):
+        support.wait_for(lambda: self.gazebo.sim_time() > 0.0, "a step")
         answer = self.save(path="s.world", inline=True, state=True)
         self.assertTrue(answer.success, answer.status_message)
         world = ElementTree.parse(answer.path).getroot().find("world")

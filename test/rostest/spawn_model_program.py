@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """The program spawn_model and the Python functions beside it."""
 import os
-import socket
 import sys
 import tempfile
 import unittest
@@ -10,6 +9,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
 import support
+from free_ports import silent_uri
 from gazebo_ros import gazebo_interface
 from support import Program, box, executable, pose, wait_for
 
@@ -97,9 +97,9 @@ class SpawnModelProgram(unittest.TestCase):
 
     def test_a_wait_has_a_deadline_that_it_names(self):
         text = self.run_it("-urdf", "-param", "a_box", "-model", "two", "-wait", "never",
-                           "-timeout", "0.5", status=1)
+                           "-timeout", "4", status=1)  # enough to find the service
         self.assertIn("'never'", text)
-        self.assertIn("0.5 s", text)
+        self.assertIn("4 s", text)
 
     def test_a_bond_deletes_the_model_at_the_end(self):
         words = ["-urdf", "-param", "a_box", "-model", "one", "-b"]
@@ -127,9 +127,7 @@ class SpawnModelProgram(unittest.TestCase):
         self.assertIn("usage", self.run_it("-urdf", "-model", "one", status=2))
 
     def test_without_a_master_it_gives_up_and_says_so(self):
-        with socket.socket() as unused:
-            unused.bind(("127.0.0.1", 0))
-            uri = f"http://127.0.0.1:{unused.getsockname()[1]}"
+        uri = silent_uri()
         words = ["-urdf", "-param", "a_box", "-model", "one"]
         with Program([self.program, *words], ROS_MASTER_URI=uri) as program:
             self.assertEqual(program.ended(), 1)

@@ -4,20 +4,25 @@ from __future__ import annotations
 import math
 import os
 import signal
-import socket
 import subprocess
+import sys
 import threading
 import time
 from unittest import mock
 
-import rosnode
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), os.pardir, "unit",
+                                "support"))
+
+import rosgraph
 import rospy
 import rostest
+from free_ports import free_port
 from gazebo_msgs import srv
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from rosgraph_msgs.msg import Log
 
 from my_simulations.ros import interface
+from my_simulations.ros.lifecycle import master_api
 from my_simulations.ros.registration import class_of
 
 PACKAGE = "my_simulations"
@@ -158,13 +163,32 @@ class Collected:
         self._subscriber.unregister()
 
 
+def is_running(node):
+    """Whether a node of that name runs, however long it takes to say so."""
+    # rosnode.rosnode_ping would limit every later connection of this process to 3 s.
+    found = master_api.call(rosgraph.get_master_uri(), "lookupNode", "/test", node, seconds=SECONDS)
+    try:
+        return bool(found) and bool(master_api.call(found, "getPid", "/test", seconds=SECONDS))
+    except OSError:
+        return False
+
+
+def is_alive(pid):
+    """Whether a process runs (one that ended and was not waited for does not)."""
+    try:
+        with open(f"/proc/{pid}/stat", encoding="utf-8") as stat:
+            return stat.read().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
 def heard_on_rosout(text, node="/gazebo"):
     """A function that waits until a log line of `node` holds `text`; call it after the fault.
 
     A node that runs already is listened to when this returns.
     """
     lines = Collected("/rosout", Log)
-    if rosnode.rosnode_ping(node, max_count=1):
+    if is_running(node):
         wait_for(lambda: node in lines.sources(), "a connection to the node's log")
 
     def wait():
@@ -224,12 +248,6 @@ class Program:
             self.process.wait()
 
 
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
-
-
 class Launched:
     """A roslaunch on a master of its own; use it in a `with`."""
 
@@ -250,9 +268,11 @@ class Launched:
         return list(self.ask("get_world_properties", srv.GetWorldProperties).model_names)
 
     def says(self, text):
-        wait_for(lambda: text in self.program.text or self.program.process.poll() is not None,
-                 f"the words {text!r} in {self.program.text}")
-        assert text in self.program.text, self.program.text
+        try:
+            wait_for(lambda: text in self.program.text or self.program.process.poll() is not None,
+                     f"the words {text!r}")
+        finally:
+            assert text in self.program.text, self.program.text
 
     def __enter__(self):
         return self

@@ -11,7 +11,7 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 from nav_msgs.msg import Odometry
-from support import Collected, Gazebo, run, wait_for
+from support import SECONDS, Collected, Gazebo, run, wait_for
 
 ROBOT = "robo"
 CTRL_C = "\x03"
@@ -86,7 +86,7 @@ class Teleop(unittest.TestCase):
         self.typist.type("w")          # 10 % faster
         self.press("i", 0.22, 0.0)
         self.typist.type(CTRL_C)
-        self.assertEqual(self.typist.process.wait(20.0), 0)
+        self.assertEqual(self.typist.process.wait(SECONDS), 0)
         self.drives(0.0, 0.0)
 
 

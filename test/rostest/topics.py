@@ -2,6 +2,7 @@
 """/clock, model_states and link_states."""
 import os
 import sys
+import time
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -11,6 +12,8 @@ import support
 from gazebo_msgs.msg import LinkStates, ModelStates
 from rosgraph_msgs.msg import Clock
 from support import Collected, numbers, pose, twist
+
+from my_simulations.ros.topics.publish_pacing import BURST, CLOCK_MESSAGES_PER_SECOND
 
 STEP_NS = 1000000
 
@@ -49,22 +52,27 @@ class Topics(unittest.TestCase):
             physics.time_step, rate, physics.gravity, physics.ode_config).success)
 
     def test_the_clock_shows_every_step_once_and_in_order(self):
+        # Slowly: a node that got no processor for long leaves steps out, so as to catch up.
+        self.set_rate(250.0)
+        self.addCleanup(self.set_rate, 1000.0)
         clock = self.listen("/clock", Clock)
-        support.wait_for(lambda: len(times(clock)) > 1500, "1500 steps")
+        support.wait_for(lambda: len(times(clock)) > 500, "500 steps")
         heard = times(clock)
         gaps = [b - a for a, b in zip(heard, heard[1:])]
         self.assertEqual(set(gaps), {STEP_NS})
 
     def test_faster_than_real_time_the_clock_is_thinned_and_never_goes_back(self):
         self.set_rate(0.0)
+        began = time.monotonic()
         try:
             clock = self.listen("/clock", Clock)
             support.wait_for(lambda: len(times(clock)) > 1000, "1000 messages")
         finally:
             self.set_rate(1000.0)
         heard = times(clock)
+        most = BURST + CLOCK_MESSAGES_PER_SECOND * (time.monotonic() - began)
         self.assertTrue(all(b > a for a, b in zip(heard, heard[1:])))
-        self.assertGreater((heard[900] - heard[300]) / STEP_NS, 3 * 600)
+        self.assertLessEqual(len(heard), most)
 
     def test_the_clock_is_silent_while_paused_and_then_goes_on(self):
         clock = self.listen("/clock", Clock)
@@ -80,6 +88,9 @@ class Topics(unittest.TestCase):
         self.assertEqual(times(clock)[0], stopped + STEP_NS)
 
     def test_a_reset_sets_the_clock_back_at_once(self):
+        # Slowly: the first message after the reset may come late.
+        self.set_rate(100.0)
+        self.addCleanup(self.set_rate, 1000.0)
         clock = self.listen("/clock", Clock)
         support.wait_for(lambda: times(clock) and times(clock)[-1] > 50 * STEP_NS, "50 steps")
         self.gazebo.reset_simulation()
@@ -95,16 +106,17 @@ class Topics(unittest.TestCase):
         self.gazebo.place("two", pose(3.0, 4.0, 50.0, 0.5), twist((1.0, 2.0, 3.0), (0.0, 0.0, 4.0)))
         models = self.listen("/gazebo/model_states", ModelStates)
         links = self.listen("/gazebo/link_states", LinkStates)
-        found = support.wait_for(models.all, "model states")[-1]
+        found = support.wait_for(lambda: [message for message in models.all() if len(
+            message.twist) == 3 and message.twist[2].linear.y == 2.0], "model states")[-1]
         self.assertEqual(found.name, ["ground_plane", "one", "two"])
         for name, where, motion in zip(found.name, found.pose, found.twist):
             state = self.gazebo.get_model_state(name, "")
             self.assertEqual(numbers(where), numbers(state.pose))
             self.assertEqual(motion, state.twist)
-        found = support.wait_for(links.all, "link states")[-1]
+        found = support.wait_for(lambda: [message for message in links.all() if len(
+            message.twist) == 3 and message.twist[2].linear.y == 2.0], "link states")[-1]
         self.assertEqual(found.name, ["ground_plane::link", "one::body", "two::body"])
         self.assertEqual(len(found.pose), 3)
-        self.assertEqual(found.twist[2].linear.y, 2.0)
         self.assertEqual(found.twist[0].linear.x, 0.0)
 
     def test_states_come_at_every_step(self):

@@ -15,6 +15,7 @@ from ..errors import CommandError, InputError, Issue, Severity, error
 from ..formats.image.pixels import checked_format
 from ..formats.reading import read_file
 from ..formats.sdf.writer.entities import write_entity
+from ..resources.limited_file import at_most
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
 from ..xml_characters import check_characters
@@ -170,7 +171,7 @@ def _load_image(level: Level, folder: str, issues: List[Issue]) -> None:
     name = os.path.basename(level.image.file)
     try:
         with open(os.path.join(folder, name), "rb") as stream:
-            content = stream.read(LARGEST_IMAGE + 1)
+            content = at_most(stream, LARGEST_IMAGE)
         kind = image_kind(content, name)
     except (OSError, InputError) as fault:
         why = fault.strerror if isinstance(fault, OSError) else fault

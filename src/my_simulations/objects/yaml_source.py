@@ -7,6 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import yaml
 
 from ..errors import InputError, Issue, error, warning
+from ..resources.limited_file import at_most
 from .guarded_yaml import LARGEST, GuardedLoader
 
 KeyPath = Tuple[str, ...]
@@ -75,7 +76,7 @@ def read_yaml(file: str, root: str) -> Tuple[Any, Source, List[Issue]]:
 def _text(file: str) -> str:
     try:
         with open(file, "rb") as stream:
-            data = stream.read(LARGEST + 1)
+            data = at_most(stream, LARGEST)
     except OSError as fault:
         raise InputError([error("list-unreadable", f"cannot read the list: {fault.strerror}",
                                 file=file)]) from fault

@@ -14,6 +14,7 @@ import threading
 import time
 
 import pytest
+from free_ports import silent_uri
 from reading import sdf
 
 from my_simulations.errors import Severity, errors_of
@@ -229,11 +230,8 @@ def test_a_server_that_hangs_costs_no_more_than_the_deadline_for_all_models(
 
 
 def test_a_server_that_is_not_there_is_reported(tmp_path):
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        uri = f"http://127.0.0.1:{free.getsockname()[1]}"
     with pytest.raises(ModelNotProvidedError, match="cannot download"):
-        ModelDatabase(uri, str(tmp_path / "models")).provide("lamp")
+        ModelDatabase(silent_uri(), str(tmp_path / "models")).provide("lamp")
 
 
 def test_a_passing_fault_is_tried_again(server, database):

@@ -4,6 +4,7 @@ import time
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
+from free_ports import silent_uri
 
 from my_simulations.ros.lifecycle import master_api
 
@@ -13,9 +14,7 @@ def graph():
     """A master that knows one living and one dead node."""
     server = SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
     uri = f"http://127.0.0.1:{server.server_address[1]}"
-    with socket.socket() as unused:
-        unused.bind(("127.0.0.1", 0))
-        nodes = {"/alive": uri, "/dead": f"http://127.0.0.1:{unused.getsockname()[1]}"}
+    nodes = {"/alive": uri, "/dead": silent_uri()}
 
     def look_up(_caller, name):
         return [1, "", nodes[name]] if name in nodes else [-1, "unknown node", ""]
@@ -29,12 +28,6 @@ def graph():
     server.server_close()
 
 
-def unused_uri():
-    with socket.socket() as unused:
-        unused.bind(("127.0.0.1", 0))
-        return f"http://127.0.0.1:{unused.getsockname()[1]}"
-
-
 def test_a_master_that_answers_ends_the_wait_without_a_word(graph):
     said = []
     assert master_api.wait(graph, "/me", threading.Event(), said.append)
@@ -43,7 +36,7 @@ def test_a_master_that_answers_ends_the_wait_without_a_word(graph):
 
 def test_without_a_master_it_says_so_until_it_is_stopped():
     said, stop = [], threading.Event()
-    uri = unused_uri()
+    uri = silent_uri()
 
     def say(line):
         said.append(line)
@@ -54,7 +47,7 @@ def test_without_a_master_it_says_so_until_it_is_stopped():
 
 
 def test_the_wait_ends_at_its_deadline():
-    assert not master_api.wait(unused_uri(), "/me", threading.Event(), lambda line: None,
+    assert not master_api.wait(silent_uri(), "/me", threading.Event(), lambda line: None,
                            time.monotonic())
 
 

@@ -36,8 +36,10 @@ class RealTime:
 
     def read(self) -> Dict[str, Any]:
         """The push `stats` as of now."""
-        now, sim_ns, paused = (time.monotonic_ns(), self._simulator.clock.sim_ns,
-                               self._simulator.clock.paused)
+        # In this order: the step that a pause is told with is its last.
+        now, paused = time.monotonic_ns(), self._simulator.clock.paused
+        step, clock = self._simulator.clock.now()
+        sim_ns = clock.sim_ns(step)
         if not self._paused:
             self._real_ns += now - self._at
         if sim_ns < self._sim_ns:  # time was reset
@@ -49,8 +51,7 @@ class RealTime:
         else:
             self._readings.append((self._real_ns, sim_ns))
         return {"type": "stats", "sim_ns": sim_ns, "real_ns": self._real_ns,
-                "factor": self._factor(), "iterations": self._simulator.clock.step,
-                "paused": paused}
+                "factor": self._factor(), "iterations": step, "paused": paused}
 
     def news(self) -> Optional[Dict[str, Any]]:
         """As `read`; None when nothing has changed since it was last told."""

@@ -7,6 +7,7 @@ import struct
 import tempfile
 from typing import IO, Any, Optional, Sequence, Union
 
+from ...resources.limited_file import at_most
 from ..reader_process import read_elsewhere
 
 MOST_PIXELS = 64 << 20
@@ -81,7 +82,7 @@ def is_costly(path: str) -> bool:
     if os.path.getsize(path) > _PLAIN_BYTES:
         return True
     with open(path, "rb") as stream:
-        return _takes_much(stream.read(_PLAIN_BYTES))
+        return _takes_much(at_most(stream, _PLAIN_BYTES))
 
 
 def _takes_much(content: bytes) -> bool:

@@ -12,6 +12,7 @@ import re
 from typing import Any, Union
 
 from ...errors import InputError, error
+from ...resources.limited_file import at_most
 from ...xml_characters import forbidden_character, without_forbidden
 from .source import IssueCollector
 
@@ -39,7 +40,7 @@ def content(path: str) -> bytes:
     with open(path, "rb") as stream:
         if os.fstat(stream.fileno()).st_size > LARGEST:
             raise _too_large(path)
-        return stream.read(LARGEST + 1)  # a pipe has no size; `parse` looks again
+        return at_most(stream, LARGEST)  # a pipe has no size; `parse` looks again
 
 
 def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:

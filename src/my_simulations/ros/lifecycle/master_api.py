@@ -17,6 +17,9 @@ from urllib.parse import urlparse
 CALL_SECONDS = 3.0
 """Wall seconds that one call may take."""
 
+NODE_SECONDS = 10.0
+"""As CALL_SECONDS, for a node that may be busy, and would be shut down by another of its name."""
+
 POLL_SECONDS = 0.25
 REMIND_SECONDS = 4.0
 
@@ -128,7 +131,7 @@ def running_node(master: str, name: str) -> Optional[Tuple[str, int]]:
     if not found:
         return None
     try:
-        pid = call(found, "getPid", name)
+        pid = call(found, "getPid", name, seconds=NODE_SECONDS)
     except OSError:
         return None
     return found, int(pid or 0)

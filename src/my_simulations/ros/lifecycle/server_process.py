@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
 
 from ...errors import CommandError, InputError, error
 from ...simulator.issue_log import IssueLog
-from . import master_api
+from . import master_api, old_python
 from .abandoned import Abandonment
 from .engine_supply import EngineSupply
 from .launch_info import Launch
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     from .log_recorder import RunningRecorder, StartRecording
 
 NODE = "gazebo"
-END_SECONDS = 3.0
-"""Wall seconds after which a shutdown that hangs in a network call is forced."""
+END_SECONDS = 10.0
+"""Wall seconds after which a shutdown that hangs in a network call is forced. A busy machine takes
+seconds to end all that was started; roslaunch waits for 15 s before it asks again."""
 
 UPKEEP_SECONDS = 1.0
 EARLY_SECONDS = 1.0
@@ -173,6 +174,7 @@ class Server:
             signal.signal(number, self._on_signal)
         gc.disable()  # what imports make stays: to look for garbage takes 5 % of a start
         import_genpy()
+        old_python.prepare()
         self._profile.mark("messages imported")
         loader = WorldLoader(self._options, self._engines, self._log, self._profile,
                              self._settled.set, self._launch.folder)
