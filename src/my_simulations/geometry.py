@@ -72,7 +72,7 @@ def cross(a: Vec3, b: Vec3) -> Vec3:
 
 def norm(a: Vec3) -> float:
     """Euclidean length."""
-    return math.sqrt(dot(a, a))
+    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 def is_finite(*values: float) -> bool:

@@ -13,10 +13,17 @@ from typing import List, NamedTuple, Optional, Type
 
 import scenes
 from clock import Clock
-from server import Server, end, wait
+from server import Server, end, processor, wait
 
 PAIRS = 7
 SECONDS = 1.0
+
+
+class Factors(NamedTuple):
+    """Sim seconds a second of wall time, and of the stepping process's processor time."""
+
+    wall: float
+    busy: float
 
 
 class Bare:
@@ -27,13 +34,14 @@ class Bare:
             [sys.executable, __file__.rsplit("/", 1)[0] + "/bare.py", kind, str(count),
              str(int(sleeping))], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL, text=True)
-        self.factor(0.1)
+        self.factors(0.1)
 
-    def factor(self, seconds: float) -> float:
-        """Sim seconds a second of wall time, over so many of these."""
+    def factors(self, seconds: float) -> Factors:
+        """Make steps for so many seconds of wall time."""
         assert self._process.stdin is not None and self._process.stdout is not None
         print(seconds, file=self._process.stdin, flush=True)
-        return 0.001 * float(self._process.stdout.readline())
+        wall, busy = map(float, self._process.stdout.readline().split())
+        return Factors(0.001 * wall, 0.001 * busy)
 
     def __enter__(self) -> "Bare":
         return self
@@ -47,16 +55,27 @@ class Bare:
 
 
 class Pace(NamedTuple):
-    """Real-time factors by pairs, and whether all boxes stand where they were put."""
+    """Factors by pairs, and whether all boxes stand where they were put."""
 
-    ours: List[float]
-    bare: List[float]
+    ours: List[Factors]
+    bare: List[Factors]
     stand: bool
 
     @property
+    def factor(self) -> float:
+        """Our median by wall time."""
+        return statistics.median(one.wall for one in self.ours)
+
+    @property
     def ratios(self) -> List[float]:
-        """Ours of bare, pair by pair."""
-        return [mine / alone for mine, alone in zip(self.ours, self.bare)]
+        """Ours of bare, pair by pair, by wall time."""
+        return [mine.wall / alone.wall for mine, alone in zip(self.ours, self.bare)]
+
+    @property
+    def by_processor(self) -> float:
+        """The median of the ratios by the engine's processor time, which a busy machine leaves."""
+        return statistics.median(mine.busy / alone.busy
+                                 for mine, alone in zip(self.ours, self.bare))
 
     @property
     def ratio(self) -> float:
@@ -64,8 +83,9 @@ class Pace(NamedTuple):
         return statistics.median(self.ratios)
 
     def __str__(self) -> str:
-        return (f"{statistics.median(self.ours):.3g} = {self.ratio:.2f} ({min(self.ratios):.2f} to "
-                f"{max(self.ratios):.2f}) of bare {statistics.median(self.bare):.3g}"
+        alone = statistics.median(one.wall for one in self.bare)
+        return (f"{self.factor:.3g} = {self.ratio:.2f} ({min(self.ratios):.2f} to "
+                f"{max(self.ratios):.2f}) of bare {alone:.3g}, {self.by_processor:.2f} by processor"
                 + ("" if self.stand else ", FALLEN"))
 
 
@@ -76,18 +96,22 @@ def measured(kind: str, count: int, sleeping: bool) -> Pace:
     from std_srvs.srv import Empty
     clock = Clock()
     ours, alone = [], []
-    with Server(scenes.world(kind, count, sleeping, 0.0)), Bare(kind, count, sleeping) as bare:
+    with Server(scenes.world(kind, count, sleeping, 0.0)) as server, \
+            Bare(kind, count, sleeping) as bare:
         rospy.wait_for_service("/gazebo/get_world_properties", 60)
         pause, go_on = (rospy.ServiceProxy(f"/gazebo/{what}_physics", Empty, persistent=True)
                         for what in ("pause", "unpause"))
-        wait(lambda: clock.sim > (4.0 if sleeping else 0.3), 120, "settled world")
+        wait(lambda: clock.sim > (4.0 if sleeping else 1.5), 120, "settled world")
         for _ in range(PAIRS):
             pause()
-            alone.append(bare.factor(SECONDS))
+            alone.append(bare.factors(SECONDS))
             heard = clock.count
             go_on()
             wait(lambda heard=heard: clock.count > heard + 1, 60, "steps")
-            ours.append(clock.factor(SECONDS))
+            engine, sim = server.pids()[1:2], clock.sim
+            busy = processor(engine)
+            wall = clock.factor(SECONDS)
+            ours.append(Factors(wall, (clock.sim - sim) / max(processor(engine) - busy, 0.01)))
         pause()
         get = rospy.ServiceProxy("/gazebo/get_model_state", GetModelState, persistent=True)
         stand = all(abs(get(f"b{n}", "").pose.position.z - at[2]) < 0.05

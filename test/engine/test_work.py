@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import pytest
-from conftest import Lab, ball, box, ground
+from conftest import ball, box, ground
 from work_count import bytecodes
 
 from my_simulations.engine.commands import LoadModel, RemoveModel
@@ -12,8 +12,7 @@ FEW, MANY = 20, 220
 
 
 @pytest.mark.parametrize("make", [box, ball])
-def test_a_body_that_comes_or_goes_costs_no_look_at_the_others(make):
-    lab = Lab()
+def test_a_body_that_comes_or_goes_costs_no_look_at_the_others(lab, make):
     lab.load(ground(1.0))
     lab.steps(1)
     came, gone, numbers = {}, {}, []
@@ -29,8 +28,7 @@ def test_a_body_that_comes_or_goes_costs_no_look_at_the_others(make):
     assert abs(gone[MANY] - gone[FEW]) < 100 and gone[FEW] > 100
 
 
-def test_a_body_that_is_read_out_after_a_command_is_the_only_one():
-    lab = Lab()
+def test_a_body_that_is_read_out_after_a_command_is_the_only_one(lab):
     lab.load(ground(1.0))
     read = {}
     for n in range(MANY):

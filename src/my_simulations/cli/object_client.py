@@ -10,6 +10,7 @@ import contextlib
 import signal
 import sys
 import time
+from importlib import import_module
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, Severity, SimulationError
@@ -21,6 +22,7 @@ from ..resources.package_files import PACKAGE
 from ..ros.arguments import number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle import master_api
+from ..ros.lifecycle.light_imports import import_genpy
 from ..ros.own_server import spawns_objects
 
 OK, FAILED, USAGE = 0, 1, 2
@@ -258,6 +260,7 @@ class SimulatorClient:
         return str(answer.status_message)
 
     def _call(self, service: str, kind: str, **fields: Any) -> Any:
+        import_genpy()  # first: what imports rospy imports NumPy, too
         import rospy
 
         full = f"{self.name}/{service}"
@@ -274,19 +277,14 @@ class SimulatorClient:
 
 
 def _service_class(kind: str) -> Any:
+    """The class of a service; only its package is imported, since each takes its time."""
+    package = {"Empty": "std_srvs", "SpawnObject": "my_simulations_msgs",
+               "StepWorld": "my_simulations_msgs"}.get(kind, "gazebo_msgs")
     try:
-        from gazebo_msgs import srv
-        from std_srvs.srv import Empty
+        return getattr(import_module(f"{package}.srv"), kind)
     except ImportError as fault:
-        raise ToolError("the ROS package gazebo_msgs was not found; source the workspace's "
+        raise ToolError(f"the ROS package {package} was not found; source the workspace's "
                         "devel/setup.bash") from fault
-    if kind == "Empty":
-        return Empty
-    if kind in ("SpawnObject", "StepWorld"):
-        from my_simulations_msgs import srv as ours
-
-        return getattr(ours, kind)
-    return getattr(srv, kind)
 
 
 def pose_message(pose: Pose) -> Any:

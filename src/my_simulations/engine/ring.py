@@ -344,9 +344,11 @@ class RingReader:
         clock = Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
         step = words[slot + SLOT_STEP]
         at = slot + HEAD_WORDS
-        links: Sequence[float] = doubles[at:at + words[slot + USED_LINKS] * LINK_WIDTH].tolist()
+        # As bytes: most readers want a few rows, and a number for each cell takes much longer.
+        links = memoryview(bytes(doubles[at:at + words[slot + USED_LINKS] * LINK_WIDTH])).cast("d")
         at += _LINK_WORDS
-        joints: Sequence[float] = doubles[at:at + words[slot + USED_JOINTS] * JOINT_WIDTH].tolist()
+        joints = memoryview(bytes(
+            doubles[at:at + words[slot + USED_JOINTS] * JOINT_WIDTH])).cast("d")
         now = words[STEP]
         if not self._is_whole(slot, sequence):
             return None
