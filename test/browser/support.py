@@ -9,6 +9,7 @@ import subprocess
 import time
 import xmlrpc.client
 from unittest import mock
+from urllib.parse import urljoin
 
 from free_ports import free_port
 from playwright.sync_api import sync_playwright
@@ -132,9 +133,24 @@ class Editor:
         self.page.on("pageerror", lambda fault: self.faults.append(str(fault)))
         self.page.on("console", lambda message: self.said.append(message.text))
         # The first view frames what is there; hands need one that they know.
-        self.page.goto(url if "#" in url else url + FIRST_VIEW)
+        self._address = url if "#" in url else url + FIRST_VIEW
+        self.page.goto(self._address)
         if wait:
             self.wait_for_world()
+
+    def load_anew(self):
+        """As a new page: all that is kept is Chromium's process, with the scripts it compiled."""
+        self.leave()
+        self.faults.clear()
+        self.said.clear()
+        self.page.goto(self._address)
+        self.wait_for_world()
+
+    def leave(self):
+        """Goes to a page of the origin where nothing runs, and clears there what was stored."""
+        self.page.mouse.move(0, 0)
+        self.page.goto(urljoin(self._address, "/protocol.json"))
+        self.page.evaluate("localStorage.clear(), sessionStorage.clear()")
 
     def wait_for_world(self):
         self.until("Boolean(window.editor && editor.store.document && editor.view)", "the world")
