@@ -16,7 +16,7 @@ from playwright.sync_api import sync_playwright
 
 from my_simulations.editor.transport import address_file
 
-SECONDS = 60.0
+SECONDS = 120.0
 """Until something must have happened; a machine under load draws a picture in seconds."""
 FIRST_VIEW = "#view=5,-5,2,2.3561945,-0.2756999"
 """A link to the view of an empty world: from (5, -5, 2) to the origin."""
