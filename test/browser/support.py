@@ -9,7 +9,6 @@ import subprocess
 import time
 import xmlrpc.client
 from unittest import mock
-from urllib.parse import urljoin
 
 from free_ports import free_port
 from playwright.sync_api import sync_playwright
@@ -20,6 +19,13 @@ SECONDS = 120.0
 """Until something must have happened; a machine under load draws a picture in seconds."""
 FIRST_VIEW = "#view=5,-5,2,2.3561945,-0.2756999"
 """A link to the view of an empty world: from (5, -5, 2) to the origin."""
+ANEW = "loaded anew"
+CLEARING = f"""if (window.name === '{ANEW}') {{
+  window.name = '';
+  localStorage.clear();
+  sessionStorage.clear();
+}}"""
+"""Runs before the scripts of a page, and after the last of the page before it."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -127,6 +133,7 @@ class Editor:
                                            color_scheme=color_scheme, accept_downloads=True,
                                            **options)
         self.context.set_default_timeout(1000.0 * SECONDS)
+        self.context.add_init_script(CLEARING)
         self.page = self.context.new_page()
         self.faults = []
         self.said = []
@@ -140,17 +147,13 @@ class Editor:
 
     def load_anew(self):
         """As a new page: all that is kept is Chromium's process, with the scripts it compiled."""
-        self.leave()
+        self.page.mouse.move(0, 0)
+        self.page.evaluate(f"(address) => {{ window.name = '{ANEW}';"
+                           " history.replaceState(null, '', address); }", self._address)
+        self.page.reload()
         self.faults.clear()
         self.said.clear()
-        self.page.goto(self._address)
         self.wait_for_world()
-
-    def leave(self):
-        """Goes to a page of the origin where nothing runs, and clears there what was stored."""
-        self.page.mouse.move(0, 0)
-        self.page.goto(urljoin(self._address, "/protocol.json"))
-        self.page.evaluate("localStorage.clear(), sessionStorage.clear()")
 
     def wait_for_world(self):
         self.until("Boolean(window.editor && editor.store.document && editor.view)", "the world")

@@ -210,7 +210,6 @@ def sheet(shared, visit):
     opened.open()
     yield opened
     assert editor.faults == []
-    editor.leave()  # it asks whether to, while there is a plan
     editor.page.remove_listener("dialog", accept)
 
 
