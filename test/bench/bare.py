@@ -1,48 +1,46 @@
-"""A bare PyBullet loop, to measure the simulator against: prints steps per second.
+"""Bare PyBullet with the boxes of the benchmark's worlds, to measure the simulator against.
 
-usage: bare.py KIND COUNT SLEEP SECONDS     KIND: boxes | stacks     SLEEP: 0 | 1
+usage: bare.py KIND COUNT SLEEP     KIND: boxes | stacks     SLEEP: 0 | 1
+
+PyBullet has its default settings; its boxes are rigid bodies in maximal coordinates, the faster of
+its two kinds, and sleep only when asked to. For each line on standard input, seconds of wall time,
+it makes steps for so long and prints how many a second.
 """
 from __future__ import annotations
 
+import os
 import sys
 import time
 
-import pybullet
-
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
+import bare_world
+import pybullet
 from scenes import positions
 
+DT = 0.001
+SETTLED = {True: 4000, False: 300}
 
-def main(kind: str, count: int, sleeping: bool, seconds: float) -> None:
-    pybullet.connect(pybullet.DIRECT)
-    pybullet.setGravity(0, 0, -9.8)
-    pybullet.setPhysicsEngineParameter(fixedTimeStep=0.001, numSolverIterations=50,
-                                       numSubSteps=0, contactERP=0.01)
-    plane = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE),
-                                     useMaximalCoordinates=1)
-    pybullet.changeDynamics(plane, -1, lateralFriction=1.0)
+
+def main(kind: str, count: int, sleeping: bool) -> None:
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # PyBullet prints there, too
+    bare_world.begin(DT)
     for at in positions(kind, count):
         shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[0.5] * 3)
         body = pybullet.createMultiBody(1.0, shape, -1, at, useMaximalCoordinates=1)
-        pybullet.changeDynamics(body, -1, linearDamping=0, angularDamping=0, lateralFriction=1.0)
-        pybullet.changeDynamics(body, -1, contactProcessingThreshold=0.0)
+        pybullet.changeDynamics(body, -1, lateralFriction=1.0)
         if sleeping:
             pybullet.changeDynamics(
                 body, -1, activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
                 sleepThreshold=0.01)
-        else:
-            pybullet.changeDynamics(
-                body, -1, activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
-    step = pybullet.stepSimulation
-    for _ in range(4000 if sleeping else 300):
-        step()
-    steps, started = 0, time.perf_counter()
-    while time.perf_counter() - started < seconds:
-        for _ in range(20):
-            step()
-        steps += 20
-    print(steps / (time.perf_counter() - started))
+    bare_world.steps(SETTLED[sleeping])
+    for line in sys.stdin:
+        steps, started, seconds = 0, time.perf_counter(), float(line)
+        while time.perf_counter() - started < seconds:
+            bare_world.steps(20)
+            steps += 20
+        print(steps / (time.perf_counter() - started), file=answers, flush=True)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]), sys.argv[3] == "1", float(sys.argv[4]))
+    main(sys.argv[1], int(sys.argv[2]), sys.argv[3] == "1")

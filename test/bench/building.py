@@ -17,7 +17,8 @@ from typing import Any, List, Tuple
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
-from bench import EMPTY, Clock, Row
+from bench import EMPTY, Row
+from clock import Clock
 from editor import browser, editor_url
 from server import Server, master, wait
 

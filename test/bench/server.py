@@ -100,12 +100,21 @@ def children(pid: int) -> List[int]:
 
 
 def resident(pids: List[int]) -> float:
-    """Resident memory of some processes together, MiB."""
+    """Resident memory of some processes together, MB; what two share counts twice."""
+    return _summed(pids, "status", "VmRSS:")
+
+
+def proportional(pids: List[int]) -> float:
+    """Memory of some processes together, MB; what processes share counts once in all (PSS)."""
+    return _summed(pids, "smaps_rollup", "Pss:")
+
+
+def _summed(pids: List[int], file: str, head: str) -> float:
     total = 0
     for pid in pids:
-        with open(f"/proc/{pid}/status", encoding="ascii") as stream:
-            total += next(int(line.split()[1]) for line in stream if line.startswith("VmRSS"))
-    return total / 1024.0
+        with open(f"/proc/{pid}/{file}", encoding="ascii") as stream:
+            total += next(int(line.split()[1]) for line in stream if line.startswith(head))
+    return total * 1024 / 1e6
 
 
 def processor(pids: List[int]) -> float:

@@ -231,6 +231,51 @@ def test_a_texture_s_alpha_counts_as_its_material_says(view, tmp_path, material,
         assert middle == faint
 
 
+def leaf_with_a_hole(tmp_path, alpha_test):
+    """A material whose picture is faint between a quarter and three quarters of its width."""
+    from PIL import Image
+
+    pixels = np.full((32, 32, 4), 255, dtype=np.uint8)
+    pixels[:, 8:24, 3] = 77
+    path = str(tmp_path / "leaf.png")
+    Image.fromarray(pixels, "RGBA").save(path)
+    return Look(diffuse=(1, 1, 1, 1), texture=path, alpha_test=alpha_test)
+
+
+@pytest.mark.parametrize("outputs", [ALL, (DEPTH, LABELS)])
+@pytest.mark.parametrize("alpha_test, behind", [(0.5, True), (0.2, False), (0.0, False)])
+def test_depth_and_labels_go_through_what_a_material_cuts_out(view, tmp_path, outputs, alpha_test,
+                                                              behind):
+    leaf = leaf_with_a_hole(tmp_path, alpha_test)
+    found = view([body("leaf", Box((0.01, 1.0, 1.0)), 0, leaf),
+                  body("wall", Box((0.1, 4.0, 4.0)), 1)],
+                 [Pose((3.0, 0, 0)), Pose((4.0, 0, 0))], outputs=outputs)
+    scale = SPEC.focal_length / 2.995
+    near, far = np.float32(2.995), np.float32(3.95)
+    for column, through in ((0, behind), (0.22 * scale, behind), (0.28 * scale, False)):
+        at = 240, round(319.5 - column)
+        assert found.depth[at] == pytest.approx(far if through else near, abs=2e-4), column
+        assert found.labels[at] == (1 if through else 0), column
+
+
+@pytest.mark.parametrize("alpha_test, lit", [(0.5, True), (0.2, False)])
+def test_light_falls_through_what_a_material_cuts_out(view, tmp_path, alpha_test, lit):
+    sun = Light("sun", "directional", cast_shadows=True, direction=(0.0, 0.0, -1.0))
+    view.renderer.set_lights([sun], DARK)
+    ground = body("g", Plane(size=(20, 20)), 0, Look(diffuse=(1.0, 1.0, 1.0, 1.0)))
+    eye = Pose((3.0, 0.0, 0.9), quat_from_rpy(0.0, 0.4, 0.0))
+    found = view([ground, body("b", Box((2.0, 2.0, 0.01)), 1,
+                               leaf_with_a_hole(tmp_path, alpha_test))],
+                 [Pose((6.0, 0, 0)), Pose((6.0, 0, 3.0))], eye).rgb
+    hole = found[seen_at(6.0, 0.0)]
+    assert hole.min() > 228 if lit else hole.max() < 5
+    assert found[seen_at(6.0, 1.3)].min() > 228
+    # The picture's width lies along x or y; the rim is in the shade on two sides at least.
+    rim = [found[seen_at(6.0 + x, y)].max() < 5
+           for x, y in ((0.8, 0.0), (-0.8, 0.0), (0.0, 0.8), (0.0, -0.8))]
+    assert sum(rim) == (2 if lit else 4)
+
+
 def test_an_unreadable_picture_is_told_and_the_rest_is_drawn(view):
     look = Look(diffuse=(1, 0, 0, 1), texture="/nowhere/wood.png", lit=False)
     found = view([body("b", Box((1.0, 9, 9)), 0, look)], [Pose((3.0, 0, 0))])

@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from conftest import Lab, ground, inertial_of_box, slab
 from laws import Laws
@@ -94,3 +95,43 @@ def test_sliding_wheels_tell_their_friction(lab: Lab, laws: Laws):
     for contact in contacts:
         laws.near("friction of wheels that slide, by normal force",
                   norm(contact.friction) / contact.force, 1.0, rel=0.02)
+
+
+def _turn_by_coulomb(aside: float, width: float, com: float) -> float:
+    """Turn, rad/s, of `_base` whose wheels have two edges and whose centre of mass is aside.
+
+    The load is linear in where an edge is; velocities along, across and turn are found by
+    following a base of unit mass and inertia, that Coulomb's forces move, to its steady state.
+    """
+    edges = np.array([(x, y + side * width / 2, SPEED * (-1 if y > 0 else 1))
+                      for x in (AHEAD, -AHEAD) for y in (aside, -aside) for side in (-1, 1)])
+    x, y, speed = edges.T
+    load = (1.0 + com * y / (y ** 2).mean()) / len(edges)
+    ahead = across = turn = 0.0
+    for _ in range(20000):
+        slip = np.stack([ahead - turn * (y - com) - speed, across + turn * x])
+        force = -load * slip / np.maximum(np.hypot(*slip), 1e-3)
+        ahead, across = ahead + 0.01 * force[0].sum(), across + 0.01 * force[1].sum()
+        turn += 0.1 * (x * force[1] - (y - com) * force[0]).sum()
+    return float(turn)
+
+
+@pytest.mark.parametrize("com", [0.0, -0.07])
+@pytest.mark.parametrize("crooked", [0.0, 1.3e-6, 8e-4])   # pi as 3.14159, half of it as 1.57
+def test_a_base_on_wide_wheels_turns_as_its_edges_share_its_weight(lab: Lab, laws: Laws,
+                                                                   com: float, crooked: float):
+    lab.load(ground(1.0))
+    base, width = _base(), 0.12
+    for link in base.links[1:]:
+        link.collisions[0] = replace(link.collisions[0], geometry=Cylinder(RADIUS, width), pose=Pose(
+            (0, 0, 0), quat_from_rpy(crooked, 0, 0)))
+    # Of the whole: the wheels' 2 kg stand where they are.
+    base.links[0].inertial = replace(base.links[0].inertial, pose=Pose((0.0, 1.2 * com, 0.0)))
+    car = lab.load(base, (0, 0, RADIUS))
+    lab.steps(1000)
+    begin, turn = lab.step, 0.0
+    while lab.step < begin + 1000:
+        lab.steps(10)
+        turn += lab.twist(car).angular[2] / 100
+    laws.near("a skid-steered base on wide wheels, its weight aside: mean turn, rad/s", turn,
+              _turn_by_coulomb(ASIDE, width, com), rel=0.05)

@@ -3,11 +3,12 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import * as plans from '../../web/js/building/plan.js';
+import {moveEnd, moveItems} from '../../web/js/building/plan_moves.js';
 import * as clipboard from '../../web/js/building/plan_clipboard.js';
 import {faultsOf, meeting, openingFault} from '../../web/js/building/plan_check.js';
 import {History} from '../../web/js/building/plan_history.js';
 
-const {add, addLevel, emptyPlan, itemOf, moveEnd, moveItems, remove, update} = plans;
+const {add, addLevel, emptyPlan, itemOf, remove, update} = plans;
 
 /** A 4 x 3 m room of four linked walls. */
 export function room(plan = emptyPlan()) {

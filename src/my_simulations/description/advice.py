@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..errors import Severity
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
@@ -103,6 +103,21 @@ def half_extents(geometry: Geometry) -> Optional[Vec3]:
     if isinstance(geometry, Cylinder):
         return (geometry.radius, geometry.radius, geometry.length / 2)
     return None
+
+
+def reach_of(link: Link) -> float:
+    """Radius about the link's origin, m, that contains its shapes; infinite for planes.
+
+    Without meshes, of which `advice` does not tell whether they overlap.
+    """
+    reach = 0.0
+    for collision in link.collisions:
+        if isinstance(collision.geometry, Plane):
+            return math.inf
+        half = half_extents(collision.geometry)
+        if half is not None:
+            reach = max(reach, norm(collision.pose.position) + norm(half))
+    return reach
 
 
 def _thin(collision: Collision, link: str) -> Iterator[Fault]:
@@ -207,7 +222,18 @@ class _Core:
 
 
 def _overlaps(models: Sequence[Model], only: str) -> Iterator[Fault]:
-    """Pairs of models, at least one of them dynamic, that overlap at the start."""
+    """Pairs of links of two models that overlap at the start, each with its deepest collision."""
+    deepest: Dict[Tuple[str, str], Tuple[float, Collision]] = {}
+    for mover, still, depth, collision in _insides(models, only):
+        if depth > deepest.get((mover, still), (DEEPEST_M, None))[0]:
+            deepest[mover, still] = depth, collision
+    for (mover, still), (depth, collision) in deepest.items():
+        yield _inside(mover, still, depth, collision)
+
+
+def _insides(models: Sequence[Model],
+             only: str) -> Iterator[Tuple[str, str, float, Collision]]:
+    """Links that start in another model: the link, the one that it is in, metres, its shape."""
     cores: List[_Core] = []
     planes: List[Tuple[str, str, Pose, Plane]] = []
     movers: List[Tuple[str, str, Collision, Pose]] = []
@@ -261,7 +287,8 @@ def _is_along_axes(pose: Pose) -> bool:
 
 
 def _in_planes(planes: Sequence[Tuple[str, str, Pose, Plane]],
-               movers: Sequence[Tuple[str, str, Collision, Pose]], only: str) -> Iterator[Fault]:
+               movers: Sequence[Tuple[str, str, Collision, Pose]],
+               only: str) -> Iterator[Tuple[str, str, float, Collision]]:
     for ground_model, ground, at, plane in planes:
         normal = rotate(at.orientation, scale(plane.normal, 1 / norm(plane.normal)))
         level = dot(normal, at.position)
@@ -270,7 +297,7 @@ def _in_planes(planes: Sequence[Tuple[str, str, Pose, Plane]],
                 continue
             depth = level - dot(normal, pose.position) + _support(collision.geometry, pose, normal)
             if depth > DEEPEST_M:
-                yield _inside(name, ground, depth, collision)
+                yield name, ground, depth, collision
 
 
 def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
@@ -290,7 +317,8 @@ def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
     return abs(n[0]) * half[0] + abs(n[1]) * half[1] + abs(n[2]) * half[2]
 
 
-def _in_each_other(cores: List[_Core], only: str) -> Iterator[Fault]:
+def _in_each_other(cores: List[_Core],
+                   only: str) -> Iterator[Tuple[str, str, float, Collision]]:
     """Overlapping pairs, by sweep and prune along x."""
     cores = sorted(cores, key=lambda core: core.low[0])
     for n, one in enumerate(cores):
@@ -305,7 +333,7 @@ def _in_each_other(cores: List[_Core], only: str) -> Iterator[Fault]:
                         for i in range(3))
             if depth > DEEPEST_M and _may_touch(one.collision, other.collision):
                 mover, still = (other, one) if one.static else (one, other)
-                yield _inside(mover.link, still.link, depth, mover.collision)
+                yield mover.link, still.link, depth, mover.collision
 
 
 def _may_touch(one: Collision, other: Collision) -> bool:

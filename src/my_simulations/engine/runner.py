@@ -50,8 +50,10 @@ _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, whil
 _SHARE_LATE = 0.02       # the same while late or unthrottled
 _MOST_OWED_S = 0.01      # or the last read-out, if that took longer: what it costs is made up for
 _HEAVY_S = 0.0003        # a late world with steps like this lets clients that ask in a row go first
-_PATIENCE_S = 0.0015     # how long it waits for the next of a row of commands
+_PATIENCE_S = 0.0015     # how long it waits for a second command
+_MOST_PATIENCE_S = 0.005 # and for the third and further ones: a step's time, but no longer
 _PATIENT_SHARE = 0.5     # of the wall time at most
+_LONGEST_ROW_S = 0.02    # without a step in between
 
 
 class CommandChannel(Protocol):
@@ -258,14 +260,21 @@ class Runner:
         steps of a world that is late anyway.
         """
         now = time.perf_counter()
-        self._patience = min(0.02, self._patience + (now - self._patient_at) * _PATIENT_SHARE)
+        between = now - self._patient_at
+        self._patience = min(_LONGEST_ROW_S, self._patience
+                             + between * _PATIENT_SHARE / (1.0 - _PATIENT_SHARE))
         self._patient_at = now
         if self._step_cost < _HEAVY_S:
             return
-        while self._patience > 0.0 and self._running and self._serve(_PATIENCE_S):
+        wait = _PATIENCE_S
+        came = True
+        while came and self._patience > 0.0 and self._running:
+            came = self._serve(wait)
             spent = time.perf_counter() - now
             self._patience -= spent
             now += spent
+            # A client that sends the next one at once is worth a step's time.
+            wait = max(_PATIENCE_S, min(_MOST_PATIENCE_S, self._step_cost))
         self._patient_at = time.perf_counter()
 
     def _free_burst(self) -> None:

@@ -9,7 +9,7 @@ import math
 from typing import Optional, Tuple
 
 from .commands import JointServo, PidGains
-from .spline import Coefficients, Spline
+from .spline import Spline
 
 _TWO_PI = 2.0 * math.pi
 FOLLOW = 0.2
@@ -48,7 +48,11 @@ class Pid:
             return self._p * error + self._d * slope
         integral = self.integral = self.integral + error * dt
         if self._winds_up:
-            term = max(self._least, min(self._most, i * integral))
+            term = i * integral
+            if term > self._most:
+                term = self._most
+            elif term < self._least:
+                term = self._least
         else:
             one, other = self._least / i, self._most / i
             integral = self.integral = max(min(one, other), min(max(one, other), integral))
@@ -79,12 +83,11 @@ class ServoLaw:
         self.servo = servo
         self._seen_step, self._seen = -1, (0.0, 0.0)
         self._begin, self._end = math.inf, -math.inf
-        self._coefficients: Coefficients = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self._coefficients = (0.0,) * 10   # of the position, c0 to c5, and of its rate, 2 c2 to 5 c5
         self.gives_effort = servo.drive == "effort" or self._inner is not None
-        # Most loops: a fixed target, an effort, and limits that are seldom reached.
-        self._plain = (servo.spline is None and servo.drive == "effort" and servo.soft is None
-                       and self._outer is not None and not servo.of_rate and not servo.wraps
-                       and not servo.by_rates and not servo.target_rate * servo.feedforward)
+        # Most loops: an effort that follows a position, and limits that are seldom reached.
+        self._plain = (servo.drive == "effort" and servo.soft is None
+                       and self._outer is not None and not servo.of_rate and not servo.wraps)
         self.steady = (servo.spline is None and servo.gains is None and self._inner is None
                        and (servo.drive != "effort" or servo.target == 0.0)
                        and servo.soft is None)
@@ -104,22 +107,18 @@ class ServoLaw:
     def advance(self, position: float, rate: float, step: int) -> float:
         """The effort or rate for the step that begins at count `step`."""
         servo, dt = self.servo, self._dt
-        outer = self._outer
-        if self._plain and outer is not None:
-            command = outer.command(servo.target - position, dt)
-            most = servo.most_effort
-            if servo.lower <= position <= servo.upper and (
-                    -servo.most_rate <= rate <= servo.most_rate):
-                self.last = -most if command < -most else most if command > most else command
-            else:
-                self.last = self._effort(command, position, rate)
-            return self.last
         if servo.spline is None:
             wanted, wanted_rate = servo.target, servo.target_rate
         else:
             wanted, wanted_rate = self._on_spline(servo.spline, step)
-        if self._outer is None:
+        outer = self._outer
+        if outer is None:
             command = wanted
+        elif self._plain:
+            command = outer.command(wanted - position, dt,
+                                    wanted_rate - rate if servo.by_rates else None)
+            if servo.feedforward:
+                command += servo.feedforward * wanted_rate
         else:
             if servo.of_rate:
                 error = wanted - rate
@@ -127,7 +126,7 @@ class ServoLaw:
                 error = wanted - position
                 if servo.wraps:
                     error = shortest(error)
-            command = servo.feedforward * wanted_rate + self._outer.command(
+            command = servo.feedforward * wanted_rate + outer.command(
                 error, dt, wanted_rate - rate if servo.by_rates else None)
         if servo.drive == "effort":
             most = servo.most_effort
@@ -146,22 +145,24 @@ class ServoLaw:
         """Position and rate at a step count, without a search within one segment."""
         if step == self._seen_step:
             return self._seen
-        time = (step - spline.origin) * self._dt
-        if not self._begin <= time < self._end:
+        time, begin = (step - spline.origin) * self._dt, self._begin
+        if not begin <= time < self._end:
             index = spline.index(time)
             segment = spline.segments[index]
             following = spline.segments[index + 1:index + 2]
             self._begin, self._end = segment.start, min(
                 [segment.end, *(one.start for one in following)])
-            self._coefficients = segment.coefficients
+            self._coefficients = (*segment.coefficients, *(
+                power * one for power, one in enumerate(segment.coefficients[2:], 2)))
             position, rate, _ = spline.at(time)
         else:
-            c0, c1, c2, c3, c4, c5 = self._coefficients
-            t = time - self._begin
+            c0, c1, c2, c3, c4, c5, d2, d3, d4, d5 = self._coefficients
+            t = time - begin
             position = ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0
-            rate = (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t + c1
-        self._seen_step, self._seen = step, (position, rate)
-        return self._seen
+            rate = (((d5 * t + d4) * t + d3) * t + d2) * t + c1
+        self._seen_step = step
+        seen = self._seen = position, rate
+        return seen
 
     def _effort(self, effort: float, position: float, rate: float) -> float:
         servo = self.servo
@@ -190,14 +191,20 @@ class ServoLaw:
         return max(-servo.most_effort, min(servo.most_effort,
                                            self._inner.command(command - rate, self._dt)))
 
+    def _within(self, position: float, least: float, most: float) -> float:
+        """A position within the joint's limits and these."""
+        lower, upper = self.servo.lower, self.servo.upper
+        if lower <= position <= upper and least <= position <= most:
+            return position   # nearly always: four calls less
+        return max(lower, least, min(upper, most, position))
+
     def _position(self, command: float, position: float, step: int) -> float:
         servo, dt = self.servo, self._dt
         before = position if self._before is None else self._before
         slow, fast = -servo.most_rate, servo.most_rate
         if servo.soft is not None:
             slow, fast = servo.soft.rates(before, servo.most_rate)
-        command = max(servo.lower, before + slow * dt, min(servo.upper, before + fast * dt,
-                                                           command))
+        command = self._within(command, before + slow * dt, before + fast * dt)
         if self._inner is not None:
             self._before = command
             error = command - position
@@ -209,8 +216,7 @@ class ServoLaw:
         if servo.spline is not None:
             self._before = command
             ahead = self._on_spline(servo.spline, step + 1)[0]
-            ahead = max(servo.lower, command + slow * dt, min(servo.upper, command + fast * dt,
-                                                              ahead))
+            ahead = self._within(ahead, command + slow * dt, command + fast * dt)
         else:
             self._before = None
         return (FOLLOW * (command - position) + ahead - command) / dt

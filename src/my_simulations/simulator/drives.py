@@ -154,13 +154,12 @@ class Drives:
 
     def forget_entity(self, entity: Entity) -> None:
         """Remove the drives of a model that was deleted from the engine."""
-        self._motors = {row: motor for row, motor in self._motors.items()
-                        if not entity.has_joint_row(row)}
         self._planar.pop(entity.model_id, None)
-        self._servos = {row: servo for row, servo in self._servos.items()
-                        if not entity.has_joint_row(row)}
-        self._slips = {row: wheel for row, wheel in self._slips.items()
-                       if not entity.has_link_row(row)}
+        for row in entity.joint_rows:
+            self._motors.pop(row, None)
+            self._servos.pop(row, None)
+        for row in entity.link_ids:
+            self._slips.pop(row, None)
 
     def forget_all(self) -> None:
         """Remove all drives, after the engine was cleared."""

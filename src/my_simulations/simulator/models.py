@@ -64,6 +64,23 @@ class Models:
         with self._session.registry_lock:
             return name in self._session.registry
 
+    @property
+    def count(self) -> int:
+        """How many top-level models there are."""
+        with self._session.registry_lock:
+            return len(self._session.registry)
+
+    @property
+    def have_plugins(self) -> bool:
+        """Whether any model has a plugin, without looking at each."""
+        with self._session.registry_lock:
+            return self._session.registry.have_plugins
+
+    def entity(self, name: str) -> Entity:
+        """A model with its rows and names. Raises UnknownEntityError."""
+        with self._session.registry_lock:
+            return self._session.registry.model(name)
+
     def get(self, name: str) -> Model:
         """The flattened description of a model. Raises UnknownEntityError."""
         with self._session.registry_lock:
@@ -203,7 +220,7 @@ class Models:
         wanted = Pose(wanted.position, normalised(wanted.orientation))
         if anchor is None:
             return wanted
-        return compose(anchor.state(self._session.snapshot())[0], wanted)
+        return compose(anchor.newest(self._session.ring)[0], wanted)
 
     def _forget(self, entity: Entity) -> None:
         """Release the rows, drives and wrenches of an entity that is not in the engine."""

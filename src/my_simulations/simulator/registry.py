@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import (
     Callable,
     Dict,
@@ -16,12 +17,14 @@ from typing import (
     Tuple,
 )
 
+from ..description.advice import reach_of
 from ..description.light import Light
 from ..description.model import Joint, Model
+from ..description.model_plugins import has_plugins
 from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
 from ..engine.commands import LinkState, ModelState
-from ..engine.ring import Snapshot
+from ..engine.ring import RingReader, Snapshot
 from ..engine.ring_rows import AXES, axis_rows, row_name
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
@@ -75,12 +78,18 @@ class Entity:
         self.pose = self.initial_pose
         self.link_names = [link.name for link in self.model.links]
         self.joint_names = [row.name for row in axis_rows(self.model)]
+        self.has_plugins = has_plugins(self.model)
         self.canonical = 0
         if self.model.canonical_link in self.link_names:
             self.canonical = self.link_names.index(self.model.canonical_link)
         self.link_from_model = IDENTITY
         if self.model.links:
             self.link_from_model = inverse(self.model.links[self.canonical].pose)
+
+    @cached_property
+    def reaches(self) -> List[float]:
+        """Of each link the radius about its origin that contains its shapes (`reach_of`), m."""
+        return list(map(reach_of, self.model.links))
 
     @property
     def canonical_row(self) -> int:
@@ -91,6 +100,11 @@ class Entity:
     def link_ids(self) -> range:
         """Ids of its links in feeds of poses and states, in the order of `link_names`."""
         return range(self.first_link_row, self.first_link_row + len(self.link_names))
+
+    @property
+    def joint_rows(self) -> range:
+        """Rows of its joint axes, in the order of `joint_names`."""
+        return range(self.first_joint_row, self.first_joint_row + len(self.joint_names))
 
     def link_state(self, snapshot: Snapshot, link: str) -> Tuple[Pose, Twist]:
         """World pose and twist of a link by its name in the model. Raises ValueError."""
@@ -152,6 +166,13 @@ class ReferenceFrame:
         pose, twist = snapshot.link(self.row)
         return compose(pose, self.offset), twist
 
+    def newest(self, ring: RingReader) -> Tuple[Pose, Twist]:
+        """As `state`, in the newest snapshot, of which no more is copied than that."""
+        if self.row < 0:
+            return self.offset, STILL
+        pose, twist = ring.link(self.row)
+        return compose(pose, self.offset), twist
+
 
 class Registry:
     """The entities in load order. Not thread safe: its owner locks.
@@ -168,11 +189,21 @@ class Registry:
         self._on_ambiguous_name = on_ambiguous_name
         self._told: Set[Tuple[str, str]] = set()
         self._entities: Dict[str, Entity] = {}
-        self._plain_links: Dict[str, List[Tuple[Entity, int]]] = {}
+        # By model id, in the order of models: one that goes costs no look at the others.
+        self._plain_links: Dict[str, Dict[int, Tuple[Entity, int]]] = {}
+        self._with_plugins = 0
         self.revision = 0
 
     def __contains__(self, name: str) -> bool:
         return name in self._entities
+
+    def __len__(self) -> int:
+        return len(self._entities)
+
+    @property
+    def have_plugins(self) -> bool:
+        """Whether any model has a plugin."""
+        return self._with_plugins > 0
 
     def names(self) -> List[str]:
         """Model names, in order."""
@@ -187,8 +218,7 @@ class Registry:
         if entity.model.name in self._entities:
             self.remove(entity.model.name)
         self._entities[entity.model.name] = entity
-        for index, link in enumerate(entity.link_names):
-            self._plain_links.setdefault(link, []).append((entity, index))
+        self._know_parts(entity)
         if slot is not None:
             self._insert(entity, slot)
         self.revision += 1
@@ -198,14 +228,22 @@ class Registry:
         self._entities = {(new if entity is old else entity).model.name:
                           new if entity is old else entity
                           for entity in self._entities.values()}
-        for link in old.link_names:
-            self._plain_links[link] = [pair for pair in self._plain_links[link]
-                                       if pair[0] is not old]
-        for index, link in enumerate(new.link_names):
-            self._plain_links.setdefault(link, []).append((new, index))
-        self._plain_links = {link: found for link, found in self._plain_links.items() if found}
+        self._forget_parts(old)
+        self._know_parts(new)
         self._sort_links(new)
         self.revision += 1
+
+    def _know_parts(self, entity: Entity) -> None:
+        for index, link in enumerate(entity.link_names):
+            self._plain_links.setdefault(link, {})[entity.model_id] = entity, index
+        self._with_plugins += entity.has_plugins
+
+    def _forget_parts(self, entity: Entity) -> None:
+        for link in entity.link_names:
+            del self._plain_links[link][entity.model_id]
+            if not self._plain_links[link]:
+                del self._plain_links[link]
+        self._with_plugins -= entity.has_plugins
 
     def _insert(self, entity: Entity, slot: OrderSlot) -> None:
         name = entity.model.name
@@ -218,17 +256,14 @@ class Registry:
         """An unscoped link name refers to the first model in the order."""
         places = {name: place for place, name in enumerate(self._entities)}
         for link in moved.link_names:
-            self._plain_links[link].sort(key=lambda pair: places[pair[0].model.name])
+            self._plain_links[link] = dict(sorted(
+                self._plain_links[link].items(),
+                key=lambda pair: places[pair[1][0].model.name]))
 
     def remove(self, name: str) -> Entity:
         """Remove a model."""
         entity = self._entities.pop(name)
-        for link in entity.link_names:
-            left = [pair for pair in self._plain_links[link] if pair[0] is not entity]
-            if left:
-                self._plain_links[link] = left
-            else:
-                del self._plain_links[link]
+        self._forget_parts(entity)
         self.revision += 1
         return entity
 
@@ -318,9 +353,9 @@ class Registry:
         found = self._plain_links.get(name)
         if found is None:
             return None
-        if len(found) > 1:
-            self._tell("link", name, [entity.model.name for entity, _ in found])
-        return found[0]
+        if len(found) > 1 and ("link", name) not in self._told:
+            self._tell("link", name, [entity.model.name for entity, _ in found.values()])
+        return next(iter(found.values()))
 
     def _joint_taken(self, name: str, taken: Entity) -> None:
         """Log once if the plain name of a joint exists in several models."""

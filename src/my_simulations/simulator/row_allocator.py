@@ -1,6 +1,7 @@
 """Allocation of rows in the tables of the ring."""
 from __future__ import annotations
 
+from bisect import bisect
 from typing import List, Optional, Tuple
 
 
@@ -29,12 +30,12 @@ class RowAllocator:
         """Free `count` rows from `start` on."""
         if count == 0:
             return
-        self._free.append((start, count))
-        self._free.sort()
-        merged: List[Tuple[int, int]] = []
-        for at, length in self._free:
-            if merged and merged[-1][0] + merged[-1][1] == at:
-                merged[-1] = (merged[-1][0], merged[-1][1] + length)
-            else:
-                merged.append((at, length))
-        self._free = merged
+        free = self._free
+        n = bisect(free, (start, count))
+        if n < len(free) and start + count == free[n][0]:
+            count += free.pop(n)[1]
+        if n and sum(free[n - 1]) == start:
+            n -= 1
+            start, more = free.pop(n)
+            count += more
+        free.insert(n, (start, count))

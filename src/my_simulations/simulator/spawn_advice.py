@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import List, Optional
+from typing import Callable, List, Optional, Sequence, Tuple
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
-from ..engine.ring import Snapshot
+from ..engine.ring import LINK_WIDTH, Snapshot
 from ..errors import Issue
 from ..formats.loading_advice import advice_issues
-from ..geometry import IDENTITY
+from ..geometry import IDENTITY, Pose, Twist
 from .registry import Entity
 from .simulator import Simulator
 
@@ -17,19 +17,39 @@ NEIGHBOURS = 64
 """Most models for which overlaps are checked, so that spawning stays fast."""
 
 
-def _as_it_stands(entity: Entity, snapshot: Snapshot) -> Model:
+def _as_it_stands(entity: Entity, state: Callable[[int], Tuple[Pose, Twist]]) -> Model:
     """The model with its links where they are: joints may have been put elsewhere, or have moved
     since, and of a robot that has folded its legs only the base is lower.
+
+    `state` gives that of a row.
     """
-    links = [replace(link, pose=snapshot.link(entity.first_link_row + n)[0])
+    links = [replace(link, pose=state(entity.first_link_row + n)[0])
              for n, link in enumerate(entity.model.links)]
     return replace(entity.model, pose=IDENTITY, links=links)
 
 
+def _near(new: Entity, entities: Sequence[Entity], snapshot: Snapshot) -> List[Entity]:
+    """The new entity, and those of which a link may overlap one of its links."""
+    values = snapshot.links
+    spheres = [(*values[at:at + 3], reach) for at, reach in _placed(new)]
+    return [entity for entity in entities if entity is new or any(
+        (values[at] - x) ** 2 + (values[at + 1] - y) ** 2 + (values[at + 2] - z) ** 2
+        <= (reach + mine) ** 2
+        for at, reach in _placed(entity) for x, y, z, mine in spheres)]
+
+
+def _placed(entity: Entity) -> List[Tuple[int, float]]:
+    """Of each link where its row begins, and its reach."""
+    return [((entity.first_link_row + n) * LINK_WIDTH, reach)
+            for n, reach in enumerate(entity.reaches)]
+
+
 def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable]) -> List[Issue]:
     """Warnings about implausible inertia, thin shapes, and overlaps with other models."""
-    entities, snapshot = simulator.states.latest()
-    if len(entities) > NEIGHBOURS:
-        entities = [entity for entity in entities if entity.model.name == name]
-    models = [_as_it_stands(entity, snapshot) for entity in entities]
+    if simulator.models.count > NEIGHBOURS:
+        models = [_as_it_stands(simulator.models.entity(name), simulator.states.link_at)]
+    else:
+        entities, snapshot = simulator.states.latest()
+        models = [_as_it_stands(entity, snapshot.link) for new in entities
+                  if new.model.name == name for entity in _near(new, entities, snapshot)]
     return advice_issues(models, {name: meshes or {}}, only=name)

@@ -115,6 +115,15 @@ def test_boxes_in_each_other_are_reported_and_neighbours_are_not(found, pose, in
     assert [issue.code for issue in issues] == ["starts-inside"] * inside
 
 
+def test_a_link_with_two_shapes_in_the_ground_is_reported_once_with_the_deeper(found):
+    shape = "<geometry><box><size>1 1 1</size></box></geometry></collision>"
+    link = solid("b", "0 0 0.4 0 0 0").replace(
+        "</link>", f'<collision name="low"><pose>0 0 -0.1 0 0 0</pose>{shape}</link>')
+    (issue,) = found(GROUND, link)
+    assert issue.code == "starts-inside" and "200 mm" in issue.message
+    assert issue.xpath == "/sdf/world/model[2]/link/collision[2]"
+
+
 def test_spheres_whose_boxes_overlap_may_still_be_apart(found):
     ball = "<sphere><radius>0.5</radius></sphere>"
     assert found(solid("a", "0 0 0.5 0 0 0", ball), solid("b", "0.8 0.8 0.5 0 0 0", ball)) == []

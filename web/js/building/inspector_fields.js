@@ -2,9 +2,9 @@
 import {openingFault} from './plan_check.js';
 import {distance} from './plane_geometry.js';
 import {
-  attached, itemOf, moveEnd, outerLength, setLevelHeight, setOuterLength, update, wallLength,
-  withLevel,
+  attached, itemOf, outerLength, setLevelHeight, update, wallLength, withLevel,
 } from './plan.js';
+import {moveEnd, setOuterLength} from './plan_moves.js';
 import {outlineOf} from './rooms.js';
 /** @import {AnyItem, Kind, Ref} from './plan.js' */
 /** @import {Floor, Level, Opening, Plan, Roof} from '../protocol.js' */

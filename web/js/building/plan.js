@@ -10,7 +10,7 @@
  * @typedef {'walls'|'stairs'|'floors'|OpeningKind} Kind
  * @typedef {{kind: Kind, id: number}} Ref
  */
-import {direction, distance, minus, plus, polar, same, tidy, tidyPoint} from './plane_geometry.js';
+import {direction, distance, polar, tidy, tidyPoint} from './plane_geometry.js';
 import {outlineOf} from './rooms.js';
 /** @import {Floor, Level, Opening, Plan, Stairs, Wall} from '../protocol.js' */
 
@@ -22,8 +22,6 @@ import {outlineOf} from './rooms.js';
  * Any item of a level; which fields it has, its kind tells.
  * @typedef {Wall|Opening|Stairs|Floor} AnyItem
  */
-
-/** The ends of a wall that move. @typedef {{start?: Point, end?: Point}} Ends */
 
 const FORMAT = 1;
 const WHITE = '#ffffff';
@@ -210,136 +208,13 @@ export function remove(plan, at, refs) {
  * @param {number} at
  * @param {string} kind
  */
-function refit(plan, at, kind) {
+export function refit(plan, at, kind) {
   const level = plan.levels[at];
   if (kind !== 'walls' || !level.floors.some((floor) => floor.fit === 'walls')) return plan;
   const outline = outlineOf(level.walls);
   if (!outline) return plan;
   const floors = level.floors.map((floor) => floor.fit === 'walls' ? {...floor, outline} : floor);
   return withLevel(plan, at, {floors});
-}
-
-// ---- walls
-
-/** @type {readonly ('start'|'end')[]} */
-const ENDS = Object.freeze(['start', 'end']);
-
-/**
- * Changes the ends of several walls at once; openings keep their distance from the end that stays.
- * @param {Plan} plan
- * @param {number} at
- * @param {Map<number, Ends>} ends
- */
-function setEnds(plan, at, ends) {
-  const level = plan.levels[at];
-  /** @type {Map<number, number>} */
-  const shift = new Map();
-  const walls = level.walls.map((wall) => {
-    const moved = ends.get(wall.id);
-    if (!moved) return wall;
-    const made = {...wall, ...moved};
-    const stays = !moved.start || (moved.end && same(minus(moved.start, wall.start), minus(moved.end, wall.end)));
-    if (!stays) shift.set(wall.id, wallLength(made) - wallLength(wall));
-    return made;
-  });
-  /** @param {Opening[]} list */
-  const slid = (list) => list.map((opening) => {
-    const by = shift.get(opening.wall ?? -1);
-    return by ? {...opening, along: tidy(opening.along + by)} : opening;
-  });
-  const changes = {walls, windows: slid(level.windows), doors: slid(level.doors)};
-  return refit(withLevel(plan, at, changes), at, 'walls');
-}
-
-/**
- * The ends of walls that lie on a point: [wall, 'start'|'end'].
- * @param {Level} level
- * @param {Point} point
- */
-function endsAt(level, point) {
-  return level.walls.flatMap((wall) => ENDS.filter((end) => same(wall[end], point))
-    .map((end) => /** @type {[Wall, 'start'|'end']} */ ([wall, end])));
-}
-
-/**
- * Moves the end of a wall, and the ends linked with it unless `alone`.
- * @param {Plan} plan
- * @param {number} at
- * @param {number} id
- * @param {'start'|'end'} end
- * @param {Point} point
- */
-export function moveEnd(plan, at, id, end, point, {alone = false} = {}) {
-  const level = plan.levels[at];
-  const wall = level.walls.find((one) => one.id === id);
-  /** @type {Map<number, Ends>} */
-  const ends = new Map([[id, {[end]: tidyPoint(point)}]]);
-  if (!alone && wall) {
-    for (const [other, its] of endsAt(level, wall[end])) {
-      ends.set(other.id, {...ends.get(other.id), [its]: tidyPoint(point)});
-    }
-  }
-  return setEnds(plan, at, ends);
-}
-
-/**
- * Moves walls as they are; what is linked with them is stretched.
- * @param {Plan} plan
- * @param {number} at
- * @param {number[]} ids
- * @param {Point} by
- */
-function moveWalls(plan, at, ids, by) {
-  const level = plan.levels[at];
-  /** @type {Map<number, Ends>} */
-  const ends = new Map();
-  for (const wall of level.walls.filter(({id}) => ids.includes(id))) {
-    for (const end of ENDS) {
-      for (const [other, its] of endsAt(level, wall[end])) {
-        ends.set(other.id, {...ends.get(other.id), [its]: tidyPoint(plus(wall[end], by))});
-      }
-    }
-  }
-  return setEnds(plan, at, ends);
-}
-
-/**
- * Gives a wall an outer length, by moving its end.
- * @param {Plan} plan
- * @param {number} at
- * @param {number} id
- * @param {number} length
- */
-export function setOuterLength(plan, at, id, length) {
-  const wall = plan.levels[at].walls.find((one) => one.id === id);
-  if (!wall) return plan;
-  const inner = Math.max(length - wall.thickness, 0.01);
-  return moveEnd(plan, at, id, 'end', polar(wall.start, wallYaw(wall), inner));
-}
-
-/**
- * Moves items; walls stretch what is linked, openings in walls slide along them.
- * @param {Plan} plan
- * @param {number} at
- * @param {Ref[]} refs
- * @param {Point} by
- */
-export function moveItems(plan, at, refs, by) {
-  const walls = refs.filter(({kind}) => kind === 'walls').map(({id}) => id);
-  let made = walls.length ? moveWalls(plan, at, walls, by) : plan;
-  for (const ref of refs) {
-    const item = itemOf(plan, at, ref);
-    if (!item || 'start' in item) continue;
-    if ('outline' in item) {
-      /** @param {Point[]} loop */
-      const shifted = (loop) => loop.map((point) => tidyPoint(plus(point, by)));
-      made = update(made, at, ref,
-        {outline: shifted(item.outline), holes: item.holes.map(shifted), fit: 'none'});
-    } else if (!('wall' in item) || item.wall === null) {
-      made = update(made, at, ref, {position: tidyPoint(plus(item.position, by))});
-    }
-  }
-  return made;
 }
 
 // ---- openings

@@ -2,9 +2,8 @@
 import {openingTrouble} from './plan_check.js';
 import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './plane_geometry.js';
 import {hitOf, itemsWithin, wallNear} from './hit_test.js';
-import {
-  attached, detached, itemOf, moveEnd, moveItems, placeOf, update, wallYaw,
-} from './plan.js';
+import {attached, detached, itemOf, placeOf, update, wallYaw} from './plan.js';
+import {moveEnd, moveItems} from './plan_moves.js';
 import {NAMES} from './drawing_session.js';
 import {SNAP_ANGLE, snapPolar} from './wall_snap.js';
 import {Tool} from './tool.js';

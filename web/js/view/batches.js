@@ -1,9 +1,11 @@
 /**
  * Many bodies in few draws: what has equal geometry and material becomes one instanced mesh, from a
- * handful on; fewer are meshes of their own, which are left out when they are not in sight.
+ * handful on, or one merged mesh where a processor draws; fewer are meshes of their own, which are
+ * left out when they are not in sight.
  */
 import {InstancedMesh, Mesh, DynamicDrawUsage} from 'three';
 import {CASTERS} from './contact_shadows.js';
+import {MergedMesh, mergeable} from './merged_mesh.js';
 /** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
 /** @import {Owner} from './model_views.js' */
 
@@ -31,23 +33,25 @@ class Batch {
   items = [];
   /** @type {Mesh[]} */
   #meshes = [];
-  /** @type {InstancedMesh|null} */
-  #instanced = null;
+  /** All of them in one. @type {InstancedMesh|MergedMesh|null} */
+  #crowd = null;
+  #capacity = 0;
 
-  /** @param {Object3D} scene @param {Item} sample */
-  constructor(scene, sample) {
+  /** @param {Object3D} scene @param {Item} sample @param {boolean} merging */
+  constructor(scene, sample, merging) {
     this.scene = scene;
     this.sample = sample;
+    this.merging = merging;
   }
 
   /** @param {Item} item */
   add(item) {
     item.slot = this.items.length;
     this.items.push(item);
-    if (this.#instanced && this.items.length <= this.#instanced.instanceMatrix.count) {
-      this.#instanced.count = this.items.length;
+    if (this.#crowd && this.items.length <= this.#capacity) {
+      this.#count();
       this.move(item);
-    } else if (!this.#instanced && this.items.length <= HANDFUL) {
+    } else if (!this.#crowd && this.items.length <= HANDFUL) {
       const mesh = new Mesh(item.geometry, item.material);
       mesh.matrixAutoUpdate = false;
       this.#show(mesh);
@@ -64,16 +68,16 @@ class Batch {
       this.items[item.slot] = last;
       this.move(last);
     }
-    if (this.#instanced) this.#instanced.count = this.items.length;
+    if (this.#crowd) this.#count();
     else this.scene.remove(...this.#meshes.splice(-1));
     if (!this.items.length) this.#drop();
   }
 
   /** @param {Item} item */
   move({slot, matrix}) {
-    if (this.#instanced) {
-      matrix.toArray(this.#instanced.instanceMatrix.array, slot * 16);
-      this.#instanced.instanceMatrix.needsUpdate = true;
+    if (this.#crowd) {
+      this.#crowd.setMatrixAt(slot, matrix);
+      if (this.#crowd instanceof InstancedMesh) this.#crowd.instanceMatrix.needsUpdate = true;
     } else {
       const mesh = this.#meshes[slot];
       mesh.matrix.copy(matrix);
@@ -83,17 +87,31 @@ class Batch {
 
   #grow() {
     this.#drop();
-    const capacity = Math.max(16, 2 * this.items.length);
     const {geometry, material} = this.sample;
+    this.#capacity = Math.max(16, 2 * this.items.length);
     const plainer = this.items.length > CROWD ? geometry.userData.plainer : null;
-    const mesh = new InstancedMesh(plainer ?? geometry, material, capacity);
-    mesh.instanceMatrix.setUsage(DynamicDrawUsage);
-    mesh.count = this.items.length;
+    const mesh = this.#mesh(plainer ?? geometry, material);
     // Its bounds would have to follow every body at every frame.
     mesh.frustumCulled = false;
     this.#show(mesh);
-    this.#instanced = mesh;
+    this.#crowd = mesh;
+    this.#count();
     for (const item of this.items) this.move(item);
+  }
+
+  #count() {
+    if (this.#crowd instanceof MergedMesh) this.#crowd.show(this.items.length);
+    else if (this.#crowd) this.#crowd.count = this.items.length;
+  }
+
+  /** @param {BufferGeometry} geometry @param {Material|Material[]} material */
+  #mesh(geometry, material) {
+    if (this.merging && mergeable(geometry, material)) {
+      return new MergedMesh(geometry, [material].flat()[0], this.#capacity);
+    }
+    const mesh = new InstancedMesh(geometry, material, this.#capacity);
+    mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+    return mesh;
   }
 
   /** @param {Mesh} mesh */
@@ -108,10 +126,10 @@ class Batch {
   #drop() {
     for (const mesh of this.#meshes) this.scene.remove(mesh);
     this.#meshes = [];
-    if (this.#instanced) {
-      this.scene.remove(this.#instanced);
-      this.#instanced.dispose();
-      this.#instanced = null;
+    if (this.#crowd) {
+      this.scene.remove(this.#crowd);
+      this.#crowd.dispose();
+      this.#crowd = null;
     }
   }
 }
@@ -124,11 +142,16 @@ export class Batches {
   /** @type {Map<string, Batch>} */
   #batches = new Map();
   #scene;
+  #merging;
   #nextAlone = 0;
 
-  /** @param {Object3D} scene */
-  constructor(scene) {
+  /**
+   * @param {Object3D} scene
+   * @param {{merging?: boolean}} [options]  merging: instances cost as much as draws
+   */
+  constructor(scene, {merging = false} = {}) {
     this.#scene = scene;
+    this.#merging = merging;
   }
 
   /**
@@ -142,7 +165,7 @@ export class Batches {
       renderOrder, alone ? this.#nextAlone++ : ''].join(' ');
     const item = {...wanted, castShadow, receiveShadow, renderOrder, key, slot: 0};
     let batch = this.#batches.get(item.key);
-    if (!batch) this.#batches.set(item.key, batch = new Batch(this.#scene, item));
+    if (!batch) this.#batches.set(item.key, batch = new Batch(this.#scene, item, this.#merging));
     batch.add(item);
     return item;
   }

@@ -22,6 +22,8 @@ const STRENGTH = Math.PI;
 const FROM_ABOVE = new Color(1.04, 1.09, 1.16);
 const FROM_BELOW = new Color(1.0, 0.95, 0.88);
 const SHADOW_SIZE = 2048;
+/** Texels over which the edge of a shadow fades. */
+const SOFT = 3.5;
 /** More shadow maps than this, and simple machines stutter. */
 const MOST_SHADOWS = 4;
 
@@ -116,7 +118,7 @@ function prepareShadow(lamp) {
   lamp.shadow.mapSize.set(size, size);
   lamp.shadow.bias = lamp instanceof DirectionalLight ? -0.0004 : -0.002;
   lamp.shadow.normalBias = 0.02;
-  lamp.shadow.radius = 3.5;
+  lamp.shadow.radius = SOFT;
 }
 
 export class Lights {
@@ -170,6 +172,13 @@ export class Lights {
     this.#focus = {centre: wanted, reach: Math.min(Math.max(reach, 2), 80)};
     for (const entry of this.#entries.values()) this.#aim(entry, entry.light);
     this.#stage.shadowsChanged();
+  }
+
+  /** Lets the edges of shadows be soft, or as sharp as is quickest. @param {boolean} soft */
+  soften(soft) {
+    for (const {lamp} of this.#entries.values()) {
+      if (lamp.shadow) lamp.shadow.radius = soft || !this.#stage.software ? SOFT : 0;
+    }
   }
 
   #rebuild() {

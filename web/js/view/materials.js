@@ -4,6 +4,7 @@ import {
   RepeatWrapping, SRGBColorSpace, TextureLoader, Vector3,
 } from 'three';
 import {colorOf} from './three_convert.js';
+import {frontsFirst} from './fronts_first.js';
 import {patternCanvas} from './builtin_textures.js';
 import {DULLEST, GREY, GROUND, SHININESS} from './palette.js';
 /** @import {LoadingManager, Texture} from 'three' */
@@ -78,7 +79,7 @@ export class Materials {
     const key = `${material.uuid} ${opacity} ${wireframe}`;
     let made = this.#cache.get(key);
     if (!made) {
-      made = material.clone();
+      made = frontsFirst(material.clone());
       Object.assign(made, {wireframe});
       made.opacity = material.opacity * opacity;
       made.transparent = made.opacity < 1 || material.transparent;
@@ -96,6 +97,7 @@ export class Materials {
   #make(material, variant, surface) {
     const made = this.#plain(material, variant, surface);
     if (surface.endless) this.#fadeRim(made);
+    else if (surface.doubleSided) frontsFirst(made);
     return made;
   }
 
@@ -137,11 +139,13 @@ export class Materials {
     };
     if (material?.lighting === false) return new MeshBasicMaterial(common);
     const emissive = colorOf(material?.emissive, [0, 0, 0]);
+    // A picture colours what glows, too, as in Ogre.
+    const glow = {emissive, emissiveMap: emissive.r + emissive.g + emissive.b > 0 ? common.map : null};
     const specular = material?.specular ?? DULL;
     if (Math.max(...specular.slice(0, 3)) <= DULLEST) {
-      return new MeshLambertMaterial({...common, emissive});
+      return new MeshLambertMaterial({...common, ...glow});
     }
-    return new MeshPhongMaterial({...common, shininess: SHININESS, specular: colorOf(specular), emissive});
+    return new MeshPhongMaterial({...common, ...glow, shininess: SHININESS, specular: colorOf(specular)});
   }
 
   /** @param {TextureDocument|null|undefined} texture */

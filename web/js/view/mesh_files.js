@@ -1,9 +1,10 @@
 /** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
 import {faultText} from '../panels/dialog.js';
+import {frontsFirst} from './fronts_first.js';
 import {
   Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
 } from 'three';
-/** @import {BufferGeometry, Material, Matrix4, Object3D} from 'three' */
+/** @import {BufferGeometry, Color, Material, Matrix4, Object3D, Texture} from 'three' */
 /** @import {Geometry} from '../protocol.js' */
 
 /** A file that holds a mesh; `fallback`: the simulator's form of it, STL.
@@ -112,8 +113,10 @@ function meshesOf(root) {
     const materials = Array.isArray(object.material) ? object.material : [object.material];
     for (const material of materials) {
       material.side = DoubleSide;
+      frontsFirst(material);
       if (material.map) material.map.anisotropy = 4;
       showUnseen(material);
+      glowByMap(material);
     }
     found.push(object);
   });
@@ -129,6 +132,14 @@ function showUnseen(material) {
   if (material.opacity > 0) return;
   material.opacity = 1;
   material.transparent = false;
+}
+
+/**
+ * A picture colours what glows, too (Ogre's fixed function): calibration boards glow white under theirs.
+ * @param {Material & {map?: Texture|null, emissive?: Color, emissiveMap?: Texture|null}} material
+ */
+function glowByMap(material) {
+  if (material.emissive && material.map) material.emissiveMap ??= material.map;
 }
 
 /** @param {Object3D} root */

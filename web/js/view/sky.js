@@ -1,7 +1,10 @@
 /** What lies behind everything: the world's sky, or a plain gradient where the world names none. */
-import {BackSide, Color, Mesh, ShaderMaterial, SphereGeometry, Vector3} from 'three';
+import {
+  Color, DoubleSide, LatheGeometry, Mesh, ShaderMaterial, SphereGeometry, Vector2, Vector3,
+} from 'three';
 import {colorOf} from './three_convert.js';
 import {SKY, SKY_COLOR} from './palette.js';
+/** @import {BufferGeometry} from 'three' */
 /** @import {Scene as SceneSettings, Sky} from '../protocol.js' */
 
 /** Gazebo's defaults (SDF spec 1.7, scene): a world that has these has not chosen. */
@@ -40,19 +43,34 @@ ${SKY_COLOR}void main() {
   #include <colorspace_fragment>
 }`;
 
-const GRADIENT_FRAGMENT = `
-varying vec3 ahead;
+/** The gradient is computed at the corners, and on the screen's scale: between them nothing is left to do. */
+const GRADIENT_VERTEX = `
 uniform vec3 zenith, horizon;
-void main() {
-  float height = max(normalize(ahead).z, 0.0);
-  gl_FragColor = vec4(mix(horizon, zenith, pow(height, 0.52)), 1.0);
-  #include <colorspace_fragment>
-}`;
+varying vec3 shown;
+vec3 encoded(vec3 color) { return pow(color, vec3(1.0 / 2.4)) * 1.055 - 0.055; }
+${VERTEX.replace('varying vec3 ahead;', '').replace('ahead = position;',
+    'shown = encoded(mix(horizon, zenith, pow(max(position.z, 0.0), 0.52)));')}`;
 
-/** @param {string} fragmentShader @param {Record<string, {value: unknown}>} uniforms */
-function dome(fragmentShader, uniforms) {
-  const mesh = new Mesh(new SphereGeometry(1, 32, 24), new ShaderMaterial({
-    vertexShader: VERTEX, fragmentShader, uniforms, side: BackSide, depthWrite: false, fog: false}));
+const GRADIENT_FRAGMENT = `
+varying vec3 shown;
+void main() { gl_FragColor = vec4(shown, 1.0); }`;
+
+/** Rings of the gradient, closer together towards the horizon, where it changes most. */
+const RINGS = 20;
+
+function rings() {
+  const levels = Array.from({length: RINGS + 1}, (_, ring) => (ring / RINGS) ** 2);
+  const outline = [-1, ...levels].map((z) => new Vector2(Math.sqrt(1 - z * z), z));
+  return new LatheGeometry(outline, 48).rotateX(Math.PI / 2);
+}
+
+/**
+ * @param {BufferGeometry} geometry  about the eye
+ * @param {{vertexShader: string, fragmentShader: string, uniforms: Record<string, {value: unknown}>}} shaders
+ */
+function dome(geometry, shaders) {
+  const mesh = new Mesh(geometry, new ShaderMaterial({...shaders, side: DoubleSide, depthWrite: false,
+    fog: false}));
   // Last of what is opaque: only what nothing covers is computed.
   mesh.renderOrder = 0.5;
   mesh.frustumCulled = false;
@@ -65,9 +83,10 @@ const DUSK = new Color(SKY.dusk);
 
 /** The sky that a world describes. */
 export class WorldSky {
-  dome = dome(SKY_FRAGMENT, {sun: {value: new Vector3()}, zenith: {value: new Color()},
-    horizon: {value: new Color()}, cloud_color: {value: new Color()}, cover: {value: 0.5},
-    size: {value: 1}, drift: {value: 0}});
+  dome = dome(new SphereGeometry(1, 32, 24), {vertexShader: VERTEX, fragmentShader: SKY_FRAGMENT,
+    uniforms: {sun: {value: new Vector3()}, zenith: {value: new Color()},
+      horizon: {value: new Color()}, cloud_color: {value: new Color()}, cover: {value: 0.5},
+      size: {value: 1}, drift: {value: 0}}});
 
   /** @returns {Color} of what is level with the eye and below */
   get horizon() { return this.dome.material.uniforms.horizon.value; }
@@ -93,6 +112,6 @@ export class WorldSky {
 /** The gradient of the view itself. */
 export class Gradient {
   horizon = new Color(GRADIENT.horizon);
-  dome = dome(GRADIENT_FRAGMENT, {zenith: {value: new Color(GRADIENT.zenith)},
-    horizon: {value: this.horizon}});
+  dome = dome(rings(), {vertexShader: GRADIENT_VERTEX, fragmentShader: GRADIENT_FRAGMENT,
+    uniforms: {zenith: {value: new Color(GRADIENT.zenith)}, horizon: {value: this.horizon}}});
 }

@@ -3,9 +3,10 @@
  * is drawn coarser, and once more in full when they rest.
  */
 import {
-  Color, CustomToneMapping, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene, ShaderChunk,
+  Color, CustomToneMapping, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene,
   SRGBColorSpace, WebGLRenderer, WebGLRenderTarget,
 } from 'three';
+import {keepHighlights, spareProcessor} from './shader_chunks.js';
 /** @import {Camera} from 'three' */
 
 /** Pictures that take longer (ms) make the next ones coarser, quicker than the other finer. */
@@ -36,23 +37,6 @@ function driver() {
   return name;
 }
 
-const NO_TONE_MAPPING = 'vec3 CustomToneMapping( vec3 color ) { return color; }';
-/**
- * Bright lights are pressed together above three quarters, as in Khronos' neutral tone mapping; what is
- * darker keeps the colour that its file says.
- */
-const HIGHLIGHTS = `vec3 CustomToneMapping( vec3 color ) {
-  float peak = max( color.r, max( color.g, color.b ) );
-  if ( peak < 0.76 ) return color;
-  float pressed = 1.0 - 0.0576 / ( peak - 0.52 );
-  return mix( color * pressed / peak, vec3( pressed ), 1.0 - 1.0 / ( 0.15 * ( peak - pressed ) + 1.0 ) );
-}`;
-
-function keepHighlights() {
-  ShaderChunk.tonemapping_pars_fragment =
-    ShaderChunk.tonemapping_pars_fragment.replace(NO_TONE_MAPPING, HIGHLIGHTS);
-}
-
 /** Thrown where the browser offers no WebGL. */
 export class NoWebGL extends Error {}
 
@@ -75,6 +59,8 @@ export class Stage {
    * @type {(renderer: WebGLRenderer, scene: Scene) => void}
    */
   onShadows = () => {};
+  /** Called before a picture with whether it may take its time. @type {(full: boolean) => void} */
+  onQuality = () => {};
   /** Called when the canvas has another size. */
   onResize = () => {};
 
@@ -114,6 +100,7 @@ export class Stage {
     Object.assign(this.canvas.style, {position: 'absolute', inset: '0', width: '100%',
       height: '100%', display: 'block', touchAction: 'none'});
     const software = SOFTWARE.test(driver());
+    this.software = software;
     ({start: this.#quality, best: this.#best} = QUALITY[software ? 'processor' : 'card']);
     try {
       this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: !software,
@@ -122,6 +109,7 @@ export class Stage {
       throw new NoWebGL(error instanceof Error ? error.message : String(error));
     }
     keepHighlights();
+    if (software) spareProcessor();
     this.renderer.toneMapping = CustomToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -297,6 +285,7 @@ export class Stage {
   #draw(time) {
     const {renderer} = this;
     const more = this.onBeforeDraw(time);
+    this.onQuality(this.#quality >= 1);
     const shadows = this.#shadowsWanted &&
       (this.#quality >= 1 || time - this.#shadowed > SLOW_SHADOWS);
     if (shadows) {

@@ -13,6 +13,7 @@ import {standaloneModel} from './standalone_model.js';
 
 const SIZE = 192;
 const FOV = 0.6;
+const BACKGROUND = new Color(0xdfe3e8);
 
 /**
  * @param {Stage} stage  whose canvas is borrowed for one picture
@@ -28,7 +29,7 @@ async function thumbnail(stage, model, stock) {
   const box = new Box3().setFromObject(group);
   if (box.isEmpty()) return null;
   const scene = new Scene();
-  scene.background = new Color(0xdfe3e8);
+  scene.background = BACKGROUND;
   const sun = new DirectionalLight(0xffffff, 2.4);
   sun.position.set(2, -3, 4);
   scene.add(group, sun, new HemisphereLight(0xffffff, 0x9a948c, 2));
@@ -66,7 +67,9 @@ export class Gallery {
     this.#connection = connection;
     // Pictures of models that nobody has asked for say nothing of what they lack.
     const unseen = new Meshes(() => {});
-    this.#stock = {meshes: unseen, materials: new Materials(unseen.manager)};
+    const materials = new Materials(unseen.manager);
+    materials.setDistance(BACKGROUND);
+    this.#stock = {meshes: unseen, materials};
   }
 
   /**

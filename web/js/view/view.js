@@ -131,7 +131,7 @@ class View {
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
     this.#gallery = new Gallery(stage, connection);
-    const batches = new Batches(stage.scene);
+    const batches = new Batches(stage.scene, {merging: stage.software});
     const models = new Models({store, batches, stock, stage});
     const lights = new Lights({stage, store});
     const rig = new CameraRig({stage, store, models});
@@ -208,6 +208,7 @@ class View {
       this.#cube.update(this.#rig.view);
     };
     this.#stage.onResize = () => this.#rig.apply();
+    this.#stage.onQuality = (full) => this.#lights.soften(full);
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
       this.#models.catchUp();

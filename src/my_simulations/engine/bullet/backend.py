@@ -128,7 +128,8 @@ class BulletBackend:
             SetMotors: lambda command: self._motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._planar.set(command.velocities),
             ReadContacts: lambda command: read_contacts(
-                self._bodies, command.limit, self._sliding.friction, self._forces.slip.friction),
+                self._bodies, command.limit, self._sliding.load, self._sliding.friction,
+                self._forces.slip.friction),
             SetWheelSlips: self._set_wheel_slips,
             ReadJointWrenches: self._wrenches.read,
             SetServos: lambda command: self._forces.servos.set(

@@ -1,7 +1,7 @@
 """The contacts of the last step, by link row."""
 from __future__ import annotations
 
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 import pybullet
 
@@ -12,10 +12,12 @@ from .bodies import Body
 
 
 def read_contacts(bodies: Dict[int, Body], limit: int,
+                  load: Callable[[int, int, Vec3], Optional[float]],
                   *more_friction: Callable[[int, int, Vec3], Vec3]) -> Tuple[Contact, ...]:
     """At most `limit` contacts between known links; `bodies` by PyBullet's number.
 
-    `more_friction` tell what acts on a link, of body and index, at a point besides Bullet's.
+    `more_friction` tell what acts on a link, of body and index, at a point besides Bullet's; `load`
+    what presses there, where that is not what Bullet says.
     """
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
@@ -31,8 +33,12 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
             for more in more_friction:
                 friction = add(friction, more(contact[1], contact[3], contact[5]))
                 friction = add(friction, scale(more(contact[2], contact[4], contact[6]), -1))
-            force, friction = ((contact[9], friction) if contact[8] <= 0.0
-                               else (0.0, (0.0, 0.0, 0.0)))
+            force = contact[9] if contact[8] <= 0.0 else 0.0
+            for place in (contact[1], contact[3], contact[5]), (contact[2], contact[4], contact[6]):
+                told = load(*place)
+                force = force if told is None else told
+            if force <= 0.0 and contact[8] > 0.0:
+                friction = (0.0, 0.0, 0.0)
             found.append(Contact(rows[0], rows[1], contact[6], contact[7], -contact[8], force,
                                  friction))
         if len(found) >= limit:

@@ -51,7 +51,8 @@ class GyroscopicRigid:
         """A body is gone."""
         self._moments.pop(body.uid, None)
         self._bodies.pop(body.uid, None)
-        self._fast = [uid for uid in self._fast if uid != body.uid]
+        if body.uid in self._fast:
+            self._fast.remove(body.uid)
         self._free = []
         self._trees.forget(body)
 

@@ -24,6 +24,7 @@ class _Loops:
         self.uid = uid
         self.indices: List[int] = []
         self.efforts: List[Tuple[int, int, ServoLaw]] = []   # place in `indices`, row, law
+        self.advances: List[Callable[[float, float, int], float]] = []   # of these laws
         self.effort_indices: List[int] = []
         self.motors: List[Tuple[int, ServoLaw]] = []
         self.motor_indices: List[int] = []
@@ -34,6 +35,7 @@ class _Loops:
         self.indices.append(axis.index)
         if law.gives_effort:
             self.efforts.append((place, axis.row, law))
+            self.advances.append(law.advance)
             self.effort_indices.append(axis.index)
         else:
             self.motors.append((place, law))
@@ -150,10 +152,10 @@ class JointServos:
                     efforts[row] = efforts.get(row, 0.0) + law.advance(
                         states[place][0], states[place][1], step)
             elif loops.efforts:
-                given = []
-                for place, _, law in loops.efforts:
-                    position, rate, _, _ = states[place]
-                    given.append(law.advance(position, rate, step))
+                own = states if not loops.motors else [states[place] for place, _, _ in
+                                                       loops.efforts]
+                given = [advance(state[0], state[1], step)
+                         for state, advance in zip(own, loops.advances)]
                 pybullet.setJointMotorControlArray(
                     uid, loops.effort_indices, pybullet.TORQUE_CONTROL, forces=given)
             if loops.motors:

@@ -149,7 +149,6 @@ class LandingContacts:
             table.pop(body.uid, None)
         self._moving.discard(body.uid)
         self._order = None
-        self._plan()
 
     def clear(self) -> None:
         """All bodies are gone."""

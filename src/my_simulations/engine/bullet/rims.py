@@ -16,7 +16,7 @@ from ..body_plan import TreeLink
 _DISC = 2e-3       # m, its width
 _SMALLER = 2e-4    # m, the radius of what lies between
 _NARROWEST = 8e-3  # m: a narrower wheel yaws by less than one sees
-_ALIGNED = 1e-6    # of the joint's axis across that of the cylinder
+_ALIGNED = 2e-3      # of the joint's axis across that of the cylinder: files say 1.57, or 3.14159 / 2
 _CENTRED = 1e-5    # m between the two
 
 

@@ -14,13 +14,14 @@ friction back every 64 steps, for as long as that slows it down, and keeps it wh
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Set, Tuple
+from typing import Any, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
 from ...description.model import Link
 from ...geometry import Vec3, dot, norm, scale
 from .bodies import Body, Part
+from .edge_loads import axle_of, carrying, shared
 from .link_states import motion
 from .step_helper import FAR, next_multiple
 from .surface_coefficients import directed
@@ -48,7 +49,9 @@ class _Slide:
     """A link that slides.
 
     Attributes:
+        axle: of a wheel (`edge_loads`).
         forces: of the next step, N, by where they act, world axes.
+        loads: what presses there, N.
         slip: mean velocity across the floor after the last step, m/s.
         trying: Bullet has its friction in this step.
         apart: steps since it last touched something.
@@ -57,7 +60,9 @@ class _Slide:
     part: Part
     mass: float
     slip: Vec3
+    axle: Optional[Vec3]
     forces: Dict[Vec3, Vec3] = field(default_factory=dict)
+    loads: Dict[Vec3, float] = field(default_factory=dict)
     trying: bool = False
     apart: int = 0
 
@@ -123,6 +128,11 @@ class Sliding:
         slide = self._slides.get((uid, index))
         return _NONE if slide is None else slide.forces.get(at, _NONE)
 
+    def load(self, uid: int, index: int, at: Vec3) -> Optional[float]:
+        """What presses on a link that slides at a contact, N; None for another link or point."""
+        slide = self._slides.get((uid, index))
+        return None if slide is None else slide.loads.get(at)
+
     @property
     def busy(self) -> bool:
         """True while a link slides."""
@@ -149,8 +159,8 @@ class Sliding:
                     self._look(uid, parts)
         if self._slides:
             least = norm(gravity)
-            for key, slide in list(self._slides.items()):
-                self._go_on(key, slide, step, dt, least)
+            for key, contacts in self._contacts().items():
+                self._go_on(key, contacts, step, dt, least)
 
     def _look(self, uid: int, parts: Dict[int, Part]) -> None:
         """Find the links of a body that slide."""
@@ -163,18 +173,35 @@ class Sliding:
                 continue
             slip = _slips(uid, index, contacts)[1]
             if norm(slip) > _SLIDES:
-                self._slides[uid, index] = _Slide(parts[index], self._mass[uid], slip)
+                part = parts[index]
+                self._slides[uid, index] = _Slide(part, self._mass[uid], slip,
+                                                  axle_of(part, part.link))
                 pybullet.changeDynamics(uid, index, anisotropicFriction=_OURS)
 
     def _touches_moving(self, contacts: Contacts) -> bool:
         return any(contact[2] not in self._static for contact in contacts)
 
-    def _go_on(self, key: Key, slide: _Slide, step: int, dt: float, gravity: float) -> None:
+    def _contacts(self) -> Dict[Key, Contacts]:
+        """What carries each link that slides; wheels of a body share their load."""
+        found: Dict[Key, Contacts] = {}
+        wheels: Dict[int, List[Tuple[int, Vec3, Contacts]]] = {}
+        for key, slide in self._slides.items():
+            uid, index = key
+            found[key] = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
+            if slide.axle is not None and not slide.trying:
+                wheels.setdefault(uid, []).append((index, slide.axle, found[key]))
+        found = {key: carrying(contacts) for key, contacts in found.items()}
+        for uid, group in wheels.items():
+            if len(group) > 1:
+                for (index, _, _), contacts in zip(group, shared(uid, group)):
+                    found[uid, index] = contacts
+        return found
+
+    def _go_on(self, key: Key, contacts: Contacts, step: int, dt: float, gravity: float) -> None:
         """Work out the forces of the next step, or give the link back to Bullet."""
+        slide = self._slides[key]
         slide.forces = {}
-        contacts = [contact for contact in pybullet.getContactPoints(bodyA=key[0],
-                                                                     linkIndexA=key[1])
-                    if contact[9] > 0.0 and contact[8] <= 0.0]
+        slide.loads = {contact[5]: contact[9] for contact in contacts}
         slide.apart = 0 if contacts else slide.apart + 1
         if slide.apart > _LOST or self._touches_moving(contacts):
             self._give_back(key)

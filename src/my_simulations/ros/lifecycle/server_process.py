@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence
 
 from ...errors import CommandError, InputError, error
 from ...simulator.issue_log import IssueLog
-from . import master_api
+from . import master_api, old_python
 from .abandoned import Abandonment
 from .engine_supply import EngineSupply
 from .launch_info import Launch
@@ -173,6 +173,7 @@ class Server:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._on_signal)
         import_genpy()
+        old_python.prepare()
         self._profile.mark("messages imported")
         loader = WorldLoader(self._options, self._engines, self._log, self._profile,
                              self._settled.set, self._launch.folder)

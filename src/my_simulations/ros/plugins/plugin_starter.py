@@ -2,9 +2,8 @@
 from __future__ import annotations
 
 import threading
-from typing import Any, Callable, Iterator, List, Mapping, Optional
+from typing import Any, Callable, List, Mapping, Optional
 
-from ...description.model import Model
 from ...errors import Issue
 from ...simulator.simulator import Simulator
 
@@ -37,14 +36,14 @@ class PluginStarter:
         with self._lock:
             if self._ended:
                 return
-            revision, entities = self._simulator.models.inventory()
+            models, world = self._simulator.models, self._simulator.world
+            revision = models.revision
             if revision == self._seen:
                 return
             self._seen = revision
             if self._host is None:
-                world = self._simulator.world
-                if not (world.plugins or any(actor.plugins for actor in world.actors)
-                        or any(_has_plugin(entity.model) for entity in entities)):
+                if not (models.have_plugins or world.plugins
+                        or any(actor.plugins for actor in world.actors)):
                     return
                 self._host = self._made()
                 self._host.start()
@@ -75,19 +74,3 @@ class PluginStarter:
 
         return PluginHost(self._simulator, RosGraph(),
                           PluginRegistry(self._extra, PackageIndex().folders), self._log)
-
-
-def _has_plugin(model: Model) -> bool:
-    return any(True for _ in _plugins(model))
-
-
-def _plugins(model: Model) -> Iterator[Any]:
-    yield from model.plugins
-    for link in model.links:
-        for sensor in link.sensors:
-            yield from sensor.plugins
-    for joint in model.joints:
-        for sensor in joint.sensors:
-            yield from sensor.plugins
-    for nested in (model.guide.models if model.guide is not None else model.models):
-        yield from _plugins(nested)

@@ -56,8 +56,8 @@ class Renderer:
         self._smooth = 4 if draws_with_a_card(self._context) else 1
         program = self._context.program
         self._programs = {
-            "range": program(shaders.RANGE_VERTEX, shaders.RANGE_FRAGMENT),
-            "shadow": program(shaders.SHADOW_VERTEX, shaders.SHADOW_FRAGMENT),
+            "range": program(*shaders.plain_programs("range", cut=False)),
+            "shadow": program(*shaders.plain_programs("shadow", cut=False)),
             "sky": program(shaders.SKY_VERTEX, shaders.SKY_FRAGMENT)}
         corners = np.array([-1, -1, 3, -1, -1, 3], dtype=np.float32)
         self._sky = self._context.vertex_array(
@@ -242,8 +242,8 @@ class Renderer:
         texture = self._textures.of(surface)
         name = self._program(shaders.LitKind(
             texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
-            surface.alpha_test > 0.0 and texture is not None and texture.extra,
-            surface.blended, lighting.fog, lighting.kinds if surface.lit else ()), lighting)
+            self._textures.cutting(surface) is not None, surface.blended,
+            lighting.fog, lighting.kinds if surface.lit else ()), lighting)
         program = self._programs[name]
         for uniform, values in batch.uniforms.items():
             if uniform in program:
@@ -309,10 +309,9 @@ class Renderer:
         target.use()
         target.clear(depth=1.0)
         context.enable_only(context.DEPTH_TEST)
-        _set(self._programs["shadow"], "clip", one.clip.T)
         for batch in self._batches.values():
             if batch.casts_shadow:
-                batch.draw("shadow")
+                self._draw_plain(batch, "shadow", one.clip)
 
     # Depth and labels.
 
@@ -323,15 +322,30 @@ class Renderer:
         target.clear(depth=1.0)
         depth, labels = target.color_attachments
         context.enable_only(context.DEPTH_TEST)
-        _set(self._programs["range"], "clip", clip.T)
         for batch in self._batches.values():
-            batch.draw("range")
+            self._draw_plain(batch, "range", clip)
         self._finish()
         away = np.frombuffer(depth.read(alignment=4), np.float32).reshape(spec.height, spec.width)
         link = np.frombuffer(labels.read(alignment=4), np.int32).reshape(spec.height, spec.width)
         empty = away <= 0.0
         return (np.where(empty, np.float32(np.inf), away),
                 np.where(empty, np.int32(NO_ROW), link))
+
+    def _draw_plain(self, batch: Batch, name: str, clip: np.ndarray) -> None:
+        """Draw without light: `name` is shadow or range; holes of pictures are left out."""
+        if not batch.count:
+            return
+        texture = self._textures.cutting(batch.surface)
+        if texture is not None:
+            name, plain = f"{name} cut", name
+            if name not in self._programs:
+                self._programs[name] = self._context.program(
+                    *shaders.plain_programs(plain, cut=True))
+            texture.use(location=0)
+            for uniform in ("alpha_test", "repeats"):
+                self._programs[name][uniform] = batch.uniforms[uniform]
+        _set(self._programs[name], "clip", clip.T)
+        batch.draw(name)
 
     def _target(self, kind: str, width: int, height: int, samples: int) -> Any:
         key = (kind, width, height, samples)

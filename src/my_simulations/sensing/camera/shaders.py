@@ -146,23 +146,35 @@ def _light(k: int, kind: str, shadow: int, shiny: bool) -> str:
     return "  { " + "\n    ".join(lines) + " }\n"
 
 
-SHADOW_VERTEX = _INSTANCE + "void main() { gl_Position = clip * vec4(placed(), 1.0); }"
-SHADOW_FRAGMENT = "#version 330\nvoid main() {}"
+def plain_programs(name: str, cut: bool) -> Tuple[str, str]:
+    """Vertex and fragment program of surfaces without light.
 
-RANGE_VERTEX = _INSTANCE + """
-out float away; flat out int out_link;
-void main() {
-  vec3 place = placed();
-  away = -place.z;
-  out_link = link;
-  gl_Position = clip * vec4(place, 1.0);
-}"""
+    Args:
+        name: shadow (nothing but depth for its map) or range (distance along the axis, link).
+        cut: what of the picture has less alpha than `alpha_test` is left out, as in the colours.
+    """
+    ranged = name == "range"
+    vertex = [_INSTANCE]
+    fragment = ["#version 330\n"]
+    if cut:
+        vertex.append("uniform vec2 repeats; out vec2 out_uv;\n")
+        fragment.append("in vec2 out_uv; uniform sampler2D picture; uniform float alpha_test;\n")
+    if ranged:
+        vertex.append("out float away; flat out int out_link;\n")
+        fragment.append("in float away; flat in int out_link;\n"
+                        "layout(location = 0) out float depth;\n"
+                        "layout(location = 1) out int label;\n")
+    vertex.append("void main() {\n  vec3 place = placed();\n"
+                  "  gl_Position = clip * vec4(place, 1.0);\n")
+    fragment.append("void main() {\n")
+    if cut:
+        vertex.append("  out_uv = uv * repeats;\n")
+        fragment.append("  if (texture(picture, out_uv).a < alpha_test) discard;\n")
+    if ranged:
+        vertex.append("  away = -place.z; out_link = link;\n")
+        fragment.append("  depth = away; label = out_link;\n")
+    return "".join([*vertex, "}"]), "".join([*fragment, "}"])
 
-RANGE_FRAGMENT = """#version 330
-in float away; flat in int out_link;
-layout(location = 0) out float depth;
-layout(location = 1) out int label;
-void main() { depth = away; label = out_link; }"""
 
 SKY_VERTEX = """#version 330
 in vec2 at;

@@ -39,6 +39,16 @@ class Textures:
             self._made[key] = None if pixels is None else self._uploaded(pixels)
         return self._made[key]
 
+    def cutting(self, surface: Surface) -> Any:
+        """The texture where it has parts that the surface leaves out; else None.
+
+        A picture that cannot have any is not read for it.
+        """
+        if surface.alpha_test <= 0.0 or not _may_have_holes(surface.picture):
+            return None
+        texture = self.of(surface)
+        return texture if texture is not None and texture.extra else None
+
     def _uploaded(self, pixels: np.ndarray) -> Any:
         height, width = pixels.shape[:2]
         texture = self._context.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes(),
@@ -48,3 +58,11 @@ class Textures:
         texture.repeat_x = texture.repeat_y = True
         texture.extra = bool((pixels[..., 3] < 255).any())  # what may be seen through
         return texture
+
+
+def _may_have_holes(picture: Any) -> bool:
+    """Whether a path or PIL image may have alpha; drawn patterns have none."""
+    if isinstance(picture, str):
+        return not picture.lower().endswith((".jpg", ".jpeg"))
+    return picture is not None and (picture.mode not in ("RGB", "L", "1")
+                                    or "transparency" in picture.info)

@@ -1,0 +1,186 @@
+"""What pixels show: materials of mesh files, terrains, and many copies of a shape, read back."""
+from __future__ import annotations
+
+import base64
+import io
+import os
+
+import pytest
+from PIL import Image
+from support import Node, wait_for
+
+QUAD = """<source id="p"><float_array id="pa" count="12">-1 0 -1 1 0 -1 1 0 1 -1 0 1</float_array>
+  <technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
+  <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+  <source id="n"><float_array id="na" count="6">0 -1 0 0 1 0</float_array>
+  <technique_common><accessor source="#na" count="2" stride="3"><param name="X" type="float"/>
+  <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+  <source id="t"><float_array id="ta" count="8">0 0 1 0 1 1 0 1</float_array>
+  <technique_common><accessor source="#ta" count="4" stride="2"><param name="S" type="float"/>
+  <param name="T" type="float"/></accessor></technique_common></source>
+  <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>"""
+"""A square of 2 m that stands, and its two normals: the first one looks at who takes the picture."""
+FRONT = "0 0 0 1 0 1 2 0 2 0 0 0 2 0 2 3 0 3"
+BACK = "2 1 2 1 1 1 0 1 0 3 1 3 2 1 2 0 1 0"
+
+
+def collada(effects, sides):
+    """A file with an effect for each side; corners are vertex, normal and picture coordinate."""
+    names = range(len(effects))
+    library = "".join(f"<effect id='e{n}'><profile_COMMON>{effects[n]}</profile_COMMON></effect>"
+                      for n in names)
+    materials = "".join(f"<material id='m{n}'><instance_effect url='#e{n}'/></material>"
+                        for n in names)
+    triangles = "".join(
+        f"<triangles count='2' material='m{n}'><input semantic='VERTEX' source='#v' offset='0'/>"
+        "<input semantic='NORMAL' source='#n' offset='1'/>"
+        f"<input semantic='TEXCOORD' source='#t' offset='2'/><p>{sides[n]}</p></triangles>"
+        for n in names)
+    bound = "".join(f"<instance_material symbol='m{n}' target='#m{n}'/>" for n in names)
+    return ("<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
+            "version='1.4.1'><asset><unit meter='1'/><up_axis>Z_UP</up_axis></asset>"
+            "<library_images><image id='i'><init_from>red.png</init_from></image></library_images>"
+            f"<library_effects>{library}</library_effects>"
+            f"<library_materials>{materials}</library_materials>"
+            f"<library_geometries><geometry id='g'><mesh>{QUAD}{triangles}</mesh></geometry>"
+            "</library_geometries><library_visual_scenes><visual_scene id='s'><node>"
+            f"<instance_geometry url='#g'><bind_material><technique_common>{bound}"
+            "</technique_common></bind_material></instance_geometry></node></visual_scene>"
+            "</library_visual_scenes><scene><instance_visual_scene url='#s'/></scene></COLLADA>")
+
+
+def lambert(diffuse, more=""):
+    return (f"<technique sid='common'><lambert><diffuse>{diffuse}</diffuse>{more}</lambert>"
+            "</technique>")
+
+
+def color(*parts):
+    return f"<color>{' '.join(map(str, parts))} 1</color>"
+
+
+RED, BLUE = lambert(color(0.8, 0, 0)), lambert(color(0, 0, 0.8))
+SAMPLED = ("<newparam sid='f'><surface type='2D'><init_from>i</init_from></surface></newparam>"
+           "<newparam sid='r'><sampler2D><source>f</source></sampler2D></newparam>")
+
+
+@pytest.fixture(scope="module")
+def node(tmp_path_factory):
+    running = Node(tmp_path_factory.mktemp("looks"), "worlds/empty.world")
+    yield running
+    running.close()
+
+
+@pytest.fixture(scope="module")
+def editor(node, browser):
+    page = browser.open(node.url)
+    yield page
+    faults = page.faults
+    page.close()
+    assert faults == []
+
+
+def write_model(node, name, geometry, files):
+    """A model of the user's own, whose picture the library draws."""
+    folder = os.path.join(node.home, ".gazebo", "models", name)
+    os.makedirs(folder)
+    texts = {"model.config": f"<?xml version='1.0'?><model><name>{name}</name><version>1.0</version>"
+                             "<sdf version='1.6'>model.sdf</sdf></model>",
+             "model.sdf": f"<?xml version='1.0'?><sdf version='1.6'><model name='{name}'>"
+                          "<static>true</static><link name='link'><visual name='v'><geometry>"
+                          f"{geometry}</geometry></visual></link></model></sdf>"}
+    for file, content in {**texts, **files}.items():
+        data = content if isinstance(content, bytes) else content.encode()
+        with open(os.path.join(folder, file), "wb") as stream:
+            stream.write(data)
+
+
+def write_mesh(node, name, effects, sides):
+    write_model(node, name, f"<mesh><uri>model://{name}/mesh.dae</uri></mesh>",
+                {"mesh.dae": collada(effects, sides), "red.png": png((4, 4), (200, 0, 0))})
+
+
+def png(size, fill):
+    stream = io.BytesIO()
+    Image.new("RGB", size, fill).save(stream, "PNG")
+    return stream.getvalue()
+
+
+def picture(editor, name):
+    """What the library shows of a model, seen from (3, -4, 2.6)."""
+    data = editor.get(f"""(async () => {{
+      const shown = await editor.view.thumbnail('model://{name}');
+      const blob = await (await fetch(shown)).blob();
+      return new Promise((done) => {{
+        const reader = new FileReader();
+        reader.onload = () => done(reader.result);
+        reader.readAsDataURL(blob);
+      }});
+    }})()""")
+    return Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")
+
+
+def middle(image):
+    """The pixels about the middle, where the square is."""
+    width, height = image.size
+    box = (width // 2 - 15, height // 2 - 15, width // 2 + 15, height // 2 + 15)
+    return list(image.crop(box).getdata())
+
+
+def test_a_collada_material_that_old_files_call_wholly_transparent_is_drawn(node, editor):
+    unseen = lambert(color(0.8, 0, 0), "<transparent>" + color(1, 1, 1) +
+                     "</transparent><transparency><float>0</float></transparency>")
+    write_mesh(node, "unseen", [unseen], [FRONT])
+    assert all(red > 90 and green < 60 for red, green, _ in middle(picture(editor, "unseen")))
+
+
+def test_of_two_faces_at_one_place_the_one_seen_from_its_front_is_drawn(node, editor):
+    write_mesh(node, "two_faced", [RED, BLUE], [FRONT, BACK])
+    assert all(red > 90 and blue < 60 for red, _, blue in middle(picture(editor, "two_faced")))
+
+
+def test_what_glows_has_the_colors_of_its_picture(node, editor):
+    glowing = SAMPLED + lambert("<texture texture='r' texcoord='UV'/>",
+                                f"<emission>{color(1, 1, 1)}</emission>")
+    write_mesh(node, "glowing", [glowing], [FRONT])
+    assert all(red > 150 and green < 60 for red, green, _ in middle(picture(editor, "glowing")))
+
+
+def test_the_picture_of_a_terrain_shows_all_of_it(node, editor):
+    slope = Image.linear_gradient("L").resize((129, 129))
+    stream = io.BytesIO()
+    slope.save(stream, "PNG")
+    write_model(node, "terrain", "<heightmap><uri>model://terrain/slope.png</uri>"
+                "<size>1000 1000 100</size></heightmap>", {"slope.png": stream.getvalue()})
+    image = picture(editor, "terrain")
+    background = image.getpixel((2, 2))
+    columns = [x for x in range(image.width)
+               if any(image.getpixel((x, y)) != background for y in range(image.height))]
+    assert columns[-1] - columns[0] > 0.7 * image.width
+
+
+PLACES = [(x, y) for y in (-1.5, 0.0, 1.5) for x in (-1.5, 0.0, 1.5)]
+
+
+def test_each_of_many_copies_is_seen_where_it_is(editor):
+    editor.get("editor.store.setOverlay('grid', false)")
+    for number, (x, y) in enumerate(PLACES):
+        editor.get(f"editor.actions.edit({{kind: 'insert', shape: 'box', name: 'box_{number}', "
+                   f"pose: [{x}, {y}, 0.5, 0, 0, 0, 1]}})")
+    wait_for(lambda: boxes_seen(editor, PLACES), "nine boxes")
+    editor.get("editor.actions.move({box_0: [3, -1.5, 0.5, 0, 0, 0.3826834, 0.9238795]})")
+    editor.get("editor.actions.edit({kind: 'delete', names: ['box_6']})")
+    gone = [PLACES[0], PLACES[6]]
+    left = [place for place in PLACES if place not in gone]
+    wait_for(lambda: boxes_seen(editor, [*left, (3, -1.5)]) and
+             not any(boxes_seen(editor, [place]) for place in gone),
+             "eight boxes, one of them elsewhere")
+
+
+def boxes_seen(editor, places):
+    """Whether the tops of boxes of 1 m, which are orange, are seen at all of these places."""
+    image = Image.open(io.BytesIO(editor.page.screenshot())).convert("RGB")
+    for place in places:
+        red, _, blue = image.getpixel(tuple(round(part) for part in editor.pixel((*place, 1.0))))
+        if red < blue + 40:
+            return False
+    return True

@@ -1,0 +1,50 @@
+/** What the page waits for, written over the view. */
+import {h} from './dom.js';
+/** @import {LoadingPush} from '../protocol.js' */
+/** @import {Page} from './panels.js' */
+
+/**
+ * What is waited for: the line, the simulator that reads its world, meshes and textures.
+ * @param {HTMLElement} element
+ * @param {Page} page
+ */
+export function mountConnectionNote(element, {store, connection}) {
+  const text = h('span');
+  const detail = h('span', {class: 'soft'});
+  const bar = h('progress', {'aria-label': 'Progress'});
+  const note = h('div', {class: 'connection-note', role: 'status', hidden: true}, text, detail, bar);
+  element.append(note);
+  let begun = false;
+  /** @type {LoadingPush|null} */
+  let loading = null;
+  const words = () => {
+    if (connection.refused) {
+      return 'The simulator was started again, with a new token. Run “gzclient”: it opens the ' +
+        'editor, and this page connects again.';
+    }
+    if (loading) return loading.title || 'Loading the world';
+    return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';
+  };
+  const show = () => {
+    begun ||= store.connected;
+    note.hidden = store.connected && !loading;
+    text.textContent = words();
+    const {done = 0, of = 0} = loading ?? {};
+    const count = of ? `${done} of ${of}` : '';
+    detail.textContent = [loading?.text, count].filter(Boolean).join(' · ');
+    bar.hidden = !loading;
+    if (of) Object.assign(bar, {max: of, value: done});
+    else bar.removeAttribute('value');
+  };
+  store.listen('connection', () => {
+    loading = null;
+    show();
+  });
+  connection.listen('refused', show);
+  store.listen('loading', ({detail: news}) => {
+    loading = news.of && news.done >= news.of && store.connected ? null : news;
+    show();
+  });
+  // A page that connects at once need not say so.
+  setTimeout(show, 600);
+}
