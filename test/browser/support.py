@@ -93,7 +93,8 @@ class Node:
             return rospy.ServiceProxy(f"/gazebo/{service}", service_class)(**fields)
 
     def close(self):
-        for number, seconds in ((signal.SIGINT, 15.0), (signal.SIGKILL, 5.0)):
+        # Killed, roslaunch would leave its nodes behind, with their ports.
+        for number, seconds in ((signal.SIGINT, SECONDS), (signal.SIGKILL, 5.0)):
             if self.process.poll() is None:
                 os.killpg(self.process.pid, number)
                 try:
