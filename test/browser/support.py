@@ -15,10 +15,17 @@ from playwright.sync_api import sync_playwright
 
 from my_simulations.editor.transport import address_file
 
-SECONDS = 60.0
+SECONDS = 120.0
 """Until something must have happened; a machine under load draws a picture in seconds."""
 FIRST_VIEW = "#view=5,-5,2,2.3561945,-0.2756999"
 """A link to the view of an empty world: from (5, -5, 2) to the origin."""
+ANEW = "loaded anew"
+CLEARING = f"""if (window.name === '{ANEW}') {{
+  window.name = '';
+  localStorage.clear();
+  sessionStorage.clear();
+}}"""
+"""Runs before the scripts of a page, and after the last of the page before it."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -86,7 +93,8 @@ class Node:
             return rospy.ServiceProxy(f"/gazebo/{service}", service_class)(**fields)
 
     def close(self):
-        for number, seconds in ((signal.SIGINT, 15.0), (signal.SIGKILL, 5.0)):
+        # Killed, roslaunch would leave its nodes behind, with their ports.
+        for number, seconds in ((signal.SIGINT, SECONDS), (signal.SIGKILL, 5.0)):
             if self.process.poll() is None:
                 os.killpg(self.process.pid, number)
                 try:
@@ -126,15 +134,27 @@ class Editor:
                                            color_scheme=color_scheme, accept_downloads=True,
                                            **options)
         self.context.set_default_timeout(1000.0 * SECONDS)
+        self.context.add_init_script(CLEARING)
         self.page = self.context.new_page()
         self.faults = []
         self.said = []
         self.page.on("pageerror", lambda fault: self.faults.append(str(fault)))
         self.page.on("console", lambda message: self.said.append(message.text))
         # The first view frames what is there; hands need one that they know.
-        self.page.goto(url if "#" in url else url + FIRST_VIEW)
+        self._address = url if "#" in url else url + FIRST_VIEW
+        self.page.goto(self._address)
         if wait:
             self.wait_for_world()
+
+    def load_anew(self):
+        """As a new page: all that is kept is Chromium's process, with the scripts it compiled."""
+        self.page.mouse.move(0, 0)
+        self.page.evaluate(f"(address) => {{ window.name = '{ANEW}';"
+                           " history.replaceState(null, '', address); }", self._address)
+        self.page.reload()
+        self.faults.clear()
+        self.said.clear()
+        self.wait_for_world()
 
     def wait_for_world(self):
         self.until("Boolean(window.editor && editor.store.document && editor.view)", "the world")

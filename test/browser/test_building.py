@@ -10,7 +10,7 @@ from geometry_msgs.msg import Pose
 from PIL import Image
 from pytest import approx
 from std_srvs.srv import Empty
-from support import wait_for
+from support import Node, wait_for
 from test_lab_sheet import save_as
 
 BALL = """<sdf version="1.6"><model name="ball"><link name="link">
@@ -189,16 +189,35 @@ def wall_parts(editor):
             for part in link["collisions"]]
 
 
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    """A node for the tests that leave its world as it is."""
+    running = Node(tmp_path_factory.mktemp("buildings"), "worlds/empty.world")
+    yield running
+    running.close()
+
+
 @pytest.fixture
-def drawn(launch, browser):
+def sheet(shared, visit):
+    """The empty sheet of the building editor in a page."""
+    editor = visit(shared.url)
+
+    def accept(question):
+        question.accept()
+
+    editor.page.on("dialog", accept)
+    opened = Sheet(editor)
+    opened.open()
+    yield opened
+    assert editor.faults == []
+    editor.page.remove_listener("dialog", accept)
+
+
+@pytest.fixture
+def drawn(sheet):
     """A page with two rooms drawn in the building editor, and its sheet."""
-    editor = browser.open(launch("worlds/empty.world").url)
-    editor.page.on("dialog", lambda question: question.accept())
-    sheet = Sheet(editor)
-    sheet.open()
     draw_two_rooms(sheet)
-    yield editor, sheet
-    editor.close()
+    return sheet.editor, sheet
 
 
 def place_of_a_wall(editor):
@@ -231,7 +250,6 @@ def test_a_wall_is_painted_in_the_3d_view(drawn):
     editor.page.get_by_role("menuitem", name="Edit", exact=True).last.click()
     editor.page.get_by_role("menuitem", name="Undo").first.click()
     wait_for(lambda: painted.count() == 0, "the wall as it was")
-    assert editor.faults == []
 
 
 def test_a_floor_plan_is_scaled_by_a_line_and_a_file_that_is_none_refused(drawn, tmp_path):
@@ -256,7 +274,6 @@ def test_a_floor_plan_is_scaled_by_a_line_and_a_file_that_is_none_refused(drawn,
     page.get_by_label("Length in meters").fill("2")
     page.keyboard.press("Enter")
     wait_for(lambda: abs(float(width.get_attribute("width")) - 400) < 8, "the picture, 4 m wide")
-    assert editor.faults == []
 
 
 def test_a_plan_that_was_not_saved_is_offered_again(drawn):
@@ -270,10 +287,8 @@ def test_a_plan_that_was_not_saved_is_offered_again(drawn):
     sheet.shows(walls=5)
 
 
-def test_a_floor_plan_is_calibrated_by_two_clicks_and_typing(launch, browser, tmp_path):
-    editor = browser.open(launch("worlds/empty.world").url)
-    sheet = Sheet(editor)
-    sheet.open()
+def test_a_floor_plan_is_calibrated_by_two_clicks_and_typing(sheet, tmp_path):
+    editor = sheet.editor
     picture = tmp_path / "plan.png"
     Image.new("RGB", (400, 400), "white").save(picture)
     editor.page.get_by_role("button", name="Import", exact=True).click()
@@ -295,5 +310,3 @@ def test_a_floor_plan_is_calibrated_by_two_clicks_and_typing(launch, browser, tm
     # 400 pixels, of which 200 are 4 m; 100 units a metre.
     wait_for(lambda: drawn.evaluate("(image) => image.width.baseVal.value") ==
              approx(800, rel=0.02), "the new size")
-    assert editor.faults == []
-    editor.close()

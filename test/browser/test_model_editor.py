@@ -9,7 +9,7 @@ import rospy
 from gazebo_msgs.srv import ApplyJointEffort, GetJointProperties
 from pytest import approx
 from std_srvs.srv import Empty
-from support import wait_for
+from support import Node, wait_for
 
 WORLD = """<sdf version="1.7"><world name="default">
   <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
@@ -125,12 +125,23 @@ def test_a_cart_built_by_mouse_loads_without_a_warning_and_its_wheels_turn(launc
             joint_name=f"cart::{name}").position[0] > 0.5, f"turns of {wheel}")
 
 
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    """A node whose world each test makes anew."""
+    running = Node(tmp_path_factory.mktemp("models"), "worlds/empty.world")
+    yield running
+    running.close()
+
+
 @pytest.fixture
-def editor(launch, browser):
-    page = browser.open(launch("worlds/empty.world").url)
+def editor(shared, visit):
+    page = visit(shared.url)
+    for request, fields in (("pause", {}), ("new", {"discard": True})):
+        page.page.evaluate("([type, fields]) => editor.request(type, fields)", [request, fields])
+    page.until("editor.store.document.models.length === 1 && editor.store.stats.paused",
+               "an empty world that stands")
     yield page
     assert page.faults == []
-    page.close()
 
 
 def test_a_link_is_moved_by_its_handles_and_back_by_undo(editor):

@@ -28,16 +28,15 @@ def node(tmp_path_factory):
 
 
 @pytest.fixture
-def editor(node, browser):
+def editor(node, visit):
     """A page on an empty world that stands still."""
-    opened = browser.open(node.url)
+    opened = visit(node.url)
     for request in ("pause", "new"):
         opened.get(f"editor.request({request!r}, {request!r} === 'new' ? {{discard: true}} : {{}})")
     opened.until("editor.store.document.models.length === 1", "the empty world")
     opened.until("editor.store.stats.paused", "the pause")
     yield opened
     assert opened.faults == []
-    opened.close()
 
 
 def with_box(editor, place=(0.0, 0.0)):
@@ -533,8 +532,7 @@ def test_a_mesh_that_is_dropped_becomes_a_body_of_the_density_asked_for(editor):
     assert mass == approx(500 * 4 / 3 * math.pi * 0.25 ** 3, rel=0.01)
 
 
-def test_a_model_s_own_panel_sets_mass_size_and_colour(launch, browser):
-    editor = browser.open(launch("worlds/empty.world").url)
+def test_a_model_s_own_panel_sets_mass_size_and_colour(editor):
     editor.place("Box", (0.0, 0.0, 0.0))
     editor.until("editor.store.selection.join() === 'unit_box'", "the selection")
     size = editor.field("size x")
@@ -554,12 +552,9 @@ def test_a_model_s_own_panel_sets_mass_size_and_colour(launch, browser):
     editor.until(f"{link}.inertial.ixx === 0.9", "the odd inertia")
     editor.button("Compute inertia").click()
     editor.until(f"Math.abs({link}.inertial.ixx - 3 * 2 / 12) < 1e-6", "the computed inertia")
-    assert editor.faults == []
-    editor.close()
 
 
-def test_several_models_are_set_together_and_an_empty_selection_gives_room(launch, browser):
-    editor = browser.open(launch("worlds/empty.world").url)
+def test_several_models_are_set_together_and_an_empty_selection_gives_room(editor):
     editor.place("Box", (0.0, 0.0, 0.0))
     editor.place("Sphere", (2.0, 0.0, 0.0))
     editor.page.keyboard.press("Escape")
@@ -577,5 +572,3 @@ def test_several_models_are_set_together_and_an_empty_selection_gives_room(launc
                  "editor.store.model(name).links[0].collisions[0].surface.mu === 0.25)",
                  "the friction of both")
     editor.until("editor.store.history.undo[0] === 'Set friction of 2 models to 0.25'", "one step")
-    assert editor.faults == []
-    editor.close()

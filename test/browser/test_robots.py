@@ -18,12 +18,10 @@ def node(tmp_path_factory):
 
 
 @pytest.fixture
-def editor(node, browser):
-    page = browser.open(node.url)
+def editor(node, visit):
+    page = visit(node.url)
     yield page
-    faults = page.faults
-    page.close()
-    assert faults == []
+    assert page.faults == []
 
 
 def shown(editor):

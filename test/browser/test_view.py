@@ -17,16 +17,14 @@ def node(tmp_path_factory):
 
 
 @pytest.fixture
-def editor(node, browser):
+def editor(node, visit):
     """A page on a world with nothing but ground and sun."""
-    page = browser.open(node.url)
+    page = visit(node.url)
     page.get("(async () => { await editor.actions.newWorld({discard: true}); })()")
     page.until("editor.store.document.models.every(({name}) => name === 'ground_plane')",
                "an empty world")
     yield page
-    faults = page.faults
-    page.close()
-    assert faults == []
+    assert page.faults == []
 
 
 def insert(editor, name, pose, shape="box"):

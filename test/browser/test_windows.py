@@ -37,15 +37,15 @@ def node(tmp_path_factory):
 
 
 @pytest.fixture
-def open_page(node, browser):
-    """Opens pages on a world with a box and a sphere; each ends with the test."""
+def open_page(node, browser, visit):
+    """Opens pages on a world with a box and a sphere; `first` is open, the others end with it."""
     pages = []
 
     def open_one(address="", **options):
         pages.append(browser.open(node.url + address, **options))
         return pages[-1]
 
-    first = open_one()
+    first = visit(node.url)
     first.get("(async () => { await editor.actions.newWorld({discard: true}); })()")
     for shape, x in (("box", 0.0), ("sphere", 1.5)):
         first.get(f"editor.actions.edit({{kind: 'insert', shape: '{shape}', "
@@ -54,7 +54,7 @@ def open_page(node, browser):
     first.frame()
     open_one.first = first
     yield open_one
-    faults = [fault for page in pages for fault in page.faults]
+    faults = [fault for page in (first, *pages) for fault in page.faults]
     for page in pages:
         page.close()
     assert faults == []

@@ -181,7 +181,7 @@ class Control(unittest.TestCase):
 
     def test_the_command_lists_controllers(self):
         done = subprocess.run(["rosrun", "controller_manager", "controller_manager", "list",
-                               "__ns:=/arm"], stdout=subprocess.PIPE, timeout=60,
+                               "__ns:=/arm"], stdout=subprocess.PIPE, timeout=SECONDS,
                               text=True, check=False)
         self.assertEqual(done.returncode, 0)
         self.assertIn("'joint_state_controller'", done.stdout)

@@ -23,7 +23,7 @@ class Exercises(unittest.TestCase):
         self.gazebo.reset_simulation()
 
     def exercise(self, name, *parameters):
-        done = subprocess.run(["rosrun", "my_simulations", name, *parameters], timeout=150,
+        done = subprocess.run(["rosrun", "my_simulations", name, *parameters], timeout=300,
                               stdout=subprocess.PIPE, text=True, check=True)
         return done.stdout
 

@@ -33,7 +33,7 @@ class TypedByHand(unittest.TestCase):
         self.assertIsNone(rospy.get_param("/objects", None))
         launch = ["roslaunch", "my_simulations", "upload_param.launch"]
         with support.Program(launch) as program:
-            self.assertEqual(program.ended(60.0), 0, program.text)
+            self.assertEqual(program.ended(), 0, program.text)
         self.assertIn("MY_OBJECT", rospy.get_param("/objects"))
         self.assertEqual(rospy.get_param("/my_simulations/object_list/world"), "empty_world")
 

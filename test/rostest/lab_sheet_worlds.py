@@ -26,7 +26,7 @@ class Worlds(unittest.TestCase):
             finally:
                 # Killed without this, roslaunch would leave its nodes behind.
                 server.interrupt()
-                status = server.ended(60)
+                status = server.ended()
         self.assertEqual(status, 0, server.text)
         self.assertNotIn("error", server.text.lower())
         # Of plugins that nobody brings the log says so, once a library.
@@ -40,7 +40,7 @@ class Worlds(unittest.TestCase):
                          f"{world} with its robot")
         self.assertIn(spawned, server.text)
         with flow.tool("spawn_object.py", "all", ROS_MASTER_URI=master) as program:
-            self.assertEqual(program.ended(60), 0, program.text)
+            self.assertEqual(program.ended(), 0, program.text)
         self.assertIn("MY_OBJECT spawned", program.text)
 
 

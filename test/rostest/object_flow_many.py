@@ -62,7 +62,7 @@ class ManyObjects(flow.ToolCase, unittest.TestCase):
             with flow.tool("spawn_object.py", "all") as program:
                 support.wait_for(lambda: "thing_0" in self.gazebo.names(), "the first object")
                 program.process.send_signal(request)
-                program.ended(60)
+                program.ended()
             start = self.gazebo.sim_time()
             support.wait_for(lambda at=start: self.gazebo.sim_time() > at, "time to go on")
 
@@ -75,7 +75,7 @@ class ManyObjects(flow.ToolCase, unittest.TestCase):
         words = ["roslaunch", "my_simulations", "spawn_object_urdf.launch", "object:=ball",
                  "object_origin:=-x 1.5 -y -2 -z 0.3"]
         with support.Program(words) as program:
-            self.assertEqual(program.ended(60), 0, program.text)
+            self.assertEqual(program.ended(), 0, program.text)
         self.assertIn("ball", self.gazebo.names())
         at = self.gazebo.get_model_state("ball", "").pose.position
         self.assertAlmostEqual(at.x, 1.5, 2)

@@ -82,7 +82,7 @@ class Moving(flow.ToolCase, unittest.TestCase):
             support.wait_for(lambda: self.gazebo.sim_time() > start + 0.5, "half a second")
             self.assertLessEqual(x(), 2.0 + 1e-6)
             self.gazebo.place("post", support.pose(y=20.0))
-            self.assertEqual(program.ended(60), 0, program.text)
+            self.assertEqual(program.ended(), 0, program.text)
         self.assert_at("block", 0.0, 0.0, 0.0, delta=1e-6)
 
     def test_interrupted_on_its_way_it_ends_well(self):
@@ -96,12 +96,12 @@ class Moving(flow.ToolCase, unittest.TestCase):
     def test_a_paused_world_ends_it_with_the_deadline_in_the_message(self):
         self.gazebo.pause_physics()
         text = self.run_tool("move_object.py", "-m", "circle", "-n", "block", "-r", "1",
-                             "-c", "[0,0]", "--timeout", "0.5", status=1)
-        self.assertIn("did not advance for 0.5 s", text)
+                             "-c", "[0,0]", "--timeout", "3", status=1)
+        self.assertIn("did not advance for 3 s", text)
 
     def test_an_unknown_model_is_named_with_the_closest_known_one(self):
         text = self.run_tool("move_object.py", "-m", "circle", "-n", "blok", "-r", "1",
-                             "-c", "[0,0]", "--timeout", "0.5", status=1)
+                             "-c", "[0,0]", "--timeout", "3", status=1)
         self.assertIn("model 'blok' does not exist", text)
         self.assertIn("did you mean block?", text)
 

@@ -35,7 +35,7 @@ class ToolCase:
     def run_tool(self, *words, status=0, **environment):
         """The tool's output; its exit status must be `status`."""
         with tool(*words, **environment) as program:
-            self.assertEqual(program.ended(60), status, program.text)
+            self.assertEqual(program.ended(), status, program.text)
         return program.text
 
     def assert_at(self, name, x, y, z, delta=0.01):

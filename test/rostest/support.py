@@ -26,7 +26,8 @@ from my_simulations.ros.lifecycle import master_api
 from my_simulations.ros.registration import class_of
 
 PACKAGE = "my_simulations"
-SECONDS = 60.0
+SECONDS = 120.0
+"""Until something must have happened, on a machine that is busy with much else."""
 
 def wait_for(condition, what, seconds=SECONDS):
     """The first true value of `condition()`; an AssertionError that says `what` is missing."""
@@ -281,7 +282,7 @@ class Launched:
         # Killed without this, roslaunch would leave its nodes behind.
         if self.program.process.poll() is None:
             self.program.interrupt()
-            self.program.ended(60)
+            self.program.ended()
         self.program.__exit__(None, None, None)
 
 

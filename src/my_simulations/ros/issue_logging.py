@@ -4,11 +4,9 @@ from __future__ import annotations
 import time
 from typing import Callable, List, Set
 
-import rosgraph
 import rospy
 
 from ..errors import Issue, Severity
-from .lifecycle import master_api
 
 ROSOUT_SECONDS = 5.0
 """Longest wait (wall seconds) for subscribers of /rosout before the node exits with an error."""
@@ -24,33 +22,24 @@ def log_issue(issue: Issue) -> None:
         rospy.loginfo("%s", issue)
 
 
-def log_fatal(lines: List[str]) -> None:
+def log_fatal(lines: List[str], listeners: Set[str]) -> None:
     """Log why the node exits, on standard error and /rosout, and wait until it is sent.
 
-    Every subscriber that the master knows is waited for: the node `rosout` is one of them, and not
-    always the first that has connected.
+    Args:
+        lines: the reasons.
+        listeners: nodes that hear /rosout. All are waited for: the node `rosout` is one of them,
+            and not always the first that has connected.
     """
     from rosgraph_msgs.msg import Log
 
     out = rospy.Publisher("/rosout", Log, queue_size=100)
     until = time.monotonic() + ROSOUT_SECONDS
-    wanted = _subscribers("/rosout")
-    _wait(lambda: wanted <= {one.endpoint_id for one in out.impl.connections}, until)
+    _wait(lambda: listeners <= {one.endpoint_id for one in out.impl.connections}, until)
     # rospy sends from a thread of each connection, which ends with the process.
     due = [(one, one.stat_num_msg + len(lines)) for one in out.impl.connections]
     for line in lines:
         rospy.logfatal("%s", line)
     _wait(lambda: all(one.done or one.stat_num_msg >= count for one, count in due), until)
-
-
-def _subscribers(topic: str) -> Set[str]:
-    """Nodes that the master knows as subscribers of a topic, this one aside."""
-    try:
-        state = master_api.call(rosgraph.get_master_uri(), "getSystemState", rospy.get_name())
-    except OSError:
-        return set()
-    return {node for name, nodes in state[1] if name == topic for node in nodes
-            if node != rospy.get_name()}
 
 
 def _wait(condition: Callable[[], bool], until: float) -> None:

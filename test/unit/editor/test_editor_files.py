@@ -245,7 +245,7 @@ def entries(made):
 
 async def kept(condition):
     """Wait for the autosave, which comes by itself."""
-    for _ in range(200):
+    for _ in range(1200):
         if condition():
             return
         await asyncio.sleep(0.05)

@@ -46,7 +46,7 @@ def test_run_lines_are_shell_and_their_options_are_known(stage):
     for word, rest in stage:
         if word != "RUN":
             continue
-        subprocess.run(["bash", "-n", "-c", rest], check=True, timeout=10)
+        subprocess.run(["bash", "-n", "-c", rest], check=True, timeout=120)
         for option in re.findall(r"tools/run.*?(--[a-z-]+)", rest):
             known = "".join((REPOSITORY / "tools" / name).read_text()
                             for name in ("run", "lib/command.sh"))
@@ -55,7 +55,7 @@ def test_run_lines_are_shell_and_their_options_are_known(stage):
 
 @pytest.mark.parametrize("name", ["entrypoint", "install_to_run", "strip_workspace"])
 def test_programs_of_the_container_are_shell(name):
-    subprocess.run(["bash", "-n", str(DOCKER / name)], check=True, timeout=10)
+    subprocess.run(["bash", "-n", str(DOCKER / name)], check=True, timeout=120)
 
 
 def test_container_serves_the_editor_to_its_host_with_a_launch_file_that_exists():

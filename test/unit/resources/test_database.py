@@ -217,7 +217,7 @@ def test_a_server_that_hangs_costs_no_more_than_the_deadline_for_all_models(
     server.add("slow")
     server.add("other")
     server.hang = {"slow/model.tar.gz", "other/model.tar.gz"}
-    source = database(seconds=0.4)
+    source = database(seconds=3.0)  # enough to ask for the archive
     for name in ("slow", "other", "slow"):
         with pytest.raises(ModelNotProvidedError, match="timed out"):
             source.provide(name)

@@ -176,7 +176,7 @@ def test_a_world_goes_on_without_what_cannot_be_had(models, server):
 
 def test_a_server_that_hangs_costs_the_deadline_once(server, cache):
     server.hang = {offer(server)}
-    models = FuelModels([str(cache)], [server.uri], seconds=0.3)
+    models = FuelModels([str(cache)], [server.uri], seconds=3.0)
     for _ in range(2):
         with pytest.raises(ModelNotProvidedError, match="timed out"):
             models.path(lamp(server))

@@ -86,3 +86,16 @@ def test_the_node_name_follows_remappings_and_namespace(monkeypatch, argv, envir
     if environment:
         monkeypatch.setenv("ROS_NAMESPACE", environment)
     assert master_api.node_name(argv, "gazebo") == name
+
+
+def test_subscribers_are_those_that_the_master_knows_but_the_caller():
+    server = SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
+    uri = f"http://127.0.0.1:{server.server_address[1]}"
+    state = [[["/rosout", ["/me"]]], [["/rosout", ["/rosout", "/me"]], ["/clock", ["/other"]]], []]
+    server.register_function(lambda caller: [1, "", state], "getSystemState")
+    thread = threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True)
+    thread.start()
+    assert master_api.subscribers(uri, "/me", "/rosout") == {"/rosout"}
+    server.shutdown()
+    server.server_close()
+    assert master_api.subscribers(silent_uri(), "/me", "/rosout") == set()

@@ -30,7 +30,7 @@ def test_it_works_when_woken_only_and_ends_when_told_to():
     thread = next(one for one in threading.enumerate() if one.name == "counter")
     assert not counter.woken.wait(0.05)
     counter.wake()
-    assert counter.woken.wait(5.0)
+    assert counter.woken.wait(60.0)
     assert counter.count == 1
     counter.stop()
     assert not thread.is_alive()
@@ -44,5 +44,5 @@ def test_what_woke_it_before_it_slept_is_not_lost():
     counter = Counter()
     counter.wake()
     counter.start()
-    assert counter.woken.wait(5.0)
+    assert counter.woken.wait(60.0)
     counter.stop()

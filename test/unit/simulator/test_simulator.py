@@ -329,7 +329,11 @@ def test_the_command_that_killed_the_engine_fails_and_others_are_sent_again(case
         if not blown.is_set() and self.models:
             blown.set()
             threading.Thread(target=made.engine.kill).start()
-            time.sleep(0.2)   # dies before it answers the advance
+            # It is told to end before it answers the advance.
+            deadline = time.monotonic() + 60
+            while made.engine._alive or made.engine._channel.commands.empty():
+                assert time.monotonic() < deadline
+                time.sleep(0.001)
         original(self, first, count)
 
     kinematic_backend.KinematicBackend.step = blow_up

@@ -70,7 +70,7 @@ def test_a_restore_without_an_answer_is_told_and_ends_no_thread(watch):
     supervisor = Supervisor(lambda: _Silent(KinematicBackend), restore, log, 0.1)
     try:
         supervisor.engine.kill()
-        assert finished.wait(10), told
+        assert finished.wait(60), told
         with pytest.raises(CommandError, match="cannot restore"):
             supervisor.call(Advance(1))
     finally:

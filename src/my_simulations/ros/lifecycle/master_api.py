@@ -11,7 +11,7 @@ import socket
 import threading
 import time
 import xmlrpc.client
-from typing import Any, Callable, Optional, Sequence, Tuple
+from typing import Any, Callable, Optional, Sequence, Set, Tuple
 from urllib.parse import urlparse
 
 CALL_SECONDS = 3.0
@@ -107,6 +107,16 @@ def wait(master: str, caller: str, stop: threading.Event, say: Callable[[str], N
                 "start roscore or roslaunch, or set ROS_MASTER_URI; press Ctrl-C to abort")
             next_word = now + REMIND_SECONDS
         stop.wait(POLL_SECONDS)
+
+
+def subscribers(master: str, caller: str, topic: str) -> Set[str]:
+    """Nodes that the master knows as subscribers of a topic, but the caller; none without it."""
+    try:
+        state = call(master, "getSystemState", caller)
+    except OSError:
+        return set()
+    return {node for name, nodes in (state or ((), ()))[1] if name == topic for node in nodes
+            if node != caller}
 
 
 def node_name(argv: Sequence[str], default: str) -> str:

@@ -342,7 +342,8 @@ class Server:
     def _refuse(self, fault: InputError) -> int:
         from ..issue_logging import log_fatal
 
-        log_fatal([str(issue) for issue in fault.issues] or [str(fault)])
+        log_fatal([str(issue) for issue in fault.issues] or [str(fault)],
+                  master_api.subscribers(self._master, self._name, "/rosout"))
         return FAILED
 
     def _end(self, node: Any, loader: WorldLoader) -> None:
