@@ -20,6 +20,7 @@ BOX = ("<robot name='b'><link name='link'><inertial><mass value='1'/><inertia ix
        " ixz='0' iyy='.1' iyz='0' izz='.1'/></inertial><collision><geometry><box size='1 1 1'/>"
        "</geometry></collision></link></robot>")
 FEW, MANY = NEIGHBOURS + 6, NEIGHBOURS + 306
+SAMPLES = 5
 
 
 @pytest.fixture
@@ -45,18 +46,21 @@ def delete(services, number):
 
 
 def test_no_other_model_is_looked_at_when_one_comes_or_goes(services):
-    came, gone = {}, {}
+    came, gone = {FEW: [], MANY: []}, {FEW: [], MANY: []}
+
+    def counted(found, there, call, number):
+        """Count the work of one of the calls while there are about FEW or MANY models."""
+        near = [count for count in found if count - SAMPLES < there <= count]
+        if near:
+            found[near[0]].append(bytecodes(lambda: call(services, number)))
+        else:
+            call(services, number)
+
     for number in range(MANY):
-        if number + 1 in (FEW, MANY):
-            came[number + 1] = bytecodes(lambda n=number: spawn(services, n))
-        else:
-            spawn(services, number)
+        counted(came, number + 1, spawn, number)
     for left in range(MANY, 0, -1):
-        number = (left * 7) % MANY  # in no order of theirs
-        if left in (FEW, MANY):
-            gone[left] = bytecodes(lambda n=number: delete(services, n))
-        else:
-            delete(services, number)
-    # A look at each of 300 more would take thousands; the wait for the engine differs a little.
-    assert abs(came[MANY] - came[FEW]) < 300 and came[FEW] > 1000
-    assert abs(gone[MANY] - gone[FEW]) < 300 and gone[FEW] > 100
+        counted(gone, left, delete, (left * 7) % MANY)  # in no order of theirs
+    # A look at each of 300 more would take thousands. A wait for the engine takes more now and
+    # then, so the least of several is compared.
+    assert abs(min(came[MANY]) - min(came[FEW])) < 300 and min(came[FEW]) > 1000
+    assert abs(min(gone[MANY]) - min(gone[FEW])) < 300 and min(gone[FEW]) > 100
