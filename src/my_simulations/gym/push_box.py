@@ -60,8 +60,8 @@ class PushBox:
     def begin(self, world: OpenWorld, random: np.random.Generator,
               options: Dict[str, Any]) -> None:
         """Put the box ahead of the robot and the mark behind the box, at random."""
-        box = random.uniform((0.5, -0.3), (0.9, 0.3))
-        mark = box + random.uniform((0.5, -0.3), (1.0, 0.3))
+        box: Any = random.uniform((0.5, -0.3), (0.9, 0.3))
+        mark: Any = box + random.uniform((0.5, -0.3), (1.0, 0.3))
         world.set_pose("box", [*box, 0.1])
         world.set_pose("mark", [*mark, 0.0])
         self._before = None
@@ -76,7 +76,8 @@ class PushBox:
     def observe(self, world: OpenWorld) -> np.ndarray:
         """See the class."""
         states = world.states()
-        robot, box, mark = (states.pose[name] for name in ("robo", "box", "mark"))
+        poses: Any = states.pose
+        robot, box, mark = (poses[name] for name in ("robo", "box", "mark"))
         vx, vy, _, _, _, turn = states.twist["robo"]
         yaw = rpy_from_quat(tuple(robot[3:]))[2]
         forward = vx * math.cos(yaw) + vy * math.sin(yaw)

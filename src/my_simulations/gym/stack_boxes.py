@@ -91,8 +91,10 @@ class StackBoxes:
     def begin(self, world: OpenWorld, random: np.random.Generator,
               options: Dict[str, Any]) -> None:
         """Lay the boxes on the ground at random, apart from each other."""
-        world.set_pose("red", [*random.uniform((-0.25, -0.2), (-0.05, 0.2)), SIZE / 2])
-        world.set_pose("blue", [*random.uniform((0.05, -0.2), (0.25, 0.2)), SIZE / 2])
+        red: Any = random.uniform((-0.25, -0.2), (-0.05, 0.2))
+        blue: Any = random.uniform((0.05, -0.2), (0.25, 0.2))
+        world.set_pose("red", [*red, SIZE / 2])
+        world.set_pose("blue", [*blue, SIZE / 2])
         self.act(world, np.array([0.0, 0.0, 0.0, -1.0]))
         self._left = None
 

@@ -55,7 +55,7 @@ def _rows(message: Any, kind: str, channels: int) -> Any:
     """Pixels (height, width, channels)."""
     import numpy as np
 
-    item = np.dtype((">" if message.is_bigendian else "<") + kind)
+    item: Any = np.dtype((">" if message.is_bigendian else "<") + kind)
     row = message.width * channels * item.itemsize
     step = message.step or row
     rows = np.frombuffer(message.data, "u1", message.height * step).reshape(message.height, step)

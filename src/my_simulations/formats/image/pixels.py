@@ -27,14 +27,15 @@ def of_formats(source: Union[str, IO[bytes]], formats: Sequence[str]) -> Any:
     Raises as PIL's `open`.
     """
     import PIL
-    from PIL import Image
+    import PIL.Image
 
+    pillow: Any = PIL.Image  # its types differ between versions
     if int(PIL.__version__.partition(".")[0]) >= 8:
-        return Image.open(source, formats=formats)
+        return pillow.open(source, formats=formats)
     # Pillow 7, of Ubuntu 20.04, can only try all formats.
-    Image.init()
+    pillow.init()
     head = _head(source)
-    for factory, accept in (Image.OPEN[name] for name in formats if name in Image.OPEN):
+    for factory, accept in (pillow.OPEN[name] for name in formats if name in pillow.OPEN):
         try:
             if accept is None or accept(head) is True:
                 return factory(source, None)
@@ -132,15 +133,16 @@ def picture(path: str, largest: int) -> Optional[Any]:
 def pixels_of(source: Any, largest: int) -> Optional[Any]:
     """As `picture`, of a path or an open image, in this process."""
     import numpy as np
-    from PIL import Image
+    import PIL.Image
 
+    pillow: Any = PIL.Image  # its types differ between versions
     try:
         image = opened(source) if isinstance(source, str) else source
         if max(image.size) > largest:
             image.draft("RGB", (largest, largest))
             image = image.convert("RGBA")
-            image.thumbnail((largest, largest), Image.BILINEAR)
-        upwards = Image.FLIP_TOP_BOTTOM
+            image.thumbnail((largest, largest), pillow.BILINEAR)
+        upwards = pillow.FLIP_TOP_BOTTOM
         return np.asarray(image.convert("RGBA").transpose(upwards))
     except (OSError, ValueError, SyntaxError, EOFError):
         return None

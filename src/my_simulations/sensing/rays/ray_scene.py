@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass, field
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -175,7 +175,7 @@ class RayScene:
         if self._changed:
             self._index()
         if self._most_row < len(poses):
-            now = poses.take(self._rows, axis=0)
+            now: Any = poses.take(self._rows, axis=0)
         else:
             here = self._rows < len(poses)
             now = np.full((len(self._rows), 7), np.nan)
@@ -266,7 +266,7 @@ class RayScene:
             intersect(valid, top, at + n * size, None)
         numbers = buffer.view(np.int32)
         body = numbers[:, BODY].ravel()[:count]
-        ranges = buffer[:, FAR].ravel()[:count].astype(np.float64)
+        ranges: Any = buffer[:, FAR].ravel()[:count].astype(np.float64)
         ranges[body < 0] = np.inf
         rows = self._row_of[body]
         retro = self._retro[self._first_retro[body] + numbers[:, GEOMETRY].ravel()[:count]]
