@@ -191,8 +191,6 @@ class Wrenches:
 
     def forget_entity(self, entity: Entity) -> None:
         """Remove the entries of a model that was deleted from the engine."""
-        if not self._forces:
-            return
         self._forces = {key: force for key, force in self._forces.items()
                         if not (entity.has_link_row if isinstance(force, TimedWrench)
                                 else entity.has_joint_row)(force.row)}

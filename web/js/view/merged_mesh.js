@@ -37,7 +37,6 @@ export class MergedMesh extends Mesh {
     this.#source = source;
     this.#corners = source.attributes.position.count;
     this.#indices = source.index?.count ?? this.#corners;
-    this.capacity = capacity;
     this.#place = geometry.attributes.position;
     this.#direction = geometry.attributes.normal;
     this.matrixAutoUpdate = false;
