@@ -12,6 +12,7 @@ FAR = 1 << 30
 """More steps than are ever made in one go."""
 
 Item = TypeVar("Item")
+_Call = Callable[[int, float, Vec3], None]
 
 
 class BodyKeeper(Protocol):
@@ -50,6 +51,8 @@ class StepLoop:
     def __init__(self, helpers: Sequence[StepHelper], one: Callable[[], object]) -> None:
         """`one` makes a step."""
         self._helpers = helpers
+        self._befores = [helper.before for helper in helpers]
+        self._afters = [helper.after for helper in helpers]
         self._one = one
         self._touched = False
 
@@ -68,17 +71,43 @@ class StepLoop:
                 deque(starmap(one, repeat((), free)), maxlen=0)  # a loop without bytecode
                 step += free
                 continue
-            self._touched = False
-            for helper, due in zip(helpers, dues):
-                if due <= step or self._touched and helper.due(step) <= step:
-                    helper.before(step, dt, gravity)
-            one()
-            for helper, due in zip(helpers, dues):
-                if due <= step or self._touched and helper.due(step) <= step:
-                    helper.after(step, dt, gravity)
-            step += 1
-            dues = [helper.due(step) if due < step or self._touched else due
-                    for helper, due in zip(helpers, dues)]
+            acting = [n for n, due in enumerate(dues) if due <= step]
+            others = min([end, *(due for due in dues if due > step)])
+            # Mostly the same ones act in each step: nobody else is asked until something changes.
+            while step < others:
+                self._make_step(acting, step, dt, gravity)
+                step += 1
+                if self._touched:
+                    dues = [helper.due(step) for helper in helpers]
+                    break
+                changed = False
+                for n in acting:
+                    due = dues[n] = helpers[n].due(step)
+                    changed |= due > step
+                if changed:
+                    break
+
+    def _make_step(self, acting: List[int], step: int, dt: float, gravity: Vec3) -> None:
+        self._touched = False
+        self._call(self._befores, acting, step, dt, gravity)
+        self._one()
+        self._call(self._afters, acting, step, dt, gravity)
+
+    def _call(self, calls: Sequence[_Call], acting: List[int], step: int, dt: float, gravity: Vec3,
+              ) -> None:
+        """Call those who act and, once a body was touched, whoever else is due, in their order."""
+        begin = 0
+        if not self._touched:
+            for n in acting:
+                calls[n](step, dt, gravity)
+                if self._touched:
+                    begin = n + 1
+                    break
+            else:
+                return
+        for n in range(begin, len(calls)):
+            if n in acting or self._helpers[n].due(step) <= step:
+                calls[n](step, dt, gravity)
 
 
 def next_multiple(step: int, every: int) -> int:
