@@ -130,7 +130,8 @@ class Documents:
 
     def geometry(self, shape: Geometry) -> Dict[str, Any]:
         """The protocol's `Geometry`, with a URL where the page must load something."""
-        found = {"type": NAMES.get(type(shape), "empty"), **plain_fields(shape)}
+        found = {"type": NAMES.get(type(shape), "empty"),
+                 **plain_fields(shape, "textures", "blends")}
         if isinstance(shape, Mesh):
             found.update(self._mesh(shape))
         elif isinstance(shape, (Heightmap, Polyline, ImageMap)):
