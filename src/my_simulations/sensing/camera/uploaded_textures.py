@@ -5,6 +5,8 @@ from typing import Any, Callable, Dict
 
 import numpy as np
 
+from ...appearance.palette import GREY
+from ...appearance.terrain_layers import TerrainLayer
 from .surfaces import Surface
 
 _SRGB = 0x8C43  # GL_SRGB8_ALPHA8
@@ -38,6 +40,14 @@ class Textures:
                               "material without")
             self._made[key] = None if pixels is None else self._uploaded(pixels)
         return self._made[key]
+
+    def of_layer(self, layer: TerrainLayer) -> Any:
+        """The texture of a terrain's layer: grey where it has none that can be read."""
+        texture = self.of(Surface(picture=layer.texture or None, pattern=layer.pattern))
+        if texture is None and None not in self._made:
+            grey = [round(255 * part) for part in GREY]
+            self._made[None] = self._uploaded(np.array([[grey]], dtype=np.uint8))
+        return self._made[None] if texture is None else texture
 
     def cutting(self, surface: Surface) -> Any:
         """The texture where it has parts that the surface leaves out; else None.
