@@ -91,7 +91,7 @@ class TriggeredCamera(Camera):
 
     def _drawn(self, call: Callable[[List[Any], int], None]) -> bool:
         self._drawing = True   # the answer may come before the request returns
-        taken = self.context.photograph([self._stream.view()], call)
+        taken = self.context.photograph([self._stream.view()], call, queue=True)
         self._drawing = self._drawing and taken
         return taken
 
