@@ -95,5 +95,6 @@ def noisy_picture(rgb: Any, spec: NoiseSpec, seed: int, sensor: str, sample: int
         return rgb
     grey = generator(seed, sensor, "image", sample).standard_normal(rgb.shape[:2], np.float32)
     shift = np.rint((grey * np.float32(spec.stddev) + np.float32(spec.mean)) * np.float32(255.0))
-    whole = np.clip(shift, -255, 255).astype(np.int16)   # a quarter of the time of doing it in float
+    # In whole numbers it takes a quarter of the time.
+    whole = np.clip(shift, -255, 255).astype(np.int16)
     return np.clip(rgb + whole[..., None], 0, 255).astype(np.uint8)
