@@ -362,6 +362,53 @@ def test_layers_of_a_terrain_are_blended_by_height_and_repeat_by_their_size(view
     assert middle[2] == pytest.approx(255 * (1.055 * 0.25 ** (1 / 2.4) - 0.055), abs=6)
 
 
+def gradient(folder, size=17):
+    """A terrain of 64 m that rises evenly along x, by its image."""
+    from PIL import Image
+
+    slope = np.repeat(np.linspace(0, 255, size).round().astype(np.uint8)[None], size, axis=0)
+    Image.fromarray(slope).save(folder / "even.png")
+    return str(folder / "even.png")
+
+
+@pytest.mark.parametrize("tilt", [-0.5, 0.0, 0.5])
+def test_normal_maps_of_a_terrain_turn_its_normals(view, tmp_path, tilt):
+    from PIL import Image
+
+    normal = np.array([math.sin(tilt), 0.0, math.cos(tilt)])   # x is eastwards
+    Image.new("RGB", (8, 8), tuple(round(127.5 * (one + 1.0)) for one in normal)).save(
+        tmp_path / "tilted.png")
+    terrain = Heightmap("even.png", gradient(tmp_path), size=(64.0, 64.0, 0.001))
+    layer = TerrainLayer("", "", str(tmp_path / "tilted.png"), 4.0)
+    sun = Light("sun", "directional", direction=(-math.sin(0.5), 0.0, -math.cos(0.5)),
+                diffuse=(1.0, 1.0, 1.0, 1.0), cast_shadows=False)
+    view.renderer.set_lights([sun], DARK)
+    eye = Pose((0.0, 0.0, 40.0), quat_from_rpy(0.0, math.pi / 2, 0.0))
+    found = view([body("t", terrain, 0, Look(layers=(layer,)))], [Pose()], eye).rgb
+    grey = (0.7 + 0.055) / 1.055
+    light = grey ** 2.4 * math.cos(0.5 - tilt)
+    assert found[240, 320].tolist() == pytest.approx(
+        [255 * (1.055 * light ** (1 / 2.4) - 0.055)] * 3, abs=2)
+
+
+def test_light_goes_over_smoothly_from_one_triangle_of_a_terrain_to_the_next(view, tmp_path):
+    from PIL import Image
+
+    ridge = np.repeat((255 - 255 * np.abs(np.linspace(-1, 1, 17))).round().astype(
+        np.uint8)[None], 17, axis=0)
+    Image.fromarray(ridge).save(tmp_path / "ridge.png")
+    terrain = Heightmap("ridge.png", str(tmp_path / "ridge.png"), size=(64.0, 64.0, 32.0),
+                        sampling=1)
+    sun = Light("sun", "directional", direction=(-0.7, 0.0, -0.7), diffuse=(1.0, 1.0, 1.0, 1.0),
+                cast_shadows=False)
+    view.renderer.set_lights([sun], DARK)
+    eye = Pose((0.0, 0.0, 80.0), quat_from_rpy(0.0, math.pi / 2, 0.0))
+    column = view([body("t", terrain, 0, Look(diffuse=(1, 1, 1, 1)))], [Pose()], eye).rgb[
+        60:420, 320, 0].astype(int)
+    # From the lit side to the dark one over the ridge; between flat triangles it is one step.
+    assert column.max() - column.min() > 100 and np.abs(np.diff(column)).max() < 80
+
+
 def test_what_did_not_change_is_not_drawn_again(view):
     place = [Pose((3.0, 0, 0))]
     first = view([body("b", Box((1, 1, 1)), 0)], place).rgb

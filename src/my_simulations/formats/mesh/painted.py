@@ -72,6 +72,16 @@ def flat(data: MeshData) -> PaintedPart:
     return _indexed(corners, None, None, NO_PAINT)
 
 
+def smooth(data: MeshData) -> PaintedPart:
+    """Triangles that share the normals of their common corners, for terrains."""
+    vertices, triangles = np.asarray(data.vertices), np.asarray(data.triangles, dtype=np.int32)
+    corners = vertices[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.column_stack([np.bincount(
+        triangles.ravel(), across[:, axis].repeat(3), len(vertices)) for axis in range(3)])
+    return PaintedPart(vertices, _unit_rows(normals), np.zeros((len(vertices), 2)), triangles)
+
+
 def _read(mesh: Mesh) -> List[PaintedPart]:
     extension = os.path.splitext(mesh.path)[1].lower()
     if extension == ".dae":

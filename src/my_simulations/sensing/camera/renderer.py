@@ -234,7 +234,8 @@ class Renderer:
                 shaders.LIT_VERTEX, shaders.lit_fragment(kind))
             for unit, sampler in enumerate((
                     "picture", "shadow0", "shadow1",
-                    *(f"layer{n}" for n in range(shaders.MOST_LAYERS)))):
+                    *(f"layer{n}" for n in range(shaders.MOST_LAYERS)),
+                    *(f"bumps{n}" for n in range(shaders.MOST_BUMPS)))):
                 if sampler in made:
                     made[sampler] = unit
         if name not in lighting.told:
@@ -250,11 +251,14 @@ class Renderer:
             return
         surface = batch.surface
         texture = self._textures.of(surface)
+        layers = [(self._textures.of_layer(layer), n < shaders.MOST_BUMPS
+                   and self._textures.bumps_of(layer))
+                  for n, layer in enumerate(surface.layers[:shaders.MOST_LAYERS])]
         name = self._program(shaders.LitKind(
             texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
             self._textures.cutting(surface) is not None, surface.blended,
             lighting.fog, lighting.kinds if surface.lit else (),
-            len(surface.layers[:shaders.MOST_LAYERS])), lighting)
+            tuple(bool(bumps) for _, bumps in layers)), lighting)
         program = self._programs[name]
         for uniform, values in batch.uniforms.items():
             if uniform in program and isinstance(values, bytes):
@@ -263,8 +267,10 @@ class Renderer:
                 program[uniform] = values
         if texture is not None:
             texture.use(location=0)
-        for unit, layer in enumerate(surface.layers[:shaders.MOST_LAYERS], shaders.FIRST_LAYER):
-            self._textures.of_layer(layer).use(location=unit)
+        for n, (map_of_layer, bumps) in enumerate(layers):
+            map_of_layer.use(location=shaders.FIRST_LAYER + n)
+            if bumps:
+                bumps.use(location=shaders.FIRST_BUMPS + n)
         batch.draw(name)
 
     def _draw_sky(self, spec: CameraSpec, view: np.ndarray) -> None:
