@@ -10,15 +10,20 @@ import pytest
 from sensing_scene import body, table
 
 from my_simulations.appearance.looks import Look
+from my_simulations.appearance.materials import Materials
 from my_simulations.appearance.terrain_layers import TerrainLayer
+from my_simulations.appearance.textures import TextureFiles
 from my_simulations.description.light import Light
 from my_simulations.description.shapes import Box, Heightmap, Mesh, Plane, Sphere
 from my_simulations.description.surroundings import Fog, Scene, Sky
+from my_simulations.formats.reading import read_entity
 from my_simulations.geometry import Pose, compose, quat_from_rpy, rotate
+from my_simulations.resources.resolver import Resolver
 from my_simulations.sensing.api import DEPTH, LABELS, RGB, CameraSpec, Distortion
 from my_simulations.sensing.camera.distortion import distorted
 from my_simulations.sensing.camera.renderer import Renderer
 from my_simulations.sensing.poses import matrix
+from my_simulations.sensing.scene import body as body_of
 
 ALL = (RGB, DEPTH, LABELS)
 # White ground is drawn as bright as `palette.GROUND`, 231 of 255.
@@ -407,6 +412,27 @@ def test_light_goes_over_smoothly_from_one_triangle_of_a_terrain_to_the_next(vie
         60:420, 320, 0].astype(int)
     # From the lit side to the dark one over the ridge; between flat triangles it is one step.
     assert column.max() - column.min() > 100 and np.abs(np.diff(column)).max() < 80
+
+
+def test_a_terrain_of_a_file_is_drawn_under_its_textures(view, tmp_path):
+    from PIL import Image
+
+    resolver = Resolver()
+    for name, colour in (("red", (220, 0, 0)), ("blue", (0, 0, 220))):
+        Image.new("RGB", (4, 4), colour).save(tmp_path / f"{name}.png")
+    textures = "".join(f"<texture><diffuse>file://{tmp_path}/{name}.png</diffuse><size>4</size>"
+                       "</texture>" for name in ("red", "blue"))
+    model, issues = read_entity(
+        "<sdf version='1.6'><model name='t'><static>true</static><link name='l'><visual name='v'>"
+        f"<geometry><heightmap><uri>file://{gradient(tmp_path)}</uri><size>64 64 4</size>{textures}"
+        "<blend><min_height>1.5</min_height><fade_dist>1</fade_dist></blend>"
+        "</heightmap></geometry></visual></link></model></sdf>", resolver)
+    assert not issues
+    terrain = body_of("t", model, 0, Materials(resolver, TextureFiles(resolver)))
+    eye = Pose((0.0, 0.0, 80.0), quat_from_rpy(0.0, math.pi / 2, 0.0))
+    found = view([terrain], [Pose()], eye).rgb.astype(int)
+    high, low = found[80, 320], found[400, 320]
+    assert low[0] > 100 and low[2] < 20 and high[2] > 100 and high[0] < 20
 
 
 def test_what_did_not_change_is_not_drawn_again(view):
