@@ -63,7 +63,7 @@ def _without(ranges: List[_Range], others: List[_Range]) -> List[_Range]:
 def _give_back(block: _Range) -> None:
     first, end = block
     memory = (ctypes.c_char * (end - first)).from_address(first)
-    pages = np.frombuffer(memory, np.uint64).reshape(-1, mmap.PAGESIZE // 8)
+    pages = np.frombuffer(memoryview(memory).cast("B"), np.uint64).reshape(-1, mmap.PAGESIZE // 8)
     used = np.concatenate(([True], pages.any(axis=1), [True]))
     edges = np.flatnonzero(used[1:] != used[:-1]).tolist()
     madvise = ctypes.CDLL(None).madvise
