@@ -64,7 +64,7 @@ def _give_back(block: _Range) -> None:
     first, end = block
     memory = (ctypes.c_char * (end - first)).from_address(first)
     pages = np.frombuffer(memoryview(memory).cast("B"), np.uint64).reshape(-1, mmap.PAGESIZE // 8)
-    used = np.concatenate(([True], pages.any(axis=1), [True]))
+    used = np.concatenate(([True], np.bitwise_or.reduce(pages, axis=1) != 0, [True]))
     edges = np.flatnonzero(used[1:] != used[:-1]).tolist()
     madvise = ctypes.CDLL(None).madvise
     madvise.argtypes = (ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int)

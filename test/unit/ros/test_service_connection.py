@@ -26,7 +26,7 @@ class Service:
         self.requests: List[bytes] = []
         self._answers = header, answer
         self._listener = socket.create_server(("127.0.0.1", 0))
-        self.uri = "rosrpc://127.0.0.1:%d" % self._listener.getsockname()[1]
+        self.uri = f"rosrpc://127.0.0.1:{self._listener.getsockname()[1]}"
         self._thread = threading.Thread(target=self._serve, daemon=True)
         self._thread.start()
 
