@@ -12,7 +12,7 @@ from typing import Callable, List, Tuple, TypeVar
 
 import numpy as np
 
-from . import child_process
+from .. import child_process
 
 Made = TypeVar("Made")
 _Range = Tuple[int, int]
