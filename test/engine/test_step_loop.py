@@ -1,7 +1,11 @@
 """Who is called around which step."""
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 from my_simulations.engine.bullet.step_helper import FAR, StepLoop
+
+MOVING = SimpleNamespace(uid=1, moves=True)
 
 
 class Helper:
@@ -23,6 +27,7 @@ class Helper:
 
 def run(helpers, calls, first, count):
     loop = StepLoop(helpers, lambda: calls.append("."))
+    loop.add(MOVING)
     return loop, lambda: loop.run(first, count, 0.001, (0.0, 0.0, -9.8))
 
 
@@ -68,3 +73,24 @@ def test_steps_are_the_same_however_many_are_made_in_one_go():
             step += part
         found.append(calls)
     assert found[0] == found[1] == found[2]
+
+
+def test_what_was_known_is_kept_from_one_run_to_the_next_until_a_command_changes_it():
+    calls = []
+    late = Helper("a", calls, ())
+    loop, _ = run([late], calls, 0, 0)
+    for step in range(3):
+        if step == 1:
+            late.steps.add(1)
+            late.steps.add(2)
+            loop.changed()
+        loop.run(step, 1, 0.001, (0.0, 0.0, -9.8))
+    assert calls == [".", "a1<", ".", "a1>", "a2<", ".", "a2>"]
+
+
+def test_bullet_makes_no_steps_where_nothing_can_move():
+    calls = []
+    loop, _ = run([Helper("a", calls, (2,))], calls, 0, 0)
+    loop.forget(MOVING)
+    loop.run(0, 5, 0.001, (0.0, 0.0, -9.8))
+    assert calls == ["a2<", ".", "a2>"]
