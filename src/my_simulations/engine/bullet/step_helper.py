@@ -61,15 +61,18 @@ class StepLoop:
 
     def add(self, body: Body) -> None:
         """Know a new body."""
+        self.changed()
         if body.moves:
             self._moving.add(body.uid)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
+        self.changed()
         self._moving.discard(body.uid)
 
     def clear(self) -> None:
         """All bodies are gone."""
+        self.changed()
         self._moving.clear()
 
     def touched(self, body: Body) -> None:
@@ -77,7 +80,7 @@ class StepLoop:
         self._touched = True
 
     def changed(self) -> None:
-        """A command changed something: ask all helpers anew."""
+        """Something was changed: ask all helpers anew."""
         self._dues = []
 
     def run(self, first: int, count: int, dt: float, gravity: Vec3) -> None:
