@@ -3,11 +3,21 @@ from __future__ import annotations
 
 import base64
 import io
+import math
 import os
 
+import numpy as np
 import pytest
 from PIL import Image
 from support import Node, wait_for
+
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Mesh, Visual
+from my_simulations.description.surroundings import Scene
+from my_simulations.geometry import Pose, quat_from_rpy
+from my_simulations.sensing.api import RGB, Body, CameraSpec
+from my_simulations.sensing.camera.renderer import Renderer
+from my_simulations.sensing.poses import matrix
 
 QUAD = """<source id="p"><float_array id="pa" count="12">-1 0 -1 1 0 -1 1 0 1 -1 0 1</float_array>
   <technique_common><accessor source="#pa" count="4" stride="3">
@@ -126,6 +136,19 @@ def picture(editor, name):
     return Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")
 
 
+def seen_by_camera(node, name):
+    """What a camera sensor sees of a mesh of `write_mesh` from there, under full ambient light."""
+    path = os.path.join(node.home, ".gazebo", "models", name, "mesh.dae")
+    renderer = Renderer(pytest.fail)
+    renderer.set_lights([], Scene(ambient=(1.0, 1.0, 1.0, 1.0)))
+    renderer.add(Body(name, Model(name, links=[Link("link", visuals=[
+        Visual("v", Mesh("mesh.dae", path))])]), 0, {}))
+    eye = Pose((3.0, -4.0, 2.6), quat_from_rpy(0.0, math.atan2(2.6, 5.0), math.atan2(4.0, -3.0)))
+    still = np.array([[0.0, 0, 0, 0, 0, 0, 1]])
+    return Image.fromarray(renderer.render(CameraSpec(320, 240), matrix(eye), still, (RGB,),
+                                           0).rgb)
+
+
 def middle(image):
     """The pixels about the middle, where the square is."""
     width, height = image.size
@@ -137,19 +160,22 @@ def test_a_collada_material_that_old_files_call_wholly_transparent_is_drawn(node
     unseen = lambert(color(0.8, 0, 0), "<transparent>" + color(1, 1, 1) +
                      "</transparent><transparency><float>0</float></transparency>")
     write_mesh(node, "unseen", [unseen], [FRONT])
-    assert all(red > 90 and green < 60 for red, green, _ in middle(picture(editor, "unseen")))
+    for image in (picture(editor, "unseen"), seen_by_camera(node, "unseen")):
+        assert all(red > 90 and green < 60 for red, green, _ in middle(image))
 
 
 def test_of_two_faces_at_one_place_the_one_seen_from_its_front_is_drawn(node, editor):
     write_mesh(node, "two_faced", [RED, BLUE], [FRONT, BACK])
-    assert all(red > 90 and blue < 60 for red, _, blue in middle(picture(editor, "two_faced")))
+    for image in (picture(editor, "two_faced"), seen_by_camera(node, "two_faced")):
+        assert all(red > 90 and blue < 60 for red, _, blue in middle(image))
 
 
 def test_what_glows_has_the_colors_of_its_picture(node, editor):
     glowing = SAMPLED + lambert("<texture texture='r' texcoord='UV'/>",
                                 f"<emission>{color(1, 1, 1)}</emission>")
     write_mesh(node, "glowing", [glowing], [FRONT])
-    assert all(red > 150 and green < 60 for red, green, _ in middle(picture(editor, "glowing")))
+    for image in (picture(editor, "glowing"), seen_by_camera(node, "glowing")):
+        assert all(red > 150 and green < 60 for red, green, _ in middle(image))
 
 
 def test_the_picture_of_a_terrain_shows_all_of_it(node, editor):
