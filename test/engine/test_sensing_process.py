@@ -180,7 +180,7 @@ def test_a_process_that_dies_again_and_again_is_left_alone_until_the_world_chang
     sensing = start()
     sensing.change(LoadScene([FLOOR, WALL]))
     with monkeypatch.context() as broken:
-        broken.setattr("my_simulations.engine.child_process.command",
+        broken.setattr("my_simulations.sensing.process.child_command",
                        lambda *words: [sys.executable, "-c", "import sys; sys.exit(3)"])
         for _ in range(3):
             with pytest.raises(SensingGoneError, match="code 3"):
@@ -196,7 +196,7 @@ def test_what_is_not_installed_is_named_with_what_to_install(start, monkeypatch,
         (tmp_path / name).mkdir()
         (tmp_path / name / "__init__.py").write_text("raise ImportError('not for this Python')\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    command = "my_simulations.engine.child_process.environment"
+    command = "my_simulations.sensing.process.child_environment"
     monkeypatch.setattr(command, lambda: {**os.environ, "PYTHONPATH": os.pathsep.join(
         [str(tmp_path), *sys.path])})
     sensing = start()

@@ -8,8 +8,8 @@ import socket
 import sys
 from typing import Iterator, List, Tuple
 
+from ..child_process import die_with_parent, keep_freed_memory
 from .api import Event, Reply
-from .child_process import die_with_parent, keep_freed_memory
 from .commands import Command
 from .message_pipe import Wire
 from .ring import RingWriter

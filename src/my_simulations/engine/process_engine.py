@@ -12,7 +12,7 @@ from collections import OrderedDict
 from concurrent.futures import Future
 from typing import Callable, Dict, List, Optional, Tuple
 
-from . import child_process
+from ..child_process import await_end, child_command, child_environment, shielded, wait_or_kill
 from . import ring as ring_module
 from .api import EngineDiedError, Event, Reply
 from .commands import Command, Nudge, SetJoints, SetLinkState, SetModelState
@@ -84,11 +84,11 @@ class ProcessEngine:
         """
         ours, theirs = socket.socketpair()
         descriptors = (theirs.fileno(), self._ring_fd, self._bell_in)
-        with self._lock, child_process.shielded():
+        with self._lock, shielded():
             self._child = subprocess.Popen(
-                child_process.command("engine", *map(str, descriptors)),
+                child_command("engine", *map(str, descriptors)),
                 pass_fds=descriptors, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                env=child_process.environment(),
+                env=child_environment(),
             )
             self._wire = Wire(ours)
         theirs.close()
@@ -145,7 +145,7 @@ class ProcessEngine:
         if wire is not None:
             wire.hang_up()
         if self._child is not None:
-            child_process.wait_or_kill(self._child, _END_S)
+            wait_or_kill(self._child, _END_S)
         if self._reader is not None and self._reader is not threading.current_thread():
             self._reader.join(_END_S)
 
@@ -163,7 +163,7 @@ class ProcessEngine:
                     waiting = self._waiting.pop(number, None)
                 if waiting is not None:
                     waiting[1].set_result(message)
-        child_process.await_end(process, wire)
+        await_end(process, wire)
         sweep()  # what a killed child could not take along
         self._bury(process, wire)
 

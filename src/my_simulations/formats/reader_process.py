@@ -17,11 +17,11 @@ import select
 import signal
 import struct
 import subprocess
-import sys
 import threading
 import time
 from typing import Any, Dict, List, Tuple
 
+from ..child_process import child_command, child_environment, wait_or_kill
 from ..errors import InputError, Issue, Severity, error
 
 MEMORY, SECONDS, DEADLINE_S = 1 << 30, 20, 300.0
@@ -32,6 +32,7 @@ _KINDS = {"<f8", "<i8", "<i4", "<u2", "|u1", "|b1"}
 _LENGTH = struct.Struct("<Q")
 _LONGEST_HEADER = 64 << 20
 _KEPT_S = 20.0
+_END_S = 1.0  # how long the child may take to end by itself
 
 Answer = Tuple[Any, List[Any]]
 """A value of JSON, and arrays."""
@@ -147,15 +148,11 @@ class ReaderProcess:
         if self._child is not None and self._child.poll() is not None:
             self._end()  # somebody ended it while it had nothing to do
         if self._child is None:
-            root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-            paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
             # A session of its own: Ctrl-C is for the caller, whose end closes the pipe.
             self._child = subprocess.Popen(
-                [sys.executable, "-m", "my_simulations.formats.reader_worker"],
+                child_command("formats.reader_worker"),
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                bufsize=0, start_new_session=True,
-                env={**os.environ, "OPENBLAS_NUM_THREADS": "1",
-                     "PYTHONPATH": os.pathsep.join(paths)})
+                bufsize=0, start_new_session=True, env=child_environment())
         return self._child
 
     def _end(self) -> int:
@@ -163,11 +160,7 @@ class ReaderProcess:
         if child is None:
             return 0
         child.stdin.close()
-        try:
-            child.wait(1.0)
-        except subprocess.TimeoutExpired:
-            child.kill()
-            child.wait()
+        wait_or_kill(child, _END_S)
         child.stdout.close()
         return int(child.returncode)
 

@@ -7,7 +7,7 @@ import socket
 import sys
 from typing import List, Optional
 
-from ..engine.child_process import die_with_parent
+from ..child_process import die_with_parent
 from ..engine.message_pipe import Wire
 from ..engine.ring import Memory, RingReader
 

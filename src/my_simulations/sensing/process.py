@@ -12,7 +12,7 @@ import time
 from concurrent.futures import Future
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
-from ..engine import child_process
+from ..child_process import await_end, child_command, child_environment, shielded, wait_or_kill
 from ..engine.message_pipe import Wire
 from .api import (
     READY,
@@ -144,7 +144,7 @@ class SensingProcess:
         self._outbox.put(None)
         self._hang_up()
         if child is not None:
-            child_process.wait_or_kill(child, _END_S)
+            wait_or_kill(child, _END_S)
         writer.join(_END_S)
         reader = self._reader
         if reader is not None:
@@ -188,11 +188,11 @@ class SensingProcess:
         ours, theirs = socket.socketpair()
         inherited = [theirs.fileno()] + ([self._ring_fd] if self._ring_fd >= 0 else [])
         arguments = [str(theirs.fileno()), str(self._ring_fd)]
-        with child_process.shielded():
+        with shielded():
             child = subprocess.Popen(
-                child_process.command("sensing", *arguments), pass_fds=inherited,
+                child_command("sensing", *arguments), pass_fds=inherited,
                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                env=child_process.environment())
+                env=child_environment())
         theirs.close()
         wire = Wire(ours)
         with self._lock:
@@ -231,7 +231,7 @@ class SensingProcess:
                 self._verdict = (f"the sensing process has not answered for {patience:g} s "
                                  "and was ended")
                 child.kill()
-        child_process.await_end(child, wire)
+        await_end(child, wire)
         self._bury(child, wire)
 
     def _answer(self, number: int, message: Any) -> None:

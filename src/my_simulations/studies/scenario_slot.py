@@ -13,7 +13,7 @@ import threading
 import time
 from typing import Dict, List, Optional, Tuple
 
-from ..engine.child_process import wait_or_kill
+from ..child_process import wait_or_kill
 from ..errors import CommandError, InputError
 from . import scenario_process
 from .attempts import until_no_crash

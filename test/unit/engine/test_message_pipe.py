@@ -9,7 +9,7 @@ import threading
 
 import pytest
 
-from my_simulations.engine.child_process import await_end
+from my_simulations.child_process import await_end
 from my_simulations.engine.message_pipe import Wire
 
 LARGE = b"x" * 8_000_000   # more than a socket holds
@@ -69,7 +69,7 @@ def test_both_sides_see_the_end_of_a_stream_that_could_not_take_a_message(two_en
 
 
 def test_a_child_whose_stream_has_ended_and_that_lives_on_is_killed(two_ends, monkeypatch):
-    monkeypatch.setattr("my_simulations.engine.child_process._END_S", 0.1)
+    monkeypatch.setattr("my_simulations.child_process._END_S", 0.1)
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
     await_end(child, Wire(two_ends[0]))
     assert child.returncode == -9

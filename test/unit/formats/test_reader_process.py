@@ -5,6 +5,8 @@ import io
 import os
 import signal
 import struct
+import subprocess
+import sys
 import time
 import zlib
 
@@ -175,6 +177,27 @@ def test_a_picture_of_many_scans_or_pixels_is_checked_by_another_process(kept, t
     with pytest.raises(InputError, match="truncated") as refused:
         checked_format(content[:-40])
     assert refused.value.first.code == "image-unreadable"
+
+
+FROM_A_LARGE_PROCESS = """
+import sys
+from my_simulations.formats.reader_process import kept, read_elsewhere
+content = b"x" * (600 << 20)
+del content
+pids = set()
+for _ in range(2):
+    read_elsewhere("format", sys.argv[1], "image-unreadable")
+    pids.add(kept().pid)
+kept().close()
+print(len(pids))
+"""
+
+
+def test_the_reader_of_a_process_that_was_large_serves_more_than_one_file(tmp_path):
+    path = blank_png(tmp_path / "small.png", 8)
+    done = subprocess.run([sys.executable, "-c", FROM_A_LARGE_PROCESS, str(path)], check=True,
+                          stdout=subprocess.PIPE, timeout=120)
+    assert done.stdout.split() == [b"1"]
 
 
 def test_a_floor_plan_that_takes_too_long_to_decode_is_refused(kept, monkeypatch):

@@ -44,6 +44,13 @@ def test_an_unknown_package_is_compared_with_the_known_ones():
     assert found == "package://my_simulations/a.dae"
 
 
+def test_an_unknown_part_of_a_robot_is_told_how_macros_are_called():
+    _, issues = read_entity('<robot name="r"><link name="l"/><table_leg x="1"/><jont/></robot>',
+                            Resolver())
+    assert [i.hint for i in issues if i.code == "unknown-element"] == [
+        "call a macro of xacro with the prefix: <xacro:table_leg>", "did you mean joint?"]
+
+
 def test_a_mesh_that_is_not_there_is_answered_with_one_that_is(tmp_path):
     (tmp_path / "part.stl").write_text("")
     text = sdf('<model name="m"><link name="l"><visual name="v"><geometry><mesh><uri>'

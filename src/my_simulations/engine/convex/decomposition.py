@@ -19,9 +19,9 @@ import time
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, List, Optional, Sequence
 
+from ...child_process import child_command, child_environment, die_with_parent, shielded
 from ...description.shapes import MeshData
 from ...errors import Issue, warning
-from .. import child_process
 from ..scratch_folder import Scratch
 from .cache import Decomposition, PartsCache, content_key, default_folder, load, save
 
@@ -138,11 +138,11 @@ def _run(folder: str, progress: Progress, end: float, limits: Sequence[str]) -> 
     """Run the child; False if it was killed at its deadline."""
     faults = os.path.join(folder, _FAULTS)
     with open(faults, "wb") as stream:
-        with child_process.shielded():
+        with shielded():
             started = subprocess.Popen(
-                child_process.command("engine.convex.decomposition", folder, *limits),
+                child_command("engine.convex.decomposition", folder, *limits),
                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stream, cwd=folder,
-                env=child_process.environment())
+                env=child_environment())
         in_time = _watched(started, progress, end)
     if in_time and started.returncode not in (0, -signal.SIGXCPU):
         with open(faults, "rb") as said:
@@ -185,7 +185,7 @@ def main(argv: List[str]) -> int:
     """Decompose the mesh in a folder; writes the hull first, then the result, beside it."""
     import numpy as np
 
-    child_process.die_with_parent()
+    die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
     folder, limit = argv[1], int(argv[2])
     os.nice(int(argv[3]))

@@ -98,7 +98,8 @@ ROBOT = Table("robot", Model, {
     "link": Part(), "joint": Part(), "material": Part(), "gazebo": Part(), "origin": Part(),
     "transmission": Part(use=Use.IGNORED),
     **_ignored("sensor", "verbose", "group_state", "ros2_control"),
-}, known_attributes=("name", "version", "static", "type"), strict=True)
+}, known_attributes=("name", "version", "static", "type"), strict=True,
+    hint="call a macro of xacro with the prefix: <xacro:{name}>")
 
 LINK = Table("link", Link, {
     "inertial": Part(), "visual": Part(), "collision": Part(),

@@ -129,6 +129,7 @@ class Table:
         use: use of entries without a use of their own.
         strict: reject texts that are only partly a value (URDF); otherwise read them leniently, as
             Gazebo does (SDF).
+        hint: for an unknown child with a name like no known one; {name} is that name.
     """
 
     name: str
@@ -139,6 +140,7 @@ class Table:
     known_attributes: Tuple[str, ...] = ()
     use: Use = Use.SIMULATED
     strict: bool = False
+    hint: str = ""
 
     def values(self) -> Iterator[Tuple[str, Value, Any]]:
         """(path, value, default) of every value; attributes as `@name`; for writers and tests."""
@@ -386,11 +388,12 @@ class _Filler:
             return
         parent = element.getparent() if what.startswith("element") else element
         inside = parent.tag if parent is not None else self._table.name
+        hint = closest(name, known)
+        if what.startswith("element"):
+            hint = hint or self._table.hint.format(name=name)
         self._source.warn(
             "unknown-element" if what.startswith("element") else "unknown-attribute",
-            f"{what} is unknown in <{inside}>; it is kept without effect", element,
-            closest(name, known),
-        )
+            f"{what} is unknown in <{inside}>; it is kept without effect", element, hint)
 
 
 def closest(name: str, known: List[str]) -> str:

@@ -7,9 +7,7 @@ import os
 import signal
 import subprocess
 import sys
-from typing import Any, Dict, Iterator, List
-
-from .message_pipe import Wire
+from typing import Any, Dict, Iterator, List, Protocol
 
 _PR_SET_PDEATHSIG = 1
 _END_S = 3.0  # how long a child may take to end by itself
@@ -18,18 +16,25 @@ _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3  # of mallopt(3)
 _KEPT_BYTES, _HEAP_BYTES = 64 << 20, 32 << 20
 
 
-def command(module: str, *arguments: str) -> List[str]:
-    """The command line that runs `module` of this package; use it with `environment`."""
+class Connection(Protocol):
+    """What a child and its parent talk through."""
+
+    def hang_up(self) -> None:
+        """Close this end."""
+
+
+def child_command(module: str, *arguments: str) -> List[str]:
+    """The command line that runs `module` of this package; use it with `child_environment`."""
     return [sys.executable, "-m", f"my_simulations.{module}", *arguments]
 
 
-def environment() -> Dict[str, str]:
+def child_environment() -> Dict[str, str]:
     """The environment in which a child finds this package first.
 
     Disables threads of linear algebra, which are slower for small matrices, and passes the process
     id of the parent, for `die_with_parent`.
     """
-    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
     return {"OPENBLAS_NUM_THREADS": "1", **os.environ, "PYTHONPATH": os.pathsep.join(paths),
             _PARENT: str(os.getpid())}
@@ -49,7 +54,7 @@ def shielded() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def await_end(child: "subprocess.Popen[bytes]", wire: Wire) -> None:
+def await_end(child: "subprocess.Popen[bytes]", wire: Connection) -> None:
     """Wait for the end of a child whose stream has ended; one that lives on is killed."""
     wire.hang_up()
     wait_or_kill(child, _END_S)
