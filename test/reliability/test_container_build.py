@@ -19,6 +19,7 @@ from dockerfile import Stage, arguments, build
 BASE = os.environ.get("BASE", arguments()["BASE"])
 SUITES = {"debian:12-slim": "bookworm", "debian:13-slim": "trixie"}
 RUN_LIMIT = 3600.0
+START_LIMIT = 300.0
 LARGEST = 700.0
 """10^6 bytes that the container for running may take."""
 
@@ -53,13 +54,15 @@ def image(tmp_path_factory) -> Stage:
 class Running:
     """The container's command with a network of its own, which only has the loopback device."""
 
-    def __init__(self, image: Stage) -> None:
+    def __init__(self, image: Stage, log: Path) -> None:
+        self.log = log
         line = "exec " + " ".join([*image.words("ENTRYPOINT"), *image.words("CMD")])
         # A student's token as in compose.yaml.
-        self.process = subprocess.Popen(
-            ["unshare", "--net", "sh", "-c", 'ip link set lo up && exec "$@"', "sh",
-             *image.command(line, MY_SIMULATIONS_EDITOR_TOKEN="token-of-a-student")],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        with open(log, "w", encoding="utf-8") as output:
+            self.process = subprocess.Popen(
+                ["unshare", "--net", "sh", "-c", 'ip link set lo up && exec "$@"', "sh",
+                 *image.command(line, MY_SIMULATIONS_EDITOR_TOKEN="token-of-a-student")],
+                stdout=output, stderr=subprocess.STDOUT)
         self.image = image
 
     def beside(self, *words: str) -> subprocess.CompletedProcess:
@@ -83,16 +86,18 @@ class Running:
 
 
 @pytest.fixture
-def running(image):
+def running(image, tmp_path):
     """The container, which is healthy and has its editor."""
-    container = Running(image)
-    deadline = time.monotonic() + 180
+    container = Running(image, tmp_path / "container.log")
     try:
         # The editor may listen a moment after the first service answers.
         for condition in (container.healthy, container.listens):
+            deadline = time.monotonic() + START_LIMIT
             while not condition():
-                assert container.process.poll() is None, container.process.stdout.read()
-                assert time.monotonic() < deadline, f"{condition.__name__}: not within 180 s"
+                assert container.process.poll() is None, container.log.read_text()
+                assert time.monotonic() < deadline, (
+                    f"{condition.__name__}: not within {START_LIMIT} s; the container said "
+                    f"{container.log.read_text()}")
                 time.sleep(0.1)
         yield container
     finally:
