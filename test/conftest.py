@@ -1,8 +1,8 @@
-"""Measures what each test costs: `pytest --processor-time 30` lists the thirty dearest."""
+"""Names tests, and measures their cost: `pytest --processor-time 30` lists the thirty dearest."""
 from __future__ import annotations
 
 import os
-from typing import Dict, Iterator, List
+from typing import Dict, Iterator, List, Optional
 
 import pytest
 
@@ -53,6 +53,16 @@ class ProcessorTimes:
         terminalreporter.write_line(f"{sum(self.seconds.values()):8.2f} all tests")
         for name in sorted(self.seconds, key=lambda name: -self.seconds[name])[:self.shown]:
             terminalreporter.write_line(f"{self.seconds[name]:8.2f} {name}")
+
+
+LONGEST_ID = 200
+
+
+def pytest_make_parametrize_id(val: object, argname: str) -> Optional[str]:
+    """A short name for a long text: some are a megabyte, and stand in every file of results."""
+    if isinstance(val, (str, bytes)) and len(val) > LONGEST_ID:
+        return f"{argname} of {len(val)}"
+    return None
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

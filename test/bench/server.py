@@ -4,19 +4,17 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
 from typing import Dict, Iterator, List
 from xmlrpc.client import ServerProxy
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), os.pardir, "unit",
+                                "support"))
 
-def free_port() -> int:
-    """A TCP port nobody listens on."""
-    with socket.socket() as sock:
-        sock.bind(("127.0.0.1", 0))
-        return int(sock.getsockname()[1])
+from free_ports import free_port
 
 
 @contextlib.contextmanager

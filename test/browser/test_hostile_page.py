@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 import pytest
 from editor_case import box, cases
 from free_ports import free_port
-from support import wait_for
+from support import WEBGL_FLAGS, wait_for
 
 from my_simulations.editor.editor_options import TOKEN_VARIABLE
 from my_simulations.editor.transport.access_guard import Guard
@@ -163,8 +163,7 @@ def test_a_hostile_page_reaches_nothing(case, site, asked, browser, monkeypatch,
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     made = case(box("a"), token=token)
     port = urlsplit(made.url).port
-    chromium = browser.launch("--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-                              "--host-resolver-rules=MAP *.example 127.0.0.1")
+    chromium = browser.launch(*WEBGL_FLAGS, "--host-resolver-rules=MAP *.example 127.0.0.1")
     context = chromium.new_context()
     victim = context.new_page()
     victim.goto(made.url)

@@ -58,7 +58,12 @@ def _floor(lab: Lab, kind: str) -> None:
             meshes={mesh_key(mesh): MeshData(points, faces)})
 
 
-LONG_30 = [10, pytest.param(30, marks=pytest.mark.long)]   # s
+LONG_30 = [4, pytest.param(30, marks=pytest.mark.long)]   # s
+
+
+def _bar(seconds: int) -> float:
+    """How much of its speed a wheel may win or lose, the less the shorter it rolls."""
+    return 0.005 if seconds < 30 else 0.01
 
 
 @pytest.mark.parametrize("seconds", LONG_30)
@@ -110,7 +115,7 @@ def test_a_cylinder_rolls_on_at_its_speed(lab: Lab, laws: Laws, floor: str, spee
     lab.seconds(seconds - 1)
     for measured in _speed(lab, [(can, "link") for can, _, _ in rolling]):
         laws.near(f"cylinders rolling on a {floor}, 0.05 to 3 m/s, for {seconds} s: speed, m/s",
-                  measured, speed, rel=0.01)
+                  measured, speed, rel=_bar(seconds))
     for can, radius, _ in rolling:
         laws.at_most(f"cylinders rolling on a {floor}: depth, m",
                      radius - lab.pose(can).position[2], 1e-4)
@@ -173,10 +178,10 @@ def test_hinged_wheels_roll_on_at_their_speed(lab: Lab, laws: Laws, kind: str, f
     for measured in _roll_hinged(
             lab, kind, "long box" if floor == "box" and speed > 1.0 else floor, speed, seconds):
         laws.near(f"hinged wheels ({kind}) on a {floor} for {seconds} s: speed, m/s",
-                  measured, speed, rel=0.01)
+                  measured, speed, rel=_bar(seconds))
 
 
-@pytest.mark.parametrize("seconds", [5, pytest.param(30, marks=pytest.mark.long)])
+@pytest.mark.parametrize("seconds", [3, pytest.param(30, marks=pytest.mark.long)])
 @pytest.mark.parametrize("speed", [0.05, 0.5, 3.0])
 @pytest.mark.parametrize("kind", ["one", "car"])
 def test_hinged_wheels_roll_over_the_seams_of_a_height_map(lab: Lab, laws: Laws, kind: str,
@@ -184,7 +189,7 @@ def test_hinged_wheels_roll_over_the_seams_of_a_height_map(lab: Lab, laws: Laws,
     for measured in _roll_hinged(lab, kind, "long mesh" if seconds > 5 else "mesh", speed,
                                  seconds):
         laws.near(f"hinged wheels ({kind}) on a height map for {seconds} s, {speed} m/s: speed",
-                  measured, speed, rel=0.01)
+                  measured, speed, rel=_bar(seconds))
 
 
 def test_rolling_over_seams_does_not_depend_on_how_many_steps_are_made_at_once():

@@ -19,10 +19,15 @@ ALLOWED = "MY_SIMULATIONS_PROOF_SECONDS"
 def allowance() -> Callable[[], float]:
     """How much of what this proof may use is used up, 0 to 1 and more; 0 if it may use any."""
     most = float(os.environ.get(ALLOWED) or "inf")
-    began = _spent()
-    return lambda: (_spent() - began) / most
+    began = spent()
+    return lambda: (spent() - began) / most
 
 
-def _spent() -> float:
+def spent() -> float:
     """Processor time of this process and of the children that it has waited for, in seconds."""
     return sum(os.times()[:4])
+
+
+def per_second(count: int, began: float) -> int:
+    """Inputs in a second of processor time since `spent()` was `began`, to two digits."""
+    return round(float(f"{count / max(spent() - began, 0.01):.2g}"))

@@ -19,6 +19,7 @@ from dockerfile import Stage, arguments, build
 BASE = os.environ.get("BASE", arguments()["BASE"])
 SUITES = {"debian:12-slim": "bookworm", "debian:13-slim": "trixie"}
 RUN_LIMIT = 3600.0
+START_LIMIT = 300.0
 LARGEST = 700.0
 """10^6 bytes that the container for running may take."""
 
@@ -53,13 +54,15 @@ def image(tmp_path_factory) -> Stage:
 class Running:
     """The container's command with a network of its own, which only has the loopback device."""
 
-    def __init__(self, image: Stage) -> None:
+    def __init__(self, image: Stage, log: Path) -> None:
+        self.log = log
         line = "exec " + " ".join([*image.words("ENTRYPOINT"), *image.words("CMD")])
         # A student's token as in compose.yaml.
-        self.process = subprocess.Popen(
-            ["unshare", "--net", "sh", "-c", 'ip link set lo up && exec "$@"', "sh",
-             *image.command(line, MY_SIMULATIONS_EDITOR_TOKEN="token-of-a-student")],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        with open(log, "w", encoding="utf-8") as output:
+            self.process = subprocess.Popen(
+                ["unshare", "--net", "sh", "-c", 'ip link set lo up && exec "$@"', "sh",
+                 *image.command(line, MY_SIMULATIONS_EDITOR_TOKEN="token-of-a-student")],
+                stdout=output, stderr=subprocess.STDOUT)
         self.image = image
 
     def beside(self, *words: str) -> subprocess.CompletedProcess:
@@ -72,6 +75,10 @@ class Running:
         line = " ".join(self.image.words("HEALTHCHECK"))
         return self.beside(*self.image.command(line)).returncode == 0
 
+    def listens(self) -> bool:
+        """Whether the editor answers on all addresses."""
+        return f"00000000:{11346:04X}" in self.beside("cat", "/proc/net/tcp").stdout
+
     def first_process(self) -> int:
         """The process with the number 1 of the container, as this machine counts."""
         pid = self.process.pid
@@ -79,16 +86,23 @@ class Running:
 
 
 @pytest.fixture
-def running(image):
-    """The container, which is healthy."""
-    container = Running(image)
-    deadline = time.monotonic() + 180
-    while not container.healthy():
-        assert container.process.poll() is None, container.process.stdout.read()
-        assert time.monotonic() < deadline, "not healthy after 180 s"
-    yield container
-    container.process.kill()
-    container.process.wait(timeout=60)
+def running(image, tmp_path):
+    """The container, which is healthy and has its editor."""
+    container = Running(image, tmp_path / "container.log")
+    try:
+        # The editor may listen a moment after the first service answers.
+        for condition in (container.healthy, container.listens):
+            deadline = time.monotonic() + START_LIMIT
+            while not condition():
+                assert container.process.poll() is None, container.log.read_text()
+                assert time.monotonic() < deadline, (
+                    f"{condition.__name__}: not within {START_LIMIT} s; the container said "
+                    f"{container.log.read_text()}")
+                time.sleep(0.1)
+        yield container
+    finally:
+        container.process.kill()
+        container.process.wait(timeout=60)
 
 
 def test_every_run_line_succeeds_and_the_image_is_small(image, record):
@@ -104,8 +118,6 @@ def test_container_serves_the_editor_to_others_and_ends_when_it_is_told(running)
     allowed = running.beside("python3", "-c", script, address + "?token=token-of-a-student")
     assert allowed.stdout.strip() == "200", allowed.stderr
     assert "403" in running.beside("python3", "-c", script, address).stderr
-    listening = running.beside("cat", "/proc/net/tcp").stdout
-    assert f"00000000:{11346:04X}" in listening, "not on all addresses"
     os.kill(running.first_process(), signal.SIGINT)
     assert running.process.wait(timeout=60) == 0
 

@@ -20,7 +20,7 @@ from editor_case import Browser, Refused, arm, box, cases
 from grammars import changed, damaged, json_values, tree_of, words, xml
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
-from proofs import allowance, scaled
+from proofs import allowance, per_second, scaled, spent
 
 from my_simulations.appearance.material_script import read_materials
 from my_simulations.appearance.textures import TextureFiles
@@ -70,7 +70,7 @@ def fuzz(strategy: Any, body: Callable[[Any], None]) -> Dict[str, Any]:
         worst = max(worst, time.process_time() - began)
         count += 1
 
-    used = allowance()
+    used, start = allowance(), spent()
     first = time.time_ns()
     while count < INPUTS and used() < 1.0:
         # Short runs are alike; long ones are begun anew now and then, with another seed.
@@ -83,7 +83,8 @@ def fuzz(strategy: Any, body: Callable[[Any], None]) -> Dict[str, Any]:
         if count == before or INPUTS <= AT_ONCE:
             break
     assert worst < LONGEST_S
-    return {"inputs": count, "slowest_ms": round(1000 * worst)}
+    return {"inputs": count, "per_second": per_second(count, start),
+            "slowest_ms": round(1000 * worst)}
 
 
 def memory() -> int:

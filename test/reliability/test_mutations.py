@@ -8,7 +8,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Dict, List
 
-from proofs import allowance, scaled
+from proofs import allowance, per_second, scaled, spent
 from test_fuzzing import LONGEST_S, memory, read
 
 from my_simulations.errors import InputError
@@ -61,7 +61,7 @@ def test_damaged_files_are_read_or_refused(record, tmp_path):
     files = corpus()
     contents = [path.read_bytes() for path in files]
     paths: Dict[str, Path] = {suffix: tmp_path / f"damaged{suffix}" for suffix in MESHES + LISTS}
-    before, used, count = 0, allowance(), 0
+    before, used, count, start = 0, allowance(), 0, spent()
     while count < INPUTS and used() < 1.0:
         count += 1
         at = chance.randrange(len(files))
@@ -94,5 +94,5 @@ def test_damaged_files_are_read_or_refused(record, tmp_path):
             before = memory()
     grown = memory() / before - 1.0
     assert grown < scaled(20, 5) / 100.0
-    record("damaged files", inputs=count, files=len(files), slowest_ms=round(1000 * slowest),
-           growth_percent=round(100 * grown, 1), **outcomes)
+    record("damaged files", inputs=count, per_second=per_second(count, start), files=len(files),
+           slowest_ms=round(1000 * slowest), growth_percent=round(100 * grown, 1), **outcomes)

@@ -3,7 +3,8 @@
 
 usage: reliability_table.py RECORDS   the file reliability.jsonl of a run of tools/test
 
-A long run fills the second table, a short one the first.
+A long run fills the second table, a short one the first; `tools/test --long` calls this at its end.
+Rows of proofs that the run did not make stay, as long as their test is there.
 """
 from __future__ import annotations
 
@@ -16,16 +17,31 @@ from typing import Any, Dict, List
 PAGE = Path(__file__).resolve().parents[2] / "doc" / "reliability.md"
 
 
-def rows(records: List[Dict[str, Any]]) -> str:
-    """A table of the last record of each proof."""
-    last = {record["proof"]: record for record in records}
-    lines = ["| proof | figures | took | test |", "|---|---|---|---|"]
-    for proof, record in sorted(last.items()):
+TESTS = PAGE.parents[1] / "test"
+
+
+def rows(records: List[Dict[str, Any]], before: str = "") -> str:
+    """A table of the last record of each proof; of others the rows of the table `before`."""
+    lines = {line.split(" | ")[0][2:]: line for line in before.splitlines()[2:] if _has_test(line)}
+    for record in records:
         figures = ", ".join(f"{name.replace('_', ' ')} {value}"
                             for name, value in record["figures"].items())
         test = record["test"].replace("test/reliability/", "")
-        lines.append(f"| {proof} | {figures} | {record['seconds']} s | `{test}` |")
-    return "\n".join(lines)
+        lines[record["proof"]] = (
+            f"| {record['proof']} | {figures} | {record['seconds']} s | `{test}` |")
+    return "\n".join(["| proof | figures | took | test |", "|---|---|---|---|",
+                      *(lines[proof] for proof in sorted(lines))])
+
+
+def _has_test(line: str) -> bool:
+    """Whether the test that a row names is still there."""
+    file, _, name = line.rpartition("`")[0].rpartition("`")[2].partition("::")
+    return any(f"def {name}(" in path.read_text(encoding="utf-8") for path in TESTS.rglob(file))
+
+
+def table_of(page: str, name: str) -> str:
+    """The text between the marks of a table."""
+    return page.partition(f"<!-- {name} -->\n")[2].partition(f"<!-- end of {name} -->")[0]
 
 
 def with_table(page: str, name: str, table: str) -> str:
@@ -43,7 +59,7 @@ def main(path: str) -> None:
     for name, wanted in (("short runs", False), ("long runs", True)):
         chosen = [record for record in records if record["long"] is wanted]
         if chosen:
-            page = with_table(page, name, rows(chosen))
+            page = with_table(page, name, rows(chosen, table_of(page, name)))
     PAGE.write_text(page, encoding="utf-8")
 
 

@@ -63,3 +63,9 @@ def test_the_figures_of_proofs_become_a_table():
     assert text.splitlines()[2:] == ["| soak | models 53 | 21 s | `test_soak.py::test_x` |"]
     page = (REPOSITORY / "doc" / "reliability.md").read_text(encoding="utf-8")
     assert text in table.with_table(page, "short runs", text)
+    before = table.table_of(page, "short runs")
+    kept = table.rows([record], before).splitlines()
+    assert set(before.splitlines()) - set(kept) == {
+        line for line in before.splitlines() if line.startswith("| soak |")}
+    gone = "\n".join([*text.splitlines()[:2], "| old | x 1 | 1 s | `test_soak.py::test_gone` |"])
+    assert table.rows([], gone).splitlines() == text.splitlines()[:2]

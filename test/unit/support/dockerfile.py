@@ -10,6 +10,7 @@ import json
 import os
 import shlex
 import shutil
+import socket
 import subprocess
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple
@@ -182,6 +183,9 @@ def build(base: Path, work: Path, limit: float) -> Stage:
         name = first.rest.split()[-1] if " AS " in first.rest else str(number)
         stage = Stage(work / name)
         subprocess.run(["cp", "-a", str(base), str(stage.root)], check=True, timeout=300)
+        # Docker puts these names into each container.
+        (stage.root / "etc" / "hosts").write_text(
+            f"127.0.0.1 localhost\n127.0.1.1 {socket.gethostname()}\n")
         for instruction in others:
             stage.execute(instruction, built, limit)
         built[name] = stage

@@ -50,10 +50,13 @@ class Watches:
 
     def pushes(self, topics: Iterable[str]) -> Dict[str, Dict[str, Any]]:
         """The push of each topic, now."""
+        # The clock first: time goes on between the two, and what moves has a snapshot of that time.
+        self._step, clock = self._world.clock.now()
         entities, snapshot = self._world.states.latest()
         names = {entity.model.name: entity for entity in entities}
         # The snapshot may be older than the clock: while nothing moves, none is written.
-        self._step, clock = self._world.clock.now()
+        if snapshot.step > self._step:
+            self._step, clock = snapshot.step, snapshot.clock
         self._time = time = clock.sim_ns(self._step) * 1e-9
         found = {}
         for topic in topics:

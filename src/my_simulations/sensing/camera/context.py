@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict
 from ..api import SensingUnavailableError
 
 _EGL: Dict[str, Any] = {"backend": "egl"}
-_PACKAGES = "libegl1 libegl-mesa0 libgl1-mesa-dri"
+_PACKAGES = "libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri"
 
 
 def new_context() -> Any:
