@@ -88,8 +88,10 @@ export function roving(container, selector, {vertical = false, wrap = true} = {}
     if (!item || usesArrows(event.target)) return;
     const all = items();
     const at = all.indexOf(item);
-    const ends = vertical ? {Home: 0, End: all.length - 1} : {};
-    const to = {[back]: at - 1, [forth]: at + 1, ...ends}[event.key];
+    /** @type {Record<string, number>} */
+    const steps = {[back]: at - 1, [forth]: at + 1};
+    if (vertical) Object.assign(steps, {Home: 0, End: all.length - 1});
+    const to = steps[event.key];
     if (to === undefined || !all.length) return;
     event.preventDefault();
     event.stopPropagation();
