@@ -79,6 +79,13 @@ def die_with_parent() -> None:
         os._exit(1)
 
 
+def place_large_blocks_apart(size: int) -> None:
+    """In the child: have the C library place blocks of `size` bytes or more apart (glibc)."""
+    libc = ctypes.CDLL(None)
+    if hasattr(libc, "mallopt"):
+        libc.mallopt(_M_MMAP_THRESHOLD, size)
+
+
 def keep_freed_memory() -> None:
     """In the child: have the C library keep freed memory (glibc).
 

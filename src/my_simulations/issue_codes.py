@@ -209,6 +209,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("mesh-not-found", EITHER, "The mesh file was not found; the shape is skipped.",
          "Correct the URI, or add its folder to the resource paths."),
         ("image-not-found", EITHER, "The image was not found.", "Correct the path."),
+        ("terrain-blends", WARNING, "The number of <blend> does not fit that of <texture>.",
+         "Write one <blend> fewer than textures."),
         ("image-unreadable", EITHER, "The image cannot be read.", "Use PNG or JPEG."),
         ("mesh-unreadable", ERROR, "The mesh file cannot be read.", "Use STL, OBJ, DAE or glTF."),
         ("mesh-empty", ERROR, "The mesh, or the named submesh, has no faces.",

@@ -154,8 +154,9 @@ async def _listen(url: str, seconds: float) -> Tuple[int, int]:
     import aiohttp
 
     frames = size = 0
+    address, _, query = url.partition("?")  # the query has the token
     async with aiohttp.ClientSession() as session:
-        async with session.ws_connect(url + "ws", max_msg_size=0) as socket:
+        async with session.ws_connect(f"{address}ws?{query}", max_msg_size=0) as socket:
             await socket.send_json({"type": "hello", "id": 1, "version": 1})
             until = time.perf_counter() + seconds
             while time.perf_counter() < until:

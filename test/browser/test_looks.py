@@ -3,11 +3,21 @@ from __future__ import annotations
 
 import base64
 import io
+import math
 import os
 
+import numpy as np
 import pytest
 from PIL import Image
 from support import Node, wait_for
+
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Mesh, Visual
+from my_simulations.description.surroundings import Scene
+from my_simulations.geometry import Pose, quat_from_rpy
+from my_simulations.sensing.api import RGB, Body, CameraSpec
+from my_simulations.sensing.camera.renderer import Renderer
+from my_simulations.sensing.poses import matrix
 
 QUAD = """<source id="p"><float_array id="pa" count="12">-1 0 -1 1 0 -1 1 0 1 -1 0 1</float_array>
   <technique_common><accessor source="#pa" count="4" stride="3">
@@ -103,8 +113,12 @@ def write_mesh(node, name, effects, sides):
 
 
 def png(size, fill):
+    return encoded(Image.new("RGB", size, fill))
+
+
+def encoded(image):
     stream = io.BytesIO()
-    Image.new("RGB", size, fill).save(stream, "PNG")
+    image.save(stream, "PNG")
     return stream.getvalue()
 
 
@@ -122,6 +136,19 @@ def picture(editor, name):
     return Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")
 
 
+def seen_by_camera(node, name):
+    """What a camera sensor sees of a mesh of `write_mesh` from there, under full ambient light."""
+    path = os.path.join(node.home, ".gazebo", "models", name, "mesh.dae")
+    renderer = Renderer(pytest.fail)
+    renderer.set_lights([], Scene(ambient=(1.0, 1.0, 1.0, 1.0)))
+    renderer.add(Body(name, Model(name, links=[Link("link", visuals=[
+        Visual("v", Mesh("mesh.dae", path))])]), 0, {}))
+    eye = Pose((3.0, -4.0, 2.6), quat_from_rpy(0.0, math.atan2(2.6, 5.0), math.atan2(4.0, -3.0)))
+    still = np.array([[0.0, 0, 0, 0, 0, 0, 1]])
+    return Image.fromarray(renderer.render(CameraSpec(320, 240), matrix(eye), still, (RGB,),
+                                           0).rgb)
+
+
 def middle(image):
     """The pixels about the middle, where the square is."""
     width, height = image.size
@@ -133,32 +160,95 @@ def test_a_collada_material_that_old_files_call_wholly_transparent_is_drawn(node
     unseen = lambert(color(0.8, 0, 0), "<transparent>" + color(1, 1, 1) +
                      "</transparent><transparency><float>0</float></transparency>")
     write_mesh(node, "unseen", [unseen], [FRONT])
-    assert all(red > 90 and green < 60 for red, green, _ in middle(picture(editor, "unseen")))
+    for image in (picture(editor, "unseen"), seen_by_camera(node, "unseen")):
+        assert all(red > 90 and green < 60 for red, green, _ in middle(image))
 
 
 def test_of_two_faces_at_one_place_the_one_seen_from_its_front_is_drawn(node, editor):
     write_mesh(node, "two_faced", [RED, BLUE], [FRONT, BACK])
-    assert all(red > 90 and blue < 60 for red, _, blue in middle(picture(editor, "two_faced")))
+    for image in (picture(editor, "two_faced"), seen_by_camera(node, "two_faced")):
+        assert all(red > 90 and blue < 60 for red, _, blue in middle(image))
 
 
 def test_what_glows_has_the_colors_of_its_picture(node, editor):
     glowing = SAMPLED + lambert("<texture texture='r' texcoord='UV'/>",
                                 f"<emission>{color(1, 1, 1)}</emission>")
     write_mesh(node, "glowing", [glowing], [FRONT])
-    assert all(red > 150 and green < 60 for red, green, _ in middle(picture(editor, "glowing")))
+    for image in (picture(editor, "glowing"), seen_by_camera(node, "glowing")):
+        assert all(red > 150 and green < 60 for red, green, _ in middle(image))
 
 
 def test_the_picture_of_a_terrain_shows_all_of_it(node, editor):
     slope = Image.linear_gradient("L").resize((129, 129))
-    stream = io.BytesIO()
-    slope.save(stream, "PNG")
     write_model(node, "terrain", "<heightmap><uri>model://terrain/slope.png</uri>"
-                "<size>1000 1000 100</size></heightmap>", {"slope.png": stream.getvalue()})
+                "<size>1000 1000 100</size></heightmap>", {"slope.png": encoded(slope)})
     image = picture(editor, "terrain")
     background = image.getpixel((2, 2))
     columns = [x for x in range(image.width)
                if any(image.getpixel((x, y)) != background for y in range(image.height))]
     assert columns[-1] - columns[0] > 0.7 * image.width
+
+
+TERRAIN_SIZE = 32.0
+"""m of a terrain along a side; its west is 0 m high, its east 4 m."""
+
+
+def write_terrain(node, name, inside, files):
+    """A terrain that rises from west to east, seen by the library from (3, -4, 2.6)."""
+    slope = Image.linear_gradient("L").rotate(90).resize((33, 33))
+    write_model(node, name, f"<heightmap><uri>model://{name}/slope.png</uri>"
+                f"<size>{TERRAIN_SIZE} {TERRAIN_SIZE} 4</size>{inside}</heightmap>",
+                {"slope.png": encoded(slope), **files})
+
+
+def texture(name, file, size=10):
+    return f"<texture><diffuse>model://{name}/{file}</diffuse><size>{size}</size></texture>"
+
+
+def on_terrain(image, x, y):
+    """The pixel of the library's picture in which a point of the terrain is seen, about."""
+    wide, high = image.size
+    # The middle of the terrain is in the middle of the picture; both diagonals are seen aslant.
+    across, deep = 0.8 * x + 0.6 * y, -0.6 * x + 0.8 * y
+    return image.getpixel((round(wide / 2 + 0.42 * wide * across / TERRAIN_SIZE),
+                           round(high / 2 - 0.20 * high * deep / TERRAIN_SIZE)))
+
+
+def test_the_textures_of_a_terrain_are_blended_by_height(node, editor):
+    write_terrain(node, "blended", texture("blended", "red.png") + texture("blended", "blue.png")
+                  + "<blend><min_height>1.5</min_height><fade_dist>1</fade_dist></blend>",
+                  {"red.png": png((4, 4), (220, 0, 0)), "blue.png": png((4, 4), (0, 0, 220))})
+    image = picture(editor, "blended")
+    low, high, between = (on_terrain(image, x, 0) for x in (-12, 12, 0))
+    assert low[0] > 3 * low[2] and high[2] > 3 * high[0], (low, high)
+    assert min(between[0], between[2]) > 40, between
+
+
+def test_a_texture_is_repeated_by_its_size_and_upright(node, editor):
+    halves = Image.new("RGB", (8, 8), (220, 0, 0))
+    halves.paste((0, 0, 220), (4, 0, 8, 8))
+    write_terrain(node, "tiled", texture("tiled", "halves.png", 16),
+                  {"halves.png": encoded(halves)})
+    image = picture(editor, "tiled")
+    seen = ["red" if on_terrain(image, x, 0)[0] > on_terrain(image, x, 0)[2] else "blue"
+            for x in (-12, -4, 4, 12)]
+    assert seen == ["red", "blue", "red", "blue"]
+
+
+def test_a_terrain_whose_texture_is_missing_is_grey(node, editor):
+    write_terrain(node, "bare", texture("bare", "gone.png"), {})
+    red, green, blue = on_terrain(picture(editor, "bare"), 0, 0)
+    assert min(red, green, blue) > 80 and max(red, green, blue) - min(red, green, blue) < 40
+
+
+def test_the_bumps_of_a_terrain_turn_its_light(node, editor):
+    for name, towards in (("bumps_east", (255, 128, 128)), ("bumps_west", (0, 128, 128))):
+        write_terrain(node, name, texture(name, "white.png").replace(
+            "<size>", f"<normal>model://{name}/bumps.png</normal><size>"),
+            {"white.png": png((4, 4), (255, 255, 255)), "bumps.png": png((4, 4), towards)})
+    east, west = (sum(on_terrain(picture(editor, name), 0, 0))
+                  for name in ("bumps_east", "bumps_west"))
+    assert east > west + 30  # the library's sun stands in the south-east
 
 
 PLACES = [(x, y) for y in (-1.5, 0.0, 1.5) for x in (-1.5, 0.0, 1.5)]

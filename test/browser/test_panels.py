@@ -204,6 +204,19 @@ def test_menus_open_and_run_by_keys_and_show_the_hotkeys(editor):
     editor.get("editor.store.setOverlay('grid', true)")
 
 
+def test_a_menu_opens_on_the_press_and_closes_on_the_next(editor):
+    box = editor.page.get_by_role("menuitem", name="File", exact=True).bounding_box()
+    editor.page.mouse.move(box["x"] + 8, box["y"] + 8)
+    editor.page.mouse.down()
+    first = editor.get("document.querySelector('.popup [role=menu] [role=menuitem]')?.textContent")
+    assert first and editor.get("document.activeElement.textContent") == first
+    editor.page.mouse.up()
+    assert editor.get("document.activeElement.textContent") == first
+    editor.page.mouse.down()
+    editor.page.mouse.up()
+    assert editor.get("!document.querySelector('.popup')")
+
+
 def test_letters_typed_into_fields_are_no_hotkeys(editor):
     with_box(editor)
     editor.page.keyboard.press("Control+f")

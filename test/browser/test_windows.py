@@ -177,6 +177,22 @@ def test_a_face_of_the_cube_is_a_view_and_home_comes_back(open_page):
     wait_for(lambda: editor.get("editor.view.camera.position") == approx(home["position"]), "home")
 
 
+@pytest.mark.parametrize("place", ["menu", "row", "tool", "tab"])
+def test_home_comes_back_from_wherever_the_mouse_was(open_page, place):
+    editor = open_page.first
+    editor.get("editor.view.viewFrom('top')")
+    wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
+    if place == "menu":
+        editor.page.get_by_role("menuitem", name="Camera", exact=True).click()
+        editor.page.get_by_role("menuitemcheckbox", name="Perspective").click()
+    else:
+        {"row": editor.row("ground_plane"), "tool": editor.page.locator("#toolbar button").nth(1),
+         "tab": editor.page.get_by_role("tab", name="World")}[place].click()
+    editor.page.keyboard.press("Home")
+    wait_for(lambda: editor.get("editor.view.camera.pitch") > -1.2, "home")
+    editor.page.keyboard.press("Escape")
+
+
 def test_collisions_of_infinite_planes_are_not_laid_over_everything(open_page):
     editor = open_page.first
     assert "ground_plane" in editor.names()

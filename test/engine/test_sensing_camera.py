@@ -10,14 +10,20 @@ import pytest
 from sensing_scene import body, table
 
 from my_simulations.appearance.looks import Look
+from my_simulations.appearance.materials import Materials
+from my_simulations.appearance.terrain_layers import TerrainLayer
+from my_simulations.appearance.textures import TextureFiles
 from my_simulations.description.light import Light
-from my_simulations.description.shapes import Box, Mesh, Plane, Sphere
+from my_simulations.description.shapes import Box, Heightmap, Mesh, Plane, Sphere
 from my_simulations.description.surroundings import Fog, Scene, Sky
+from my_simulations.formats.reading import read_entity
 from my_simulations.geometry import Pose, compose, quat_from_rpy, rotate
+from my_simulations.resources.resolver import Resolver
 from my_simulations.sensing.api import DEPTH, LABELS, RGB, CameraSpec, Distortion
 from my_simulations.sensing.camera.distortion import distorted
 from my_simulations.sensing.camera.renderer import Renderer
 from my_simulations.sensing.poses import matrix
+from my_simulations.sensing.scene import body as body_of
 
 ALL = (RGB, DEPTH, LABELS)
 # White ground is drawn as bright as `palette.GROUND`, 231 of 255.
@@ -294,6 +300,150 @@ def test_a_mesh_brings_its_own_colours_unless_the_visual_says_others(view, tmp_p
     assert green[1] > 200 and green[0] == green[2] == 0
     red = view([body("b", mesh, 0, Look(diffuse=(1, 0, 0, 1)))], [Pose((3.0, 0, 0))]).rgb[240, 320]
     assert red[0] > 200 and red[1] == red[2] == 0
+
+
+QUAD = "v 0 -1 -1\nv 0 1 -1\nv 0 1 1\nv 0 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+
+
+def quad_of(folder, materials, faces):
+    """A square across the camera's axis; `faces` name materials and corners."""
+    (folder / "q.mtl").write_text(materials)
+    (folder / "q.obj").write_text(f"mtllib q.mtl\n{QUAD}{faces}")
+    return Mesh("q.obj", str(folder / "q.obj"))
+
+
+@pytest.mark.parametrize("order", [("a", "b"), ("b", "a")])
+def test_of_two_faces_at_one_place_the_one_seen_from_its_front_is_drawn(view, tmp_path, order):
+    faces = {"a": "usemtl a\nf 1 4 3\nf 1 3 2\n", "b": "usemtl b\nf 1 2 3\nf 1 3 4\n"}
+    mesh = quad_of(tmp_path, "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n",
+                   "".join(faces[one] for one in order))
+    view.renderer.set_lights([], Scene(ambient=(1, 1, 1, 1)))
+    for yaw, front in ((0.0, 0), (math.pi, 2)):
+        at = Pose((3.0, 0.1, 0.1), quat_from_rpy(0.0, 0.0, yaw))
+        part = view([body("q", mesh, 0)], [at]).rgb[180:300, 260:380].reshape(-1, 3)
+        assert part[:, front].min() > 150 and part[:, 2 - front].max() == 0, yaw
+
+
+def test_what_glows_has_the_colours_of_its_picture(view, tmp_path):
+    from PIL import Image
+
+    Image.new("RGB", (4, 4), (200, 0, 0)).save(tmp_path / "red.png")
+    mesh = quad_of(tmp_path, "newmtl a\nKd 1 1 1\nKe 1 1 1\nmap_Kd red.png\n",
+                   "usemtl a\nf 1/1 4/4 3/3\nf 1/1 3/3 2/2\n")
+    view.renderer.set_lights([], DARK)
+    assert view([body("q", mesh, 0)], [Pose((3.0, 0, 0))]).rgb[240, 320].tolist() == [200, 0, 0]
+    look = Look(diffuse=(1, 1, 1, 1), emissive=(1, 1, 1, 1), texture=str(tmp_path / "red.png"))
+    found = view([body("b", Box((1.0, 1.0, 1.0)), 0, look)], [Pose((3.0, 0, 0))]).rgb
+    assert found[240, 320].tolist() == [200, 0, 0]
+
+
+def test_layers_of_a_terrain_are_blended_by_height_and_repeat_by_their_size(view, tmp_path):
+    from PIL import Image
+
+    slope = np.repeat(np.linspace(0, 255, 65).round().astype(np.uint8)[None], 65, axis=0)
+    Image.fromarray(slope).save(tmp_path / "slope.png")
+    halves = np.zeros((8, 8, 3), dtype=np.uint8)
+    halves[:, :4] = (255, 0, 0)
+    Image.fromarray(halves).save(tmp_path / "red_left.png")
+    Image.new("RGB", (4, 4), (0, 0, 255)).save(tmp_path / "blue.png")
+    terrain = Heightmap("slope.png", str(tmp_path / "slope.png"), size=(64.0, 64.0, 8.0),
+                        position=(0.0, 0.0, 1.0))
+    look = Look(lit=False, layers=(
+        TerrainLayer(str(tmp_path / "red_left.png"), size=16.0),
+        TerrainLayer(str(tmp_path / "blue.png"), size=4.0, min_height=4.0, fade_dist=2.0)))
+    eye = Pose((0.0, 0.0, 100.0), quat_from_rpy(0.0, math.pi / 2, 0.0))   # x is up, y to the left
+    found = view([body("t", terrain, 0, look)], [Pose()], eye).rgb
+
+    def at(x, y):
+        """The pixel that shows a point of the slope, whose height is 1 at x = -32 and 9 at 32."""
+        away = 100.0 - 1.0 - 8.0 * (x + 32.0) / 64.0
+        return found[round(239.5 - SPEC.focal_length * x / away),
+                     round(319.5 - SPEC.focal_length * y / away)].tolist()
+
+    assert at(-30.0, 5.0) == at(-14.0, -20.0) == [255, 0, 0]   # the left half of 16 m
+    assert at(-20.0, 5.0) == at(-4.0, -20.0) == [0, 0, 0]
+    assert at(28.0, 5.0) == at(20.0, -20.0) == [0, 0, 255]
+    middle = at(4.0, 5.0)   # 4.5 m up: a quarter of the way, in linear units
+    assert middle[2] == pytest.approx(255 * (1.055 * 0.25 ** (1 / 2.4) - 0.055), abs=6)
+
+
+def gradient(folder, size=17):
+    """A terrain of 64 m that rises evenly along x, by its image."""
+    from PIL import Image
+
+    slope = np.repeat(np.linspace(0, 255, size).round().astype(np.uint8)[None], size, axis=0)
+    Image.fromarray(slope).save(folder / "even.png")
+    return str(folder / "even.png")
+
+
+@pytest.mark.parametrize("tilt", [-0.5, 0.0, 0.5])
+def test_normal_maps_of_a_terrain_turn_its_normals(view, tmp_path, tilt):
+    from PIL import Image
+
+    normal = np.array([math.sin(tilt), 0.0, math.cos(tilt)])   # x is eastwards
+    Image.new("RGB", (8, 8), tuple(round(127.5 * (one + 1.0)) for one in normal)).save(
+        tmp_path / "tilted.png")
+    terrain = Heightmap("even.png", gradient(tmp_path), size=(64.0, 64.0, 0.001))
+    layer = TerrainLayer("", "", str(tmp_path / "tilted.png"), 4.0)
+    sun = Light("sun", "directional", direction=(-math.sin(0.5), 0.0, -math.cos(0.5)),
+                diffuse=(1.0, 1.0, 1.0, 1.0), cast_shadows=False)
+    view.renderer.set_lights([sun], DARK)
+    eye = Pose((0.0, 0.0, 40.0), quat_from_rpy(0.0, math.pi / 2, 0.0))
+    found = view([body("t", terrain, 0, Look(layers=(layer,)))], [Pose()], eye).rgb
+    grey = (0.7 + 0.055) / 1.055
+    light = grey ** 2.4 * math.cos(0.5 - tilt)
+    assert found[240, 320].tolist() == pytest.approx(
+        [255 * (1.055 * light ** (1 / 2.4) - 0.055)] * 3, abs=2)
+
+
+def test_light_goes_over_smoothly_from_one_triangle_of_a_terrain_to_the_next(view, tmp_path):
+    from PIL import Image
+
+    ridge = np.repeat((255 - 255 * np.abs(np.linspace(-1, 1, 17))).round().astype(
+        np.uint8)[None], 17, axis=0)
+    Image.fromarray(ridge).save(tmp_path / "ridge.png")
+    terrain = Heightmap("ridge.png", str(tmp_path / "ridge.png"), size=(64.0, 64.0, 32.0),
+                        sampling=1)
+    sun = Light("sun", "directional", direction=(-0.7, 0.0, -0.7), diffuse=(1.0, 1.0, 1.0, 1.0),
+                cast_shadows=False)
+    view.renderer.set_lights([sun], DARK)
+    eye = Pose((0.0, 0.0, 80.0), quat_from_rpy(0.0, math.pi / 2, 0.0))
+    column = view([body("t", terrain, 0, Look(diffuse=(1, 1, 1, 1)))], [Pose()], eye).rgb[
+        60:420, 320, 0].astype(int)
+    # From the lit side to the dark one over the ridge; between flat triangles it is one step.
+    assert column.max() - column.min() > 100 and np.abs(np.diff(column)).max() < 80
+
+
+def test_a_terrain_of_a_file_is_drawn_under_its_textures(view, tmp_path):
+    from PIL import Image
+
+    resolver = Resolver()
+    for name, colour in (("red", (220, 0, 0)), ("blue", (0, 0, 220))):
+        Image.new("RGB", (4, 4), colour).save(tmp_path / f"{name}.png")
+    textures = "".join(f"<texture><diffuse>file://{tmp_path}/{name}.png</diffuse><size>4</size>"
+                       "</texture>" for name in ("red", "blue"))
+    model, issues = read_entity(
+        "<sdf version='1.6'><model name='t'><static>true</static><link name='l'><visual name='v'>"
+        f"<geometry><heightmap><uri>file://{gradient(tmp_path)}</uri><size>64 64 4</size>{textures}"
+        "<blend><min_height>1.5</min_height><fade_dist>1</fade_dist></blend>"
+        "</heightmap></geometry></visual></link></model></sdf>", resolver)
+    assert not issues
+    terrain = body_of("t", model, 0, Materials(resolver, TextureFiles(resolver)))
+    eye = Pose((0.0, 0.0, 80.0), quat_from_rpy(0.0, math.pi / 2, 0.0))
+    found = view([terrain], [Pose()], eye).rgb.astype(int)
+    high, low = found[80, 320], found[400, 320]
+    assert low[0] > 100 and low[2] < 20 and high[2] > 100 and high[0] < 20
+
+
+def test_what_did_not_change_is_not_drawn_again(view):
+    place = [Pose((3.0, 0, 0))]
+    first = view([body("b", Box((1, 1, 1)), 0)], place).rgb
+    again = view.renderer.render(SPEC, matrix(Pose()), table(place), ALL, 9)
+    assert again.rgb is first and again.step == 9
+    moved = view.renderer.render(SPEC, matrix(Pose()), table([Pose((3.0, 0.2, 0))]), ALL, 10)
+    assert not np.array_equal(moved.rgb, first)
+    view.renderer.set_lights([], DARK)
+    assert view.renderer.render(SPEC, matrix(Pose()), table(place), ALL, 11).rgb.max() == 0
 
 
 def test_what_is_half_transparent_is_mixed_and_invisible_is_not_there(view):

@@ -88,8 +88,13 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{
  *  type: 'heightmap', uri: string, size: vec3, position: vec3, sampling: number,
- *  url?: string|null, format?: string|null
+ *  layers: TerrainLayer[], url?: string|null, format?: string|null
  *}} Heightmap */
+
+/** @typedef {{
+ *  url?: string|null, pattern?: string|null, normal_url?: string|null, size: number,
+ *  min_height: number, fade_dist: number
+ *}} TerrainLayer */
 
 /** @typedef {{
  *  type: 'polyline', loops: vec2[][], height: number, url?: string|null, format?: string|null

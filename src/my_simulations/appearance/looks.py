@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Optional, Tuple
 
 from ..description.shapes import Color
+from .terrain_layers import TerrainLayer
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,8 @@ class Look:
         alpha_test: what of the texture has less alpha, 0..1, is not drawn at all; 0 for no such
             limit.
         blended: the texture's alpha makes it transparent.
+        layers: textures of a terrain, blended by height; empty for everything else. They take the
+            place of colours and texture.
     """
 
     name: str = ""
@@ -36,3 +39,4 @@ class Look:
     lit: bool = True
     alpha_test: float = 0.0
     blended: bool = False
+    layers: Tuple[TerrainLayer, ...] = ()

@@ -7,11 +7,12 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Protocol, Tuple
 
 from ..description.compare import BUILT_IN as BUILT_IN_SCRIPT
-from ..description.shapes import Color, Material
+from ..description.shapes import Color, Material, Visual
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from .gazebo_materials import BUILT_IN, Paint, Rgb
 from .looks import Look
 from .material_script import LARGEST, ScriptMaterial, read_materials
+from .terrain_layers import terrain_layers
 
 _COLORS = ("ambient", "diffuse", "specular", "emissive")
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
@@ -54,6 +55,12 @@ class Materials:
         if found.diffuse is not None and found.transparency == 0.0:
             found = replace(found, transparency=min(1.0, max(0.0, 1.0 - found.diffuse[3])))
         return found
+
+    def of_visual(self, visual: Visual) -> Optional[Look]:
+        """The resolved material of a visual, with the layers of a terrain; None for none."""
+        found = self.look(visual.material)
+        layers = terrain_layers(visual, self._resolver)
+        return replace(found or Look(), layers=layers) if layers else found
 
     def _named(self, material: Material) -> Look:
         name = material.script_name

@@ -92,6 +92,8 @@ PATTERNS: Dict[str, Pattern] = {
     "sidewalk": Pattern("tiles", (0xB5B1A8, 0x8F8B83), 4, 18),
     "steps": Pattern("tiles", (0xA8A39A, 0x7C7870), 3, 18),
     "grass": Pattern("plain", (0x5F8A3A,), 1, 60),
+    "dirt": Pattern("plain", (0x8F7760,), 1, 60),
+    "fungus": Pattern("plain", (0x828169,), 1, 90),
     "granite": Pattern("plain", (0x77726D,), 1, 90),
     "com": Pattern("checker", (0xF4D616, 0x111111)),
 }

@@ -1,16 +1,16 @@
 """Parameters and services for the object tools, each with a wall-clock timeout.
 
-No rospy node is created: a tool that only calls services needs no registration, and starts much
-faster without.
+No rospy node is created, and rospy is not imported: a tool that only calls services needs no
+registration, and starts much faster without.
 """
 from __future__ import annotations
 
 import argparse
 import contextlib
+import functools
 import signal
 import sys
 import time
-from importlib import import_module
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, Severity, SimulationError
@@ -22,8 +22,8 @@ from ..resources.package_files import PACKAGE
 from ..ros.arguments import number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle import master_api
-from ..ros.lifecycle.light_imports import import_genpy
 from ..ros.own_server import spawns_objects
+from ..ros.service_connection import ServiceCallError, ServiceConnection, service_class
 
 OK, FAILED, USAGE = 0, 1, 2
 TIMEOUT = 30.0
@@ -161,8 +161,9 @@ class SimulatorClient:
             ToolError: not within `timeout` wall seconds.
         """
         self.name = name
+        self._master = parameters.uri
         self._timeout = timeout
-        self._proxies: Dict[str, Any] = {}
+        self._connections: Dict[str, ServiceConnection] = {}
         probe = f"{name}/get_world_properties"
         parameters.wait(lambda: parameters.has_service(probe), timeout,
                         f"simulator (service {probe})",
@@ -260,28 +261,32 @@ class SimulatorClient:
         return str(answer.status_message)
 
     def _call(self, service: str, kind: str, **fields: Any) -> Any:
-        import_genpy()  # first: what imports rospy imports NumPy, too
-        import rospy
-
         full = f"{self.name}/{service}"
-        if full not in self._proxies:
-            self._proxies[full] = rospy.ServiceProxy(full, _service_class(kind), persistent=True)
+        of_kind = _service_class(kind)
+
+        def call() -> Any:
+            if full not in self._connections:
+                self._connections[full] = ServiceConnection(self._master, CALLER, full, of_kind)
+            return self._connections[full](**fields)
+
         try:
-            return within(self._timeout, f"service {full}", lambda: self._proxies[full](**fields))
+            return within(self._timeout, f"service {full}", call)
         except CallTimeoutError as fault:
             raise ToolError(str(fault)) from fault
-        except (rospy.ServiceException, rospy.ROSException, OSError) as fault:
-            self._proxies.pop(full).close()
+        except (ServiceCallError, OSError) as fault:
+            if full in self._connections:
+                self._connections.pop(full).close()
             raise ToolError(f"service {full} failed: {fault}; is the simulator still running?"
                             ) from fault
 
 
+@functools.lru_cache(maxsize=None)
 def _service_class(kind: str) -> Any:
-    """The class of a service; only its package is imported, since each takes its time."""
+    """The class of a service of the packages that a simulator offers."""
     package = {"Empty": "std_srvs", "SpawnObject": "my_simulations_msgs",
                "StepWorld": "my_simulations_msgs"}.get(kind, "gazebo_msgs")
     try:
-        return getattr(import_module(f"{package}.srv"), kind)
+        return service_class(package, kind)
     except ImportError as fault:
         raise ToolError(f"the ROS package {package} was not found; source the workspace's "
                         "devel/setup.bash") from fault

@@ -1,7 +1,7 @@
 """Geometry, surface and appearance of a collision or a visual."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Dict, List, Optional, Tuple, Union
 
 from ..geometry import IDENTITY, Pose, Vec3
@@ -114,6 +114,38 @@ class Cone:
 
 
 @dataclass
+class TerrainTexture:
+    """A texture of a terrain. Source: SDF spec 1.7, heightmap/texture.
+
+    Attributes:
+        diffuse: URI of the image, "" for none; relative ones are made absolute when read.
+        normal: URI of the normal map, "" for none.
+        size: edge length of one repetition, m.
+        extra: XML of child elements that no field holds.
+    """
+
+    diffuse: str = ""
+    normal: str = ""
+    size: float = 10.0
+    extra: List[str] = field(default_factory=list)
+
+
+@dataclass
+class TerrainBlend:
+    """Where the next texture of a terrain begins. Source: SDF spec 1.7, heightmap/blend.
+
+    Attributes:
+        min_height: height above the lowest level of the image from which on it is seen, m.
+        fade_dist: height over which it replaces the texture before it, m.
+        extra: XML of child elements that no field holds.
+    """
+
+    min_height: float = 0.0
+    fade_dist: float = 0.0
+    extra: List[str] = field(default_factory=list)
+
+
+@dataclass
 class Heightmap:
     """A terrain from a grey image. Source: SDF spec 1.7, geometry/heightmap.
 
@@ -123,7 +155,9 @@ class Heightmap:
         size: extent along x and y, and the height of white above black, m.
         position: position of the centre in the frame of the collision or visual, m.
         sampling: subdivisions of a pixel.
-        extra: XML of child elements that no field holds, such as textures.
+        textures: what it is covered with, from the lowest part upwards.
+        blends: where the second and later textures begin.
+        extra: XML of child elements that no field holds.
     """
 
     uri: str = ""
@@ -131,6 +165,8 @@ class Heightmap:
     size: Vec3 = (1.0, 1.0, 1.0)
     position: Vec3 = (0.0, 0.0, 0.0)
     sampling: int = 2
+    textures: List[TerrainTexture] = field(default_factory=list)
+    blends: List[TerrainBlend] = field(default_factory=list)
     extra: List[str] = field(default_factory=list)
 
 
@@ -316,6 +352,8 @@ MeshTable = Dict[str, MeshData]
 
 def mesh_key(solid: Solid) -> str:
     """Key of a loaded mesh: file, scale and submesh, or the numbers that define it."""
+    if isinstance(solid, Heightmap):
+        return repr(replace(solid, textures=[], blends=[], extra=[]))
     if not isinstance(solid, Mesh):
         return repr(solid)
     part = f"#{solid.submesh}{'@' if solid.center else ''}" if solid.submesh else ""

@@ -65,13 +65,14 @@ def main(argv: List[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     die_with_parent()
-    keep_freed_memory()
     commands, ring, bell = (int(word) for word in argv[1:4])
     os.set_blocking(bell, False)
     with _silent_stderr():
         from .bullet.backend import BulletBackend
+        from .spare_memory import made_sparingly
 
-    backend = BulletBackend()
+    backend = made_sparingly(BulletBackend)
+    keep_freed_memory()
     wire = Wire(socket.socket(fileno=commands))
     try:
         Runner(backend, RingWriter(ring), _Pipes(wire, bell)).run()

@@ -17,6 +17,7 @@ class Wire:
 
     def __init__(self, sock: socket.socket) -> None:
         self.sock = sock
+        self._waited_for = [sock]
         # rospy sets a default timeout for all sockets of a process as soon as it subscribes. One
         # made then does not block, in the child neither: what does not fit at once would be lost.
         sock.settimeout(None)
@@ -42,7 +43,7 @@ class Wire:
         Raises EOFError if the other side is closed, or sends what is no message.
         """
         while True:
-            if not select.select([self.sock], [], [], timeout)[0]:
+            if not select.select(self._waited_for, (), (), timeout)[0]:
                 return []
             try:
                 chunk = self.sock.recv(_CHUNK)

@@ -51,6 +51,7 @@ NO_LIMIT = 1 << 62
 """The step at which an engine without consumers stops."""
 
 _CREDIT_STEP_BITS = 46
+_NO_CREDITS = memoryview(bytes(8 * CONSUMERS)).cast("q")
 
 # Words of a slot's head.
 (SEQ_BEGIN, SEQ_END, SLOT_STEP, EPOCH_STEP, EPOCH_NS, STEP_PS, USED_LINKS, USED_JOINTS,
@@ -164,6 +165,7 @@ class RingWriter:
     def __init__(self, fd: Optional[int] = None, memory: Optional[Memory] = None) -> None:
         self.memory = memory or Memory(fd)
         self.words = self.memory.words
+        self._credits = self.words[CREDITS:CREDITS + CONSUMERS]
 
     def set_step(self, step: int) -> None:
         """The world is `step` steps old; the latest slot still holds unless a new one follows."""
@@ -176,7 +178,9 @@ class RingWriter:
         the step at which the clock was set.
         """
         limit = NO_LIMIT
-        for word in self.words[CREDITS:CREDITS + CONSUMERS]:
+        if self._credits == _NO_CREDITS:
+            return limit
+        for word in self._credits:
             if word:
                 valid = word >> _CREDIT_STEP_BITS == clock_sets & 0x7FFF
                 allowed = (word & (1 << _CREDIT_STEP_BITS) - 1) - 1 if valid else since

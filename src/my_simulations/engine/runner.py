@@ -151,6 +151,8 @@ class Runner:
     def _serve(self, timeout: float) -> bool:
         """Apply what has arrived; a snapshot that shows it precedes the replies."""
         received = self._channel.receive(timeout)
+        if not received:
+            return False
         commands = [pair for pair in received if not isinstance(pair[1], Nudge)]
         if not commands:
             return bool(received)

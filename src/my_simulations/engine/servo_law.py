@@ -6,14 +6,18 @@ gazebo_ros_control's DefaultRobotHWSim. No physics engine is needed here.
 from __future__ import annotations
 
 import math
-from typing import Optional, Tuple
+from typing import Callable, Optional, Tuple
 
 from .commands import JointServo, PidGains
-from .spline import Spline
+from .spline import follower
 
 _TWO_PI = 2.0 * math.pi
 FOLLOW = 0.2
 """Share of a position error that a motor without gains takes back in a step."""
+
+
+Advance = Callable[[float, float, int], float]
+_Target = Callable[[int], Tuple[float, float]]
 
 
 def shortest(angle: float) -> float:
@@ -22,42 +26,46 @@ def shortest(angle: float) -> float:
 
 
 class Pid:
-    """One loop: p e + i integral of e + d de/dt, e = wanted - present. Source: control_toolbox."""
+    """One loop: p e + i integral of e + d de/dt, e = wanted - present. Source: control_toolbox.
 
-    __slots__ = ("_d", "_i", "_last", "_least", "_most", "_p", "_winds_up", "integral")
+    Attributes:
+        gains: its gains.
+        integral: of the error, s.
+        error: the last one, for the next difference; None when that would be no rate.
+    """
+
+    __slots__ = ("error", "gains", "integral")
 
     def __init__(self, gains: PidGains) -> None:
-        self._p, self._i, self._d = gains.p, gains.i, gains.d
-        self._least, self._most = gains.i_min, gains.i_max
-        self._winds_up = not gains.antiwindup
+        self.gains = gains
         self.integral = 0.0
-        self._last: Optional[float] = None
+        self.error: Optional[float] = None
 
     def disturbed(self) -> None:
         """What is measured has jumped: its difference is no rate."""
-        self._last = None
+        self.error = None
 
     def command(self, error: float, dt: float, slope: Optional[float] = None) -> float:
         """The next output; `slope` is de/dt, where it is known in another way."""
+        gains = self.gains
         if slope is None:
-            last = self._last
+            last = self.error
             slope = 0.0 if last is None else (error - last) / dt
-            self._last = error
-        i = self._i
+            self.error = error
+        i = gains.i
         if not i:
-            return self._p * error + self._d * slope
+            return gains.p * error + gains.d * slope
         integral = self.integral = self.integral + error * dt
-        if self._winds_up:
-            term = i * integral
-            if term > self._most:
-                term = self._most
-            elif term < self._least:
-                term = self._least
-        else:
-            one, other = self._least / i, self._most / i
+        term = i * integral
+        if gains.antiwindup:
+            one, other = gains.i_min / i, gains.i_max / i
             integral = self.integral = max(min(one, other), min(max(one, other), integral))
             term = i * integral
-        return self._p * error + term + self._d * slope
+        elif term > gains.i_max:
+            term = gains.i_max
+        elif term < gains.i_min:
+            term = gains.i_min
+        return gains.p * error + term + gains.d * slope
 
 
 class ServoLaw:
@@ -65,107 +73,72 @@ class ServoLaw:
 
     Attributes:
         servo: as it was given.
-        gives_effort: `advance` returns an effort, N m or N; else the rate of a motor.
+        advance: gives the effort, N m or N, or the rate of a motor, for the step that begins at a
+            count: (position, rate, step). A function of its own for what most servos are.
+        gives_effort: `advance` returns an effort; else the rate of a motor.
         steady: nothing is to be computed: a motor keeps `servo.target`.
+        loop: about the target; None without gains.
         last: what `advance` returned last.
+        before: the position commanded in the last step; None when there was none.
     """
 
     def __init__(self, servo: JointServo, dt: float) -> None:
         self._dt = dt
-        self._outer = Pid(servo.gains) if servo.gains is not None else None
+        self.loop = Pid(servo.gains) if servo.gains is not None else None
         self._inner = Pid(servo.drive_gains) if servo.drive_gains is not None else None
-        self._before: Optional[float] = None   # the position commanded in the last step
+        self.before: Optional[float] = None
         self.last = 0.0
         self.change(servo)
 
     def change(self, servo: JointServo) -> None:
         """Another target for the same loops."""
         self.servo = servo
-        self._seen_step, self._seen = -1, (0.0, 0.0)
-        self._begin, self._end = math.inf, -math.inf
-        # Of the position, c0 to c5, and of the rate, 2 c2 to 5 c5.
-        self._coefficients: Tuple[float, ...] = (0.0,) * 10
+        self._target = _target_of(servo, self._dt)
+        self._moves = False
         self.gives_effort = servo.drive == "effort" or self._inner is not None
-        # Most loops: an effort that follows a position, and limits that are seldom reached.
-        self._plain = (servo.drive == "effort" and servo.soft is None
-                       and self._outer is not None and not servo.of_rate and not servo.wraps)
         self.steady = (servo.spline is None and servo.gains is None and self._inner is None
                        and (servo.drive != "effort" or servo.target == 0.0)
                        and servo.soft is None)
+        self.advance: Advance = self._advance
+        if servo.soft is None and servo.drive == "effort" and self.loop is not None and not (
+                servo.of_rate or servo.wraps or self.loop.gains.antiwindup):
+            self.advance = _position_loop(self, self._target, self._dt)
+        elif servo.soft is None and servo.drive == "position" and servo.spline is not None and (
+                self.loop is None and self._inner is None):
+            self.advance = _position_motor(self, self._target, self._dt)
 
-    @property
-    def moving(self) -> bool:
-        """Whether the position that was wanted last is on its way."""
-        return self.servo.spline is not None and self._seen[1] != 0.0
+    def moves(self, step: int) -> bool:
+        """Whether the position that is wanted at a step count is on its way."""
+        return self.servo.spline is not None and self._target(step)[1] != 0.0
 
     def disturbed(self) -> None:
         """The joint was put somewhere."""
-        self._before = None
-        for loop in (self._outer, self._inner):
+        self.before = None
+        for loop in (self.loop, self._inner):
             if loop is not None:
                 loop.disturbed()
 
-    def advance(self, position: float, rate: float, step: int) -> float:
-        """The effort or rate for the step that begins at count `step`."""
+    def _advance(self, position: float, rate: float, step: int) -> float:
+        """`advance` for all kinds of servos."""
         servo, dt = self.servo, self._dt
-        if servo.spline is None:
-            wanted, wanted_rate = servo.target, servo.target_rate
-        else:
-            wanted, wanted_rate = self._on_spline(servo.spline, step)
-        outer = self._outer
-        if outer is None:
-            command = wanted
-        elif self._plain:
-            command = outer.command(wanted - position, dt,
-                                    wanted_rate - rate if servo.by_rates else None)
-            if servo.feedforward:
-                command += servo.feedforward * wanted_rate
-        else:
-            if servo.of_rate:
-                error = wanted - rate
-            else:
-                error = wanted - position
-                if servo.wraps:
-                    error = shortest(error)
-            command = servo.feedforward * wanted_rate + outer.command(
+        wanted, wanted_rate = self._target(step)
+        command = wanted
+        if self.loop is not None:
+            error = wanted - (rate if servo.of_rate else position)
+            if servo.wraps and not servo.of_rate:
+                error = shortest(error)
+            command = servo.feedforward * wanted_rate + self.loop.command(
                 error, dt, wanted_rate - rate if servo.by_rates else None)
         if servo.drive == "effort":
-            most = servo.most_effort
-            if servo.soft is None and servo.lower <= position <= servo.upper and (
-                    -servo.most_rate <= rate <= servo.most_rate):
-                self.last = -most if command < -most else most if command > most else command
-            else:
-                self.last = self._effort(command, position, rate)
+            self.last = self.limited(command, position, rate)
         elif servo.drive == "velocity":
             self.last = self._velocity(command, position, rate)
         else:
             self.last = self._position(command, position, step)
         return self.last
 
-    def _on_spline(self, spline: Spline, step: int) -> Tuple[float, float]:
-        """Position and rate at a step count, without a search within one segment."""
-        if step == self._seen_step:
-            return self._seen
-        time, begin = (step - spline.origin) * self._dt, self._begin
-        if not begin <= time < self._end:
-            index = spline.index(time)
-            segment = spline.segments[index]
-            following = spline.segments[index + 1:index + 2]
-            self._begin, self._end = segment.start, min(
-                [segment.end, *(one.start for one in following)])
-            self._coefficients = (*segment.coefficients, *(
-                power * one for power, one in enumerate(segment.coefficients[2:], 2)))
-            position, rate, _ = spline.at(time)
-        else:
-            c0, c1, c2, c3, c4, c5, d2, d3, d4, d5 = self._coefficients
-            t = time - begin
-            position = ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0
-            rate = (((d5 * t + d4) * t + d3) * t + d2) * t + c1
-        self._seen_step = step
-        seen = self._seen = position, rate
-        return seen
-
-    def _effort(self, effort: float, position: float, rate: float) -> float:
+    def limited(self, effort: float, position: float, rate: float) -> float:
+        """An effort within the limits."""
         servo = self.servo
         most = servo.most_effort
         least = -most
@@ -192,22 +165,15 @@ class ServoLaw:
         return max(-servo.most_effort, min(servo.most_effort,
                                            self._inner.command(command - rate, self._dt)))
 
-    def _within(self, position: float, least: float, most: float) -> float:
-        """A position within the joint's limits and these."""
-        lower, upper = self.servo.lower, self.servo.upper
-        if lower <= position <= upper and least <= position <= most:
-            return position   # nearly always: four calls less
-        return max(lower, least, min(upper, most, position))
-
     def _position(self, command: float, position: float, step: int) -> float:
         servo, dt = self.servo, self._dt
-        before = position if self._before is None else self._before
+        before = position if self.before is None else self.before
         slow, fast = -servo.most_rate, servo.most_rate
         if servo.soft is not None:
             slow, fast = servo.soft.rates(before, servo.most_rate)
         command = self._within(command, before + slow * dt, before + fast * dt)
         if self._inner is not None:
-            self._before = command
+            self.before = command
             error = command - position
             if servo.wraps:
                 error = shortest(error)
@@ -215,9 +181,81 @@ class ServoLaw:
         # A motor arrives at the end of the step where the spline is then.
         ahead = command
         if servo.spline is not None:
-            self._before = command
-            ahead = self._on_spline(servo.spline, step + 1)[0]
-            ahead = self._within(ahead, command + slow * dt, command + fast * dt)
+            self.before = command
+            ahead = self._within(self._target(step + 1)[0], command + slow * dt,
+                                 command + fast * dt)
         else:
-            self._before = None
+            self.before = None
         return (FOLLOW * (command - position) + ahead - command) / dt
+
+    def _within(self, position: float, least: float, most: float) -> float:
+        """A position within the joint's limits and these."""
+        return max(self.servo.lower, least, min(self.servo.upper, most, position))
+
+
+def _target_of(servo: JointServo, dt: float) -> _Target:
+    """The target and its rate at a step count."""
+    if servo.spline is not None:
+        return follower(servo.spline, dt)
+    wanted = servo.target, servo.target_rate
+    return lambda step: wanted
+
+
+def _position_loop(law: ServoLaw, target: _Target, dt: float) -> Advance:
+    """What `ServoLaw._advance` does for an effort by a loop about a position, in one call.
+
+    An axis of an arm costs a third of what the general form costs.
+    """
+    servo, loop = law.servo, law.loop
+    assert loop is not None
+    p, i, d, i_min, i_max = (loop.gains.p, loop.gains.i, loop.gains.d, loop.gains.i_min,
+                             loop.gains.i_max)
+    stands, by_rates, feedforward = servo.spline is None, servo.by_rates, servo.feedforward
+    lower, upper, fast, most = servo.lower, servo.upper, servo.most_rate, servo.most_effort
+    wanted, wanted_rate = servo.target, servo.target_rate
+
+    def advance(position: float, rate: float, step: int) -> float:
+        nonlocal wanted, wanted_rate
+        if not stands:
+            wanted, wanted_rate = target(step)
+        error = wanted - position
+        if by_rates:
+            effort = p * error + d * (wanted_rate - rate)
+        else:
+            before, loop.error = loop.error, error
+            effort = p * error
+            if before is not None:
+                effort += d * ((error - before) / dt)
+        if i:
+            integral = loop.integral = loop.integral + error * dt
+            term = i * integral
+            effort += i_max if term > i_max else i_min if term < i_min else term
+        if feedforward:
+            effort += feedforward * wanted_rate
+        if lower <= position <= upper and -fast <= rate <= fast:
+            law.last = effort = most if effort > most else -most if effort < -most else effort
+        else:
+            law.last = effort = law.limited(effort, position, rate)
+        return effort
+
+    return advance
+
+
+def _position_motor(law: ServoLaw, target: _Target, dt: float) -> Advance:
+    """What `ServoLaw._advance` does for a motor that follows a spline, in one call."""
+    servo = law.servo
+    lower, upper, way = servo.lower, servo.upper, servo.most_rate * dt
+
+    def advance(position: float, rate: float, step: int) -> float:
+        before = position if law.before is None else law.before
+        command, ahead = target(step)[0], target(step + 1)[0]
+        if not (lower <= command <= upper and before - way <= command <= before + way):
+            command = max(lower, before - way, min(upper, before + way, command))
+        # The motor arrives at the end of the step where the spline is then.
+        if not (lower <= ahead <= upper and command - way <= ahead <= command + way):
+            ahead = max(lower, command - way, min(upper, command + way, ahead))
+        law.before = command
+        law.last = found = (FOLLOW * (command - position) + ahead - command) / dt
+        return found
+
+    return advance

@@ -1,9 +1,10 @@
 """Splines in time: what a joint trajectory becomes."""
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import Tuple
+from typing import Callable, Tuple
 
 Coefficients = Tuple[float, float, float, float, float, float]
 """c0 + c1 t + ... + c5 t^5, t in s from the beginning of the segment."""
@@ -60,6 +61,43 @@ def sample(segment: Segment, time: float) -> Tuple[float, float, float]:
     return (((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0,
             (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t + c1,
             ((20.0 * c5 * t + 12.0 * c4) * t + 6.0 * c3) * t + 2.0 * c2)
+
+
+def follower(spline: Spline, step_size: float) -> Callable[[int], Tuple[float, float]]:
+    """A function that gives position and rate at a step count, fast for one step after the other.
+
+    It looks for the segment when another one begins, and keeps the answer for the last step.
+    """
+    begin, end = math.inf, -math.inf   # when the coefficients count, s
+    c0 = c1 = c2 = c3 = c4 = c5 = d2 = d3 = d4 = d5 = 0.0   # of the position, and of the rate
+    origin, known_step, known = spline.origin, -1, (0.0, 0.0)
+
+    def find(time: float) -> None:
+        nonlocal begin, end, c0, c1, c2, c3, c4, c5, d2, d3, d4, d5
+        index = spline.index(time)
+        segment, later = spline.segments[index], spline.segments[index + 1:index + 2]
+        change = later[0].start if later else math.inf
+        if segment.start <= time <= segment.end:
+            begin, end = segment.start, min(segment.end, change)
+            c0, c1, c2, c3, c4, c5 = segment.coefficients
+        else:   # it stands from now on
+            begin, end = time, segment.start if time < segment.start else change
+            c0, c1, c2, c3, c4, c5 = spline.at(time)[0], 0.0, 0.0, 0.0, 0.0, 0.0
+        d2, d3, d4, d5 = 2.0 * c2, 3.0 * c3, 4.0 * c4, 5.0 * c5
+
+    def at(step: int) -> Tuple[float, float]:
+        nonlocal known_step, known
+        if step != known_step:
+            time = (step - origin) * step_size
+            if not begin <= time < end:
+                find(time)
+            t = time - begin
+            known = (((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0,
+                     (((d5 * t + d4) * t + d3) * t + d2) * t + c1)
+            known_step = step
+        return known
+
+    return at
 
 
 State = Tuple[float, ...]

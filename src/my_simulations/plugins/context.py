@@ -284,14 +284,14 @@ class Context(Protocol):
         """
 
     def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
-                   stream: str = "") -> bool:
+                   stream: str = "", queue: bool = False) -> bool:
         """Take pictures of the world as of now.
 
         `call` gets them in the order of the views, and the sim time (ns) they show. One call of a
         stream is on its way at a time: while the one before is not published, pictures are late.
         The world then goes on, these are left out (False), and the user is told; a world that is
         stepped manually waits instead. `stream` names cameras of a plugin that take turns of their
-        own.
+        own. With `queue` the next ones may be asked for while messages of the last ones are made.
         """
 
     def sensors(self) -> List[Tuple[str, Sensor]]:

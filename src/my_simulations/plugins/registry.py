@@ -70,6 +70,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_camera.so": "sensors.camera:Camera",
     "libgazebo_ros_triggered_camera.so": "sensors.camera:TriggeredCamera",
     "libgazebo_ros_multicamera.so": "sensors.camera:MultiCamera",
+    "libgazebo_ros_triggered_multicamera.so": "sensors.camera:TriggeredMultiCamera",
     "libgazebo_ros_prosilica.so": "sensors.camera:Camera",
     "libgazebo_ros_depth_camera.so": "sensors.depth_camera:DepthCamera",
     "librealsense_gazebo_plugin.so": "sensors.realsense:RealSense",

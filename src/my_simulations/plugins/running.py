@@ -27,7 +27,7 @@ class Running:
 
 
 class ModelPlugins:
-    """Follows the models of a simulator.
+    """Follows those models of a simulator that have plugins.
 
     Attributes:
         revision: of the models that were looked at last.
@@ -54,7 +54,7 @@ class ModelPlugins:
         """Note which plugins are to be loaded and ended; tell of other rows those that stay."""
         if self._simulator.models.revision == self.revision:
             return
-        self.revision, entities = self._simulator.models.inventory()
+        self.revision, entities = self._simulator.models.with_plugins()
         self._compare({WORLD_SCOPE: self._world_entity(),
                        **{entity.model.name: entity for entity in entities}})
 

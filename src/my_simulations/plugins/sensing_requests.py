@@ -99,7 +99,7 @@ class SensingRequests:
 
     def photograph(self, views: Sequence[Tuple[Mount, View]],
                    call: Callable[[List[Pictures], int], None], ns: int, wait: bool,
-                   again: Callable[[], object], stream: str = "") -> bool:
+                   again: Callable[[], object], stream: str = "", queue: bool = False) -> bool:
         """Ask for pictures, unless those before of the same stream are late.
 
         A world that goes on does not wait while the renderer starts, reads textures and compiles
@@ -113,6 +113,7 @@ class SensingRequests:
             wait: for those before, however late they are.
             again: has this asked anew, as of then.
             stream: its name.
+            queue: ask although messages of the last pictures are still being made.
 
         Returns:
             Whether pictures were asked for.
@@ -122,7 +123,7 @@ class SensingRequests:
             self._end_shot(before, _PICTURES_S if wait else 0.0)
         if wait:
             _wait_for(unsent)
-        if stream in self._shots or unsent:
+        if stream in self._shots or (unsent and not queue):
             if stream not in self._shots or not self._shots[stream].first:
                 self._leave_out()
             return False

@@ -314,16 +314,16 @@ class SimulatedContext:
                           self.now_ns)
 
     def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
-                   stream: str = "") -> bool:
+                   stream: str = "", queue: bool = False) -> bool:
         """Take pictures."""
         mounted = [(Mount(self._rows.link(view.link), view.pose), view) for view in views]
 
         def again() -> None:
-            self.photograph(views, call, stream)
+            self.photograph(views, call, stream, queue)
 
         # Anew at a step: a message says which one its picture shows.
         return self.sensing.photograph(mounted, call, self.now_ns, self.by_hand,
-                                       lambda: self.once(0, again), stream)
+                                       lambda: self.once(0, again), stream, queue)
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
         """The sensors of the model's links."""

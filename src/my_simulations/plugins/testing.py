@@ -262,7 +262,8 @@ class FakeContext:
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
 
-    def photograph(self, views: Any, call: Callable[[Any, int], None], stream: str = "") -> bool:
+    def photograph(self, views: Any, call: Callable[[Any, int], None], stream: str = "",
+                   queue: bool = False) -> bool:
         """Cameras see what a test says (`pictures`)."""
         if self.late:
             return False

@@ -18,7 +18,7 @@ def body(name: str, model: Model, first_link_row: int, materials: "Materials") -
     looks: Dict[Tuple[int, int], Look] = {}
     for n, link in enumerate(model.links):
         for m, visual in enumerate(link.visuals):
-            look = materials.look(visual.material)
+            look = materials.of_visual(visual)
             if look is not None:
                 looks[n, m] = look
     return Body(name, model, first_link_row, looks)

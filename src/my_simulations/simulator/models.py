@@ -70,11 +70,10 @@ class Models:
         with self._session.registry_lock:
             return len(self._session.registry)
 
-    @property
-    def have_plugins(self) -> bool:
-        """Whether any model has a plugin, without looking at each."""
+    def with_plugins(self) -> Tuple[int, List[Entity]]:
+        """The revision and the models that have a plugin; no other is looked at."""
         with self._session.registry_lock:
-            return self._session.registry.have_plugins
+            return self._session.registry.revision, self._session.registry.with_plugins()
 
     def entity(self, name: str) -> Entity:
         """A model with its rows and names. Raises UnknownEntityError."""

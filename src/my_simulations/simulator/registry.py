@@ -191,7 +191,7 @@ class Registry:
         self._entities: Dict[str, Entity] = {}
         # By model id, in the order of models: one that goes costs no look at the others.
         self._plain_links: Dict[str, Dict[int, Tuple[Entity, int]]] = {}
-        self._with_plugins = 0
+        self._with_plugins: Dict[int, Entity] = {}
         self.revision = 0
 
     def __contains__(self, name: str) -> bool:
@@ -200,10 +200,9 @@ class Registry:
     def __len__(self) -> int:
         return len(self._entities)
 
-    @property
-    def have_plugins(self) -> bool:
-        """Whether any model has a plugin."""
-        return self._with_plugins > 0
+    def with_plugins(self) -> List[Entity]:
+        """The models that have a plugin, in the order in which they came or were edited."""
+        return list(self._with_plugins.values())
 
     def names(self) -> List[str]:
         """Model names, in order."""
@@ -236,14 +235,15 @@ class Registry:
     def _know_parts(self, entity: Entity) -> None:
         for index, link in enumerate(entity.link_names):
             self._plain_links.setdefault(link, {})[entity.model_id] = entity, index
-        self._with_plugins += entity.has_plugins
+        if entity.has_plugins:
+            self._with_plugins[entity.model_id] = entity
 
     def _forget_parts(self, entity: Entity) -> None:
         for link in entity.link_names:
             del self._plain_links[link][entity.model_id]
             if not self._plain_links[link]:
                 del self._plain_links[link]
-        self._with_plugins -= entity.has_plugins
+        self._with_plugins.pop(entity.model_id, None)
 
     def _insert(self, entity: Entity, slot: OrderSlot) -> None:
         name = entity.model.name

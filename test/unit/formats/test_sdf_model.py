@@ -21,6 +21,7 @@ from my_simulations.description.shapes import (
     Polyline,
     Sphere,
     Surface,
+    TerrainTexture,
 )
 from my_simulations.errors import Severity, errors_of
 from my_simulations.formats.reading import parse_world, read_entity
@@ -135,7 +136,7 @@ def test_images_are_found_and_their_fields_read(tmp_path):
         "</image></geometry></collision>")
     terrain, plan = (c.geometry for c in link.collisions)
     assert terrain == Heightmap(str(image), str(image), (4, 4, -1), (1, 2, 3), 4,
-                                ["<texture><size>2</size></texture>"])
+                                [TerrainTexture(size=2.0)])
     assert plan == ImageMap(str(image), str(image), 0.1, 100, 2.0, 3)
     assert errors(issues) == []
 

@@ -12,7 +12,12 @@ from my_simulations.description.sensor import Camera as CameraBlock
 from my_simulations.description.sensor import Noise, Sensor
 from my_simulations.geometry import Pose
 from my_simulations.plugins.context import PluginError
-from my_simulations.plugins.sensors.camera import Camera, MultiCamera, TriggeredCamera
+from my_simulations.plugins.sensors.camera import (
+    Camera,
+    MultiCamera,
+    TriggeredCamera,
+    TriggeredMultiCamera,
+)
 from my_simulations.plugins.sensors.depth_camera import DepthCamera, OpenniKinect
 from my_simulations.plugins.sensors.image_messages import encoded
 from my_simulations.plugins.sensors.realsense import RealSense
@@ -244,6 +249,17 @@ def test_a_pair_looks_at_the_same_time_and_the_right_one_has_the_baseline():
     context.unwanted = {"cam/left/image_raw", "cam/left/image_raw/compressed"}
     context.advance(0.1)
     assert [view.pose.position[1] for view in context.views[1]] == [-0.07]
+
+
+def test_each_camera_of_a_pair_has_a_trigger_of_its_own():
+    block, right = (CameraBlock(f"{side}_eye", width=8, height=6) for side in ("left", "right"))
+    context = camera("", block, "multicamera", more=(right,), cls=TriggeredMultiCamera)
+    context.advance(0.3)
+    context.hear("cam/right/image_trigger")
+    context.hear("cam/right/image_trigger")
+    context.hear("cam/left/image_trigger")
+    context.advance(0.3)
+    assert [len(context.published[f"cam/{side}/image_raw"]) for side in ("left", "right")] == [1, 2]
 
 
 def floats(message):

@@ -195,3 +195,13 @@ def test_streams_do_not_wait_for_each_other():
     assert case.shoot(1) and case.requests.photograph([VIEW], lambda *_: None, 1, False,
                                                       case.ask_again, "depth")
     assert not case.said
+
+
+def test_who_asks_one_by_one_does_not_wait_for_messages_that_are_being_made():
+    case = Case()
+    assert case.shoot(1)
+    case.answer("first")
+    case.deliver()
+    case.requests.unsent.append(None)   # its message is not made yet
+    assert not case.shoot(2) and len(case.said) == 1   # a stream leaves out
+    assert case.requests.photograph([VIEW], lambda *_: None, 2, False, case.ask_again, queue=True)

@@ -10,6 +10,7 @@ from work_count import bytecodes
 from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.plugins.running import ModelPlugins
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.plugins.plugin_starter import PluginStarter
 from my_simulations.ros.services.model_services import ModelServices
@@ -64,3 +65,13 @@ def test_no_other_model_is_looked_at_when_one_comes_or_goes(services):
     # then, so the least of several is compared.
     assert abs(min(came[MANY]) - min(came[FEW])) < 300 and min(came[FEW]) > 1000
     assert abs(min(gone[MANY]) - min(gone[FEW])) < 300 and min(gone[FEW]) > 100
+
+
+def test_a_look_for_plugins_passes_by_models_without(services):
+    followed = ModelPlugins(services._simulator, lambda running, entity: None)
+    looks = []
+    for number in range(MANY):
+        spawn(services, number)
+        if number >= MANY - SAMPLES or FEW - SAMPLES <= number < FEW:
+            looks.append(bytecodes(followed.look))
+    assert abs(min(looks[:SAMPLES]) - min(looks[SAMPLES:])) < 50 and min(looks) > 20

@@ -60,8 +60,8 @@ export function fill(element, ...children) {
 }
 
 /**
- * Roving focus: one of the matching elements takes part in the tab order, the arrow keys, Home and
- * End move it on. Hidden and disabled ones are passed over.
+ * Roving focus: one of the matching elements takes part in the tab order, the arrow keys move it on, in
+ * lists Home and End, too. Bars leave these to the view. Hidden and disabled ones are passed over.
  *
  * @param {HTMLElement} container
  * @param {string} selector
@@ -88,7 +88,8 @@ export function roving(container, selector, {vertical = false, wrap = true} = {}
     if (!item || usesArrows(event.target)) return;
     const all = items();
     const at = all.indexOf(item);
-    const to = {[back]: at - 1, [forth]: at + 1, Home: 0, End: all.length - 1}[event.key];
+    const ends = vertical ? {Home: 0, End: all.length - 1} : {};
+    const to = {[back]: at - 1, [forth]: at + 1, ...ends}[event.key];
     if (to === undefined || !all.length) return;
     event.preventDefault();
     event.stopPropagation();

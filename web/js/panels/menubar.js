@@ -46,16 +46,20 @@ export function mountMenuBar(element, menus) {
   };
   buttons.forEach((button, at) => {
     let wasOpen = false;
-    button.addEventListener('pointerdown', () => {
+    // Menus open on the press, as everywhere; the keyboard clicks without one.
+    button.addEventListener('pointerdown', (event) => {
       wasOpen = open === at;
+      if (!wasOpen && event.button === 0 && event.pointerType === 'mouse') show(at);
     });
+    // Else the button would take the focus from the menu's first item.
+    button.addEventListener('mousedown', (event) => event.preventDefault());
     button.addEventListener('click', (event) => {
       if (wasOpen && event.detail) {
         wasOpen = false;
         closePopup();
         return;
       }
-      show(at);
+      if (open !== at) show(at);
     });
     button.addEventListener('pointerenter', () => {
       if (open !== null && open !== at) show(at);

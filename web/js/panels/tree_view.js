@@ -45,9 +45,13 @@ export class Tree {
     element.addEventListener('scroll', draw);
     new ResizeObserver(draw).observe(element);
     element.addEventListener('focus', draw);
-    element.addEventListener('blur', draw);
+    element.addEventListener('blur', () => {
+      this.#byMouse = false;
+      draw();
+    });
     // Not by click: browsers give none when what was pressed has been drawn anew meanwhile.
     element.addEventListener('pointerdown', (event) => {
+      this.#byMouse = true;
       this.#pressed = event.button === 0 ? this.#rowAt(event) : null;
     });
     element.addEventListener('pointerup', (event) => {
@@ -63,6 +67,8 @@ export class Tree {
   #sheet;
   /** The row where the button was pressed. @type {Row|null} */
   #pressed = null;
+  /** A row was pressed, and no key has moved on since. */
+  #byMouse = false;
   #typed = {text: '', at: 0};
 
   /** @param {Row[]} rows as `world_rows.Row` @param {Set<string>} selected ids */
@@ -196,6 +202,8 @@ export class Tree {
   #keyMoves(event, at, row) {
     const page = Math.max(1, Math.floor(this.element.clientHeight / ROW) - 1);
     const last = this.rows.length - 1;
+    // Who clicked a row means the view; who walks by keys means the tree.
+    if (event.key === 'Home' && this.#byMouse) return false;
     const to = {
       ArrowUp: at - 1,
       ArrowDown: at + 1,
@@ -207,6 +215,7 @@ export class Tree {
       ArrowRight: row.expandable && row.open ? at + 1 : undefined,
     }[event.key];
     if (to === undefined) return false;
+    this.#byMouse = false;
     const next = this.#beyondHeadings(Math.min(Math.max(to, 0), last), to < at ? -1 : 1);
     this.reveal(next.id);
     // With Ctrl the row is only looked at; Space then adds it to the selection.

@@ -7,11 +7,13 @@ import {colorOf} from './three_convert.js';
 import {frontsFirst} from './fronts_first.js';
 import {patternCanvas} from './builtin_textures.js';
 import {DULLEST, GREY, GROUND, SHININESS} from './palette.js';
+import {terrainMaterial} from './terrain_material.js';
 /** @import {LoadingManager, Texture} from 'three' */
 
 /** @typedef {import('../protocol.js').Material} MaterialDocument */
 /** @typedef {Pick<MaterialDocument, 'texture'> & Partial<MaterialDocument>} Paint */
 /** @typedef {import('../protocol.js').Texture} TextureDocument */
+/** @typedef {import('../protocol.js').TerrainLayer} TerrainLayer */
 /** @typedef {import('three').Material} ThreeMaterial */
 /**
  * How a surface is drawn; `pushed`: it lies just behind others; `endless`: its rim goes over into
@@ -146,6 +148,36 @@ export class Materials {
       return new MeshLambertMaterial({...common, ...glow});
     }
     return new MeshPhongMaterial({...common, ...glow, shininess: SHININESS, specular: colorOf(specular)});
+  }
+
+  /**
+   * The material of a terrain with textures.
+   * @param {TerrainLayer[]} layers
+   * @param {number} base  height of black, m
+   * @param {Variant} variant
+   */
+  terrain(layers, base, variant) {
+    const key = JSON.stringify([layers, base, variant]);
+    let made = this.#cache.get(key);
+    if (!made) {
+      const covered = layers.map((layer) => ({layer,
+        map: this.#map({url: layer.url, pattern: layer.pattern, scale: [1, 1]}),
+        bumps: layer.normal_url ? this.#normalMap(layer.normal_url) : null}));
+      this.#cache.set(key, made = terrainMaterial(covered, base, variant));
+    }
+    return made;
+  }
+
+  /** @param {string} url */
+  #normalMap(url) {
+    const key = `normals ${url}`;
+    let map = this.#textures.get(key) ?? null;
+    if (!map) {
+      map = this.#loadFile(url);
+      map.wrapS = map.wrapT = RepeatWrapping;
+      this.#textures.set(key, map);
+    }
+    return map;
   }
 
   /** @param {TextureDocument|null|undefined} texture */

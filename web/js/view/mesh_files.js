@@ -2,9 +2,9 @@
 import {faultText} from '../panels/dialog.js';
 import {frontsFirst} from './fronts_first.js';
 import {
-  Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
+  BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
 } from 'three';
-/** @import {BufferGeometry, Color, Material, Matrix4, Object3D, Texture} from 'three' */
+/** @import {Color, Material, Matrix4, Object3D, Texture} from 'three' */
 /** @import {Geometry} from '../protocol.js' */
 
 /** A file that holds a mesh; `fallback`: the simulator's form of it, STL.
@@ -55,6 +55,18 @@ async function readStl(url) {
   return new Mesh(new STLLoader().parse(content), plainMaterial);
 }
 
+/** @param {string} url */
+async function readTerrain(url) {
+  const [{sharedCorners}, read] = await Promise.all([import('./terrain_grid.js'), readStl(url)]);
+  const found = sharedCorners(/** @type {Float32Array} */ (read.geometry.attributes.position.array));
+  if (!found) return read;
+  const {position, normal, uv, index} = found;
+  const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(position, 3))
+    .setAttribute('normal', new BufferAttribute(normal, 3))
+    .setAttribute('uv', new BufferAttribute(uv, 2)).setIndex(new BufferAttribute(index, 1));
+  return new Mesh(geometry, plainMaterial);
+}
+
 /** @param {string} url @param {LoadingManager} manager */
 async function readObj(url, manager) {
   const [{OBJLoader}, {MTLLoader}, content] = await Promise.all([
@@ -72,7 +84,7 @@ async function readObj(url, manager) {
 }
 
 /** @type {Record<string, (url: string, manager: LoadingManager) => Promise<Object3D>>} */
-const READERS = {dae: readCollada, stl: readStl, obj: readObj};
+const READERS = {dae: readCollada, stl: readStl, obj: readObj, terrain: readTerrain};
 
 /** @param {MeshSource} meshSource */
 function formatOf({format, url}) {

@@ -58,6 +58,8 @@ export const PATTERNS = Object.freeze({
   sidewalk: {painter: 'tiles', colors: ['#b5b1a8', '#8f8b83'], count: 4, grain: 18},
   steps: {painter: 'tiles', colors: ['#a8a39a', '#7c7870'], count: 3, grain: 18},
   grass: {painter: 'plain', colors: ['#5f8a3a'], count: 1, grain: 60},
+  dirt: {painter: 'plain', colors: ['#8f7760'], count: 1, grain: 60},
+  fungus: {painter: 'plain', colors: ['#828169'], count: 1, grain: 90},
   granite: {painter: 'plain', colors: ['#77726d'], count: 1, grain: 90},
   com: {painter: 'checker', colors: ['#f4d616', '#111111'], count: 1, grain: 0},
 });

@@ -196,6 +196,9 @@ function finished(part, shape, materials, {material, opacity = 1, wireframe = fa
   const variant = {opacity: opacity * (1 - (shape.transparency ?? 0)), wireframe};
   /** @type {Material|Material[]|undefined} */
   let made = material;
+  if (!made && shape.geometry.type === 'heightmap' && shape.geometry.layers.length) {
+    made = materials.terrain(shape.geometry.layers, shape.geometry.position[2], variant);
+  }
   if (!made && part.own && !Materials.speaks(shape.material)) {
     made = Array.isArray(part.own) ? part.own.map((one) => materials.own(one, variant))
       : materials.own(part.own, variant);

@@ -6,6 +6,7 @@ import {
   Color, CustomToneMapping, OrthographicCamera, PCFShadowMap, PerspectiveCamera, Scene,
   SRGBColorSpace, WebGLRenderer, WebGLRenderTarget,
 } from 'three';
+import {GiveWay} from './give_way.js';
 import {keepHighlights, spareProcessor} from './shader_chunks.js';
 /** @import {Camera} from 'three' */
 
@@ -85,6 +86,7 @@ export class Stage {
   #drawn = false;
   /** @type {number[]} */
   #recent = [];
+  #way = new GiveWay();
   /** @type {number|null} */
   #next = null;
   #resizes;
@@ -157,6 +159,14 @@ export class Stage {
     return true;
   }
 
+  /**
+   * A hand is at work beside the view: while pictures are slow, what it does is seen before the next.
+   * @param {'press'|'move'} hand
+   */
+  giveWay(hand) {
+    this.#way.hand(hand, performance.now());
+  }
+
   /** Something has changed that nobody can see yet: the picture at rest will show it. */
   owe() {
     this.#shadowsWanted = true;
@@ -208,7 +218,7 @@ export class Stage {
     this.#wanted = 0;
     if (this.#lost) return;
     // Pictures that wait behind others would only make the mouse feel late.
-    if (this.#isDrawing()) {
+    if (this.#isDrawing() || this.#way.waits(performance.now())) {
       this.invalidate();
       return;
     }
@@ -243,6 +253,7 @@ export class Stage {
     }
     gl.deleteSync(this.#fence);
     this.#fence = null;
+    this.#way.pictured(took, performance.now());
     // Nobody may have looked for long: then it says nothing that it is done by now.
     if (this.#waited || took < SLOW) this.#adapt(took);
     this.#waited = false;

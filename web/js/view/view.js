@@ -92,6 +92,23 @@ export function mountView(element, parts) {
   }
 }
 
+/**
+ * Lets menus, fields and panels be seen before the next slow picture.
+ * @param {HTMLElement} element  the view's
+ * @param {Stage} stage
+ * @param {AbortSignal} signal  ends it
+ */
+function giveWayTo(element, stage, signal) {
+  /** @type {[string, 'press'|'move'][]} */
+  const hands = [['pointerdown', 'press'], ['pointerup', 'press'], ['keydown', 'press'],
+    ['input', 'press'], ['wheel', 'move'], ['pointermove', 'move']];
+  for (const [type, hand] of hands) {
+    window.addEventListener(type, ({target}) => {
+      if (!(target instanceof Node && element.contains(target))) stage.giveWay(hand);
+    }, {capture: true, passive: true, signal});
+  }
+}
+
 class View {
   available = true;
   #store;
@@ -117,6 +134,7 @@ class View {
   /** Names of the models that are shown elsewhere. @type {string[]} */
   #shifted = [];
   #pictured = false;
+  #hands;
 
   /** @param {HTMLElement} element @param {ViewOptions} viewOptions */
   constructor(element, {store, actions, connection, watches, topics}) {
@@ -164,6 +182,8 @@ class View {
         // The ground is nobody's choice.
         (this.footprint(name) ? this.pixelOf(name) : null))});
     this.#connect();
+    this.#hands = new AbortController();
+    giveWayTo(element, stage, this.#hands.signal);
     actions.attachView(this);
     const kept = savedConfiguration();
     if (kept) Object.assign(store.overlays.scene, kept.overlays);
@@ -189,6 +209,7 @@ class View {
 
   dispose() {
     this.#actors.dispose();
+    this.#hands.abort();
     this.#pointer.dispose();
     this.#stage.dispose();
   }

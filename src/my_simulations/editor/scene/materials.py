@@ -1,11 +1,11 @@
 """Materials as the page gets them."""
 from __future__ import annotations
 
-from typing import Any, Dict, Optional
+from typing import Any, Dict, List, Optional
 
 from ...appearance import materials
 from ...appearance.looks import Look
-from ...description.shapes import Color, Material
+from ...description.shapes import Color, Material, Visual
 from ...resources.resolver import Resolver
 from .served_files import ServedFiles
 
@@ -28,8 +28,19 @@ class Materials:
                 "transparency": look.transparency, "lighting": look.lit,
                 "alpha_test": look.alpha_test, "blended": look.blended}
 
+    def layers(self, visual: Visual) -> List[Dict[str, Any]]:
+        """The protocol's `TerrainLayer`s of a visual; none for what is no terrain."""
+        look = self._looks.of_visual(visual)
+        return [{"url": self._url(one.texture), "pattern": one.pattern or None,
+                 "normal_url": self._url(one.normal), "size": one.size,
+                 "min_height": one.min_height, "fade_dist": one.fade_dist}
+                for one in (look.layers if look else ())]
+
+    def _url(self, path: str) -> Optional[str]:
+        return self._served.url(path) if path else None
+
     def _texture(self, look: Look) -> Optional[Dict[str, Any]]:
-        url = self._served.url(look.texture) if look.texture else None
+        url = self._url(look.texture)
         if url is None and not look.pattern:
             return None
         return {"url": url, "pattern": look.pattern or None, "scale": list(look.scale)}

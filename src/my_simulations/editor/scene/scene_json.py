@@ -124,16 +124,21 @@ class Documents:
                 "geometry": self.geometry(collision.geometry)}
 
     def _visual(self, visual: Visual) -> Dict[str, Any]:
-        return {**plain_fields(visual, "geometry", "material"),
-                "geometry": self.geometry(visual.geometry),
+        geometry = self.geometry(visual.geometry)
+        if isinstance(visual.geometry, Heightmap):
+            geometry["layers"] = self._materials.layers(visual)
+        return {**plain_fields(visual, "geometry", "material"), "geometry": geometry,
                 "material": self._materials.document(visual.material)}
 
     def geometry(self, shape: Geometry) -> Dict[str, Any]:
         """The protocol's `Geometry`, with a URL where the page must load something."""
-        found = {"type": NAMES.get(type(shape), "empty"), **plain_fields(shape)}
+        found = {"type": NAMES.get(type(shape), "empty"),
+                 **plain_fields(shape, "textures", "blends")}
         if isinstance(shape, Mesh):
             found.update(self._mesh(shape))
-        elif isinstance(shape, (Heightmap, Polyline, ImageMap)):
+        elif isinstance(shape, Heightmap):
+            found.update(url=self.solids.url(shape), format="terrain", layers=[])
+        elif isinstance(shape, (Polyline, ImageMap)):
             found.update(url=self.solids.url(shape), format="stl")
         return found
 

@@ -107,7 +107,7 @@ class BulletBackend:
         self._loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self._ties, self._motors, self._wrenches,
-                         self._readout)
+                         self._readout, self._loop)
         # Whom it concerns that a command, or a force that begins, reaches a body.
         self._hearers = (self._readout.touch, *(part.touched for part in (
             self._loop, self._friction, self._settling, self._residual, self._rolling,
@@ -146,11 +146,13 @@ class BulletBackend:
         """Carry out a command; raises `CommandRefusedError`."""
         if not isinstance(command, (Restart, Clear)):
             self._settle()
+        self._loop.changed()
         return self._appliers[type(command)](command)
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use other settings from the next step on; a changed gravity wakes everything."""
         self._settle()
+        self._loop.changed()
         before, self._settings = self._settings, settings
         if settings.gravity != before.gravity:
             self._waker.everything()  # first: Bullet tells only awake bodies of a new gravity
@@ -174,9 +176,11 @@ class BulletBackend:
             return
         if count > 1:
             run(first, count - 1, dt, gravity)
+        self._loop.changed()
         self._wrenches.before(count)
         run(first + count - 1, 1, dt, gravity)
         self._wrenches.after(dt, gravity)
+        self._loop.changed()
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -301,6 +305,7 @@ class BulletBackend:
             self._rows[part.row] = (body, part)
         for axis in body.axes:
             self._axes[axis.row] = (body, axis)
+        self._loop.add(body)
         self._forces.add_body(body)
         self._friction.add(body)
         self._spin.add(body)
@@ -403,6 +408,7 @@ class BulletBackend:
             f"for which no friction fits all pairs: it is {100 * share:.0f} % off", body.model_id))
 
     def _on_diverged(self, body: Body) -> None:
+        self._loop.changed()
         self._mover.put_back(body)
         name = self._models[body.model_id].model.name
         self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "

@@ -13,6 +13,7 @@ import pybullet
 
 from ...description.model import Link
 from ...geometry import (
+    IDENTITY,
     Pose,
     Quat,
     Twist,
@@ -102,7 +103,7 @@ class Body:
     """One PyBullet body, or several immovable ones that stand for one link.
 
     Attributes:
-        uid: PyBullet's number; `more` those of further static pieces with the same frame.
+        uid: PyBullet's number; `more` those of further static pieces.
         balls: its ball joints, which have no row.
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
@@ -220,8 +221,15 @@ def remove(body: Body) -> None:
 def place(body: Body, link_pose: Pose) -> None:
     """Put a body so that its first part's link frame has the world pose `link_pose`."""
     at = body.parts[0].com_pose(link_pose)
-    for uid in body.uids:
-        pybullet.resetBasePositionAndOrientation(uid, at.position, at.orientation)
+    pybullet.resetBasePositionAndOrientation(body.uid, at.position, at.orientation)
+    for uid, (recipe, _) in zip(body.more, body.shapes[1:]):
+        stand = piece_pose(at, recipe)
+        pybullet.resetBasePositionAndOrientation(uid, stand.position, stand.orientation)
+
+
+def piece_pose(at: Pose, recipe: Recipe) -> Pose:
+    """Where the body of a piece of a link stands, when the link's own is `at`."""
+    return at if recipe.frame is IDENTITY else compose(at, recipe.frame)
 
 
 def launch(body: Body, link_pose: Pose, twist: Twist) -> None:

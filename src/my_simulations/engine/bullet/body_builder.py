@@ -21,6 +21,7 @@ from .bodies import (
     Body,
     Part,
     let_rest,
+    piece_pose,
     radius_of,
     remove,
     set_decay,
@@ -135,11 +136,12 @@ class Builder:
         link, masses = self._model.links[rigid.number], rigid.masses
         at = compose(pose, rigid.model_from_com)
         taken = tuple((piece, self._shapes.take(piece)) for piece in rigid.pieces)
+        places = [(shape, piece_pose(at, piece)) for piece, shape in taken] or [(-1, at)]
         uids = [
-            pybullet.createMultiBody(masses.mass, shape, self._shapes.unseen, at.position,
-                                     at.orientation,
+            pybullet.createMultiBody(masses.mass, shape, self._shapes.unseen, stand.position,
+                                     stand.orientation,
                                      useMaximalCoordinates=int(not self._articulated))
-            for shape in ([shape for _, shape in taken] or [-1])
+            for shape, stand in places
         ]
         for uid, piece in zip(uids, rigid.pieces):
             (collision_groups.static(link, piece.role) if rigid.static

@@ -53,12 +53,14 @@ class Recipe:
         role: "plane", "floor" for the box that stands below a plane, or "" (see
             `collision_groups`).
         is_hull: it is one convex hull of points.
+        frame: where its body stands, seen from that of the link.
     """
 
     names: str
     arguments: Dict[str, Any]
     role: str = ""
     is_hull: bool = False
+    frame: Pose = IDENTITY
 
     @functools.cached_property
     def key(self) -> str:
@@ -137,7 +139,7 @@ class ShapeFactory:
             solid = [c for c in solid if not isinstance(c.geometry, Plane)]
             parted = [recipe for plane in planes for recipe in (
                 replace(self._recipe([plane], meshes, frame, True), role="plane"),
-                replace(self._recipe([_floor_of(plane)], meshes, frame, True), role="floor"))]
+                self._floor(plane, meshes, frame))]
             return parted + [self._recipe(solid[at:at + MAX_SHAPES], meshes, frame, static)
                              for at in range(0, len(solid), MAX_SHAPES)]
         if len(solid) <= MAX_SHAPES:
@@ -146,6 +148,19 @@ class ShapeFactory:
         solid.sort(key=lambda c: isinstance(c.geometry, (Box, Mesh)))
         kept, rest = solid[:MAX_SHAPES - 1], solid[MAX_SHAPES - 1:]
         return [self._recipe(kept, meshes, frame, static, self._hulls(rest, meshes, frame))]
+
+    def _floor(self, plane: Collision, meshes: MeshTable, frame: Pose) -> Recipe:
+        """The box whose top is a plane, with a body of its own in its middle.
+
+        If the shape had an offset instead, Bullet would make a compound of it: steps in which boxes
+        stand on it then take a tenth more instructions, and end with the same bits (measured).
+        """
+        assert isinstance(plane.geometry, Plane)
+        turn = _to_z(plane.geometry)
+        below = compose(plane.pose, Pose(rotate(turn, (0.0, 0.0, -_FLOOR)), turn))
+        box = replace(plane, geometry=Box((2.0 * _FLOOR,) * 3), pose=IDENTITY)
+        return replace(self._recipe([box], meshes, IDENTITY, True), role="floor",
+                       frame=compose(frame, below))
 
     def _recipe(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                 static: bool, more: Optional[Dict[str, Any]] = None) -> Recipe:
@@ -262,14 +277,6 @@ def _pieces(collision: Collision, meshes: MeshTable) -> List[Tuple[np.ndarray, n
                 for piece in mesh.parts or [mesh]]
     points = hull_points(geometry)
     return [(points, naming_triangles(len(points)))]
-
-
-def _floor_of(plane: Collision) -> Collision:
-    """The box whose top is the plane."""
-    assert isinstance(plane.geometry, Plane)
-    turn = _to_z(plane.geometry)
-    below = compose(plane.pose, Pose(rotate(turn, (0.0, 0.0, -_FLOOR)), turn))
-    return replace(plane, geometry=Box((2.0 * _FLOOR,) * 3), pose=below)
 
 
 def _is_hull(collision: Collision, meshes: MeshTable, static: bool) -> bool:

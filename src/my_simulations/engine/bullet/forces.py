@@ -4,7 +4,7 @@ PyBullet forgets external forces and joint torques after one step.
 """
 from __future__ import annotations
 
-from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, FrozenSet, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
@@ -19,6 +19,7 @@ from .link_states import place
 from .step_helper import FAR
 
 _NOTHING = (0.0, 0.0, 0.0)
+_NOBODY: FrozenSet[int] = frozenset()
 
 
 class Forces:
@@ -185,10 +186,12 @@ class Forces:
                     efforts[force.row] = efforts.get(force.row, 0.0) + self._limited(force, dt)
         if not self.servos.idle:
             self.servos.act(efforts, {self._axes[row][0].uid for row in efforts}
-                            | self._implicit.keys(), step)
+                            | self._implicit.keys() if efforts or self._implicit else _NOBODY,
+                            step)
         for implicit in self._implicit.values():
             implicit.add_to(efforts)
-        self._give(efforts)
+        if efforts:
+            self._give(efforts)
         for body, part in self._weightless.values():
             at = place(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,

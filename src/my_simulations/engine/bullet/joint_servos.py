@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 import math
-from typing import Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
+from typing import AbstractSet, Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 import pybullet
 
 from ...description.model import Model
 from ..api import CommandRefusedError
 from ..commands import JointServo
-from ..servo_law import FOLLOW, ServoLaw
+from ..servo_law import FOLLOW, Advance, ServoLaw
 from .bodies import Axis, Body
 from .joint_axes import specs_of
 
@@ -18,29 +18,38 @@ _FAST = 1e5     # rad/s or m/s, likewise
 
 
 class _Loops:
-    """The servos of one body that must be computed in every step."""
+    """The servos of one body that must be computed in every step.
+
+    Two kinds, each with its joint indices, functions and rows: those that give an effort, and those
+    that set the rate of a motor.
+    """
 
     def __init__(self, uid: int) -> None:
         self.uid = uid
-        self.indices: List[int] = []
-        self.efforts: List[Tuple[int, int, ServoLaw]] = []   # place in `indices`, row, law
-        self.advances: List[Callable[[float, float, int], float]] = []   # of these laws
-        self.effort_indices: List[int] = []
-        self.motors: List[Tuple[int, ServoLaw]] = []
-        self.motor_indices: List[int] = []
-        self.forces: List[float] = []
+        self.efforts, self.motors = _Kind(), _Kind()
+        self.forces: List[float] = []   # of the motors
 
     def add(self, axis: Axis, law: ServoLaw) -> None:
-        place = len(self.indices)
-        self.indices.append(axis.index)
-        if law.gives_effort:
-            self.efforts.append((place, axis.row, law))
-            self.advances.append(law.advance)
-            self.effort_indices.append(axis.index)
-        else:
-            self.motors.append((place, law))
-            self.motor_indices.append(axis.index)
+        kind = self.efforts if law.gives_effort else self.motors
+        kind.indices.append(axis.index)
+        kind.rows.append(axis.row)
+        kind.laws.append(law)
+        kind.advances.append(law.advance)
+        if kind is self.motors:
             self.forces.append(_strength(law.servo))
+
+
+class _Kind:
+    def __init__(self) -> None:
+        self.indices: List[int] = []
+        self.rows: List[int] = []
+        self.laws: List[ServoLaw] = []
+        self.advances: List[Advance] = []
+
+    def advanced(self, uid: int, step: int) -> List[float]:
+        """What each wants in the step that begins at a count."""
+        return [advance(position, rate, step) for (position, rate, _, _), advance in zip(
+            pybullet.getJointStates(uid, self.indices), self.advances)]
 
 
 class JointServos:
@@ -54,6 +63,7 @@ class JointServos:
         self._busy: Dict[int, _Loops] = {}
         self._yielding: Set[int] = set()
         self._dt = 0.0
+        self._step = -1   # when they acted last
 
     @property
     def idle(self) -> bool:
@@ -78,8 +88,8 @@ class JointServos:
     def moving(self) -> Set[int]:
         """PyBullet's numbers of bodies that are on their way along a spline."""
         return {uid for uid, loops in self._busy.items()
-                if any(law.moving for _, _, law in loops.efforts)
-                or any(law.moving for _, law in loops.motors)}
+                if any(law.moves(self._step) for kind in (loops.efforts, loops.motors)
+                       for law in kind.laws)}
 
     def set(self, servos: Iterable[JointServo], dt: float) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
@@ -139,31 +149,27 @@ class JointServos:
             table.clear()
         self._yielding.clear()
 
-    def act(self, efforts: Dict[int, float], shared: Set[int], step: int) -> None:
+    def act(self, efforts: Dict[int, float], shared: AbstractSet[int], step: int) -> None:
         """Act in the step that begins at a count.
 
         The efforts of bodies (PyBullet's numbers) that something else acts on, too, are added to
         `efforts`, N m or N by row; those of others are given at once, a body at a time.
         """
+        self._step = step
         for uid, loops in self._busy.items():
-            states = pybullet.getJointStates(uid, loops.indices)
-            if uid in shared:
-                for place, row, law in loops.efforts:
-                    efforts[row] = efforts.get(row, 0.0) + law.advance(
-                        states[place][0], states[place][1], step)
-            elif loops.efforts:
-                own = states if not loops.motors else [states[place] for place, _, _ in
-                                                       loops.efforts]
-                given = [advance(state[0], state[1], step)
-                         for state, advance in zip(own, loops.advances)]
+            wanted = loops.efforts
+            if wanted.rows:
+                given = wanted.advanced(uid, step)
+                if uid in shared:
+                    for row, effort in zip(wanted.rows, given):
+                        efforts[row] = efforts.get(row, 0.0) + effort
+                else:
+                    pybullet.setJointMotorControlArray(
+                        uid, wanted.indices, pybullet.TORQUE_CONTROL, forces=given)
+            if loops.motors.rows:
                 pybullet.setJointMotorControlArray(
-                    uid, loops.effort_indices, pybullet.TORQUE_CONTROL, forces=given)
-            if loops.motors:
-                rates = [law.advance(states[place][0], states[place][1], step)
-                         for place, law in loops.motors]
-                pybullet.setJointMotorControlArray(
-                    loops.uid, loops.motor_indices, pybullet.VELOCITY_CONTROL,
-                    targetVelocities=rates, forces=loops.forces)
+                    uid, loops.motors.indices, pybullet.VELOCITY_CONTROL,
+                    targetVelocities=loops.motors.advanced(uid, step), forces=loops.forces)
 
     def efforts(self, rows: Sequence[int]) -> Tuple[float, ...]:
         """What was spent on axes in the last step; 0 without a servo or motor."""

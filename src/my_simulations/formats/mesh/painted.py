@@ -19,6 +19,10 @@ _PAINTED = (".obj", ".glb", ".gltf", ".ply")
 
 Array = Any  # a NumPy array; its shape is documented at each use
 
+Paint = Tuple[Optional[Color], Any, Optional[Color]]
+"""Colour, picture and emission of a `PaintedPart`."""
+NO_PAINT: Paint = (None, None, None)
+
 
 @dataclass(frozen=True)
 class PaintedPart:
@@ -31,6 +35,7 @@ class PaintedPart:
         triangles: int32 (m, 3), vertex indices.
         color: diffuse colour of the file; None without a material.
         picture: texture: a path that may not exist, a decoded PIL image, or None.
+        emission: what it glows, times the picture; None for nothing.
     """
 
     vertices: Array
@@ -39,6 +44,7 @@ class PaintedPart:
     triangles: Array
     color: Optional[Color] = None
     picture: Any = None
+    emission: Optional[Color] = None
 
 
 def painted_parts(mesh: Mesh) -> List[PaintedPart]:
@@ -63,7 +69,17 @@ def painted_parts(mesh: Mesh) -> List[PaintedPart]:
 def flat(data: MeshData) -> PaintedPart:
     """Triangles with one normal each (flat shading), as for STL files."""
     corners = np.asarray(data.vertices)[np.asarray(data.triangles)].reshape(-1, 3)
-    return _indexed(corners, None, None, None, None)
+    return _indexed(corners, None, None, NO_PAINT)
+
+
+def smooth(data: MeshData) -> PaintedPart:
+    """Triangles that share the normals of their common corners, for terrains."""
+    vertices, triangles = np.asarray(data.vertices), np.asarray(data.triangles, dtype=np.int32)
+    corners = vertices[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.column_stack([np.bincount(
+        triangles.ravel(), across[:, axis].repeat(3), len(vertices)) for axis in range(3)])
+    return PaintedPart(vertices, _unit_rows(normals), np.zeros((len(vertices), 2)), triangles)
 
 
 def _read(mesh: Mesh) -> List[PaintedPart]:
@@ -95,6 +111,7 @@ def _placed(parts: List[PaintedPart], mesh: Mesh) -> List[PaintedPart]:
                 triangles,
                 part.color,
                 part.picture,
+                part.emission,
             )
         )
     return placed
@@ -107,7 +124,7 @@ def _unit_rows(rows: Array) -> Array:
 
 
 def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
-             color: Optional[Color], picture: Any) -> PaintedPart:
+             paint: Paint) -> PaintedPart:
     """Merge equal corners of triangles into shared vertices."""
     if normals is None or len(normals) != len(corners):
         faces = corners.reshape(-1, 3, 3)
@@ -122,7 +139,7 @@ def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
                                   return_index=True, return_inverse=True)
     kept = rows[first].astype(np.float64)
     return PaintedPart(np.asarray(corners, dtype=np.float64)[first], kept[:, 3:6], kept[:, 6:],
-                       inverse.reshape(-1, 3).astype(np.int32), color, picture)
+                       inverse.reshape(-1, 3).astype(np.int32), *paint)
 
 
 def _collada(mesh: Mesh) -> List[PaintedPart]:
@@ -158,19 +175,26 @@ def _of_primitive(primitive: Any, unit: float, mirrored: bool, folder: str,
     if triangles.texcoordset:
         uv = triangles.texcoordset[0][triangles.texcoord_indexset[0][:, order]]
         uv = uv.reshape(-1, uv.shape[-1])
-    color, picture = _effect(triangles.material, folder)
-    return _indexed(corners, normals, uv, color, picture)
+    return _indexed(corners, normals, uv, _effect(triangles.material, folder))
 
 
-def _effect(material: Any, folder: str) -> Tuple[Optional[Color], Any]:
-    diffuse = getattr(getattr(material, "effect", None), "diffuse", None)
+def _effect(material: Any, folder: str) -> Paint:
+    effect = getattr(material, "effect", None)
+    diffuse, emission = getattr(effect, "diffuse", None), _glow(getattr(effect, "emission", None))
     if diffuse is None:
-        return None, None
+        return None, None, emission
     if isinstance(diffuse, tuple):
-        return (diffuse[0], diffuse[1], diffuse[2], 1.0), None
+        return (diffuse[0], diffuse[1], diffuse[2], 1.0), None, emission
     path = unquote(diffuse.sampler.surface.image.path or "")
     path = path[len("file://"):] if path.startswith("file://") else path
-    return (1.0, 1.0, 1.0, 1.0), os.path.join(folder, path)
+    return (1.0, 1.0, 1.0, 1.0), os.path.join(folder, path), emission
+
+
+def _glow(parts: Any) -> Optional[Color]:
+    """A colour that is not black; None for pictures."""
+    if not isinstance(parts, (tuple, list)) or len(parts) < 3 or not any(parts[:3]):
+        return None
+    return (float(parts[0]), float(parts[1]), float(parts[2]), 1.0)
 
 
 def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
@@ -193,18 +217,19 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
             normals = (np.asarray(shape.vertex_normals) @ turned.T)[faces].reshape(-1, 3)
         uv = getattr(shape.visual, "uv", None)
         uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
-        color, picture = _trimesh_material(getattr(shape.visual, "material", None))
-        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv, color, picture))
+        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv,
+                              _trimesh_material(getattr(shape.visual, "material", None))))
     return parts
 
 
-def _trimesh_material(material: Any) -> Tuple[Optional[Color], Any]:
+def _trimesh_material(material: Any) -> Paint:
     if material is None:
-        return None, None
+        return NO_PAINT
+    emission = _glow((getattr(material, "kwargs", None) or {}).get("ke"))
     picture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
     color = getattr(material, "baseColorFactor", None)
     color = getattr(material, "diffuse", None) if color is None else color
     if picture is not None or color is None:
-        return (1.0, 1.0, 1.0, 1.0), picture
+        return (1.0, 1.0, 1.0, 1.0), picture, emission
     red, green, blue = (float(part) / 255.0 for part in color[:3])
-    return (red, green, blue, 1.0), None
+    return (red, green, blue, 1.0), None, emission

@@ -21,6 +21,7 @@ from ..xml.binding import BAD, REFUSED, Found, closest, fill, read_text, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.values import VECTOR2
 from .model_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
+from .terrain_textures import check_textures
 
 
 def read_collision(
@@ -102,6 +103,8 @@ def _geometry(
         kept += [f"<geometry><{shape.tag}>{xml}</{shape.tag}></geometry>" for xml in extra]
     if isinstance(geometry, Polyline) and not _loops(geometry, shapes, source, level):
         return None
+    if isinstance(geometry, Heightmap) and not collides:
+        check_textures(geometry, shape, source)
     return checked(geometry, shape, owner.tag, source)
 
 

@@ -21,10 +21,12 @@ from ...description.shapes import (
     Polyline,
     Sphere,
     Surface,
+    TerrainBlend,
+    TerrainTexture,
     Visual,
 )
 from ...description.world import Physics, World
-from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
+from ..xml.binding import Entry, Group, Kept, Nested, Part, Table, Use, Value
 from ..xml.source import FaultLevel
 from ..xml.values import (
     BOOL,
@@ -56,6 +58,14 @@ def _told(*names: str, since: str = "") -> Dict[str, Entry]:
     return {name: Kept(since, told=True) for name in names}
 
 
+TERRAIN_TEXTURE = Table("texture", TerrainTexture, {
+    "diffuse": Value("diffuse", TEXT), "normal": Value("normal", TEXT),
+    "size": Value("size", FLOAT),
+}, level=WARNING, use=SHOWN)
+TERRAIN_BLEND = Table("blend", TerrainBlend, {
+    "min_height": Value("min_height", FLOAT), "fade_dist": Value("fade_dist", FLOAT),
+}, level=WARNING, use=SHOWN)
+
 GEOMETRIES: Mapping[str, Table] = {
     "box": Table("box", Box, {"size": Value("size", VECTOR3)}),
     "sphere": Table("sphere", Sphere, {"radius": Value("radius", FLOAT)}),
@@ -86,7 +96,10 @@ GEOMETRIES: Mapping[str, Table] = {
         "pos": Value("position", VECTOR3),
         "offset": Value("position", VECTOR3),  # SDF 1.0 to 1.2
         "sampling": Value("sampling", INT),
-        **_kept("texture", "blend", "use_terrain_paging"),
+        "texture": Nested("textures", TERRAIN_TEXTURE, required=("diffuse", "normal", "size"),
+                          use=SHOWN),
+        "blend": Nested("blends", TERRAIN_BLEND, required=("min_height", "fade_dist"), use=SHOWN),
+        **_kept("use_terrain_paging"),
     }),
     "image": Table("image", ImageMap, {
         "uri": Value("uri", TEXT),

@@ -62,7 +62,10 @@ def scaled_geometry(shape: Geometry, factor: Vec3) -> Geometry:
     if isinstance(shape, Plane):
         return replace(shape, size=(shape.size[0] * factor[0], shape.size[1] * factor[1]))
     if isinstance(shape, Heightmap):
-        return replace(shape, size=_times(shape.size, factor))
+        upwards = abs(factor[2])
+        return replace(shape, size=_times(shape.size, factor), blends=[
+            replace(blend, min_height=blend.min_height * upwards,
+                    fade_dist=blend.fade_dist * upwards) for blend in shape.blends])
     if isinstance(shape, Polyline):
         return Polyline([[(x * factor[0], y * factor[1]) for x, y in loop]
                          for loop in shape.loops], shape.height * abs(factor[2]))

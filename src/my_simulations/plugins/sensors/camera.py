@@ -1,4 +1,4 @@
-"""libgazebo_ros_camera.so, libgazebo_ros_triggered_camera.so and libgazebo_ros_multicamera.so.
+"""Colour cameras: libgazebo_ros_camera.so, and those called triggered, multi and both.
 
 Parameters, defaults, topics and frames are those of gazebo_plugins (`camera_parameters` tells of
 two differences). Pictures are drawn while somebody listens, and show the step they are stamped
@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any, Callable, List
 
 from ..base import Plugin
+from ..context import Context
 from .camera_parameters import ImagerRate, enter_namespace, topics_of
 from .picture_stream import PictureStream, blocks_of
 
@@ -44,23 +45,26 @@ class Camera(Plugin):
         self._stream.publish(pictures[0].rgb, ns)
 
 
-class TriggeredCamera(Camera):
-    """One picture, as soon as one can be drawn, for each message on its trigger topic.
+class Trigger:
+    """One picture, as soon as one can be drawn, for each message on a camera's trigger topic.
 
     `<update_rate>` does not delay it (gazebo_plugins); it says how often is looked after a picture
     that was lost.
+
+    Args:
+        context: of the plugin.
+        stream: the camera's topics.
+        turns: name under which its pictures take turns.
     """
 
-    def load(self) -> None:
-        """Read parameters."""
-        super().load()
-        topic = self.context.parameters.text("triggerTopicName") or "image_trigger"
+    def __init__(self, context: Context, stream: PictureStream, turns: str = "") -> None:
+        self._context, self._stream, self._turns = context, stream, turns
         self._triggers = 0
         self._warm = self._drawing = False
-        self.context.subscribe(self._stream.topics.named(topic), "std_msgs/Empty", self._trigger,
-                               _TRIGGERS)
+        topic = context.parameters.text("triggerTopicName") or "image_trigger"
+        context.subscribe(stream.topics.named(topic), "std_msgs/Empty", self._hear, _TRIGGERS)
 
-    def _trigger(self, message: Any) -> None:
+    def _hear(self, message: Any) -> None:
         self._triggers += 1
         self._soon()
 
@@ -78,30 +82,43 @@ class TriggeredCamera(Camera):
 
     def _soon(self) -> None:
         if self._triggers and not self._drawing:
-            self.context.once(self.context.now_ns, self._take_due)
+            self._context.once(self._context.now_ns, self._take_due)
 
     def _take_due(self) -> None:
-        if self._triggers and (not self._stream.wanted or self.take()):
+        if self._triggers and (not self._stream.wanted or self._drawn(self._seen)):
             self._triggers -= 1
             self._soon()
 
-    def take(self) -> bool:
-        """Ask for a picture; False where the one before is late."""
-        return self._drawn(self._seen)
-
     def _drawn(self, call: Callable[[List[Any], int], None]) -> bool:
         self._drawing = True   # the answer may come before the request returns
-        taken = self.context.photograph([self._stream.view()], call)
+        taken = self._context.photograph([self._stream.view()], call, self._turns, queue=True)
         self._drawing = self._drawing and taken
         return taken
 
     def _seen(self, pictures: List[Any], ns: int) -> None:
-        super()._seen(pictures, ns)
+        self._stream.publish(pictures[0].rgb, ns)
         self._warmed(pictures, ns)
 
     def _warmed(self, pictures: List[Any], ns: int) -> None:
         self._drawing = False
         self._soon()
+
+
+class TriggeredCamera(Camera):
+    """A camera that waits for triggers."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        super().load()
+        self._trigger = Trigger(self.context, self._stream)
+
+    def reset(self) -> None:
+        """Nobody has asked for a picture of the new time."""
+        self._trigger.reset()
+
+    def update(self) -> None:
+        """Look after triggers."""
+        self._trigger.update()
 
 
 class MultiCamera(Plugin):
@@ -138,3 +155,23 @@ class MultiCamera(Plugin):
                 stream.publish(found.get(id(stream)), ns)
 
         self.context.photograph([stream.view() for stream in streams], seen)
+
+
+class TriggeredMultiCamera(MultiCamera):
+    """Several cameras, each with a trigger topic of its own beside its pictures."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        super().load()
+        self._triggers = [Trigger(self.context, stream, stream.topics.base)
+                          for stream in self._streams]
+
+    def reset(self) -> None:
+        """Nobody has asked for pictures of the new time."""
+        for trigger in self._triggers:
+            trigger.reset()
+
+    def update(self) -> None:
+        """Look after triggers."""
+        for trigger in self._triggers:
+            trigger.update()

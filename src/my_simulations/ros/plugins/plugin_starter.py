@@ -42,7 +42,7 @@ class PluginStarter:
                 return
             self._seen = revision
             if self._host is None:
-                if not (models.have_plugins or world.plugins
+                if not (models.with_plugins()[1] or world.plugins
                         or any(actor.plugins for actor in world.actors)):
                     return
                 self._host = self._made()

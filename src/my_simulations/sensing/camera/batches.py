@@ -5,6 +5,7 @@ from typing import Any, Dict, List, Tuple, Union
 
 import numpy as np
 
+from .shaders import MOST_LAYERS
 from .sky import linear
 from .surfaces import Piece, Surface
 
@@ -90,12 +91,19 @@ class Batch:
         self._index.release()
 
 
-def _uniforms(surface: Surface) -> Dict[str, Union[float, Tuple[float, ...]]]:
-    """What a surface says to its program."""
+def _uniforms(surface: Surface) -> Dict[str, Union[float, bytes, Tuple[float, ...]]]:
+    """What a surface says to its program; bytes of float32 for arrays."""
     return {"diffuse": (*(linear(surface.diffuse) * surface.brightness), surface.opacity),
             "specular": tuple(linear(surface.specular)),
             "emissive": tuple(linear(surface.emissive)), "repeats": surface.repeats,
-            "alpha_test": surface.alpha_test}
+            "alpha_test": surface.alpha_test,
+            **({"layer_form": _layer_forms(surface)} if surface.layers else {})}
+
+
+def _layer_forms(surface: Surface) -> bytes:
+    """Of each layer of a terrain what `shaders` says of `layer_form`."""
+    return np.array([(1.0 / layer.size, surface.base + layer.min_height, 1.0 / layer.fade_dist)
+                     for layer in surface.layers[:MOST_LAYERS]], dtype=np.float32).tobytes()
 
 
 def _inputs(program: Any, names: Tuple[str, ...], widths: Tuple[int, ...], kind: str,

@@ -15,6 +15,8 @@ from ..poses import matrices, matrix
 from . import distortion, shaders
 from .batches import Batch
 from .context import draws_with_a_card, finisher, new_context
+from .frustum import in_sight, projection
+from .kept_pictures import Drawn, KeptPictures
 from .lamps import (
     SHADOW_SIZE,
     ShadowView,
@@ -74,10 +76,12 @@ class Renderer:
             one.repeat_x = one.repeat_y = False
         self._map_targets = [self._context.framebuffer(depth_attachment=one) for one in self._maps]
         self._map_keys: List[Any] = [None] * len(self._maps)
+        self._kept = KeptPictures()
         self._lenses: Dict[CameraSpec, Tuple[np.ndarray, np.ndarray]] = {}
 
     def add(self, body: Body) -> None:
         """A model has come."""
+        self._kept.forget()
         for n, link in enumerate(body.model.links):
             for m, visual in enumerate(link.visuals):
                 if visual.transparency >= 1.0:
@@ -105,6 +109,7 @@ class Renderer:
 
     def remove(self, name: str) -> None:
         """A model has gone; what only it was made of is forgotten, too."""
+        self._kept.forget()
         for key, batch in list(self._batches.items()):
             if name in batch.owners:
                 batch.remove(name)
@@ -114,11 +119,18 @@ class Renderer:
 
     def set_lights(self, lights: List[Light], scene: Scene) -> None:
         """Light and surroundings."""
+        self._kept.forget()
         self._lights, self._scene = lights, scene
 
     def render(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
                outputs: Tuple[str, ...], step: int) -> Pictures:
         """Pictures from a sensor at `frame` (world from sensor), links at `poses`."""
+        drawn = self._kept.get((spec, outputs, frame.tobytes()), poses.tobytes(),
+                               lambda: self._drawn(spec, frame, poses, outputs))
+        return Pictures(*drawn, step)
+
+    def _drawn(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
+               outputs: Tuple[str, ...]) -> Drawn:
         view = _VIEW_FROM_SENSOR @ _inverse(frame)
         links = matrices(poses)
         rgb = depth = labels = None
@@ -133,8 +145,7 @@ class Renderer:
             depth, labels = self._draw_ranges(spec, clip)
         if spec.distortion is not None:
             rgb, depth, labels = self._distort(spec, rgb, depth, labels)
-        return Pictures(rgb, depth if DEPTH in outputs else None,
-                        labels if LABELS in outputs else None, step)
+        return (rgb, depth if DEPTH in outputs else None, labels if LABELS in outputs else None)
 
     def _place(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
                casters: bool = False) -> None:
@@ -221,7 +232,10 @@ class Renderer:
         if name not in self._programs:
             made = self._programs[name] = self._context.program(
                 shaders.LIT_VERTEX, shaders.lit_fragment(kind))
-            for unit, sampler in enumerate(("picture", "shadow0", "shadow1")):
+            for unit, sampler in enumerate((
+                    "picture", "shadow0", "shadow1",
+                    *(f"layer{n}" for n in range(shaders.MOST_LAYERS)),
+                    *(f"bumps{n}" for n in range(shaders.MOST_BUMPS)))):
                 if sampler in made:
                     made[sampler] = unit
         if name not in lighting.told:
@@ -229,10 +243,7 @@ class Renderer:
             program = self._programs[name]
             for uniform, values in lighting.values.items():
                 if uniform in program:
-                    # Of an array the compiler keeps as much as is used.
-                    member = program[uniform]
-                    size = member.array_length * member.dimension * 4
-                    member.write(values.tobytes()[:size])
+                    _write(program[uniform], values.tobytes())
         return name
 
     def _draw_lit(self, batch: Batch, lighting: "_Lighting") -> None:
@@ -240,16 +251,26 @@ class Renderer:
             return
         surface = batch.surface
         texture = self._textures.of(surface)
+        layers = [(self._textures.of_layer(layer), n < shaders.MOST_BUMPS
+                   and self._textures.bumps_of(layer))
+                  for n, layer in enumerate(surface.layers[:shaders.MOST_LAYERS])]
         name = self._program(shaders.LitKind(
             texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
             self._textures.cutting(surface) is not None, surface.blended,
-            lighting.fog, lighting.kinds if surface.lit else ()), lighting)
+            lighting.fog, lighting.kinds if surface.lit else (),
+            tuple(bool(bumps) for _, bumps in layers)), lighting)
         program = self._programs[name]
         for uniform, values in batch.uniforms.items():
-            if uniform in program:
+            if uniform in program and isinstance(values, bytes):
+                _write(program[uniform], values)
+            elif uniform in program:
                 program[uniform] = values
         if texture is not None:
             texture.use(location=0)
+        for n, (map_of_layer, bumps) in enumerate(layers):
+            map_of_layer.use(location=shaders.FIRST_LAYER + n)
+            if bumps:
+                bumps.use(location=shaders.FIRST_BUMPS + n)
         batch.draw(name)
 
     def _draw_sky(self, spec: CameraSpec, view: np.ndarray) -> None:
@@ -381,26 +402,11 @@ def _inverse(frame: np.ndarray) -> np.ndarray:
     return made
 
 
+def _write(member: Any, values: bytes) -> None:
+    """Set a uniform of float32; of an array the compiler keeps as much as is used."""
+    member.write(values[:member.array_length * member.dimension * 4])
+
+
 def _set(program: Any, name: str, values: np.ndarray) -> None:
     if name in program:
         program[name].write(np.ascontiguousarray(values, dtype=np.float32).tobytes())
-
-
-def projection(spec: CameraSpec) -> np.ndarray:
-    """Clip space from view (x right, y up, looking along -z); the first row read is the upper."""
-    near, far = spec.near, spec.far
-    across = 1.0 / math.tan(spec.hfov / 2)
-    return np.array([[across, 0, 0, 0], [0, -across * spec.width / spec.height, 0, 0],
-                     [0, 0, (far + near) / (near - far), 2 * far * near / (near - far)],
-                     [0, 0, -1.0, 0]])
-
-
-def in_sight(centers: np.ndarray, radius: float, spec: CameraSpec) -> np.ndarray:
-    """Which balls (view frame) the camera's pyramid may touch."""
-    seen = (centers[:, 2] < radius - spec.near) & (centers[:, 2] > -spec.far - radius)
-    half = math.tan(spec.hfov / 2)
-    for axis, slope in ((0, half), (1, half * spec.height / spec.width)):
-        outside = (np.abs(centers[:, axis]) + centers[:, 2] * slope) / math.hypot(1.0, slope)
-        seen &= outside < radius
-    found: np.ndarray = seen
-    return found

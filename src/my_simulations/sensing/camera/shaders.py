@@ -12,6 +12,14 @@ from ...appearance.palette import SHININESS, SKY_COLOR
 
 MOST_LIGHTS = 8
 MOST_SHADOWS = 2
+MOST_LAYERS = 8
+"""Of a terrain."""
+MOST_BUMPS = 4
+"""Normal maps of a terrain's lowest layers: 16 textures are what each machine has."""
+FIRST_LAYER = 1 + MOST_SHADOWS
+"""Texture unit of a terrain's lowest layer."""
+FIRST_BUMPS = FIRST_LAYER + MOST_LAYERS
+"""Texture unit of its normal map."""
 
 _INSTANCE = """#version 330
 in vec3 at; in vec3 normal; in vec2 uv;
@@ -22,12 +30,17 @@ vec3 placed() { vec4 p = vec4(at, 1.0); return vec3(dot(row0, p), dot(row1, p), 
 
 LIT_VERTEX = _INSTANCE + """
 uniform vec2 repeats;
-out vec3 place; out vec3 out_normal; out vec2 out_uv;
+out vec3 place; out vec3 out_normal; out vec2 out_uv; out float out_height;
+out vec3 out_east;
 void main() {
   place = placed();
+  out_east = vec3(row0.x, row1.x, row2.x);
   out_normal = vec3(dot(row0.xyz, normal), dot(row1.xyz, normal), dot(row2.xyz, normal));
   out_uv = uv * repeats;
+  out_height = at.z;
   gl_Position = clip * vec4(place, 1.0);
+  // Of two faces at one place the one seen from its front wins: web/js/view/fronts_first.js.
+  if (dot(out_normal, place) > 0.0) gl_Position.z += 1.0e-6 * gl_Position.w;
 }"""
 
 COLOR = """
@@ -50,6 +63,7 @@ class LitKind(NamedTuple):
         blended: the picture's alpha counts.
         fog: "", linear or exponential.
         lights: type of each light, and the number of its shadow map or -1.
+        layers: of a terrain; whether each has a normal map.
     """
 
     textured: bool
@@ -59,17 +73,20 @@ class LitKind(NamedTuple):
     blended: bool
     fog: str
     lights: Tuple[Tuple[str, int], ...]
+    layers: Tuple[bool, ...] = ()
 
 
 _UNIFORMS = f"""#version 330
 #define LIGHTS {MOST_LIGHTS}
 #define SHADOWS {MOST_SHADOWS}
-""" + """in vec3 place; in vec3 out_normal; in vec2 out_uv;
+#define LAYERS {MOST_LAYERS}
+""" + """in vec3 place; in vec3 out_normal; in vec2 out_uv; in float out_height; in vec3 out_east;
 out vec4 seen;
 uniform vec4 diffuse;
 uniform vec3 specular, emissive, ambient, up;
 uniform sampler2D picture;
 uniform float alpha_test;
+uniform vec3 layer_form[LAYERS];     // repetitions a metre, height it begins at, part a metre
 uniform vec4 light_at[LIGHTS];       // xyz: place, or direction to it
 uniform vec3 light_color[LIGHTS];
 uniform vec3 light_way[LIGHTS];      // of a spot
@@ -95,29 +112,62 @@ void main() {
 
 _SURROUNDED = """  vec3 n = normalize(out_normal), eye = -normalize(place);
   n = dot(n, eye) < 0.0 ? -n : n;
-  vec3 fallen = ambient * mix(0.6, 1.0, 0.5 * dot(n, up) + 0.5), shine = vec3(0.0);
+"""
+
+_FALLEN = """  vec3 fallen = ambient * mix(0.6, 1.0, 0.5 * dot(n, up) + 0.5), shine = vec3(0.0);
 """
 
 
 def lit_fragment(kind: LitKind) -> str:
     """The program of a surface under some lights."""
-    parts = [_UNIFORMS]
+    samplers = "".join(f"uniform sampler2D layer{n}, bumps{n};\n"
+                       for n in range(len(kind.layers)))
+    parts = [_UNIFORMS.replace("void main", f"{samplers}void main")]
     if kind.textured:
         parts.append("  vec4 t = texture(picture, out_uv); albedo *= t.rgb;\n")
         if kind.cut:
             parts.append("  if (t.a < alpha_test) discard;\n")
         if kind.blended:
             parts.append("  opacity *= t.a;\n")
+    parts += [_layer(n) for n in range(len(kind.layers))]
     parts.append("  vec3 color = albedo;\n")
     if kind.lit:
         parts.append(_SURROUNDED)
+        if any(kind.layers):
+            parts.append(_bumps(kind.layers))
+        parts.append(_FALLEN)
         parts += [_light(n, *one, kind.shiny) for n, one in enumerate(kind.lights)]
-        parts.append("  color = albedo * fallen + shine + emissive;\n")
+        # A picture colours what glows, too, as on the page (materials.js).
+        glow = "emissive * t.rgb" if kind.textured else "emissive"
+        parts.append(f"  color = albedo * fallen + shine + {glow};\n")
     if kind.fog:
         clear = ("clamp((fog.y - d) / max(fog.y - fog.x, 1e-6), 0.0, 1.0)" if kind.fog == "linear"
                  else "exp(-fog.z * fog.z * d * d)")
         parts.append(f"  float d = -place.z;\n  color = mix(fog_color, color, {clear});\n")
     return "".join([*parts, "  seen = vec4(encoded(clamp(color, 0.0, 1.0)), opacity);\n}"])
+
+
+def _layer(n: int) -> str:
+    """A layer of a terrain over the ones below it; see `appearance.terrain_layers`."""
+    return (f"  float part{n} = {'1.0' if n == 0 else _part(n)};\n"
+            f"  albedo = mix(albedo, texture(layer{n}, out_uv * layer_form[{n}].x).rgb,"
+            f" part{n});\n")
+
+
+def _part(n: int) -> str:
+    return f"clamp((out_height - layer_form[{n}].y) * layer_form[{n}].z, 0.0, 1.0)"
+
+
+def _bumps(layers: Tuple[bool, ...]) -> str:
+    """Turn the normal as the normal maps of a terrain's layers say; x is eastwards, y north."""
+    lines = ["vec3 bump = vec3(0.0, 0.0, 1.0);"]
+    for n, bumpy in enumerate(layers):
+        one = (f"texture(bumps{n}, out_uv * layer_form[{n}].x).xyz * 2.0 - 1.0" if bumpy
+               else "vec3(0.0, 0.0, 1.0)")
+        lines.append(f"bump = mix(bump, {one}, part{n});")
+    lines += ["vec3 north = normalize(cross(n, out_east));",
+              "n = normalize(mat3(cross(north, n), north, n) * bump);"]
+    return "  " + "\n  ".join(lines) + "\n"
 
 
 def _light(k: int, kind: str, shadow: int, shiny: bool) -> str:

@@ -8,7 +8,8 @@ import numpy as np
 
 from ...appearance.looks import Look
 from ...appearance.palette import DULLEST, GREY, GROUND
-from ...description.shapes import SOLIDS, Color, Mesh, Plane, Visual
+from ...appearance.terrain_layers import TerrainLayer
+from ...description.shapes import SOLIDS, Color, Heightmap, Mesh, Plane, Visual
 from ..tessellation import triangles_of
 
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
@@ -23,7 +24,9 @@ class Surface:
 
     `picture`: a path, a PIL image, or None; `pattern`: a drawn one; `brightness`: times the
     diffuse colour in linear units; `alpha_test`: what of the picture has less alpha is not drawn;
-    `blended`: the picture's alpha makes it transparent.
+    `blended`: the picture's alpha makes it transparent; `layers`: of a terrain, instead of a
+    picture and colours: texture coordinates are m from its corner of least x and greatest y then,
+    and `base` is the height, m, from which those of the layers count.
     """
 
     diffuse: Color = GREY
@@ -37,6 +40,8 @@ class Surface:
     brightness: float = 1.0
     alpha_test: float = 0.0
     blended: bool = False
+    layers: Tuple[TerrainLayer, ...] = ()
+    base: float = 0.0
 
     @property
     def clear(self) -> bool:
@@ -66,14 +71,17 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     if isinstance(shape, SOLIDS):
         # A world without a mesh has its first picture earlier.
         from ...formats.mesh.loading import load_solid
-        from ...formats.mesh.painted import flat, painted_parts
+        from ...formats.mesh.painted import flat, painted_parts, smooth
 
         parts = (painted_parts(shape) if isinstance(shape, Mesh)
+                 else [smooth(load_solid(shape))] if isinstance(shape, Heightmap)
                  else [flat(load_solid(shape))])
+        if look is not None and look.layers and isinstance(shape, Heightmap):
+            return [_terrain(parts[0], look.layers, shape.position[2], opacity)]
         return [_piece(part.vertices, part.normals, part.uv, part.triangles,
                        surface_of(look, opacity) if speaks else
-                       Surface(part.color or _OF_MESH, picture=part.picture, opacity=opacity,
-                               alpha_test=_HOLE))
+                       Surface(part.color or _OF_MESH, emissive=part.emission or _DULL,
+                               picture=part.picture, opacity=opacity, alpha_test=_HOLE))
                 for part in parts]
     made = triangles_of(shape, _SIDES)
     if made is None or made.normals is None or made.uv is None:
@@ -82,6 +90,12 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     if isinstance(shape, Plane):
         surface = replace(surface, brightness=GROUND)
     return [_piece(made.vertices, made.normals, made.uv, made.triangles, surface)]
+
+
+def _terrain(part: Any, layers: Tuple[TerrainLayer, ...], base: float, opacity: float) -> Piece:
+    corner = part.vertices[:, 0].min(), part.vertices[:, 1].max()
+    return _piece(part.vertices, part.normals, part.vertices[:, :2] - corner, part.triangles,
+                  Surface(layers=layers, base=base, opacity=opacity))
 
 
 def _piece(vertices: np.ndarray, normals: np.ndarray, uv: np.ndarray, triangles: np.ndarray,

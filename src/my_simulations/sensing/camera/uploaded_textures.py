@@ -5,6 +5,8 @@ from typing import Any, Callable, Dict
 
 import numpy as np
 
+from ...appearance.palette import GREY
+from ...appearance.terrain_layers import TerrainLayer
 from .surfaces import Surface
 
 _SRGB = 0x8C43  # GL_SRGB8_ALPHA8
@@ -39,6 +41,29 @@ class Textures:
             self._made[key] = None if pixels is None else self._uploaded(pixels)
         return self._made[key]
 
+    def of_layer(self, layer: TerrainLayer) -> Any:
+        """The texture of a terrain's layer: grey where it has none that can be read."""
+        texture = self.of(Surface(picture=layer.texture or None, pattern=layer.pattern))
+        if texture is None and None not in self._made:
+            grey = [round(255 * part) for part in GREY]
+            self._made[None] = self._uploaded(np.array([[grey]], dtype=np.uint8))
+        return self._made[None] if texture is None else texture
+
+    def bumps_of(self, layer: TerrainLayer) -> Any:
+        """The normal map of a terrain's layer; None where it has none that can be read."""
+        if not layer.normal:
+            return None
+        key = ("bumps", layer.normal)
+        if key not in self._made:
+            from .pictures import read_picture
+
+            pixels = read_picture(layer.normal)
+            if pixels is None:
+                self._trouble(f"the picture {layer.normal} cannot be read: cameras see its "
+                              "terrain without")
+            self._made[key] = None if pixels is None else self._uploaded(pixels, 0)
+        return self._made[key]
+
     def cutting(self, surface: Surface) -> Any:
         """The texture where it has parts that the surface leaves out; else None.
 
@@ -49,10 +74,11 @@ class Textures:
         texture = self.of(surface)
         return texture if texture is not None and texture.extra else None
 
-    def _uploaded(self, pixels: np.ndarray) -> Any:
+    def _uploaded(self, pixels: np.ndarray, form: int = _SRGB) -> Any:
+        """`form`: of OpenGL; 0 for numbers as they are."""
         height, width = pixels.shape[:2]
         texture = self._context.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes(),
-                                        internal_format=_SRGB)
+                                        internal_format=form or None)
         texture.build_mipmaps()
         texture.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)
         texture.repeat_x = texture.repeat_y = True

@@ -1,0 +1,41 @@
+/**
+ * Slow pictures wait for what a hand does elsewhere on the page: where a processor draws, a menu would
+ * else be seen behind the picture that is begun with it.
+ */
+
+/** Milliseconds from which on a picture is slow. */
+const SLOW = 45;
+/** Milliseconds for which the next picture waits after a press and while the mouse moves. */
+const WAIT = {press: 200, move: 60};
+/** Milliseconds that the last picture stays at most: what moves must not seem to stand. */
+const STALEST = 400;
+
+export class GiveWay {
+  #took = 0;
+  #done = 0;
+  #until = 0;
+
+  /**
+   * A hand is at work beside the view.
+   * @param {'press'|'move'} hand
+   * @param {number} now  ms
+   */
+  hand(hand, now) {
+    if (this.#took > SLOW) this.#until = Math.max(this.#until, now + WAIT[hand]);
+  }
+
+  /**
+   * A picture is finished.
+   * @param {number} took  ms
+   * @param {number} now  ms
+   */
+  pictured(took, now) {
+    this.#took = took;
+    this.#done = now;
+  }
+
+  /** Whether the next picture waits. @param {number} now  ms */
+  waits(now) {
+    return now < this.#until && now - this.#done < STALEST;
+  }
+}
