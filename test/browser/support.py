@@ -26,10 +26,8 @@ CLEARING = f"""if (window.name === '{ANEW}') {{
   sessionStorage.clear();
 }}"""
 """Runs before the scripts of a page, and after the last of the page before it."""
-WEBGL_FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-               "--disable-gpu-compositing")
-"""As where there is no graphics card: SwiftShader computes WebGL, and nothing else. Else it draws
-all of the page, which takes a third of all processor time."""
+WEBGL_FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+"""SwiftShader computes WebGL, and draws all of the page."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -185,6 +183,19 @@ class Editor:
         """Waits until nothing moves in the view any more, and its picture is finished."""
         self.frame()
         self.until("editor.view.fps === 0", "rest of the view")
+
+    def settled_picture(self, clip):
+        """A part of the page at rest: what is drawn is shown a moment later."""
+        pictures = [b""]
+
+        def stays():
+            self.frame()
+            pictures.append(self.page.screenshot(clip=clip))
+            return pictures[-1] == pictures[-2]
+
+        self.rest()
+        wait_for(stays, "two pictures that are alike")
+        return pictures[-1]
 
     # -- what a person sees ------------------------------------------------------------------------
 

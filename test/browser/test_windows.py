@@ -196,16 +196,14 @@ def test_home_comes_back_from_wherever_the_mouse_was(open_page, place):
 def test_collisions_of_infinite_planes_are_not_laid_over_everything(open_page):
     editor = open_page.first
     assert "ground_plane" in editor.names()
-    editor.rest()
     corner = {"x": 700, "y": 690, "width": 40, "height": 30}
-    before = editor.page.screenshot(clip=corner)
+    before = editor.settled_picture(corner)
     # The page itself waits: a picture counts for a moment only.
     editor.get("""(async () => {
         editor.actions.toggleOverlay('collisions');
         while (editor.view.fps === 0) await new Promise(requestAnimationFrame);
     })()""")
-    editor.rest()
-    assert editor.page.screenshot(clip=corner) == before
+    assert editor.settled_picture(corner) == before
 
 
 def test_the_building_editor_has_the_window_and_shows_the_world_in_its_plan(open_page):
