@@ -8,6 +8,7 @@ import os
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 from support import Node, wait_for
 
@@ -136,13 +137,13 @@ def picture(editor, name):
     return Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")
 
 
-def seen_by_camera(node, name):
-    """What a camera sensor sees of a mesh of `write_mesh` from there, under full ambient light."""
-    path = os.path.join(node.home, ".gazebo", "models", name, "mesh.dae")
+def seen_by_camera(node, name, file="mesh.dae"):
+    """What a camera sensor sees of a mesh of a model from there, under full ambient light."""
+    path = os.path.join(node.home, ".gazebo", "models", name, file)
     renderer = Renderer(pytest.fail)
     renderer.set_lights([], Scene(ambient=(1.0, 1.0, 1.0, 1.0)))
     renderer.add(Body(name, Model(name, links=[Link("link", visuals=[
-        Visual("v", Mesh("mesh.dae", path))])]), 0, {}))
+        Visual("v", Mesh(file, path))])]), 0, {}))
     eye = Pose((3.0, -4.0, 2.6), quat_from_rpy(0.0, math.atan2(2.6, 5.0), math.atan2(4.0, -3.0)))
     still = np.array([[0.0, 0, 0, 0, 0, 0, 1]])
     return Image.fromarray(renderer.render(CameraSpec(320, 240), matrix(eye), still, (RGB,),
@@ -176,6 +177,21 @@ def test_what_glows_has_the_colors_of_its_picture(node, editor):
     write_mesh(node, "glowing", [glowing], [FRONT])
     for image in (picture(editor, "glowing"), seen_by_camera(node, "glowing")):
         assert all(red > 150 and green < 60 for red, green, _ in middle(image))
+
+
+@pytest.mark.parametrize("looks", [
+    {"baseColorTexture": Image.new("RGB", (4, 4), (200, 0, 0)), "metallicFactor": 1.0},
+    {"baseColorFactor": [200, 0, 0, 255]}], ids=["picture", "color"])
+def test_a_gltf_mesh_has_its_colors(node, editor, looks, request):
+    name = f"gltf_{request.node.callspec.id}"
+    square = trimesh.Trimesh([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]],
+                             [[0, 1, 2], [0, 2, 3]], process=False)
+    square.visual = trimesh.visual.TextureVisuals(
+        [[0, 0], [1, 0], [1, 1], [0, 1]], trimesh.visual.material.PBRMaterial(**looks))
+    write_model(node, name, f"<mesh><uri>model://{name}/mesh.glb</uri></mesh>",
+                {"mesh.glb": square.export(file_type="glb")})
+    for image in (picture(editor, name), seen_by_camera(node, name, "mesh.glb")):
+        assert all(red > 90 and green < 60 for red, green, _ in middle(image))
 
 
 def test_the_picture_of_a_terrain_shows_all_of_it(node, editor):

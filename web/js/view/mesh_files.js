@@ -2,7 +2,8 @@
 import {faultText} from '../panels/dialog.js';
 import {frontsFirst} from './fronts_first.js';
 import {
-  BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial, SkinnedMesh,
+  BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial,
+  MeshStandardMaterial, SkinnedMesh,
 } from 'three';
 /** @import {Color, Material, Matrix4, Object3D, Texture} from 'three' */
 /** @import {Geometry} from '../protocol.js' */
@@ -83,8 +84,34 @@ async function readObj(url, manager) {
   return loader.parse(content);
 }
 
+/**
+ * The materials of glTF reflect surroundings, which the view has none of.
+ * @param {Material} material
+ */
+function plainly(material) {
+  if (!(material instanceof MeshStandardMaterial)) return material;
+  const {name, color, map, opacity, transparent, alphaTest, vertexColors, emissive, emissiveMap,
+    normalMap} = material;
+  return new MeshPhongMaterial({name, color, map, opacity, transparent, alphaTest, vertexColors,
+    emissive, emissiveMap, normalMap, specular: 0x0d0d0d});
+}
+
+/** @param {string} url @param {LoadingManager} manager */
+async function readGltf(url, manager) {
+  const [{GLTFLoader}, content] = await Promise.all([
+    import('three/addons/loaders/GLTFLoader.js'), bytes(url)]);
+  const {scene} = await new GLTFLoader(manager).parseAsync(content, folder(url));
+  scene.traverse((object) => {
+    if (!(object instanceof Mesh)) return;
+    object.material = Array.isArray(object.material)
+      ? object.material.map(plainly) : plainly(object.material);
+  });
+  return scene;
+}
+
 /** @type {Record<string, (url: string, manager: LoadingManager) => Promise<Object3D>>} */
-const READERS = {dae: readCollada, stl: readStl, obj: readObj, terrain: readTerrain};
+const READERS = {dae: readCollada, stl: readStl, obj: readObj, glb: readGltf, gltf: readGltf,
+  terrain: readTerrain};
 
 /** @param {MeshSource} meshSource */
 function formatOf({format, url}) {
