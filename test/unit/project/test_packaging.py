@@ -108,3 +108,23 @@ def test_every_top_level_folder_of_data_is_installed():
 def test_no_test_is_executable_since_completion_of_rosrun_lists_all_that_are():
     files = [path for path in (REPOSITORY / "test").rglob("*") if path.is_file()]
     assert files and not [path for path in files if path.stat().st_mode & 0o111]
+
+
+OPTIONAL = {"hector_uav_msgs", "kobuki_msgs"}
+"""Packages of robots: their messages are used where their robot's packages are."""
+
+
+def test_all_messages_that_the_sources_use_are_installed_without_the_common_packages():
+    used = set()
+    for path in (REPOSITORY / "src").rglob("*.py"):
+        text = path.read_text()
+        used |= set(re.findall(r"^\s*(?:from|import) (\w+_(?:msgs|srvs))\b", text, re.MULTILINE))
+        if path.relative_to(REPOSITORY / "src" / "my_simulations").parts[0] in ("plugins", "ros"):
+            used |= set(re.findall(r"\"(\w+_(?:msgs|srvs))/\w+\"", text))
+    used -= OPTIONAL | {folder.name for folder in PACKAGES}
+    assert {"nav_msgs", "sensor_msgs", "tf2_msgs"} <= used
+    package = ET.parse(REPOSITORY / "package.xml").getroot()
+    assert used <= {one.text for one in package.findall("exec_depend")}
+    for name, prefix in (("ros", "python3-"), ("noetic", "ros-noetic-")):
+        installed = (REPOSITORY / "tools" / f"apt-packages-{name}.txt").read_text().splitlines()
+        assert {prefix + one.replace("_", "-") for one in used} <= set(installed), name
