@@ -22,7 +22,7 @@ import rospy
 import tf2_ros
 from geometry_msgs.msg import Quaternion, TransformStamped
 from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2
-from support import Collected, Gazebo, Program, pose, run, wait_for
+from support import Collected, Gazebo, Program, Transforms, pose, run, wait_for
 
 WIDTH, HEIGHT, HFOV = 320, 240, 1.2
 FOCAL = WIDTH / 2 / math.tan(HFOV / 2)
@@ -178,8 +178,7 @@ class Perception(unittest.TestCase):
             cls.frame("rig_optical", Quaternion(-0.5, 0.5, -0.5, 0.5)),
             cls.frame("rig_laser", Quaternion(0, 0, math.sin(LASER_YAW / 2),
                                               math.cos(LASER_YAW / 2)))])
-        cls.buffer = tf2_ros.Buffer()
-        cls.listener = tf2_ros.TransformListener(cls.buffer)
+        cls.transforms = Transforms()
 
     @staticmethod
     def frame(name, turn):
@@ -345,8 +344,7 @@ class Perception(unittest.TestCase):
 
     def check_scan(self, at, header):
         """Points of a cloud, moved by tf, lie on the board and the wall within a millimetre."""
-        wait_for(lambda: self.buffer.can_transform("world", header.frame_id, header.stamp), "tf")
-        turn = self.buffer.lookup_transform("world", header.frame_id, header.stamp).transform
+        turn = self.transforms.get("world", header.frame_id, header.stamp)
         yaw = 2 * math.atan2(turn.rotation.z, turn.rotation.w)
         x = at[:, 0] * math.cos(yaw) - at[:, 1] * math.sin(yaw) + turn.translation.x
         y = at[:, 0] * math.sin(yaw) + at[:, 1] * math.cos(yaw) + turn.translation.y

@@ -7,9 +7,8 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
-import tf2_ros
 from geometry_msgs.msg import Twist, Vector3
-from support import Gazebo, run, wait_for
+from support import Gazebo, Transforms, run, wait_for
 
 WHEELS = ("left_wheel", "right_wheel")
 SENSORS = ("laser_link", "camera_optical_frame", "imu_link")
@@ -19,13 +18,11 @@ class RobotFrames(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.gazebo = Gazebo()
-        cls.buffer = tf2_ros.Buffer()
-        cls.listener = tf2_ros.TransformListener(cls.buffer)
+        cls.transforms = Transforms()
         wait_for(lambda: "robo" in cls.gazebo.names(), "the robot")
 
     def transform(self, frame):
-        wait_for(lambda: self.buffer.can_transform("base_footprint", frame, rospy.Time(0)), frame)
-        return self.buffer.lookup_transform("base_footprint", frame, rospy.Time(0)).transform
+        return self.transforms.get("base_footprint", frame)
 
     def test_links_are_where_the_physics_has_them(self):
         command = rospy.Publisher("/cmd_vel", Twist, queue_size=1, latch=True)
@@ -49,8 +46,7 @@ class RobotFrames(unittest.TestCase):
     def test_what_sensors_publish_is_in_the_frame_of_odometry(self):
         self.gazebo.unpause_physics()
         for frame in SENSORS:
-            wait_for(lambda frame=frame: self.buffer.can_transform("odom", frame, rospy.Time(0)),
-                     f"a way from odom to {frame}")
+            self.transforms.wait("odom", frame, f"a way from odom to {frame}")
         turn = self.transform("camera_optical_frame").rotation
         # Optical frames look along z, with y down: REP 103.
         for value, wanted in zip((turn.x, turn.y, turn.z, turn.w), (-0.5, 0.5, -0.5, 0.5)):

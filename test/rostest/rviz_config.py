@@ -9,10 +9,9 @@ import xml.etree.ElementTree as ElementTree
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
-import tf2_ros
 import yaml
 from roslib.message import get_message_class
-from support import Gazebo, run, wait_for
+from support import Gazebo, Transforms, run, wait_for
 
 CONFIGURATIONS = sorted(glob.glob(os.path.join(
     os.path.dirname(os.path.abspath(__file__)), "..", "..", "config", "*.rviz")))
@@ -33,8 +32,7 @@ class RvizConfiguration(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.gazebo = Gazebo()
-        cls.buffer = tf2_ros.Buffer()
-        cls.listener = tf2_ros.TransformListener(cls.buffer)
+        cls.transforms = Transforms()
         cls.files = {}
         for path in CONFIGURATIONS:
             with open(path, encoding="utf-8") as stream:
@@ -73,16 +71,14 @@ class RvizConfiguration(unittest.TestCase):
             wait_for(lambda heard=heard: heard, f"a message on {topic} of {name}")
             subscriber.unregister()
             frame = heard[0].header.frame_id
-            wait_for(lambda frame=frame, manager=manager: self.buffer.can_transform(
-                manager["Global Options"]["Fixed Frame"], frame, rospy.Time(0)),
-                f"a way from {frame} of {topic} to the fixed frame of {name}")
+            self.transforms.wait(manager["Global Options"]["Fixed Frame"], frame,
+                                 f"a way from {frame} of {topic} to the fixed frame of {name}")
 
     def test_views_follow_a_frame_that_there_is(self):
         for name, manager in self.files.items():
             target = manager["Views"]["Current"]["Target Frame"]
-            wait_for(lambda target=target, manager=manager: self.buffer.can_transform(
-                manager["Global Options"]["Fixed Frame"], target, rospy.Time(0)),
-                f"the frame {target} that {name} follows")
+            self.transforms.wait(manager["Global Options"]["Fixed Frame"], target,
+                                 f"the frame {target} that {name} follows")
 
     def test_each_link_of_the_robot_that_is_shown_has_a_frame(self):
         for name, manager, display in self.displays():
@@ -91,9 +87,8 @@ class RvizConfiguration(unittest.TestCase):
             robot = ElementTree.fromstring(rospy.get_param(display["Robot Description"]))
             for link in robot.findall("link"):
                 frame = (display.get("TF Prefix") or "") + link.get("name")
-                wait_for(lambda frame=frame, manager=manager: self.buffer.can_transform(
-                    manager["Global Options"]["Fixed Frame"], frame, rospy.Time(0)),
-                    f"the frame of link {frame} that {name} shows")
+                self.transforms.wait(manager["Global Options"]["Fixed Frame"], frame,
+                                     f"the frame of link {frame} that {name} shows")
 
 
 if __name__ == "__main__":

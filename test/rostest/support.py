@@ -164,6 +164,25 @@ class Collected:
         self._subscriber.unregister()
 
 
+class Transforms:
+    """What tf knows."""
+
+    def __init__(self):
+        import tf2_ros  # few tests need it, and it takes its time
+
+        self._buffer = tf2_ros.Buffer()
+        self._listener = tf2_ros.TransformListener(self._buffer)
+
+    def wait(self, target, source, what, at=rospy.Time(0)):
+        """Wait for a way from frame `source` to frame `target`; of any time, if `at` is 0."""
+        wait_for(lambda: self._buffer.can_transform(target, source, at), what)
+
+    def get(self, target, source, at=rospy.Time(0)):
+        """The transform of a time, as soon as it is known; the newest, if `at` is 0."""
+        self.wait(target, source, f"a way from {source} to {target}", at)
+        return self._buffer.lookup_transform(target, source, at).transform
+
+
 def is_running(node):
     """Whether a node of that name runs, however long it takes to say so."""
     # rosnode.rosnode_ping would limit every later connection of this process to 3 s.
