@@ -104,21 +104,29 @@ class Trigger:
         self._soon()
 
 
-class TriggeredCamera(Camera):
+class _Triggered(Plugin):
+    """What cameras that wait for triggers have in common."""
+
+    _triggers: List[Trigger]
+
+    def reset(self) -> None:
+        """Nobody has asked for pictures of the new time."""
+        for trigger in self._triggers:
+            trigger.reset()
+
+    def update(self) -> None:
+        """Look after triggers."""
+        for trigger in self._triggers:
+            trigger.update()
+
+
+class TriggeredCamera(_Triggered, Camera):
     """A camera that waits for triggers."""
 
     def load(self) -> None:
         """Read parameters."""
         super().load()
-        self._trigger = Trigger(self.context, self._stream)
-
-    def reset(self) -> None:
-        """Nobody has asked for a picture of the new time."""
-        self._trigger.reset()
-
-    def update(self) -> None:
-        """Look after triggers."""
-        self._trigger.update()
+        self._triggers = [Trigger(self.context, self._stream)]
 
 
 class MultiCamera(Plugin):
@@ -157,7 +165,7 @@ class MultiCamera(Plugin):
         self.context.photograph([stream.view() for stream in streams], seen)
 
 
-class TriggeredMultiCamera(MultiCamera):
+class TriggeredMultiCamera(_Triggered, MultiCamera):
     """Several cameras, each with a trigger topic of its own beside its pictures."""
 
     def load(self) -> None:
@@ -165,13 +173,3 @@ class TriggeredMultiCamera(MultiCamera):
         super().load()
         self._triggers = [Trigger(self.context, stream, stream.topics.base)
                           for stream in self._streams]
-
-    def reset(self) -> None:
-        """Nobody has asked for pictures of the new time."""
-        for trigger in self._triggers:
-            trigger.reset()
-
-    def update(self) -> None:
-        """Look after triggers."""
-        for trigger in self._triggers:
-            trigger.update()
