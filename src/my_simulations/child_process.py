@@ -81,9 +81,7 @@ def die_with_parent() -> None:
 
 def place_large_blocks_apart(size: int) -> None:
     """In the child: have the C library place blocks of `size` bytes or more apart (glibc)."""
-    libc = ctypes.CDLL(None)
-    if hasattr(libc, "mallopt"):
-        libc.mallopt(_M_MMAP_THRESHOLD, size)
+    _mallopt(_M_MMAP_THRESHOLD, size)
 
 
 def keep_freed_memory() -> None:
@@ -92,7 +90,12 @@ def keep_freed_memory() -> None:
     Bullet allocates 5 MB for every new world; if the kernel provides them page by page, a reset
     takes three times as long (measured).
     """
+    _mallopt(_M_TRIM_THRESHOLD, _KEPT_BYTES)
+    _mallopt(_M_MMAP_THRESHOLD, _HEAP_BYTES)
+
+
+def _mallopt(option: int, value: int) -> None:
+    """Set an option of the C library's allocator; without effect where it has none (glibc only)."""
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt"):
-        libc.mallopt(_M_TRIM_THRESHOLD, _KEPT_BYTES)
-        libc.mallopt(_M_MMAP_THRESHOLD, _HEAP_BYTES)
+        libc.mallopt(option, value)

@@ -155,7 +155,7 @@ class Runner:
             return False
         commands = [pair for pair in received if not isinstance(pair[1], Nudge)]
         if not commands:
-            return bool(received)
+            return True
         answers = []
         refused = False
         for number, command in commands:

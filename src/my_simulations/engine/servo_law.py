@@ -94,7 +94,6 @@ class ServoLaw:
         """Another target for the same loops."""
         self.servo = servo
         self._target = _target_of(servo, self._dt)
-        self._moves = False
         self.gives_effort = servo.drive == "effort" or self._inner is not None
         self.steady = (servo.spline is None and servo.gains is None and self._inner is None
                        and (servo.drive != "effort" or servo.target == 0.0)
