@@ -393,6 +393,16 @@ def test_the_joints_panel_turns_a_hinge(editor):
     wait_for(lambda: position.input_value() == "0", "the loop undone")
     panel.get_by_role("tab", name="Velocity").click()
     wait_for(lambda: speed.input_value() == "1", "the speed of before")
+    # Gains of 0 stop a motor: that is said beside them.
+    idle = panel.get_by_text("All gains are 0")
+    assert idle.count() == 0
+    for gain in "PID":
+        panel.get_by_role("textbox", name=f"hinge {gain} gain").fill("0")
+        panel.get_by_role("textbox", name=f"hinge {gain} gain").press("Enter")
+    idle.wait_for()
+    panel.get_by_role("textbox", name="hinge P gain").fill("2")
+    panel.get_by_role("textbox", name="hinge P gain").press("Enter")
+    idle.wait_for(state="detached")
     panel.get_by_role("button", name="Reset").click()
     wait_for(lambda: speed.input_value() == "0", "nothing asked of the hinge")
     editor.button("Pause").click()

@@ -34,6 +34,7 @@ const MODES = [
 ];
 /** Until the simulator has told what suits the joint. */
 const GAINS = {p: 0, i: 0, d: 0};
+const ALL_ZERO = 'All gains are 0: no effort drives this joint.';
 const GAIN_NAMES = /** @type {const} */ (['p', 'i', 'd']);
 
 /**
@@ -191,6 +192,12 @@ export class JointsPanel {
     const gains = mode === 'force' ? {} : {...GAINS};
     // The simulator's, the user's, or those of the loop at work.
     let known = false;
+    const idle = h('span', {class: 'field-note warning', role: 'status'});
+    const showGains = () => {
+      for (const {name, gain} of gainInputs) gain.show(gains[name]);
+      const none = known && GAIN_NAMES.every((name) => !gains[name]);
+      idle.textContent = none && mode !== 'force' ? ALL_ZERO : '';
+    };
     /** @param {number} value */
     const send = async (value) => {
       say('');
@@ -211,7 +218,7 @@ export class JointsPanel {
         (value) => {
           gains[name] = Number(value);
           known = true;
-          gain.show(value);
+          showGains();
           if (row.drive?.mode === mode) send(row.drive.value);
         },
         say,
@@ -233,14 +240,14 @@ export class JointsPanel {
         if (mine?.gains) known = true;
         Object.assign(gains, mine?.gains);
         input.show((mine?.value ?? 0) / factor);
-        for (const {name, gain} of gainInputs) gain.show(gains[name]);
+        showGains();
       },
     };
     row.suggest = (suited) => {
       if (known || !suited || mode === 'force') return;
       known = true;
       Object.assign(gains, suited);
-      for (const {name, gain} of gainInputs) gain.show(gains[name]);
+      showGains();
     };
     row.show(undefined);
     this.#rows.set(joint.name, row);
@@ -255,6 +262,7 @@ export class JointsPanel {
       ),
       h('div', {class: 'row'}, input.element, h('span', {class: 'unit', text: unit})),
       gainInputs.length && h('div', {class: 'vector-input'}, ...gainInputs.map(gainPart)),
+      idle,
       note,
     );
   }
