@@ -6,6 +6,7 @@ GAZEBO_MODEL_DATABASE_URI, if set, and from a Fuel server if a file refers to it
 """
 from __future__ import annotations
 
+import copy
 import os
 from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
 
@@ -156,6 +157,12 @@ class Resolver:
         """Add a model folder, searched after the others."""
         if folder not in self._model_paths:
             self._model_paths.append(folder)
+
+    def with_first_folder(self, folder: str) -> "Resolver":
+        """A resolver that searches this model folder before the others; this one stays."""
+        other = copy.copy(self)
+        other._model_paths = [folder, *self._model_paths]
+        return other
 
     def knows_package(self, folder: str) -> bool:
         """Whether a folder with a package.xml is the one that `package://` resolves to."""

@@ -83,6 +83,22 @@ def test_a_model_folder_is_stored_as_it_is_and_replaced_only_on_request(case, ho
         "model.config", "model.sdf"]
 
 
+def test_the_files_that_a_new_model_names_by_its_own_name_are_found(case, home):
+    mesh = b"<mesh><uri>model://urn/meshes/urn.stl</uri></mesh>"
+
+    async def drop(browser):
+        await browser.ask("import_model", name="urn", files=sent(
+            urn__model_dot_sdf=SDF.replace(b"<box><size>1 1 1</size></box>", mesh),
+            urn__meshes__urn_dot_stl=ball()))
+        await browser.edit("insert", uri="model://urn", pose=[0, 0, 1, 0, 0, 0, 1])
+        await browser.until(lambda: browser.model("crate") or browser.model("urn"))
+        assert [push["issue"]["message"] for push in browser.pushes
+                if push["type"] == "issue" and "not found" in push["issue"]["message"]] == []
+
+    case().browse(drop)
+    assert models(home) == ["urn"]
+
+
 def test_a_faulty_model_is_refused_with_file_and_line_and_leaves_nothing(case, home):
     async def drop(browser):
         with pytest.raises(Refused) as refused:

@@ -191,7 +191,9 @@ def config_text(name: str, described: str,
 
 def tried(folder: str, resolver: Resolver) -> List[Issue]:
     """What the simulator says of the model. Raises InputError, CommandError."""
-    entity, issues = entity_of_uri(f"file://{folder}", resolver)
+    # The model names its own files by model://, and is not among the models yet.
+    entity, issues = entity_of_uri(f"file://{folder}",
+                                   resolver.with_first_folder(os.path.dirname(folder)))
     if isinstance(entity, Model):
         issues += checked(entity)[1]
     return issues
