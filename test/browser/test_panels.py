@@ -541,6 +541,14 @@ def test_an_sdf_file_that_is_dropped_stands_where_it_was_dropped(editor):
     assert editor.model("gate")["pose"][:2] == approx([1.0, 0.5], abs=0.05)
     drop(editor, "bad.sdf", b"<sdf version='1.6'><model name='m'>", (1.0, 0.5, 0.0))
     editor.page.locator(".notice").get_by_text("cut off").wait_for()
+    editor.page.locator(".notice").get_by_text("bad.sdf:1").wait_for()
+
+
+def test_the_models_of_a_dropped_world_keep_their_names(editor):
+    world = HINGED.replace('1.7">', '1.7"><world name="yard">').replace("</sdf>", "</world></sdf>")
+    drop(editor, "yard.world", world.encode(), (1.0, 0.5, 0.0))
+    wait_for(lambda: "gate" in editor.names(), "the gate")
+    editor.until("editor.store.history.undo[0] === 'Insert gate'", "its label")
 
 
 def test_a_mesh_that_is_dropped_becomes_a_body_of_the_density_asked_for(editor):

@@ -62,6 +62,10 @@ test('watches are told again after the line was lost', async () => {
 test('a refusal is told with its place and hint', () => {
   const issue = {message: 'no such mesh', file: 'a.world', line: 3, hint: 'Look again.'};
   assert.equal(faultText(new RequestError([issue])), 'no such mesh (a.world:3) Look again.');
+  assert.equal(faultText(new RequestError([{message: 'it is there', hint: 'replace it'}])),
+    'it is there; replace it');
+  const [odd, bad] = [{...issue, severity: 'warning'}, {message: 'mass -1', severity: 'error'}];
+  assert.equal(faultText(new RequestError([odd, bad])), 'mass -1');
   assert.equal(faultText(new Error('boom')), 'boom');
 });
 

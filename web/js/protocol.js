@@ -372,8 +372,9 @@ export const FRAME_RECORD_BYTES = 32;
  *}} JointState */
 
 /** @typedef {{
- *  kind: 'insert', name?: string|null, sdf?: string|null, uri?: string|null,
- *  shape?: 'box'|'sphere'|'cylinder'|null, pose?: pose|null, scale?: vec3|null
+ *  kind: 'insert', name?: string|null, sdf?: string|null, source?: string|null,
+ *  uri?: string|null, shape?: 'box'|'sphere'|'cylinder'|null, pose?: pose|null,
+ *  scale?: vec3|null
  *}} InsertOperation */
 
 /** @typedef {{kind: 'insert_light', light: Partial<Light>}} InsertLightOperation */
@@ -391,7 +392,7 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {{kind: 'set', target: string, path: string, value: unknown}} SetOperation */
 
 /** @typedef {{
- *  kind: 'paste', text: string, pose?: pose|null, name?: string|null
+ *  kind: 'paste', text: string, pose?: pose|null, name?: string|null, source?: string|null
  *}} PasteOperation */
 
 /** @typedef {{
@@ -549,7 +550,7 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {uri: string, path: string}},
  *  library_get: {fields: {uri: string, quiet?: boolean|null},
  *    reply: {model?: Model|null, light?: Light|null}},
- *  preview: {fields: {sdf: string},
+ *  preview: {fields: {sdf: string, source?: string|null},
  *    reply: {model?: Model|null, light?: Light|null}},
  *  watch: {fields: {topics: string[]},
  *    reply: {topics: string[]}},

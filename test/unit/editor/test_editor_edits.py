@@ -298,6 +298,28 @@ def test_what_is_copied_can_be_pasted_together_with_its_places(case):
     made.browse(paste)
 
 
+def test_the_models_of_a_file_keep_their_names_and_its_faults_name_it(case):
+    made = case(box("a"))
+
+    async def drop(browser):
+        text = (await browser.ask("copy", names=["a"]))["text"]
+        await browser.edit("delete", names=["a"])
+        for name in ("a", "a_0"):
+            assert (await browser.edit("paste", text=text, source="own.world"))["name"] == name
+        bad = "<sdf version='1.7'>\n<model name='b'>\n<link name='l'><inertial><mass>x</mass>" \
+              "</inertial></link></model></sdf>"
+        asked = [("preview", {"sdf": bad, "source": "C:\\there\\bad.sdf"}),
+                 ("edit", {"op": {"kind": "insert", "sdf": bad, "source": "there/bad.sdf"}}),
+                 ("edit", {"op": {"kind": "paste", "text": bad, "source": "bad.sdf"}})]
+        for kind, fields in asked:
+            with pytest.raises(Refused) as refused:
+                await browser.ask(kind, **fields)
+            assert (refused.value.issues[0]["file"], refused.value.issues[0]["line"]) == \
+                ("bad.sdf", 3)
+
+    made.browse(drop)
+
+
 def test_a_model_with_nested_ones_is_copied_with_them(case):
     outer = box("outer")
     outer.models.append(box("inner", (0.0, 0.0, 2.0)))

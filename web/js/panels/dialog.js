@@ -179,14 +179,15 @@ export class Dialog {
 }
 
 /**
- * What a refused request says: the first issue with its place, or the error's words.
+ * What a refused request says: the first error with its place, or the error's words.
  * @param {unknown} fault
  */
 export function faultText(fault) {
-  const issue = fault instanceof RequestError ? fault.issues[0] : undefined;
+  const issues = fault instanceof RequestError ? fault.issues : [];
+  const issue = issues.find(({severity}) => severity === 'error') ?? issues[0];
   if (!issue) return fault instanceof Error ? fault.message : String(fault);
   const place = issue.file ? ` (${issue.file}${issue.line ? `:${issue.line}` : ''})` : '';
-  return `${issue.message}${place}${issue.hint ? ` ${issue.hint}` : ''}`;
+  return `${issue.message}${place}${issue.hint ? `${place ? '' : ';'} ${issue.hint}` : ''}`;
 }
 
 /**

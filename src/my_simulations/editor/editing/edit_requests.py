@@ -132,7 +132,7 @@ class Edits:
         elif given == ["uri"]:
             entity, issues = entity_of_uri(op["uri"], self._resolver)
         else:
-            entity, issues = entity_of_text(op["sdf"], self._resolver)
+            entity, issues = entity_of_text(op["sdf"], self._resolver, op.get("source"))
         for issue in issues:
             self._tell(issue)
         if isinstance(entity, Model) and op.get("scale"):
@@ -181,7 +181,7 @@ class Edits:
         return f"Delete {listed(names)}", _one(parts), {"names": names}
 
     def _paste(self, op: Dict[str, Any]) -> Planned:
-        entities, issues = entities_of_text(op["text"], self._resolver)
+        entities, issues = entities_of_text(op["text"], self._resolver, op.get("source"))
         for issue in issues:
             self._tell(issue)
         if not entities:
@@ -191,7 +191,9 @@ class Edits:
         first = entities[-1].pose
         names, parts = [], []
         for entity in entities:
-            name = free_name(op.get("name") or f"{entity.name}_clone", taken)
+            # What comes from a file is the first of its name, not a copy.
+            own = entity.name if op.get("source") else f"{entity.name}_clone"
+            name = free_name(op.get("name") or own, taken)
             taken.add(name)
             pose = entity.pose
             if target is not None:
@@ -200,7 +202,8 @@ class Edits:
                     target, compose(inverse(first), pose))
             names.append(name)
             parts.append(self._addition(entity, name, pose))
-        return f"Paste {listed(names)}", _one(parts), {"names": names, "name": names[-1]}
+        verb = "Insert" if op.get("source") else "Paste"
+        return f"{verb} {listed(names)}", _one(parts), {"names": names, "name": names[-1]}
 
     # -- changing --------------------------------------------------------------------------------
 

@@ -1,8 +1,9 @@
 """What can be put into the world: Gazebo's simple shapes, and what a text or a file describes."""
 from __future__ import annotations
 
+import os
 from dataclasses import replace
-from typing import Collection, Dict, List, Tuple, Union
+from typing import Collection, Dict, List, Optional, Tuple, Union
 
 from ...description.compare import BUILT_IN
 from ...description.flatten import flattened
@@ -46,9 +47,13 @@ def simple_shape(shape: str) -> Model:
     return Model(f"unit_{shape}", Pose((0.0, 0.0, 0.5)), links=[link])
 
 
-def entity_of_text(text: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
-    """The model or light of a document. Raises InputError when it cannot be used as it is."""
-    entity, issues = read_entity(text, resolver, "<inserted text>")
+def entity_of_text(text: str, resolver: Resolver, source: Optional[str] = None,
+                   ) -> Tuple[Entity, List[Issue]]:
+    """The model or light of a document. Raises InputError when it cannot be used as it is.
+
+    `source` is the name of the file that the text is from; issues name it.
+    """
+    entity, issues = read_entity(text, resolver, _file_name(source) or "<inserted text>")
     return _usable(entity, issues)
 
 
@@ -63,15 +68,21 @@ def entity_of_uri(uri: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
     return (replace(entity, uri=uri) if isinstance(entity, Model) else entity), issues
 
 
-def entities_of_text(text: str, resolver: Resolver) -> Tuple[List[Entity], List[Issue]]:
-    """All models and lights of what was copied: a world, or one of them alone."""
+def entities_of_text(text: str, resolver: Resolver, source: Optional[str] = None,
+                     ) -> Tuple[List[Entity], List[Issue]]:
+    """All models and lights of what was copied or of a file: a world, or one of them alone."""
     if "<world" not in text:
-        entity, issues = entity_of_text(text, resolver)
+        entity, issues = entity_of_text(text, resolver, source)
         return [entity], issues
-    world, issues = parse_world(text, resolver, "<clipboard>")
+    world, issues = parse_world(text, resolver, _file_name(source) or "<clipboard>")
     if errors_of(issues):
         raise InputError(issues)
     return [*world.models, *world.lights], issues
+
+
+def _file_name(source: Optional[str]) -> str:
+    """The name alone: it says where a text is from, and opens no folder of this machine."""
+    return os.path.basename((source or "").replace("\\", "/"))
 
 
 def _usable(entity: Entity, issues: List[Issue]) -> Tuple[Entity, List[Issue]]:

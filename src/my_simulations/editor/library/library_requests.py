@@ -111,7 +111,7 @@ class LibraryRequests:
         return reply
 
     def _preview(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        entity, _ = entity_of_text(message["sdf"], self._resolver)
+        entity, _ = entity_of_text(message["sdf"], self._resolver, message.get("source"))
         return shown(entity, self._hub.documents)
 
 

@@ -25,10 +25,12 @@ export async function importDialog(page, entries, place) {
   }
   if (found.kind === 'text') {
     const sdf = await files[0].file.text();
-    const {model, light} = await page.request('preview', {sdf});
-    await insert(page, {kind: 'insert', sdf, pose: at(place, model ?? light)});
+    const source = files[0].path;
+    const {model, light} = await page.request('preview', {sdf, source});
+    await insert(page, {kind: 'insert', sdf, source, pose: at(place, model ?? light)});
   } else if (found.kind === 'world') {
-    await insert(page, {kind: 'paste', text: modelsOfWorld(await files[0].file.text())});
+    await insert(page, {kind: 'paste', text: modelsOfWorld(await files[0].file.text()),
+      source: files[0].path});
   } else if (await store(page, files, found)) {
     const uri = `model://${found.name}`;
     const {model, light} = await page.request('library_get', {uri});
