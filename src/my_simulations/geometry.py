@@ -7,13 +7,23 @@ handles single poses only, where tuples are faster and cost neither memory nor s
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Tuple
+from typing import Any, NamedTuple, Tuple
 
 Vec3 = Tuple[float, float, float]
 Quat = Tuple[float, float, float, float]
 
 ZERO3: Vec3 = (0.0, 0.0, 0.0)
 IDENTITY_QUAT: Quat = (0.0, 0.0, 0.0, 1.0)
+
+
+def is_finite_number(value: Any) -> bool:
+    """Whether a value of JSON or YAML is a finite number; integers that no double holds are not."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 class Pose(NamedTuple):

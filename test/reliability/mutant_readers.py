@@ -13,7 +13,7 @@ import yaml
 from building_plans import two_rooms
 from grammars import tree_of
 from lxml import etree
-from mutant_run import Target
+from mutant_run import Target, shape
 from mutations import (
     STRANGE_NUMBERS,
     STRANGE_TEXTS,
@@ -53,7 +53,6 @@ ATTRIBUTES = ("name", "type", "version", "xyz", "rpy", "value", "filename", "lin
               "size", "relative_to", "degrees", "rotation_format", "lower", "upper", "ixx", "scale")
 COLLADA = "http://www.collada.org/2005/11/COLLADASchema"
 _NAMESPACE = re.compile(rb"""xmlns=["'][^"']*["']""")
-_NUMBER = re.compile(r"-?\d[\d.e+-]*|nan|inf")
 
 
 def files(*suffixes: str) -> List[Path]:
@@ -106,8 +105,9 @@ def damaged(text: str, chance: Random) -> str:
 def documents(name: str, roots: Iterable[str], suffixes: Iterable[str], tree: Any) -> Target:
     """SDF or URDF."""
     known = XmlKnowledge()
-    seeds = [Element("sdf", (("version", "1.7"),), "", (Element("model", (("name", "m"),), "", ()),))
-             if name == "SDF" else Element("robot", (("name", "r"),), "", ())]
+    model = Element("model", (("name", "m"),), "", ())
+    seeds = [Element("sdf", (("version", "1.7"),), "", (model,)) if name == "SDF" else
+             Element("robot", (("name", "r"),), "", ())]
     for path in files(*suffixes):
         with contextlib.suppress(etree.XMLSyntaxError):
             root = element_of(etree.fromstring(path.read_bytes()))
@@ -151,7 +151,7 @@ def collada(folder: Path) -> Target:
         try:
             vertices, triangles = triangles_of(str(path), "")
         except InputError as fault:
-            return [_NUMBER.sub("#", fault.first.message)[:80]]
+            return [shape(fault.first.message)]
         assert len(triangles) and triangles.max() < len(vertices)
         return [min(len(triangles), 50)]
 
@@ -173,7 +173,7 @@ def yaml_files(name: str, seeds: List[Any], path: Path,
         except InputError as fault:
             assert fault.issues
             return [*features(fault.issues, "refused"),
-                    _NUMBER.sub("#", fault.first.message)[:60]]
+                    shape(fault.first.message)]
 
     return Target(name, seeds, known.change,
                   lambda made, chance: damaged(yaml_text(made, chance), chance), load,
@@ -224,7 +224,7 @@ def plans(_folder: Path) -> Target:
         try:
             return features(building_sdf(tree)[2])
         except (InputError, CommandError) as fault:
-            return [_NUMBER.sub("#", str(fault))[:60]]
+            return [shape(str(fault))]
 
     return Target("building plans", [plan], known.change, lambda made, chance: made, build,
                   suffix=".json")

@@ -4,6 +4,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import signal
 import time
 import traceback
@@ -26,6 +27,7 @@ MOST_GROWN, MOST_FEATURES = 1500, 20_000
 LARGEST = 8000
 """Bytes of an input that others are made of: small ones are read fast."""
 
+_VARIES = re.compile(r"'[^']*'|\"[^\"]*\"|-?\d[\d.e+-]*|nan|inf")
 MOST_FAULTS = 20
 REPORT_S = 60.0
 GROWTH = 1.05
@@ -180,6 +182,11 @@ def _keep(target: Target, data: Any, defect: BaseException, done: Run, folder: P
         f"seed {seed}, input {done.inputs}\n" + "".join(traceback.format_exception(
             type(defect), defect, defect.__traceback__)), encoding="utf-8", errors="replace")
     done.faults[place] = f"{defect!r:.300} (seed {seed}, input {done.inputs}): see {path}"
+
+
+def shape(text: str) -> str:
+    """A text without names and numbers, so that answers of one kind are alike."""
+    return _VARIES.sub("#", text)[:80]
 
 
 def as_bytes(data: Any) -> bytes:

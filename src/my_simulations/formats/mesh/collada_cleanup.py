@@ -117,9 +117,15 @@ class _Document:
     def share_nodes(self) -> None:
         """Copy nodes that are instantiated several times to where pycollada searches for them."""
         library = _made(self._root, "library_nodes")
-        wanted: Set[str] = {i.get("url")[1:] for i in self._root.iter("{*}instance_node")}
+        wanted: Set[str] = set()
+        for instance in list(self._root.iter("{*}instance_node")):
+            if self._is_there(instance, "instance_node"):
+                wanted.add(instance.get("url")[1:])
+            else:  # one outside of a node, which nothing has looked at
+                instance.getparent().remove(instance)
         for name in sorted(wanted):
-            if _local(self._by_id[name].getparent()) != "library_nodes":
+            parent = self._by_id[name].getparent()
+            if parent is None or _local(parent) != "library_nodes":
                 library.append(copy.deepcopy(self._by_id[name]))
         if len(library):
             self._root.append(library)
