@@ -160,7 +160,7 @@ def test_meshes(record, tmp_path):
         except InputError as fault:
             assert fault.issues
             return
-        assert len(data.faces) and data.faces.max() < len(data.vertices)
+        assert len(data.triangles) and data.triangles.max() < len(data.vertices)
 
     load("")
     record("fuzzing: DAE", **fuzz(collada(), load))

@@ -174,7 +174,7 @@ def test_a_node_outside_of_all_libraries_is_found(tmp_path):
     path = tmp_path / "a.dae"
     path.write_text(text.replace("</COLLADA>", '<node id="odd"/></COLLADA>').replace(
         'url="#shared"', 'url="#odd"'))
-    assert len(load_mesh(Mesh("a", str(path))).faces) == 2
+    assert len(load_mesh(Mesh("a", str(path))).triangles) == 2
 
 
 def test_nodes_that_contain_each_other_are_refused(tmp_path):
