@@ -52,6 +52,19 @@ SMALL, LARGE = 6000, 100_000
 ATTRIBUTES = ("name", "type", "version", "xyz", "rpy", "value", "filename", "link", "radius",
               "size", "relative_to", "degrees", "rotation_format", "lower", "upper", "ixx", "scale")
 COLLADA = "http://www.collada.org/2005/11/COLLADASchema"
+COLLADA_TREE = {
+    "COLLADA": ["asset", "library_geometries", "library_nodes", "library_visual_scenes", "scene",
+                "library_controllers", "node"],
+    "node": ["translate", "rotate", "scale", "matrix", "lookat", "skew", "node", "instance_node",
+             "instance_geometry", "instance_controller", "instance_light"],
+    "visual_scene": ["node"], "library_controllers": ["controller"], "controller": ["skin", "morph"],
+    "skin": ["bind_shape_matrix", "source"], "instance_controller": ["skeleton"],
+    "mesh": ["source", "vertices", "triangles", "polylist", "polygons", "lines", "trifans",
+             "tristrips", "linestrips"],
+    "triangles": ["input", "p"], "polylist": ["input", "vcount", "p"],
+    "polygons": ["input", "p", "ph"], "ph": ["p", "h"], "vertices": ["input"],
+    "source": ["float_array", "Name_array", "technique_common"], "technique_common": ["accessor"],
+    "accessor": ["param"], "asset": ["unit", "up_axis"], "geometry": ["mesh", "convex_mesh"]}
 _NAMESPACE = re.compile(rb"""xmlns=["'][^"']*["']""")
 
 
@@ -144,6 +157,7 @@ def collada(folder: Path) -> Target:
             known.learn(root)
             if path.stat().st_size <= SMALL:
                 seeds.append(root._replace(attributes=(("xmlns", COLLADA), *root.attributes)))
+    known.learn_names(COLLADA_TREE, ("id", "sid", "url", "source", "semantic", "count", "offset"))
     path = folder / "m.dae"
 
     def load(text: str) -> List[Hashable]:
@@ -223,7 +237,9 @@ def plans(_folder: Path) -> Target:
     def build(tree: Any) -> List[Hashable]:
         try:
             return features(building_sdf(tree)[2])
-        except (InputError, CommandError) as fault:
+        except InputError as fault:
+            return [(issue.code, shape(issue.message)[:40]) for issue in fault.issues]
+        except CommandError as fault:
             return [shape(str(fault))]
 
     return Target("building plans", [plan], known.change, lambda made, chance: made, build,

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
-from typing import Any, Callable, Dict, Hashable, Iterable, Iterator, List, Optional
+from typing import Any, Callable, Dict, Hashable, Iterable, Iterator, List, Optional, Set
 
 from heap import memory
 from proofs import IS_LONG, allowance, per_second, spent
@@ -23,9 +23,12 @@ LONGEST_S = 1.0
 AT_ONCE = 20_000
 """Inputs of a round; the next one has a seed of its own, and half of what was found."""
 
-MOST_GROWN, MOST_FEATURES = 1500, 20_000
-LARGEST = 8000
-"""Bytes of an input that others are made of: small ones are read fast."""
+MOST_GROWN, MOST_FEATURES = 500, 20_000
+LARGEST = 6000
+"""Characters of an input that others are made of: small ones are read fast."""
+
+SETTLED = 0.25
+"""Share of a run after which memory may not grow, and no more inputs are kept than by then."""
 
 _VARIES = re.compile(r"'[^']*'|\"[^\"]*\"|-?\d[\d.e+-]*|nan|inf")
 MOST_FAULTS = 20
@@ -72,7 +75,6 @@ class Run:
     inputs: int = 0
     slowest: float = 0.0
     fed: float = 0.0
-    grown: int = 0
     growth: float = 0.0
     faults: Dict[str, str] = field(default_factory=dict)
     features: int = 0
@@ -94,9 +96,9 @@ def run(target: Target, inputs: int, seed: int, folder: Path,
         report: hears now and then how far it is.
     """
     done, used, start = Run(), allowance(), spent()
-    seen: Dict[Hashable, None] = {}
+    seen: Set[int] = set()
     grown: List[Any] = []
-    before, told, number = 0, time.monotonic(), 0
+    before, told, number, most = 0, time.monotonic(), 0, MOST_GROWN
     while done.inputs < inputs and used() < 1.0 and len(done.faults) < MOST_FAULTS:
         chance = Random(f"{seed} {number}")
         number += 1
@@ -109,22 +111,29 @@ def run(target: Target, inputs: int, seed: int, folder: Path,
             data = target.encode(made, chance)
             features = _fed(target, data, done, folder, seed)
             done.inputs += 1
-            new = [one for one in features if one not in seen]
+            new = {hash(one) for one in features} - seen
             if new and len(seen) < MOST_FEATURES:
-                seen.update(dict.fromkeys(new))
+                seen |= new
                 if len(repr(made)) < LARGEST:
-                    corpus.append(made)
-                    grown.append(made)
-            if not before and max(used(), done.inputs / inputs) > 0.25:
-                before = memory()
-        del grown[:-MOST_GROWN]
-        done.features, done.grown = len(seen), len(grown)
+                    _put(made, corpus, len(target.seeds) + most, chance)
+                    _put(made, grown, most, chance)
+            if not before and max(used(), done.inputs / inputs) > SETTLED:
+                before, most = memory(), len(grown)
+        done.features = len(seen)
         done.per_second = per_second(done.inputs, start)
         done.growth = memory() / before - 1.0 if before else 0.0
         if report is not None and time.monotonic() > told + REPORT_S:
             told = time.monotonic()
             report(done)
     return done
+
+
+def _put(made: Any, into: List[Any], most: int, chance: Random) -> None:
+    """Append an input, or put it where one of the others was; the first ones are the oldest."""
+    if len(into) < most:
+        into.append(made)
+    elif into:
+        into[chance.randrange(len(into) // 2, len(into))] = made
 
 
 def _fed(target: Target, data: Any, done: Run, folder: Path, seed: int) -> Iterable[Hashable]:

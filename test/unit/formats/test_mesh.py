@@ -168,11 +168,11 @@ def test_stray_instances_of_nodes_change_nothing(tmp_path, stray):
             == load_mesh(Mesh("a", str(plain))).vertices).all()
 
 
-def test_a_node_outside_of_all_libraries_is_found(tmp_path):
+def test_a_node_outside_of_all_libraries_is_left_out(tmp_path):
     with open(os.path.join(VALID, "instances.dae")) as stream:
         text = stream.read()
     path = tmp_path / "a.dae"
-    path.write_text(text.replace("</COLLADA>", '<node id="odd"/></COLLADA>').replace(
+    path.write_text(text.replace("</COLLADA>", '<node id="odd"><odd/></node></COLLADA>').replace(
         'url="#shared"', 'url="#odd"'))
     assert len(load_mesh(Mesh("a", str(path))).triangles) == 2
 

@@ -46,6 +46,10 @@ def _loaded(text: bytes) -> Any:
         return collada.Collada(io.BytesIO(text))
     except collada.DaeError as fault:
         raise ValueError(fault.msg) from None
+    except RecursionError:
+        raise
+    except RuntimeError:  # pycollada raises again what nobody has raised
+        raise ValueError("an element stands where COLLADA has no such element") from None
 
 
 def _line_of_fault(root: Any) -> int:

@@ -36,6 +36,7 @@ def tidied(data: bytes) -> Any:
     for child in list(root):
         if _local(child) not in _LIBRARIES:
             root.remove(child)
+    document.find_ids()  # what was removed is no target any more
     document.tidy_nodes()
     document.share_nodes()
     document.tidy_geometries()
@@ -65,8 +66,13 @@ def _parsed(data: bytes) -> Any:
 class _Document:
     def __init__(self, root: Any) -> None:
         self._root = root
-        self._by_id: Dict[str, Any] = {e.get("id"): e for e in root.iter() if e.get("id")}
+        self._by_id: Dict[str, Any] = {}
         self._used: List[Any] = []
+        self.find_ids()
+
+    def find_ids(self) -> None:
+        """Know the elements that references may point to."""
+        self._by_id = {e.get("id"): e for e in self._root.iter() if e.get("id")}
 
     def replace_controllers(self) -> None:
         """Replace instances of skins and morphs by their geometry, in its bind shape."""
@@ -124,8 +130,7 @@ class _Document:
             else:  # one outside of a node, which nothing has looked at
                 instance.getparent().remove(instance)
         for name in sorted(wanted):
-            parent = self._by_id[name].getparent()
-            if parent is None or _local(parent) != "library_nodes":
+            if _local(self._by_id[name].getparent()) != "library_nodes":
                 library.append(copy.deepcopy(self._by_id[name]))
         if len(library):
             self._root.append(library)
