@@ -155,28 +155,6 @@ def test_a_collada_file_with_entities_is_refused(tmp_path):
     assert caught.value.first.code == "mesh-unreadable"
 
 
-@pytest.mark.parametrize("stray", ["<instance_node/>", '<instance_node url="#nothing"/>',
-                                   '<instance_node url="file.dae#a"/>'])
-def test_stray_instances_of_nodes_change_nothing(tmp_path, stray):
-    with open(os.path.join(VALID, "instances.dae")) as stream:
-        text = stream.read()
-    plain, odd = tmp_path / "plain.dae", tmp_path / "odd.dae"
-    plain.write_text(text)
-    odd.write_text(text.replace("<library_visual_scenes>", f"<library_visual_scenes>{stray}"))
-    assert odd.read_text() != text
-    assert (load_mesh(Mesh("a", str(odd))).vertices
-            == load_mesh(Mesh("a", str(plain))).vertices).all()
-
-
-def test_a_node_outside_of_all_libraries_is_left_out(tmp_path):
-    with open(os.path.join(VALID, "instances.dae")) as stream:
-        text = stream.read()
-    path = tmp_path / "a.dae"
-    path.write_text(text.replace("</COLLADA>", '<node id="odd"><odd/></node></COLLADA>').replace(
-        'url="#shared"', 'url="#odd"'))
-    assert len(load_mesh(Mesh("a", str(path))).triangles) == 2
-
-
 def test_nodes_that_contain_each_other_are_refused(tmp_path):
     with open(os.path.join(VALID, "instances.dae")) as stream:
         text = stream.read().replace("<translate>0 0 5</translate>",

@@ -201,7 +201,11 @@ def _set_xyz(array: Any, accessor: Any) -> None:
 def _tidy_primitive(primitive: Any, positions: Dict[str, Any]) -> bool:
     """Check the indices of a primitive; False if it has no faces."""
     for holed in list(primitive.iterfind("{*}ph")):  # holes are not cut
-        primitive.replace(holed, holed.find("{*}p"))
+        outline = holed.find("{*}p")
+        if outline is None:
+            primitive.remove(holed)
+        else:
+            primitive.replace(holed, outline)
     lists = primitive.findall("{*}p") + primitive.findall("{*}vcount")
     for element in lists:
         bad = _NO_INDEX.search(element.text or "")
