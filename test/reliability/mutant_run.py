@@ -107,14 +107,17 @@ def run(target: Target, inputs: int, seed: int, folder: Path,
         for _ in range(min(AT_ONCE, inputs - done.inputs)):
             if done.inputs % 64 == 0 and used() >= 1.0:
                 break
-            made = target.change(corpus[int(len(corpus) * chance.random())], chance)
-            data = target.encode(made, chance)
+            try:
+                made = target.change(corpus[int(len(corpus) * chance.random())], chance)
+                data = target.encode(made, chance)
+            except RecursionError:  # too deep for what writes it down
+                continue
             features = _fed(target, data, done, folder, seed)
             done.inputs += 1
             new = {hash(one) for one in features} - seen
             if new and len(seen) < MOST_FEATURES:
                 seen |= new
-                if len(repr(made)) < LARGEST:
+                if not isinstance(data, (str, bytes)) or len(data) < LARGEST:
                     _put(made, corpus, len(target.seeds) + most, chance)
                     _put(made, grown, most, chance)
             if not before and max(used(), done.inputs / inputs) > SETTLED:

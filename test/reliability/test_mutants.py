@@ -1,6 +1,7 @@
 """Inputs changed by their structure, fast: all faults are told, none is raised, nothing grows."""
 from __future__ import annotations
 
+import logging
 import os
 
 import pytest
@@ -11,6 +12,14 @@ from proofs import scaled
 
 INPUTS = int(os.environ.get("MY_SIMULATIONS_MUTATIONS") or scaled(500, 1_000_000))
 """Of each proof: ten of them make 10 million in a long run."""
+
+
+@pytest.fixture(autouse=True)
+def silent():
+    """Log lines cost time, and pytest would keep them all."""
+    logging.disable()
+    yield
+    logging.disable(logging.NOTSET)
 
 
 @pytest.mark.parametrize("name", sorted(READERS))
